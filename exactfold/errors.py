@@ -1,4 +1,4 @@
-"""Every exception of exactfold, one class per cause.
+"""Every exception of exactfold: one class for each kind of cause, which its message names.
 
 All derive from `ExactfoldError`. `InputError` means that the input is at fault (exit code 3 on the
 command line); where a vertex, edge or face is to blame, its indices are attributes of the error.
@@ -18,93 +18,68 @@ class InputError(ExactfoldError):
 
 
 class UsageError(ExactfoldError):
-    """The call asks for something that does not exist or does not apply (exit code 2)."""
+    """The call asks for something that does not exist or does not apply (exit code 2).
+
+    Such as an unknown study, numbers of rows that do not fit the sizes, or mountain-valley letters
+    that do not fit the folds.
+    """
 
 
-class LettersError(UsageError):
-    """Mountain-valley letters that do not fit the folds: too many or few, unknown, on no fold."""
+class SolverError(ExactfoldError):
+    """A solver failed, or what it returned is malformed or does not hold; the input is in order.
 
-
-class NoLettersError(UsageError):
-    """Letters of a file are asked for, and none of its folds is a mountain or a valley."""
-
-
-class BadCandidatesError(UsageError):
-    """A solver returned something other than a set of finite points of the right shape."""
+    Such as points of the wrong shape, a parametrisation or a dual space that does not satisfy its
+    system, or an answer of msolve that is not understood.
+    """
 
 
 # --- numbers -------------------------------------------------------------------------------------
 
 
-class NumberError(InputError):
-    """A number could not be accepted."""
+class NumberError(InputError, ValueError):
+    """Text, NaN, Infinity or another object that is not a rational number."""
 
 
 class FloatRefusedError(NumberError, TypeError):
     """A binary float was given where an exact number is needed."""
 
 
-class NotANumberError(NumberError, ValueError):
-    """Text, NaN, Infinity or another object that is not a rational number."""
-
-
 # --- files ---------------------------------------------------------------------------------------
 
 
 class UnreadableFileError(InputError):
-    """A file does not exist or cannot be read."""
+    """A file does not exist or cannot be read.
 
-
-class UnknownPatternError(UnreadableFileError):
-    """Text that is neither a file nor the name of an example; the message lists the names."""
+    For text that is neither a file nor the name of an example the message lists the names.
+    """
 
 
 class UnwritableFileError(InputError):
     """An output path cannot be written."""
 
 
-class NotJSONError(InputError):
-    """The file is not JSON, or is cut off."""
-
-
 class FoldError(InputError):
-    """Base class: the file is JSON but not a FOLD file this reader accepts."""
+    """A FOLD file that this reader does not accept.
+
+    Coordinates off the plane or irrational, faces with more than three sides, edges that cross, are
+    no side of a face, or are cut.
+    """
 
 
 class NotFoldError(FoldError):
-    """JSON without the structure of a FOLD file."""
+    """A file that is not JSON or is cut off, or JSON without the structure of a FOLD file."""
 
 
 class MissingCoordinatesError(FoldError):
     """`vertices_coords` is absent, or a vertex has no coordinates."""
 
 
-class OffPlaneError(FoldError):
-    """Three-component coordinates that do not lie in one plane z = constant."""
-
-
 class StaleExactCoordinatesError(FoldError):
     """`vertices_exactfold:coords` contradicts `vertices_coords`: another program moved a vertex."""
 
 
-class NonTriangularFaceError(FoldError):
-    """A face with more than three sides."""
-
-
-class CrossingEdgesError(FoldError):
-    """Two edges of the file cross, or a vertex lies inside an edge."""
-
-
-class IrrationalCoordinatesError(FoldError):
-    """A file whose coordinates have square roots, where rational ones are needed."""
-
-
-class DanglingEdgeError(FoldError):
-    """An edge that is not a side of any face."""
-
-
-class CutEdgeError(FoldError):
-    """An edge between two faces that the file declares a cut or a boundary."""
+class FoldedStateError(FoldError):
+    """The coordinates of a folded state where a crease pattern is needed."""
 
 
 class TooLargeError(InputError):
@@ -116,43 +91,31 @@ class UnknownFormatError(InputError):
 
 
 class MalformedDrawingError(InputError):
-    """A file of a known format whose lines cannot be understood."""
+    """A file of a known format without lines of a crease pattern that can be understood.
+
+    Lines are damaged, there are none, or a crease is curved: panels between curved creases cannot
+    be rigid.
+    """
 
 
-class EmptyDrawingError(InputError):
-    """A drawing without any line of a crease pattern."""
-
-
-class CurvedCreaseError(InputError):
-    """A crease that is not straight: panels between curved creases cannot be rigid."""
-
-
-class FoldedStateError(FoldError):
-    """The coordinates of a folded state where a crease pattern is needed."""
+class SeveralSheetsError(InputError):
+    """A drawing holds several sheets and none was chosen, or one that is not there was."""
 
 
 class CertificateFormatError(InputError):
     """The file is not a certificate of a known format and version."""
 
 
-class BadTorquesError(InputError):
-    """A file of torques that is not an object of numbers by crease."""
-
-
 class BadRimError(InputError):
-    """Heights of the border that cannot be taken; `vertices` are those to blame."""
+    """Heights of the border that cannot be taken; `vertices` are those to blame.
+
+    A boundary vertex has none, they belong to other vertices, they are not numbers, or they lie in
+    one plane: without angle deficits the sheet is flat then.
+    """
 
     def __init__(self, message: str, vertices: Sequence[int] = ()) -> None:
         super().__init__(message)
         self.vertices = tuple(vertices)
-
-
-class RimVertexError(BadRimError, UsageError):
-    """A boundary vertex without a height, or a height of something that is no boundary vertex."""
-
-
-class RimHeightError(BadRimError, NumberError):
-    """A height of a boundary vertex that is not a number."""
 
 
 class BadDriveError(InputError):
@@ -164,7 +127,11 @@ class BadDriveError(InputError):
 
 
 class BadCurvatureError(InputError):
-    """Angle deficits that cannot be taken; `vertices` are those to blame."""
+    """Angle deficits that cannot be taken; `vertices` are those to blame.
+
+    They are not numbers, belong to no interior vertex, or are negative: vertex signs do not name a
+    shape then.
+    """
 
     def __init__(self, message: str, vertices: Sequence[int] = ()) -> None:
         super().__init__(message)
@@ -176,7 +143,10 @@ class ClusterError(InputError):
 
 
 class ForeignJournalError(InputError):
-    """A file to be resumed belongs to another pattern or version, or is of another kind."""
+    """A file to be resumed or read belongs to another pattern, study or version, or is damaged.
+
+    It may also be of another kind, that is no journal.
+    """
 
 
 class JournalInUseError(InputError):
@@ -186,32 +156,8 @@ class JournalInUseError(InputError):
 # --- studies -------------------------------------------------------------------------------------
 
 
-class UnknownStudyError(UsageError):
-    """No study has this name; the message lists those that there are."""
-
-
-class RowNumbersError(UsageError):
-    """Numbers of rows of a study that cannot be read, or that do not fit the sizes asked for."""
-
-
-class UnknownRowError(InputError):
-    """A journal of a study has no row, or more than one, whose name begins like this."""
-
-
-class ForeignRowsError(ForeignJournalError):
-    """A journal holds the rows of another study, or of another version of it."""
-
-
-class BrokenRowsError(InputError):
-    """A file is not the journal of a study, or is damaged, or holds a row that was changed."""
-
-
 class RowFailedError(ExactfoldError):
     """Rows of a study ended with an error; all others were written."""
-
-
-class StudyPartsMissingError(ExactfoldError):
-    """Matplotlib, pandas or pyarrow, optional parts of studies, is not installed."""
 
 
 # --- patterns ------------------------------------------------------------------------------------
@@ -238,67 +184,35 @@ class PatternError(InputError):
 
 
 class MalformedPatternError(PatternError):
-    """Vertices or triangles of the wrong shape: not pairs, not triples, an index out of range."""
+    """Vertices or triangles that make no list of corners.
 
-
-class DuplicateVertexError(PatternError):
-    """Two vertices at the same point."""
-
-
-class IsolatedVertexError(PatternError):
-    """A vertex that belongs to no triangle."""
+    They are not pairs or not triples, an index is out of range, two vertices lie at the same point,
+    a vertex belongs to no triangle, or the points span no triangle.
+    """
 
 
 class DegenerateFaceError(PatternError):
     """A triangle of zero area or with a repeated vertex."""
 
 
-class MixedOrientationError(PatternError):
-    """Some triangles are clockwise and some counter-clockwise."""
-
-
 class OverlapError(PatternError):
-    """Faces overlap, or the boundary of the sheet meets itself."""
-
-
-class NonManifoldEdgeError(PatternError):
-    """An edge on three or more faces."""
+    """Faces overlap, some of them clockwise, or the boundary of the sheet meets itself."""
 
 
 class NotADiskError(PatternError):
-    """The faces do not form one disk."""
+    """The faces do not form one disk.
+
+    An edge lies on three or more faces, the sheet has a hole, or it hangs together at a vertex by a
+    point only.
+    """
 
 
 class DisconnectedError(NotADiskError):
     """Two or more separate sheets."""
 
 
-class HoleError(NotADiskError):
-    """A sheet with a hole."""
-
-
-class PinchError(NotADiskError):
-    """A vertex at which the sheet hangs together by a point only."""
-
-
-class CollinearPointsError(PatternError):
-    """Points that span no triangle."""
-
-
-class NotACreasePatternError(PatternError):
-    """An object of another program is not a flat sheet of triangles; the cause says why."""
-
-
 class NotApplicableError(ExactfoldError):
     """A construction or method does not apply to this pattern; the message says why."""
-
-
-class FlatRimError(BadRimError, NotApplicableError):
-    """Heights of the border that lie in one plane: without angle deficits the sheet is flat."""
-
-
-class NegativeDeficitError(BadCurvatureError, NotApplicableError):
-    """A negative angle deficit: vertex signs do not name a shape then."""
 
 
 class FlatVertexError(NotApplicableError):
@@ -310,31 +224,18 @@ class NotProvedAtTheFlatStateError(NotApplicableError):
 
 
 class NotCountedError(NotApplicableError):
-    """The sheet is in order, but of a kind whose branches are not listed or named (exit code 4)."""
+    """The sheet is in order, but of a kind whose branches are not listed or named (exit code 4).
 
-
-class NotTriangulatedError(NotCountedError):
-    """A sheet with larger panels or irrational coordinates, where triangles are needed."""
-
-
-class NoInteriorVertexError(NotCountedError):
-    """A pattern without interior vertices has no curvature equation and no branches to count."""
-
-
-class TooManyRivalsError(NotCountedError):
-    """A sheet with more branches than torques for one of them can be compared on."""
-
-
-class UnprovedRivalsError(NotCountedError):
-    """A branch cannot be compared with all others, as not all are proved or told apart."""
+    It has larger panels or irrational coordinates where triangles are needed, no interior vertex,
+    or more branches than torques for one of them can be compared on.
+    """
 
 
 class NotFollowedError(NotApplicableError):
-    """A sheet that is not followed: a branch that is not simple, or no mode that truly folds."""
+    """A sheet that is not followed: a branch that is not simple, or no mode that truly folds.
 
-
-class NotDrivenError(NotFollowedError):
-    """No branch was found on which the driven folds `folds` start in their ratio."""
+    Or no branch was found on which the driven folds `folds` start in their ratio.
+    """
 
     def __init__(self, message: str, folds: Sequence[tuple[int, int]] = ()) -> None:
         super().__init__(message)
@@ -342,37 +243,17 @@ class NotDrivenError(NotFollowedError):
 
 
 class UndecidedBranchError(ExactfoldError):
-    """A branch that is not proved was to be exported (exit code 4)."""
+    """A branch that is not proved was to be exported, followed or compared (exit code 4).
 
-
-# --- the exact engine ----------------------------------------------------------------------------
-
-
-class SeveralSheetsError(InputError):
-    """A drawing holds several sheets and none was chosen, or one that is not there was."""
+    Torques for a branch need all others proved, too, and told apart from it.
+    """
 
 
 class TooManyModesError(ExactfoldError):
     """A search for the motions of a sheet of panels was given up; the message says where."""
 
 
-class ParametrisationError(ExactfoldError):
-    """A parametrisation does not satisfy its system: an error of the solver, not of the input."""
-
-
-class MsolveMissingError(ExactfoldError):
-    """msolve, an optional part, is not installed."""
-
-
-class MsolveFailedError(ExactfoldError):
-    """msolve crashed, took too long, or gave an answer that is not understood or not true."""
-
-
-class DualSpaceError(ExactfoldError):
-    """A dual space does not prove what it claims; the message says which condition fails."""
-
-
-# --- processes -----------------------------------------------------------------------------------
+# --- processes and packages ----------------------------------------------------------------------
 
 
 class WorkerDiedError(ExactfoldError):
@@ -383,17 +264,5 @@ class NotEnoughMemoryError(WorkerDiedError):
     """Memory is limited, and there is not enough of it; nothing that was written is lost."""
 
 
-class DaskMissingError(ExactfoldError):
-    """dask.distributed, an optional part, is not installed."""
-
-
-class PicturesMissingError(ExactfoldError):
-    """CairoSVG, an optional part that writes PNG and PDF files, is not installed."""
-
-
-class GltfMissingError(ExactfoldError):
-    """pygltflib, an optional part that writes glTF files, is not installed."""
-
-
 class PackageMissingError(ExactfoldError):
-    """A package to which there is a bridge is not installed; the message says how to get it."""
+    """An optional package or program is not installed; the message says how to get it."""

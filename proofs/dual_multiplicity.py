@@ -7,7 +7,7 @@ from itertools import combinations
 
 from flint import fmpq_poly
 
-from exactfold.errors import DualSpaceError
+from exactfold.errors import SolverError
 from exactfold.exact.univariate import to_rational_poly
 from exactfold.rigidity.equations.quadratic import QuadraticSystem
 from exactfold.solve.algebraic.exact_solution import RootClass
@@ -33,8 +33,8 @@ def check_dual_space(system: QuadraticSystem, root_class: RootClass, dual: DualS
     then at least the number of functionals (Stetter, Numerical Polynomial Algebra, section 8.5).
     If the space claims to be complete, that no larger one exists is checked as well.
 
-    The functionals are not computed here, only tested. Returns None. Raises `DualSpaceError` that
-    names the condition, or `ParametrisationError` from `RootClass.verify`.
+    The functionals are not computed here, only tested. Returns None. Raises `SolverError` that
+    names the condition, or `SolverError` from `RootClass.verify`.
     """
     root_class.verify(system)
     modulus = fmpq_poly(list(root_class.polynomial))
@@ -42,13 +42,13 @@ def check_dual_space(system: QuadraticSystem, root_class: RootClass, dual: DualS
         {a: to_rational_poly(c) for a, c in functional.items()} for functional in dual.functionals
     ]
     if not functionals or len(dual.pivots) != len(functionals):
-        raise DualSpaceError("every functional of a dual space needs a pivot")
+        raise SolverError("every functional of a dual space needs a pivot")
     for k, functional in enumerate(functionals):
         if any(len(a) != system.size or min(a, default=0) < 0 for a in functional):
-            raise DualSpaceError(f"functional {k} has an exponent of the wrong shape")
+            raise SolverError(f"functional {k} has an exponent of the wrong shape")
         for j, pivot in enumerate(dual.pivots):
             if functional.get(pivot, fmpq_poly()) % modulus != int(j == k):
-                raise DualSpaceError(f"functional {k} is not reduced at pivot {j}")
+                raise SolverError(f"functional {k} is not reduced at pivot {j}")
     for k, functional in enumerate(functionals):
         for i in range(system.size):
             rest = {_moved(a, i, -1): c for a, c in functional.items() if a[i]}
@@ -57,7 +57,7 @@ def check_dual_space(system: QuadraticSystem, root_class: RootClass, dual: DualS
                 for a, c in other.items():
                     rest[a] = rest.get(a, fmpq_poly()) - weight * c
             if any(c % modulus != 0 for c in rest.values()):
-                raise DualSpaceError(f"derivative {i} of functional {k} leaves the space")
+                raise SolverError(f"derivative {i} of functional {k} leaves the space")
     expansions = taylor_expansions(system, root_class)
     for p, expansion in enumerate(expansions):
         for k, functional in enumerate(functionals):
@@ -65,7 +65,7 @@ def check_dual_space(system: QuadraticSystem, root_class: RootClass, dual: DualS
                 (c * functional[a] for a, c in expansion.items() if a in functional), fmpq_poly()
             )
             if value % modulus != 0:
-                raise DualSpaceError(f"functional {k} does not vanish on quadric {p}")
+                raise SolverError(f"functional {k} does not vanish on quadric {p}")
     if dual.is_complete:
         _check_isolated(root_class, expansions, functionals, dual.pivots, system.size)
 
@@ -91,7 +91,7 @@ def _check_isolated(
         equations += _derivative_conditions(i, unknowns, functionals, pivots)
     wanted = len(unknowns) - (len(functionals) - 1)
     if unit_rank(root_class.polynomial, equations) < wanted:
-        raise DualSpaceError("the dual space was not proved to be complete")
+        raise SolverError("the dual space was not proved to be complete")
 
 
 def _derivative_conditions(
@@ -126,7 +126,7 @@ def check_complete(system: QuadraticSystem, proofs: Sequence[tuple[RootClass, Du
     12.3) there is then no further zero, in affine space or at infinity, and no component of
     positive dimension.
 
-    Raises `DualSpaceError` if the proof is incomplete, which says nothing about what is missing.
+    Raises `SolverError` if the proof is incomplete, which says nothing about what is missing.
 
     >>> from proofs.dual_space import dual_space
     >>> from exactfold.solve.algebraic.groebner_bases import groebner
@@ -138,17 +138,17 @@ def check_complete(system: QuadraticSystem, proofs: Sequence[tuple[RootClass, Du
     """
     forms = {root_class.separating for root_class, _ in proofs}
     if len(forms) > 1:
-        raise DualSpaceError("the classes are parametrised by different linear forms")
+        raise SolverError("the classes are parametrised by different linear forms")
     total = 0
     for root_class, dual in proofs:
         if not dual.is_complete:
-            raise DualSpaceError("a dual space that may be larger does not show an isolated zero")
+            raise SolverError("a dual space that may be larger does not show an isolated zero")
         check_dual_space(system, root_class, dual)
         total += root_class.degree * dual.dimension
     moduli = [fmpq_poly(list(root_class.polynomial)) for root_class, _ in proofs]
     if any(a.gcd(b).degree() > 0 for a, b in combinations(moduli, 2)):
-        raise DualSpaceError("two root classes share a root")
+        raise SolverError("two root classes share a root")
     if total != system.bezout_number:
-        raise DualSpaceError(
+        raise SolverError(
             f"the multiplicities proved add up to {total}, not to {system.bezout_number}"
         )

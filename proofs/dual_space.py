@@ -10,7 +10,7 @@ from typing import TypeAlias
 
 from flint import fmpq_poly, fmpz, nmod_poly
 
-from exactfold.errors import DualSpaceError
+from exactfold.errors import SolverError
 from exactfold.exact.algebraic import NumberField, Vector
 from exactfold.exact.univariate import from_rational_poly, to_rational_poly
 from exactfold.rigidity.equations.quadratic import QuadraticSystem
@@ -61,7 +61,7 @@ def dual_space(system: QuadraticSystem, root_class: RootClass, limit: int) -> Du
     grows until nothing new appears, which proves that the root is isolated and the dimension its
     multiplicity, or until the dimension reaches `limit`. Exact linear algebra over Q[T]/p.
 
-    Raises `DualSpaceError` if the class is not a zero of the system.
+    Raises `SolverError` if the class is not a zero of the system.
 
     >>> from exactfold.solve.algebraic.groebner_bases import groebner
     >>> parabola_and_axis = QuadraticSystem.from_rational(
@@ -76,7 +76,7 @@ def dual_space(system: QuadraticSystem, root_class: RootClass, limit: int) -> Du
     size = system.size
     origin = (0,) * size
     if any(expansion.get(origin) for expansion in expansions):
-        raise DualSpaceError("the root class is not a zero of the system")
+        raise SolverError("the root class is not a zero of the system")
     basis: list[Taylor] = [{origin: fmpq_poly([1])}]
     pivots = [origin]
     gradients = [{a: c for a, c in f.items() if sum(a) == 1} for f in expansions]

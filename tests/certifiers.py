@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from rivals import ball_krawczyk
+
 from exactfold._support.verdict import Verdict
 from exactfold.rigidity.equations.quadratic import QuadraticSystem
-from exactfold.solve.certify import ball_krawczyk, ball_newton, exact_krawczyk
+from exactfold.solve.certify import ball_newton, exact_krawczyk
 from exactfold.solve.certify.box import IsolatingBox, Uncertified
 
 Certify = Callable[..., list[IsolatingBox | Uncertified]]

@@ -11,8 +11,7 @@ import pytest
 
 from exactfold.branches.certificates.check import check_compact
 from exactfold.checker import CertificateError
-from exactfold.checker.branches.compact_blocks import CompactSheet
-from exactfold.checker.core.formats import UNPROVED
+from exactfold.checker.branches.compact_blocks import UNPROVED, CompactSheet
 from exactfold.checker.core.lines import digest
 
 Lines = list[dict[str, Any]]

@@ -18,6 +18,7 @@ from typing import (
     Final,
     Literal,
     NotRequired,
+    TypeAlias,
     Union,
     get_args,
     get_origin,
@@ -100,6 +101,9 @@ _PRIMITIVE: Final = {
     NoneType: "null",
 }
 
+Parts: TypeAlias = dict[type, dict[str, Any]]
+"""The schemas of the types inside a document."""
+
 
 def schema(name: str) -> dict[str, Any]:
     """The JSON Schema (draft 2020-12) of a kind of output, whole: it refers to no other file.
@@ -113,14 +117,15 @@ def schema(name: str) -> dict[str, Any]:
         raise UsageError(f"no schema {name!r}; there are: {', '.join(DOCUMENTS)}")
     title, *places = DOCUMENTS[name]
     types = [_at(place) for place in places]
-    parts: dict[str, Any] = {}
+    parts: Parts = {}
     head = {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "$id": f"urn:exactfold:schema:{name}",
         "title": title,
     }
     whole = _object(types[0], parts) if len(types) == 1 else _any_of(types, parts)
-    return {**head, **whole, **({"$defs": dict(sorted(parts.items()))} if parts else {})}
+    named = {kind.__name__: part for kind, part in parts.items()}
+    return {**head, **whole, **({"$defs": dict(sorted(named.items()))} if parts else {})}
 
 
 def _at(place: str) -> Any:
@@ -128,7 +133,7 @@ def _at(place: str) -> Any:
     return getattr(import_module(f"exactfold.{module}"), name)
 
 
-def _schema(kind: Any, parts: dict[str, Any]) -> dict[str, Any]:
+def _schema(kind: Any, parts: Parts) -> dict[str, Any]:
     """The schema of a type; that of a `TypedDict` is put among the `parts` and referred to."""
     origin, arguments = get_origin(kind), get_args(kind)
     if origin is Annotated:
@@ -145,13 +150,13 @@ def _schema(kind: Any, parts: dict[str, Any]) -> dict[str, Any]:
     if origin is dict:
         return _by_key(*(_schema(argument, parts) for argument in arguments))
     if is_typeddict(kind):
-        if kind.__name__ not in parts:
-            parts[kind.__name__] = _object(kind, parts)
+        if kind not in parts:
+            parts[kind] = _object(kind, parts)
         return {"$ref": f"#/$defs/{kind.__name__}"}
     return {} if kind is Any else {"type": _PRIMITIVE[kind]}
 
 
-def _any_of(kinds: Any, parts: dict[str, Any]) -> dict[str, Any]:
+def _any_of(kinds: Any, parts: Parts) -> dict[str, Any]:
     return {"anyOf": [_schema(kind, parts) for kind in kinds]}
 
 
@@ -163,7 +168,7 @@ def _by_key(key: dict[str, Any], value: dict[str, Any]) -> dict[str, Any]:
     return {"type": "object", **by_pattern}
 
 
-def _object(kind: type, parts: dict[str, Any]) -> dict[str, Any]:
+def _object(kind: type, parts: Parts) -> dict[str, Any]:
     """The schema of a `TypedDict`: it has these keys and no others."""
     properties, required = {}, []
     described = _described(kind)

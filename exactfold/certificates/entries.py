@@ -7,7 +7,7 @@ import os
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Any
 
-from exactfold.checker.core.formats import LISTING, LISTING_VERSION
+from exactfold.checker.branches.listing import LISTING
 from exactfold.exact.numbers import format_integer, format_rational
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.fold_writing import write_text
@@ -29,8 +29,8 @@ def document(
 ) -> Document:
     """The certificate as a JSON object; `docs/certificate.md` describes every key."""
     return {
-        "format": LISTING,
-        "version": LISTING_VERSION,
+        "format": LISTING.format,
+        "version": LISTING.version,
         "pattern": pattern_document(pattern),
         "claims": {
             "interior": pattern.Vi,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from exactfold._support.shared_work import in_order
-from exactfold.checker.branches import compact
+from exactfold.checker.core.parts import Engine, Said, Verifier
 
 
 class _Started:
@@ -14,9 +14,9 @@ class _Started:
     The verifier is in the copy that a worker process was sent, and goes with this process.
     """
 
-    def __init__(self, engine: compact.Engine, header: str) -> None:
+    def __init__(self, engine: Engine, header: str) -> None:
         self.engine, self.header = engine, header
-        self.verifier: compact.Verifier | None = None
+        self.verifier: Verifier | None = None
 
     def __call__(self, part: tuple[str, int]) -> str | None:
         if self.verifier is None:
@@ -24,8 +24,6 @@ class _Started:
         return self.verifier.refusal(*part)
 
 
-def shared(
-    engine: compact.Engine, workers: int, header: str, parts: Iterator[tuple[str, int]]
-) -> compact.Said:
+def shared(engine: Engine, workers: int, header: str, parts: Iterator[tuple[str, int]]) -> Said:
     """Parts of a file checked in several processes, in their order; raises as `in_order`."""
     return in_order(workers, _Started(engine, header), parts, 3)

@@ -19,7 +19,8 @@ the pieces of a sheet with more than four (`pieces`, docs/certificate.md), all m
 rigid panels (`panels`, docs/certificate.md), the true motion along one branch (`motion`,
 docs/motion.md), one of rigid panels (`panel_motion`, docs/panel_motion.md), and the loops of true
 motions through the flat state (`motion_loops`, docs/motions.md).
-`formats` owns their names and versions, `limits` how much one file may ask for.
+Each theory has the `Kind` of its certificates beside what it checks; `command` has the table of them,
+`limits` how much one file may ask for.
 
 Floating point is used to choose the matrices and weights of Krawczyk's and of Newton's test, which
 may be any, and nowhere else.
@@ -46,7 +47,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> object:
-    """A public name, loaded where it is used: whoever writes certificates needs `formats` only."""
+    """A public name, loaded where it is used: whoever writes certificates needs one kind only."""
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     if name.endswith("Error"):

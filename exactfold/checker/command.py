@@ -7,29 +7,20 @@ import re
 import sys
 import traceback
 from collections import defaultdict
+from collections.abc import Callable
 from concurrent.futures import BrokenExecutor
-from contextlib import suppress
 from io import BytesIO
 from os import PathLike
-from types import ModuleType
 from typing import Any
 
-from .branches import branch, compact, listing
-from .branches import connected_components as pieces
-from .core.formats import (
-    ASSIGNMENTS,
-    BRANCH,
-    COMPACT,
-    LETTERS,
-    LISTING,
-    LOOPS,
-    MOTION,
-    PANEL_LETTERS,
-    PANEL_MOTION,
-    PIECES,
-)
+from .branches.branch import BRANCH
+from .branches.compact import COMPACT
+from .branches.connected_components import PIECES
+from .branches.listing import LISTING
+from .core.kinds import DocumentKind, LineKind, Verified
 from .core.limits import MOST_BYTES, MOST_LINE
-from .core.lines import lines
+from .core.lines import lines, read_object
+from .core.parts import Engine
 from .core.reading import (
     CertificateError,
     FormatError,
@@ -39,17 +30,33 @@ from .core.reading import (
     plain,
     read_json,
 )
-from .letters import assignments, letters
-from .letters import panels as panel_letters
-from .motion import certificate as motion
-from .motion import loops as motion_loops
-from .motion.panels import certificate as panel_motion
-from .panels import certificate as panels
+from .letters.assignments import ASSIGNMENTS
+from .letters.letters import LETTERS
+from .letters.panels import PANEL_LETTERS
+from .motion.certificate import MOTION
+from .motion.loops import LOOPS
+from .motion.panels.certificate import PANEL_MOTION
+from .panels.certificate import PANELS
 
 USAGE = "usage: python exactfold/checker CERTIFICATE [WORKERS]"
 
-_COMPACT = re.compile(rb'"format"\s*:\s*"' + COMPACT.encode() + b'"')
-_LOOPS = re.compile(rb'"format"\s*:\s*"' + LOOPS.encode() + b'"')
+DOCUMENTS: tuple[DocumentKind[Any], ...] = (
+    LISTING,
+    BRANCH,
+    PIECES,
+    PANELS,
+    LETTERS,
+    ASSIGNMENTS,
+    PANEL_LETTERS,
+    MOTION,
+    PANEL_MOTION,
+)
+"""The kinds whose files are one JSON object each."""
+
+IN_LINES: tuple[LineKind[Any], ...] = (COMPACT, LOOPS)
+"""The kinds whose files are written line by line."""
+
+KINDS = (*DOCUMENTS, *IN_LINES)
 
 _PRINTED = re.compile("exactfold ([a-z-]+) result")
 
@@ -66,63 +73,54 @@ _ADVICE = defaultdict(
 
 
 def load(text: str) -> dict[str, Any]:
-    """The JSON object of a certificate of any kind but the compact; raises `FormatError`."""
+    """The JSON object of a certificate that is one; raises `FormatError`."""
     try:
         data = read_json(text)
-        known: dict[str, Any] = _reader(data if isinstance(data, dict) else {}).read(data)
-        return known
-    except LimitError:
-        raise
+        return _kind_of(data).read(data)
     except FormatError as error:
         raise FormatError(_stranger(text) or error) from None
 
 
-def check(data: dict[str, Any]) -> dict[str, Any]:
-    """Verify every claim of a JSON object, a certificate of any kind but the compact.
+def check(data: dict[str, Any]) -> Verified[Any]:
+    """Verify every claim of the JSON object of a certificate.
 
-    Returns the claims; raises `CertificateError` at the first that is not supported.
+    Raises `CertificateError` at the first claim that is not supported, `FormatError` for an object
+    of no known kind.
     """
-    claims: dict[str, Any] = _reader(data).check(data)
-    return claims
+    kind = _kind_of(data)
+    return Verified(kind, kind.check(data))
 
 
-_READERS = {
-    ASSIGNMENTS: assignments,
-    BRANCH: branch,
-    LETTERS: letters,
-    MOTION: motion,
-    PANEL_LETTERS: panel_letters,
-    PANEL_MOTION: panel_motion,
-    PIECES: pieces,
-}
-"""The modules of formats that are a JSON object; `LISTING` has two more."""
-
-
-def _reader(data: dict[str, Any]) -> ModuleType:
-    """The module that reads and checks a JSON object."""
-    found = _READERS.get(str(data.get("format")))
-    if found is not None:
-        return found
-    if data.get("format") == LISTING and "kind" in data:
-        return panels
-    return listing
+def _kind_of(data: Any) -> DocumentKind[Any]:
+    """The kind of a JSON object, by its "format" and, if several have this format, its "kind"."""
+    found = data if isinstance(data, dict) else {}
+    kinds = [kind for kind in DOCUMENTS if kind.format == found.get("format")]
+    if not kinds:
+        raise FormatError('the object has no "format" that this checker knows')
+    named = found.get("kind")
+    for kind in kinds:
+        if kind.named == named:
+            return kind
+    raise FormatError(f"the kind {named!a} is not known to this checker")
 
 
 def verify(
-    path: str | PathLike[str], workers: int = 1, engine: compact.Engine = compact.INTEGERS
-) -> dict[str, Any]:
-    """Verify every claim of a certificate of any kind; returns the claims.
+    path: str | PathLike[str],
+    workers: int = 1,
+    engine_of: Callable[[LineKind[Any]], Engine] = lambda kind: kind.engine,
+) -> Verified[Any]:
+    """Verify every claim of a certificate of any kind.
 
-    `workers` processes share the blocks of a compact certificate, which `engine` verifies, and the
-    loops of a certificate of these. Raises `CertificateError` if a claim is not supported,
-    `FormatError` if the file is no certificate, `OSError`, `BrokenExecutor` if a process died.
+    `workers` processes share the lines of a certificate that is written line by line. Which engine
+    verifies them `engine_of` says, once the first line shows the kind. Raises `CertificateError` if
+    a claim is not supported, `FormatError` if the file is no certificate, `OSError`,
+    `BrokenExecutor` if a process died.
     """
     with open(path, "rb") as stream:
         first = stream.readline(MOST_LINE)
-        if _LOOPS.search(first[:4096]):
-            return motion_loops.check_lines(lines(stream, first), workers, engine.share)
-        if _is_compact(first):
-            return compact.check_lines(lines(stream, first), workers, engine)
+        if _sealed(first):
+            kind = _kind_in_lines(first)
+            return Verified(kind, kind.check(lines(stream, first), workers, engine_of(kind)))
         try:
             text = (first + stream.read(MOST_BYTES + 1 - len(first))).decode()
         except UnicodeDecodeError as error:
@@ -132,20 +130,28 @@ def verify(
 
 
 def is_compact(path: str | PathLike[str]) -> bool:
-    """Whether a file is a compact certificate, to go by its first line; raises `OSError`."""
+    """Whether the first line of a file is that of a compact certificate; raises `OSError`."""
     with open(path, "rb") as stream:
-        return _is_compact(stream.readline(MOST_LINE))
-
-
-def _is_compact(first: bytes) -> bool:
-    """By its format, else by its digest."""
-    if _COMPACT.search(first[:4096]):
-        return True
-    if _LOOPS.search(first[:4096]):
+        first = stream.readline(MOST_LINE)
+    try:
+        return _sealed(first) and _kind_in_lines(first) is COMPACT
+    except FormatError:
         return False
-    with suppress(FormatError):
-        return b"\t" in first and next(lines(BytesIO(first)), None) is not None
-    return False
+
+
+def _sealed(line: bytes) -> bool:
+    """Whether a line ends with a tab and a digest, as those of files of lines do."""
+    return re.fullmatch(rb"[0-9a-f]{64}\n", line.rpartition(b"\t")[2]) is not None
+
+
+def _kind_in_lines(first: bytes) -> LineKind[Any]:
+    """The kind of a file of lines, by the "format" in the first; raises `FormatError`."""
+    (text,) = lines(BytesIO(first))
+    form = read_object(text, "the first line").get("format")
+    for kind in IN_LINES:
+        if kind.format == form:
+            return kind
+    raise FormatError('the first line has no "format" of a certificate that is written in lines')
 
 
 def _stranger(text: str) -> str | None:
@@ -156,6 +162,8 @@ def _stranger(text: str) -> str | None:
         return None
     if not isinstance(data, dict):
         return None
+    if data.get("format") in [kind.format for kind in IN_LINES]:
+        return "line 1 is cut off or was altered"
     if data.keys() & {"vertices_coords", "faces_vertices", "edges_vertices", "file_spec"}:
         return "this is a FOLD file, a crease pattern and no certificate"
     several = bool(text.lstrip()[end:].strip())
@@ -175,25 +183,9 @@ def _printed(kind: str, several: bool) -> str:
     return f"the result printed by {command} --json"
 
 
-def summary(claims: dict[str, Any]) -> str:
+def summary(verified: Verified[Any]) -> str:
     """One line for verified claims."""
-    if "assignments" in claims:
-        return assignments.summary(claims)
-    if "supports" in claims:
-        return panels.summary(claims)
-    if "loops" in claims:
-        return motion_loops.summary(claims)
-    if "starts" in claims:
-        return panel_letters.summary(claims)
-    if "halves" in claims:
-        return letters.summary(claims)
-    if "at_most" in claims:
-        return pieces.summary(claims)
-    if "drivers" in claims:
-        return panel_motion.summary(claims)
-    if "tubes" in claims:
-        return motion.summary(claims)
-    return branch.summary(claims) if "gauge" in claims else listing.summary(claims)
+    return verified.kind.summary(verified.claims)
 
 
 def refusal(error: CertificateError) -> str:
@@ -215,7 +207,7 @@ def main(arguments: list[str]) -> int:
         print(USAGE, file=sys.stderr)
         return 2
     try:
-        claims = verify(arguments[0], int(workers))
+        verified = verify(arguments[0], int(workers))
     except CertificateError as error:
         print(refusal(error))
         return 1
@@ -232,5 +224,5 @@ def main(arguments: list[str]) -> int:
     except Exception:  # never to be read as one of the other codes
         traceback.print_exc()
         return 70
-    print(summary(claims))
+    print(summary(verified))
     return 0

@@ -11,7 +11,7 @@ from numbers import Rational
 from typing import TypeAlias
 
 from exactfold.checker.core.limits import MOST_EXPONENT, MOST_NUMBER
-from exactfold.errors import FloatRefusedError, NotANumberError, UsageError
+from exactfold.errors import FloatRefusedError, NumberError, UsageError
 
 RationalLike: TypeAlias = "int | Fraction | Decimal | str"
 
@@ -31,9 +31,9 @@ def long_integer(text: str) -> int:
 
 
 def _int(text: str) -> int:
-    """As `long_integer`; raises `NotANumberError` for more digits than a file may ask for."""
+    """As `long_integer`; raises `NumberError` for more digits than a file may ask for."""
     if (digits := len(text.lstrip("+-"))) > MOST_NUMBER:
-        raise NotANumberError(
+        raise NumberError(
             f"{shown(text)} has {digits} digits, and {MOST_NUMBER} are the most that are read: "
             "round the number"
         )
@@ -43,7 +43,7 @@ def _int(text: str) -> int:
 def parse_rational(text: str) -> Fraction:
     """Exact value of "p", "p/q" or decimal text such as "-1.25e-3".
 
-    Raises `NotANumberError` for anything else, including "NaN", "Infinity" and a zero denominator,
+    Raises `NumberError` for anything else, including "NaN", "Infinity" and a zero denominator,
     and for numbers that are longer than the limits of `exactfold.checker.core.limits`.
 
     >>> parse_rational("0.1")
@@ -52,7 +52,7 @@ def parse_rational(text: str) -> Fraction:
     Fraction(-1, 2)
     >>> parse_rational("inf")
     Traceback (most recent call last):
-    exactfold.errors.NotANumberError: 'inf' is not a number: write an integer, "p/q" or a decimal
+    exactfold.errors.NumberError: 'inf' is not a number: write an integer, "p/q" or a decimal
     """
     text = text.strip()
     if _INTEGER.match(text):
@@ -60,40 +60,40 @@ def parse_rational(text: str) -> Fraction:
     if quotient := _QUOTIENT.match(text):
         denominator = _int(quotient[2])
         if denominator == 0:
-            raise NotANumberError(f"{shown(text)} has a zero denominator")
+            raise NumberError(f"{shown(text)} has a zero denominator")
         return Fraction(_int(quotient[1]), denominator)
     decimal = _DECIMAL.match(text)
     if decimal and (decimal[2] or decimal[3]):
         sign, whole, part, power = decimal[1], decimal[2], decimal[3] or "", _int(decimal[4] or "0")
         if abs(power) > MOST_EXPONENT:
-            raise NotANumberError(f"{shown(text)} has an exponent beyond {MOST_EXPONENT}")
+            raise NumberError(f"{shown(text)} has an exponent beyond {MOST_EXPONENT}")
         digits = _int(f"{sign}{whole}{part}")
         power -= len(part)
         return Fraction(digits * 10**power) if power >= 0 else Fraction(digits, 10**-power)
-    raise NotANumberError(f'{shown(text)} is not a number: write an integer, "p/q" or a decimal')
+    raise NumberError(f'{shown(text)} is not a number: write an integer, "p/q" or a decimal')
 
 
 def parse_whole(text: str) -> int:
     """A whole number of at most 4000 decimal digits, such as "-12".
 
-    Raises `NotANumberError` for anything else, also for "1_0", which `int` reads as 10.
+    Raises `NumberError` for anything else, also for "1_0", which `int` reads as 10.
 
     >>> parse_whole(" -12 ")
     -12
     >>> parse_whole("1_0")
     Traceback (most recent call last):
-    exactfold.errors.NotANumberError: '1_0' is not a whole number
+    exactfold.errors.NumberError: '1_0' is not a whole number
     """
     digits = text.strip()
     if not _INTEGER.match(digits) or len(digits) > _MOST_DIGITS:
-        raise NotANumberError(f"{shown(text)} is not a whole number")
+        raise NumberError(f"{shown(text)} is not a whole number")
     return int(digits)
 
 
 def approx_number(text: str) -> float:
     """The float nearest to the number that `parse_rational` reads, infinite beyond all floats.
 
-    Raises `NotANumberError` where `parse_rational` does: "nan" and "1_0" are no numbers.
+    Raises `NumberError` where `parse_rational` does: "nan" and "1_0" are no numbers.
 
     >>> approx_number("0.1"), approx_number("-1e400")
     (0.1, -inf)
@@ -126,7 +126,7 @@ def as_rational(value: object) -> Fraction:
     """`value` as a Fraction: int, Fraction, any `numbers.Rational`, Decimal, or text.
 
     Raises `FloatRefusedError` for floats (their binary value is rarely what was meant) and
-    `NotANumberError` for booleans, non-finite numbers and other objects.
+    `NumberError` for booleans, non-finite numbers and other objects.
 
     >>> as_rational("0.25"), as_rational(3)
     (Fraction(1, 4), Fraction(3, 1))
@@ -137,18 +137,18 @@ def as_rational(value: object) -> Fraction:
     if isinstance(value, Fraction):
         return value
     if isinstance(value, bool):
-        raise NotANumberError(f"{value!r} is a truth value, not a number")
+        raise NumberError(f"{value!r} is a truth value, not a number")
     if isinstance(value, Rational):
         return Fraction(int(value.numerator), int(value.denominator))
     if isinstance(value, str):
         return parse_rational(value)
     if isinstance(value, Decimal):
         if not value.is_finite():
-            raise NotANumberError(f"{value} is not a finite number")
+            raise NumberError(f"{value} is not a finite number")
         return parse_rational(str(value))
     if isinstance(value, float) or (type(value).__module__ == "numpy" and hasattr(value, "dtype")):
         raise _float_refused(value)
-    raise NotANumberError(f"{shown(value)} is not a rational number")
+    raise NumberError(f"{shown(value)} is not a rational number")
 
 
 def _float_refused(value: object) -> FloatRefusedError:

@@ -7,13 +7,11 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from exactfold.errors import (
+    FoldError,
     InputError,
-    IrrationalCoordinatesError,
     MalformedPatternError,
-    NonTriangularFaceError,
-    NotACreasePatternError,
     NumberError,
-    OffPlaneError,
+    PatternError,
 )
 from exactfold.exact.numbers import as_rational, over_common_denominator
 from exactfold.interop.packages import optional
@@ -60,7 +58,7 @@ def from_pyrigi(framework: pyrigi.Framework) -> CreasePattern:
     coordinates. Faces and boundary are found from the bars: every bounded region has to be a
     triangle. Vertex k of the pattern is the k-th of `framework.graph.vertex_list()`.
 
-    Raises `NotACreasePatternError` for any other framework; its cause is the error that says which
+    Raises `PatternError` for any other framework; its cause is the error that says which
     vertices, edges or faces are to blame. Floats are refused, as their binary value is rarely what
     was meant.
 
@@ -71,7 +69,7 @@ def from_pyrigi(framework: pyrigi.Framework) -> CreasePattern:
     try:
         return _sheet(framework)
     except InputError as error:
-        raise NotACreasePatternError(
+        raise PatternError(
             f"the framework is not a crease pattern: {error}",
             vertices=getattr(error, "vertices", ()),
             edges=getattr(error, "edges", ()),
@@ -89,7 +87,7 @@ def _sheet(framework: pyrigi.Framework) -> CreasePattern:
     faces = trace_faces(list(zip(whole[::2], whole[1::2], strict=True)), edges)
     for face in faces:
         if len(face) > 3:
-            raise NonTriangularFaceError(
+            raise FoldError(
                 f"the bars {'-'.join(map(str, face))} enclose a face of {len(face)} sides"
             )
     return CreasePattern(points, faces)
@@ -102,7 +100,7 @@ def _rational(vertex: int, value: Any) -> Fraction:
     if getattr(value, "is_Float", False):
         value = float(value)
     elif hasattr(value, "free_symbols"):
-        raise IrrationalCoordinatesError(f"vertex {vertex}: {value} is not a rational number")
+        raise FoldError(f"vertex {vertex}: {value} is not a rational number")
     try:
         return as_rational(value)
     except NumberError as error:
@@ -115,5 +113,5 @@ def _flat(points: Sequence[Sequence[Fraction]]) -> list[Point]:
     if dimension not in (2, 3):
         raise MalformedPatternError(f"its dimension is {dimension}, not 2 or 3")
     if len({tuple(point[2:]) for point in points}) > 1:
-        raise OffPlaneError("its vertices do not lie in one plane z = constant")
+        raise FoldError("its vertices do not lie in one plane z = constant")
     return [(point[0], point[1]) for point in points]

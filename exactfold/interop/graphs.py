@@ -21,8 +21,7 @@ def to_networkx(
     Nodes have `pos`, the exact point in the unit of the pattern, and `interior`; edges have `fold`
     (not on the boundary) and `letter`: that of `assignment`, as `Branch.assignment` holds it, "U"
     where it has none, "B" on the boundary. `graph.graph["faces"]` are the faces, counter-clockwise.
-    `CreasePattern.graph` is the frozen graph that exactfold itself uses. Raises the errors of
-    `load`.
+    Raises the errors of `load`.
 
     >>> graph = to_networkx("two-vertex", {(4, 5): "M"})
     >>> graph.nodes[4], graph.edges[4, 5]

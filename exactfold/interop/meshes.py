@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from exactfold._support.arrays import FloatArray, IndexArray
-from exactfold.errors import GltfMissingError, UsageError
+from exactfold.errors import PackageMissingError, UsageError
 from exactfold.interop.packages import optional
 from exactfold.pattern.loading import PatternLike, as_pattern
 from exactfold.pattern.panel_pattern import PanelPattern
@@ -59,10 +59,10 @@ def animated_gltf(
     the paper are there, each with a material that is culled from behind. The animation takes
     `SECONDS` from the first frame to the last, and as long back, unless the motion `returns` to the
     first by itself. One unit of the sheet is a metre; z is turned up into the y of glTF. `facts`
-    are kept as extras. Raises `GltfMissingError`.
+    are kept as extras. Raises `PackageMissingError`.
     """
     if find_spec("pygltflib") is None:
-        raise GltfMissingError(
+        raise PackageMissingError(
             "glTF files need pygltflib, which is not installed: pip install 'exactfold[motion]'"
         )
     import pygltflib as gltf

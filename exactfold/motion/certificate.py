@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
 from exactfold.certificates.entries import Document, emptied_evidence, pattern_document
-from exactfold.checker.core.formats import MOTION, MOTION_VERSION
+from exactfold.checker.motion.certificate import MOTION
 from exactfold.exact.numbers import format_rational
 from exactfold.pattern.crease_pattern import CreasePattern
 
@@ -39,8 +39,8 @@ def motion_certificate(
     *steps, last = tubes if ends_at_a_node else [*tubes, {}]
     through = [step["flat"] for step in steps if "flat" in step]
     document: Document = {
-        "format": MOTION,
-        "version": MOTION_VERSION,
+        "format": MOTION.format,
+        "version": MOTION.version,
         "pattern": pattern_document(pattern),
         "claims": {
             "vertex_signs": [signs.get(v, 0) for v in pattern.interior],

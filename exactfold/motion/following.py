@@ -14,9 +14,9 @@ from exactfold._support.arrays import FloatArray
 from exactfold._support.progress import Progress
 from exactfold.branches.values.branch import Branch
 from exactfold.errors import (
-    NotANumberError,
     NotApplicableError,
     NotFollowedError,
+    NumberError,
     UndecidedBranchError,
     UsageError,
 )
@@ -160,7 +160,7 @@ class Goal:
         text = str(until)
         try:
             number = approx_number(text.removesuffix("deg"))
-        except NotANumberError:
+        except NumberError:
             number = -1.0
         if not (isfinite(number) and number > 0) or (text.endswith("deg") and number > 180):
             raise UsageError(

@@ -33,7 +33,7 @@ def write_motion(
     for each frame, NAME_0000.obj and on. FOLD files hold panels as they are, the others cut them
     into triangles. `title` names the pattern. See docs/folding.md.
 
-    Raises `UsageError` for another ending, `GltfMissingError`, `UnwritableFileError`.
+    Raises `UsageError` for another ending, `PackageMissingError`, `UnwritableFileError`.
 
     >>> import os, tempfile
     >>> from exactfold.branches.counting.find import find_branch

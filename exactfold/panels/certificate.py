@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED
 from exactfold.certificates.entries import Document
-from exactfold.checker.core.formats import LISTING, PANELS, PANELS_VERSION
+from exactfold.checker.panels.certificate import PANELS
 from exactfold.errors import NotApplicableError, TooManyModesError
 from exactfold.exact.numbers import format_rational
 from exactfold.exact.surds import Number, SurdField
@@ -49,9 +49,9 @@ def certificate_of_panels(result: Decomposition) -> Document:
     ]
     spaces = [_spaces(part) for part in result.parts if part.theory == "subspaces"]
     return {
-        "format": LISTING,
-        "version": PANELS_VERSION,
-        "kind": PANELS,
+        "format": PANELS.format,
+        "version": PANELS.version,
+        "kind": PANELS.named,
         "pattern": panels_document(pattern),
         "claims": {
             "interior": len(pattern.interior),

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from types import MappingProxyType
-from typing import TYPE_CHECKING
 
 from exactfold._support.notebook import Picture
 from exactfold.exact.numbers import (
@@ -19,11 +18,7 @@ from exactfold.exact.numbers import (
     snap,
 )
 from exactfold.pattern import validate
-from exactfold.pattern.graphs import vertex_graph
 from exactfold.pattern.triangulated_triangles import find_triangulated_triangles
-
-if TYPE_CHECKING:
-    import networkx as nx
 
 Point = tuple[Fraction, Fraction]
 Edge = tuple[int, int]
@@ -163,11 +158,6 @@ class CreasePattern(Picture):
         i, j = fold
         return self._next[i][j], self._next[j][i]
 
-    @cached_property
-    def graph(self) -> nx.Graph:
-        """Vertices and edges as a NetworkX graph, see `exactfold.pattern.graphs`."""
-        return vertex_graph(self)
-
     # --- counts ----------------------------------------------------------------------------------
 
     @property
@@ -199,7 +189,8 @@ class CreasePattern(Picture):
         The 3-cycle is counter-clockwise from its smallest index. The pattern inside stays flat on
         every branch. A sheet with three boundary vertices is itself the only maximal one.
         """
-        return find_triangulated_triangles(self)
+        points, _ = self.integer_vertices
+        return find_triangulated_triangles(points, self.edges, self.triangles, self._next)
 
     @cached_property
     def rigid_vertices(self) -> frozenset[int]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from itertools import pairwise
 
-from exactfold.errors import CollinearPointsError
+from exactfold.errors import MalformedPatternError
 from exactfold.exact.numbers import RationalLike, as_rational, over_common_denominator
 from exactfold.pattern import validate
 from exactfold.pattern.crease_pattern import CreasePattern
@@ -20,8 +20,8 @@ def delaunay(points: Iterable[Sequence[RationalLike]]) -> CreasePattern:
     (smallest x, then smallest y), so the result does not depend on the order of the points, only
     its labels do. Points on the sides of the hull are boundary vertices with an angle of pi.
 
-    Raises `CollinearPointsError` if all points are collinear, `DuplicateVertexError`,
-    `MalformedPatternError` or a `NumberError` if they are not distinct pairs of exact numbers.
+    Raises `MalformedPatternError` if all points are collinear, and this or a `NumberError` if they
+    are not distinct pairs of exact numbers.
 
     >>> delaunay([(0, 0), (2, 0), (2, 2), (0, 2), (1, "1/2")]).triangles
     ((0, 1, 4), (0, 4, 3), (1, 2, 4), (2, 3, 4))
@@ -99,7 +99,7 @@ def _sweep(points: Sequence[IntPoint]) -> dict[tuple[int, int], int]:
         (k for k in range(2, len(order)) if orientation(first, second, points[order[k]])), None
     )
     if start is None:
-        raise CollinearPointsError(
+        raise MalformedPatternError(
             f"all {len(points)} points lie on one line: they span no triangle",
             vertices=range(len(points)),
         )

@@ -151,8 +151,7 @@ def hypar(rings: int = 1, twist: RationalLike | None = None) -> CreasePattern:
     twist 0, the hypar proper, the creases along one diagonal form a straight path from corner to
     corner; on the branch that folds along it alone, every vertex off the path is flat.
 
-    Raises `UsageError` for rings < 1 and `OverlapError` or `MixedOrientationError` for a twist too
-    large for the rings.
+    Raises `UsageError` for rings < 1 and `OverlapError` for a twist too large for the rings.
 
     >>> hypar(2).Vi, hypar(2).Ve, collinear_folds(hypar(2))
     (8, 4, ())

@@ -14,15 +14,10 @@ from typing import Any, Final
 from exactfold._support.notebook import Picture
 from exactfold._support.plurals import counted
 from exactfold.errors import (
-    CutEdgeError,
-    DanglingEdgeError,
+    FoldError,
     InputError,
-    IrrationalCoordinatesError,
     MissingCoordinatesError,
-    NonTriangularFaceError,
     NotFoldError,
-    NotJSONError,
-    OffPlaneError,
 )
 from exactfold.exact.numbers import over_common_denominator, shown, snap
 from exactfold.pattern.crease_pattern import CreasePattern, Edge, Point
@@ -102,13 +97,13 @@ def load_fold(
 
 
 def parse_bytes(raw: bytes, name: str, snap: int | None = None) -> FoldFile:
-    """As `parse_fold`, from the bytes of a file; raises `NotJSONError` if they are not UTF-8.
+    """As `parse_fold`, from the bytes of a file; raises `NotFoldError` if they are not UTF-8.
 
     A file of another format of crease patterns, to go by its `name`, is called by that.
     """
     try:
         return parse_fold(_decoded(raw), snap)
-    except (NotJSONError, NotFoldError) as error:
+    except NotFoldError as error:
         format_ = OTHER_FORMATS.get(Path(name).suffix.lower())
         if format_ is None:
             raise
@@ -119,7 +114,7 @@ def _decoded(raw: bytes) -> str:
     try:
         return raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise NotJSONError(f"not UTF-8 text: byte {error.start} is not valid") from None
+        raise NotFoldError(f"not UTF-8 text: byte {error.start} is not valid") from None
 
 
 def parse_fold(text: str, snap: int | None = None) -> FoldFile:
@@ -135,7 +130,7 @@ def parse_fold(text: str, snap: int | None = None) -> FoldFile:
     that are not listed as edges are folds like any other. Assignments do not change the pattern,
     but an edge between two faces may not be a cut "C" or a boundary "B".
 
-    Raises `NotJSONError`, `NotANumberError`, a subclass of `FoldError`, `TooLargeError`, or one of
+    Raises `NotFoldError`, `NumberError`, a subclass of `FoldError`, `TooLargeError`, or one of
     the `PatternError`s of `CreasePattern`; the message names the vertex, edge or face.
 
     >>> file = parse_fold('{"vertices_coords": [[0, 0], [0.5, 0], [0, 0.1]],'
@@ -182,7 +177,7 @@ def _points(
     document: Mapping[str, Any], denominator: int | None, frames: str
 ) -> tuple[list[Point], Fraction, bool]:
     if document.get(SURDS_KEY):
-        raise IrrationalCoordinatesError(
+        raise FoldError(
             f"coordinates have square roots (`{SURDS_KEY}`): only sheets of panels may have them"
         )
     rows = list_at(document, "vertices_coords")
@@ -201,7 +196,7 @@ def _points(
         points = [(x, y, z) for x, y, z in moved]
     for v, point in enumerate(points):
         if point[2] != points[0][2]:
-            raise OffPlaneError(
+            raise FoldError(
                 f"vertex {v} has z = {_literal(rows[v])} and vertex 0 has z = {_literal(rows[0])}: "
                 "only a flat sheet in a plane z = constant is read"
             )
@@ -221,7 +216,7 @@ def _literal(row: list[Any]) -> str:
 def _check_triangle(index: int, face: tuple[int, ...], rebuilt: bool) -> None:
     origin = " (rebuilt from the edges)" if rebuilt else ""
     if len(face) > 3:
-        raise NonTriangularFaceError(
+        raise FoldError(
             f"face {index}{origin} has {len(face)} sides: vertices {shown(face)}; "
             "triangulate the pattern first"
         )
@@ -255,13 +250,13 @@ def _assignment(
     for k, (i, j) in enumerate(edges):
         edge = (min(i, j), max(i, j))
         if edge not in known:
-            raise DanglingEdgeError(f"edge {k} ({i}-{j}) is not a side of any face")
+            raise FoldError(f"edge {k} ({i}-{j}) is not a side of any face")
         if not letters:
             continue
         letter = letters[k]
         if letter in "BC" and edge in folds:
             kind = "a cut" if letter == "C" else "a boundary"
-            raise CutEdgeError(
+            raise FoldError(
                 f"edge {k} ({i}-{j}) lies between two faces but is assigned {letter}, {kind}"
             )
         if assignment.setdefault(edge, letter) != letter:

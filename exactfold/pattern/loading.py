@@ -6,7 +6,7 @@ import os
 from os import PathLike
 from typing import TypeAlias
 
-from exactfold.errors import UnknownPatternError, UsageError
+from exactfold.errors import UnreadableFileError, UsageError
 from exactfold.exact.numbers import shown
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.data import DRAWINGS, SHEETS, example_path
@@ -26,8 +26,8 @@ def load(what: PatternLike, snap: int | None = None) -> CreasePattern:
     rational coordinates; `count_ways` takes the others. With `snap`, all coordinates are rounded to
     multiples of 1/snap.
 
-    Raises `UnknownPatternError`, which lists the names, for text that is neither a name nor a file;
-    what `open_pattern` raises; `NotTriangulatedError` for a sheet with larger panels or square
+    Raises `UnreadableFileError`, which lists the names, for text that is neither a name nor a file;
+    what `open_pattern` raises; `NotCountedError` for a sheet with larger panels or square
     roots; `UsageError` for the name of a drawing, and for anything else than the four kinds.
 
     >>> load("two-vertex")
@@ -57,7 +57,7 @@ def load(what: PatternLike, snap: int | None = None) -> CreasePattern:
         if what in SHEETS:
             return triangles(open_pattern(example_path(what), snap), "load")
         if not os.path.exists(what):
-            raise UnknownPatternError(
+            raise UnreadableFileError(
                 f"{shown(what)} is neither a file nor an example; the examples are: "
                 f"{', '.join(SHEETS)}"
             )

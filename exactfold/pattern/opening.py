@@ -15,15 +15,12 @@ from exactfold._support.notebook import Picture
 from exactfold._support.plurals import counted
 from exactfold.errors import (
     DisconnectedError,
-    DuplicateVertexError,
     FoldedStateError,
     FoldError,
     InputError,
-    IsolatedVertexError,
     MalformedPatternError,
-    NotANumberError,
-    NotJSONError,
-    NotTriangulatedError,
+    NotCountedError,
+    NumberError,
     PatternError,
     SeveralSheetsError,
     StaleExactCoordinatesError,
@@ -44,8 +41,8 @@ Steps: TypeAlias = "Literal['all', 'least'] | Collection[str]"
 """Steps of repair: all of them, as few as it takes to read the drawing, or those named."""
 
 # What the strict reader says of these is right, whatever the file: repair does not help.
-_FINAL = (NotANumberError, StaleExactCoordinatesError)
-_OF_EDGES = (DuplicateVertexError, IsolatedVertexError, DisconnectedError, MalformedPatternError)
+_FINAL = (NumberError, StaleExactCoordinatesError)
+_OF_EDGES = (MalformedPatternError, DisconnectedError)
 """What can be wrong with a triangulated sheet and not with a drawing, or is said better of that."""
 _LEAST = ("merge", "duplicates", "split", "dangling")
 """Steps without which some drawings have no panels; the others only change what they are."""
@@ -160,7 +157,7 @@ def opened(
             file = parse_bytes(raw, name, snap if isinstance(snap, int) else None)
         except _FINAL:
             raise
-        except (NotJSONError, FoldError, PatternError) as error:
+        except (FoldError, PatternError) as error:
             strict = error
         else:
             again = partial(opened, raw, name, number=number)
@@ -172,7 +169,7 @@ def opened(
         drawing = parse_drawing(raw, name)
     except _FINAL:
         raise
-    except (NotJSONError, FoldError, UnknownFormatError) as error:
+    except (FoldError, UnknownFormatError) as error:
         folded = isinstance(error, FoldedStateError)
         if strict is None or folded or Path(name).suffix.lower() not in (".fold", ".json", ""):
             raise
@@ -280,19 +277,19 @@ def _chosen(drawing: Drawing, found: Sheets, number: int | None) -> Opened:
 def triangles(opened: Opened, needs: str) -> CreasePattern:
     """The triangulated sheet that was opened, for something that `needs` one.
 
-    Raises `NotTriangulatedError` for larger panels or square roots; it says what takes them.
+    Raises `NotCountedError` for larger panels or square roots; it says what takes them.
     """
     sheet = opened.sheet
     if isinstance(sheet, CreasePattern):
         return sheet
     if sheet.field.radicands:
-        raise NotTriangulatedError(
+        raise NotCountedError(
             f"{needs} takes triangulated sheets with rational coordinates, and those of this "
             f"one lie in {opened.field_name}: `exactfold count` (`count_ways`) takes them as they "
             "are, and `exactfold convert --triangulate --snap DEN` rounds those of a drawing"
         )
     large = sum(len(face) > 3 for face in sheet.faces)
-    raise NotTriangulatedError(
+    raise NotCountedError(
         f"{needs} takes triangulated sheets, and this one has {counted(large, 'panel')} with "
         "more than three sides: `exactfold count` (`count_ways`) says how its panels fold while "
         "they stay rigid, and `exactfold convert --triangulate` cuts them into triangles that may "

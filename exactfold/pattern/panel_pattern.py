@@ -13,7 +13,7 @@ from typing import Final, TypeAlias
 
 from exactfold._support.notebook import Picture
 from exactfold._support.plurals import counted
-from exactfold.errors import MalformedPatternError, PinchError
+from exactfold.errors import MalformedPatternError, NotADiskError
 from exactfold.exact.numbers import format_rational
 from exactfold.exact.surds import Number, Surd, SurdField, common_field
 from exactfold.pattern.planar import counter_clockwise, trace_faces
@@ -34,7 +34,7 @@ class PanelPattern(Picture):
     each of its vertices once. Faces need not be convex, and creases may end anywhere on the border.
 
     Raises the errors of `trace_faces`, `MalformedPatternError` if there is no face, and
-    `PinchError` where the sheet hangs together by a vertex.
+    `NotADiskError` where the sheet hangs together by a vertex.
 
     >>> cross = PanelPattern([(-1, -1), (1, -1), (1, 1), (-1, 1), (0, 0), (0, -1), (1, 0),
     ...                       (0, 1), (-1, 0)],
@@ -168,7 +168,7 @@ class PanelPattern(Picture):
                 ends[v] = ends.get(v, 0) + 1
         pinched = sorted(v for v, count in ends.items() if count != 2)
         if pinched:
-            raise PinchError(
+            raise NotADiskError(
                 f"the sheet hangs together by vertex {pinched[0]} only: the border passes it twice",
                 vertices=pinched,
             )

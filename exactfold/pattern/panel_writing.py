@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from exactfold._support.plurals import counted
-from exactfold.errors import NonTriangularFaceError
+from exactfold.errors import FoldError
 from exactfold.exact.surds import rational
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.drawing.formats.fold_surds import surd_keys
@@ -78,7 +78,7 @@ def converted(opened: Opened, *, triangulate: bool = False) -> Converted:
     if joins:
         pattern = PanelPattern(pattern.vertices, (*pattern.edges, *joins))
         if any(len(face) > 3 for face in pattern.faces):
-            raise NonTriangularFaceError("a panel could not be cut into triangles")
+            raise FoldError("a panel could not be cut into triangles")
     faces = sheet.triangles if isinstance(sheet, CreasePattern) else pattern.faces
     return Converted(pattern, _letters(pattern, opened.assignment, joins), faces, joins)
 

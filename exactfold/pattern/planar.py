@@ -6,11 +6,9 @@ from collections.abc import Callable, Iterable, Sequence
 from functools import cmp_to_key
 
 from exactfold.errors import (
-    CrossingEdgesError,
-    DanglingEdgeError,
     DisconnectedError,
-    DuplicateVertexError,
-    IsolatedVertexError,
+    FoldError,
+    MalformedPatternError,
 )
 from exactfold.exact.surds import float_bounds
 from exactfold.pattern.drawing.bounds import check_compared
@@ -30,9 +28,9 @@ def trace_faces(points: Sequence[AnyPoint], edges: Iterable[Edge]) -> list[tuple
     a face follows each edge by the next edge clockwise at its head (the rotation system of the
     embedding), and the one cycle that is not counter-clockwise bounds the outer face.
 
-    Raises `DuplicateVertexError`, `CrossingEdgesError` (also for a vertex inside an edge),
-    `IsolatedVertexError`, `DisconnectedError` and, for an edge with one face on both its sides,
-    `DanglingEdgeError`.
+    Raises `MalformedPatternError` for two vertices at one point or one on no edge, `FoldError` for
+    edges that cross, a vertex inside an edge and an edge with one face on both its sides, and
+    `DisconnectedError`.
 
     >>> trace_faces([(0, 0), (2, 0), (2, 2), (0, 2)], [(0, 1), (1, 2), (2, 3), (3, 0), (0, 2)])
     [(0, 1, 2), (0, 2, 3)]
@@ -41,7 +39,7 @@ def trace_faces(points: Sequence[AnyPoint], edges: Iterable[Edge]) -> list[tuple
     _check_points(points)
     for i, j in graph:
         if i == j:
-            raise DanglingEdgeError(f"edge {i}-{j} joins a vertex to itself")
+            raise FoldError(f"edge {i}-{j} joins a vertex to itself")
     check_no_crossing(points, graph)
     neighbours: list[list[int]] = [[] for _ in points]
     for i, j in graph:
@@ -57,7 +55,7 @@ def trace_faces(points: Sequence[AnyPoint], edges: Iterable[Edge]) -> list[tuple
 
 
 def check_no_crossing(points: Sequence[AnyPoint], edges: Sequence[Edge]) -> None:
-    """Raise `CrossingEdgesError` if two edges meet anywhere but in a common end.
+    """Raise `FoldError` if two edges meet anywhere but in a common end.
 
     A sweep over the x-ranges, which are rounded outwards to floats, so that no pair that meets is
     left out; every decision about a pair is the sign of an exact determinant.
@@ -114,13 +112,13 @@ def _check_pair(points: Sequence[AnyPoint], first: Edge, second: Edge) -> None:
     for one, other in ((first, second), (second, first)):
         for v in set(other) - set(one):
             if _inside_edge(points, v, one):
-                raise CrossingEdgesError(
+                raise FoldError(
                     f"vertex {v}, an end of edge {_name(other)}, lies inside edge {_name(one)}"
                 )
     if set(first) & set(second):
         return
     if segments_meet(*(points[v] for v in (*first, *second))):
-        raise CrossingEdgesError(f"edges {_name(first)} and {_name(second)} cross")
+        raise FoldError(f"edges {_name(first)} and {_name(second)} cross")
 
 
 def _inside_edge(points: Sequence[AnyPoint], v: int, edge: Edge) -> bool:
@@ -134,7 +132,7 @@ def _check_points(points: Sequence[AnyPoint]) -> None:
     seen: dict[AnyPoint, int] = {}
     for v, point in enumerate(points):
         if point in seen:
-            raise DuplicateVertexError(
+            raise MalformedPatternError(
                 f"vertices {seen[point]} and {v} are at the same point", vertices=[seen[point], v]
             )
         seen[point] = v
@@ -144,10 +142,10 @@ def _check_connected(neighbours: Sequence[Sequence[int]]) -> None:
     lonely = [v for v, around in enumerate(neighbours) if not around]
     if lonely:
         more = f" (and {len(lonely) - 1} more)" if len(lonely) > 1 else ""
-        raise IsolatedVertexError(f"vertex {lonely[0]} is on no edge{more}", vertices=lonely)
+        raise MalformedPatternError(f"vertex {lonely[0]} is on no edge{more}", vertices=lonely)
     for v, around in enumerate(neighbours):
         if len(around) == 1:
-            raise DanglingEdgeError(
+            raise FoldError(
                 f"edge {_name((v, around[0]))} ends at vertex {v}, which is on no other edge"
             )
     reached, stack = {0}, [0]
@@ -208,7 +206,7 @@ def _check_both_sides(cycle: Sequence[int]) -> None:
     halves = set(zip(cycle, [*cycle[1:], cycle[0]], strict=True))
     bridge = min((half for half in halves if half[::-1] in halves), default=None)
     if bridge is not None:
-        raise DanglingEdgeError(
+        raise FoldError(
             f"edge {_name(bridge)} has the same face on both sides: it is not a side of a face"
         )
 

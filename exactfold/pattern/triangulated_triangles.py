@@ -2,28 +2,34 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Collection, Mapping, Sequence
 
 from exactfold.pattern.validate import Triangle, orientation
 
-if TYPE_CHECKING:
-    from exactfold.pattern.crease_pattern import CreasePattern
-
 
 def find_triangulated_triangles(
-    pattern: CreasePattern,
+    points: Sequence[tuple[int, int]],
+    edges: Collection[tuple[int, int]],
+    triangles: Collection[Triangle],
+    following: Mapping[int, Mapping[int, int]],
 ) -> tuple[tuple[Triangle, tuple[int, ...]], ...]:
     """The maximal 3-cycles with vertices inside, each with the sorted vertices inside it.
+
+    `points` are integer multiples of the vertices, `edges` are all (i, j) with i < j, `triangles`
+    are counter-clockwise from their smallest index, and `following[v][a]` is b for every triangle
+    (v, a, b).
 
     Every 3-cycle of the graph is tested, for each edge through the common neighbours of its ends.
     The vertices inside are those of the faces reached from its sides without crossing them: work
     proportional to what is inside, not to the pattern.
     """
-    points, _ = pattern.integer_vertices
-    neighbours = {v: set(pattern.star(v)) for v in range(len(points))}
-    faces = set(pattern.triangles)
+    neighbours: dict[int, set[int]] = {v: set() for v in range(len(points))}
+    for i, j in edges:
+        neighbours[i].add(j)
+        neighbours[j].add(i)
+    faces = set(triangles)
     found: list[tuple[Triangle, frozenset[int]]] = []
-    for i, j in pattern.edges:
+    for i, j in edges:
         for k in neighbours[i] & neighbours[j]:
             if k < j:
                 continue
@@ -31,7 +37,7 @@ def find_triangulated_triangles(
             cycle = (i, j, k) if turn > 0 else (i, k, j)
             if turn == 0 or cycle in faces:
                 continue
-            inside = _inside(pattern, cycle)
+            inside = _inside(following, cycle)
             if inside:
                 found.append((cycle, inside))
     holders: dict[int, list[frozenset[int]]] = {}
@@ -42,7 +48,7 @@ def find_triangulated_triangles(
     return tuple(sorted((t, tuple(sorted(s))) for t, s in maximal))
 
 
-def _inside(pattern: CreasePattern, cycle: Triangle) -> frozenset[int]:
+def _inside(following: Mapping[int, Mapping[int, int]], cycle: Triangle) -> frozenset[int]:
     """The vertices within a counter-clockwise 3-cycle of edges that is not a face.
 
     The sheet is a disk, so that all of the cycle's inside is covered by faces; the first lies left
@@ -54,7 +60,7 @@ def _inside(pattern: CreasePattern, cycle: Triangle) -> frozenset[int]:
     vertices: set[int] = set()
     while stack:
         i, j = stack.pop()
-        k = pattern.left(i, j)
+        k = following[i][j]
         vertices.add(k)
         for half in ((k, j), (i, k)):  # the same sides seen from the faces beyond them
             if half not in seen and half[::-1] not in seen:

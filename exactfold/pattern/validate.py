@@ -12,16 +12,11 @@ from exactfold._support.plurals import agreeing, counted
 from exactfold.errors import (
     DegenerateFaceError,
     DisconnectedError,
-    DuplicateVertexError,
-    HoleError,
     InputError,
-    IsolatedVertexError,
     MalformedPatternError,
-    MixedOrientationError,
-    NonManifoldEdgeError,
+    NotADiskError,
     NumberError,
     OverlapError,
-    PinchError,
 )
 from exactfold.exact.numbers import format_rational, shown
 from exactfold.pattern.drawing.bounds import check_compared
@@ -69,7 +64,7 @@ def points(
         except NumberError as error:
             raise type(error)(f"vertex {index}: {error}") from None
         if point in seen:
-            raise DuplicateVertexError(
+            raise MalformedPatternError(
                 f"vertices {seen[point]} and {index} are at the same point "
                 f"({_coordinate(point[0])}, {_coordinate(point[1])})",
                 vertices=[seen[point], index],
@@ -138,7 +133,7 @@ def oriented_triangles(
             )
         (counter if area > 0 else clockwise).append(face)
     if clockwise and counter:
-        raise MixedOrientationError(
+        raise OverlapError(
             f"face {clockwise[0]} {triangles[clockwise[0]]} is clockwise, "
             f"face {counter[0]} {triangles[counter[0]]} is counter-clockwise",
             faces=[clockwise[0], counter[0]],
@@ -161,7 +156,7 @@ def incidence(count: int, triangles: Sequence[Triangle]) -> None:
             faces = sides.setdefault((min(i, j), max(i, j)), [])
             faces.append(face)
             if len(faces) > 2:
-                raise NonManifoldEdgeError(
+                raise NotADiskError(
                     f"edge {min(i, j)}-{max(i, j)} is on the faces {faces}, more than two",
                     edges=[(min(i, j), max(i, j))],
                     faces=faces,
@@ -179,7 +174,7 @@ def incidence(count: int, triangles: Sequence[Triangle]) -> None:
     used = {v for triangle in triangles for v in triangle}
     if len(used) < count:
         lonely = [v for v in range(count) if v not in used]
-        raise IsolatedVertexError(
+        raise MalformedPatternError(
             f"vertex {lonely[0]} belongs to no face" + _more(lonely), vertices=lonely
         )
 
@@ -207,21 +202,21 @@ def disk(rotation: Rotation, triangles: Sequence[Triangle]) -> None:
     for v, fan in rotation.items():
         ends = [a for a in fan if v not in rotation[a]]
         if len(ends) > 1 or _steps(fan, ends[0] if ends else next(iter(fan))) < len(fan):
-            raise PinchError(
+            raise NotADiskError(
                 f"the sheet hangs together by vertex {v} only: its faces form several fans",
                 vertices=[v],
             )
         if ends:
             follow[v] = ends[0]
     if not follow:
-        raise HoleError("the faces form a closed surface without boundary")
+        raise NotADiskError("the faces form a closed surface without boundary")
     start = min(follow)
     cycle = [start]
     while (after := follow[cycle[-1]]) != start:
         cycle.append(after)
     if len(cycle) < len(follow):
         inner = min(set(follow) - set(cycle))
-        raise HoleError(
+        raise NotADiskError(
             f"the sheet has a hole: vertices {start} and {inner} are on different boundaries",
             vertices=[start, inner],
         )

@@ -1,5 +1,3 @@
-from exactfold.solve.algebraic.degree_four import Splitting as Splitting
-from exactfold.solve.algebraic.degree_four import split_form as split_form
 from exactfold.solve.algebraic.exact_solution import ExactSolution as ExactSolution
 from exactfold.solve.algebraic.exact_solution import RootClass as RootClass
 from exactfold.solve.algebraic.from_roots import (
@@ -7,10 +5,8 @@ from exactfold.solve.algebraic.from_roots import (
 )
 from exactfold.solve.algebraic.groebner_bases import groebner as groebner
 from exactfold.solve.algebraic.groebner_bases import quotient_algebra as quotient_algebra
-from exactfold.solve.algebraic.hermite import hermite_counts as hermite_counts
 from exactfold.solve.algebraic.hilbert import dimension_and_degree as dimension_and_degree
 from exactfold.solve.algebraic.quotient import QuotientAlgebra as QuotientAlgebra
-from exactfold.solve.certify.ball_krawczyk import arb_krawczyk as arb_krawczyk
 from exactfold.solve.certify.ball_newton import interval_newton as interval_newton
 from exactfold.solve.certify.box import IsolatingBox as IsolatingBox
 from exactfold.solve.certify.box import Uncertified as Uncertified

@@ -18,6 +18,7 @@ import numpy as np
 
 from exactfold._support.verdict import PROVED
 from exactfold.branches.counting.collect import count_branches
+from exactfold.interop.graphs import to_networkx
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import collinear_folds
 from exactfold.studies.nearest import nearest_exception
@@ -123,7 +124,7 @@ def clusters(pattern: CreasePattern, signs: SignArray) -> list[list[int]]:
     found: set[frozenset[int]] = set()
     for flat in np.unique((signs == 0) & ~rigid, axis=0).tolist():
         vertices = [v for v, is_flat in zip(pattern.interior, flat, strict=True) if is_flat]
-        graph = pattern.graph.subgraph(vertices)
+        graph = to_networkx(pattern).subgraph(vertices)
         found |= {frozenset(part) for part in nx.connected_components(graph)}
     reduced, labels = pattern.without_rigid_parts()
     degrees = {v: reduced.degree(k) for k, v in enumerate(labels)}

@@ -99,7 +99,9 @@ def quadrilaterals(pattern: CreasePattern) -> Iterator[Cycle]:
     """
     rim = set(pattern.boundary)
     points, _ = pattern.integer_vertices
-    for cycle in nx.simple_cycles(pattern.graph, length_bound=4):
+    graph = nx.empty_graph(len(pattern.vertices))
+    graph.add_edges_from((*pattern.folds, *pattern.boundary_edges))
+    for cycle in nx.simple_cycles(graph, length_bound=4):
         if len(cycle) == 4 and set(cycle) != rim:
             a, b, c, d = cycle
             turned: Cycle = (a, b, c, d) if _turn(points, a, b, c) > 0 else (d, c, b, a)

@@ -17,7 +17,7 @@ import numpy as np
 
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.design.actuation.every import actuate_all
-from exactfold.errors import UnprovedRivalsError
+from exactfold.errors import UndecidedBranchError
 from exactfold.studies.running.squares import square_of, square_recipes
 from exactfold.studies.running.study import (
     Cell,
@@ -57,7 +57,7 @@ def row(recipe: Recipe) -> dict[str, Any]:
     }
     try:
         results = actuate_all(pattern)
-    except UnprovedRivalsError:
+    except UndecidedBranchError:
         return found
     if any(result.status is not PROVED for result in results):
         return found

@@ -21,6 +21,7 @@ from exactfold.branches.counting import conveyor
 from exactfold.branches.counting.stream import stream_branches
 from exactfold.checker import CertificateError
 from exactfold.checker.branches import compact
+from exactfold.checker.core.parts import Verifier
 
 REFUSED = "Krawczyk's test fails for the box about "
 
@@ -61,8 +62,8 @@ def test_a_file_through_a_pipe_while_others_are_checked(
     pipe, begun = tmp_path / "pipe", Event()
     os.mkfifo(pipe)
 
-    def told(make: Callable[[str], compact.Verifier]) -> Callable[[str], compact.Verifier]:
-        def verifier(header: str) -> compact.Verifier:
+    def told(make: Callable[[str], Verifier]) -> Callable[[str], Verifier]:
+        def verifier(header: str) -> Verifier:
             made = make(header)
             begun.set()
             return made

@@ -27,8 +27,9 @@ from exactfold.branches.counting import conveyor
 from exactfold.branches.counting.stream import stream_branches
 from exactfold.checker import CertificateError
 from exactfold.checker.branches import compact
-from exactfold.checker.branches.compact import Engine
+from exactfold.checker.core import parts
 from exactfold.checker.core.lines import lines
+from exactfold.checker.core.parts import Engine
 from exactfold.checker.motion import loops as motion_loops
 from exactfold.checker.sheets.sheet import read_sheet
 
@@ -160,21 +161,20 @@ def test_a_file_through_a_pipe_while_another_is_checked(
     pipe, other = tmp_path / "pipe", tmp_path / "other"
     os.mkfifo(pipe)
     other.write_bytes(files["other"])
-    engine, begun = ENGINES.get(kind, compact.INTEGERS), Event()
+    engine, begun = {**ENGINES, "loops": motion_loops.BY_TUBES}[kind], Event()
     check = motion_loops.check_lines if kind == "loops" else of_compact(engine)
     expected = {name: alone(check, content) for name, content in files.items()}
-    make = motion_loops.LoopVerifier if kind == "loops" else engine.verifier
+    make = engine.verifier
 
-    def verifier(header: str) -> compact.Verifier:
+    def verifier(header: str) -> parts.Verifier:
         made = make(header)
         begun.set()
         return made
 
     engine = engine._replace(verifier=verifier)
-    monkeypatch.setattr(motion_loops, "LoopVerifier", verifier)
 
     def verified(path: Path) -> Any:
-        return answer(lambda _: checker.verify(path, 1, engine), iter(()))
+        return answer(lambda _: checker.verify(path, 1, lambda _: engine), iter(()))
 
     with ThreadPoolExecutor(1) as threads:
         for name in ("forged", "one"):
@@ -198,7 +198,7 @@ def test_two_checks_may_take_turns_in_one_thread(blocks: dict[str, bytes]) -> No
         for name in ("one", "other"):
             headers[name], *texts[name], _ = lines(io.BytesIO(blocks[name]))
         said = {
-            name: compact.here(engine, headers[name], zip(texts[name], range(4), strict=True))
+            name: parts.here(engine, headers[name], zip(texts[name], range(4), strict=True))
             for name in texts
         }
         with closing(said["one"]), closing(said["other"]):
@@ -242,6 +242,6 @@ def test_what_is_assigned_in_modules_at_run_time() -> None:
             if isinstance(node, ast.Global):
                 found |= {(path.relative_to(root).as_posix(), name) for name in node.names}
     assert found == {
-        ("checker/branches/compact.py", "_of_this_worker"),
+        ("checker/core/parts.py", "_of_this_worker"),
         ("app/shell/guard.py", "_errors"),
     }

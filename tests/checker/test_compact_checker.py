@@ -15,7 +15,7 @@ from exactfold.branches.certificates.read import read_branches
 from exactfold.branches.counting import conveyor as conveyor_module
 from exactfold.branches.counting.stream import stream_branches
 from exactfold.checker import CertificateError, FormatError
-from exactfold.checker.core.formats import UNPROVED
+from exactfold.checker.branches.compact_blocks import UNPROVED
 from exactfold.checker.core.lines import read_object
 from exactfold.errors import CertificateFormatError, UnreadableFileError
 

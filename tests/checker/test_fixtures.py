@@ -23,6 +23,7 @@ def test_there_are_certificates_of_every_kind() -> None:
         "compact",
         "branch",
         "panels",
+        "motion",
         "panelmotion",
         "loops",
         "letters",
@@ -30,7 +31,7 @@ def test_there_are_certificates_of_every_kind() -> None:
         "pieces",
         "assignments",
     }
-    assert len(FILES) == 104
+    assert len(FILES) == 122
 
 
 @pytest.mark.parametrize("name", FILES)

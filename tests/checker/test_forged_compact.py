@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import json
+import multiprocessing
 from collections.abc import Callable
 from typing import Any
 
@@ -23,7 +24,8 @@ from exactfold import checker
 from exactfold.checker import command
 from exactfold.checker.branches import compact
 from exactfold.checker.branches.compact_blocks import CompactSheet
-from exactfold.checker.core.lines import digest, lines, read_header, read_object
+from exactfold.checker.core import parts as sharing
+from exactfold.checker.core.lines import digest, lines, read_object
 from exactfold.checker.core.reading import CertificateError, FormatError
 
 
@@ -74,7 +76,7 @@ def test_the_first_line_may_have_been_read(tmp_path: Any) -> None:
     assert checker.is_compact(path)
 
 
-def test_a_file_is_compact_by_its_format_or_its_digest(tmp_path: Any) -> None:
+def test_a_file_is_compact_by_the_format_in_its_first_line(tmp_path: Any) -> None:
     """However its header is written."""
     parts = given_lines(FOUR)
     late = [{"provenance": "x" * 9000, **{k: parts[0][k] for k in list(parts[0])[:-1]}}, *parts[1:]]
@@ -92,9 +94,17 @@ def test_a_file_is_compact_by_its_format_or_its_digest(tmp_path: Any) -> None:
     for data in (b"", b"{}", b"\t\n", b"{}\tx\n", chained(parts)[:-5]):
         path.write_bytes(data)
         assert checker.is_compact(path) == (len(data) > 9)
-    for text in ('{"format" :\t "exactfold compact certificate"}', '{"a": "exactfold branch"}'):
+    for text, message in (
+        ('{"format" :\t "exactfold compact certificate"}', "line 1 is cut off or was altered"),
+        (json.dumps(parts[0]), "line 1 is cut off or was altered"),
+        (json.dumps(parts[0]) + "\t" + "0" * 64 + "\n", "line 1 is cut off or was altered"),
+        ('{"a": "exactfold branch"}', 'the object has no "format" that this checker knows'),
+    ):
         path.write_text(text)
-        assert checker.is_compact(path) == ("compact" in text)
+        assert not checker.is_compact(path)
+        with pytest.raises(FormatError) as caught:
+            checker.verify(path)
+        assert str(caught.value) == message
 
 
 def test_lines_are_not_read_to_their_end(monkeypatch: pytest.MonkeyPatch, tmp_path: Any) -> None:
@@ -136,7 +146,7 @@ def test_objects_of_lines() -> None:
         forged = [{**parts[0], **change}, *parts[1:]]
         refused_lines(forged, message, FormatError)
     refused_lines([parts[0], [1], *parts[2:]], "block 0 is not an object", FormatError)  # type: ignore[list-item]
-    assert read_header(json.dumps(parts[0])) == parts[0]
+    assert compact.COMPACT.header(json.dumps(parts[0])) == parts[0]
 
 
 # --- the header ----------------------------------------------------------------------------------
@@ -258,15 +268,15 @@ def test_only_a_new_worker_keeps_the_verifier_of_a_file(monkeypatch: pytest.Monk
     header, text = (json.dumps(part) for part in given_lines(FOUR)[:2])
     not_kept = "only a new worker process may keep the verifier of a file"
     with pytest.raises(RuntimeError, match=not_kept):
-        compact._become_worker(compact.IntegerVerifier, header)
+        sharing._become_worker(compact.IntegerVerifier, header)
     with pytest.raises(RuntimeError, match="this process is not a worker of a check"):
-        compact._in_worker(text, 0)
-    monkeypatch.setattr(compact, "parent_process", lambda: "as in a worker")
-    monkeypatch.setattr(compact, "_of_this_worker", None)  # forgotten after the test
-    compact._become_worker(compact.IntegerVerifier, header)
-    assert compact._in_worker(text, 0) is None
+        sharing._in_worker(text, 0)
+    monkeypatch.setattr(multiprocessing, "parent_process", lambda: "as in a worker")
+    monkeypatch.setattr(sharing, "_of_this_worker", None)  # forgotten after the test
+    sharing._become_worker(compact.IntegerVerifier, header)
+    assert sharing._in_worker(text, 0) is None
     with pytest.raises(RuntimeError, match=not_kept):
-        compact._become_worker(compact.IntegerVerifier, header)
+        sharing._become_worker(compact.IntegerVerifier, header)
 
 
 def test_what_verifiers_answer() -> None:
@@ -290,16 +300,17 @@ def test_engines_may_be_others() -> None:
             seen.append((json.loads(text)["block"], number))
             return "no" if number == 2 else None
 
-    engine = compact.Engine(Verifier, 1, compact.on_processes)
+    engine = sharing.Engine(Verifier, 1, sharing.on_processes)
     with pytest.raises(CertificateError, match=r"^no$"):
         compact.check(str(FIXTURES / f"{FOUR}.txt"), 1, engine)
     assert seen == [(0, 0), (1, 1), (2, 2)]
     assert [json.loads(text) for text in started] == given_lines(FOUR)[:1]
 
-    def share(*_: object) -> compact.Said:
+    def share(*_: object) -> sharing.Said:
         raise AssertionError("processes are started")
 
     engine = compact.INTEGERS._replace(least=5, share=share)
-    claims = checker.verify(FIXTURES / f"{FOUR}.txt", 2, engine)  # too few blocks for processes
+    # There are too few blocks for processes.
+    claims = checker.verify(FIXTURES / f"{FOUR}.txt", 2, lambda _: engine)
     assert claims == given_lines(FOUR)[-1]["claims"]
     assert base64.b64decode(given_lines(FOUR)[1]["radii"])

@@ -134,7 +134,7 @@ def test_less_may_be_claimed() -> None:
 
         document = forged(name, only_clear)
         judged(document, name)
-        assert "; no two faces touch before 1" in checker.summary(
+        assert "; no two faces touch before 1" in motion.summary(
             {**document["claims"], "tubes": 1, "sha256": ""}
         )
         document["claims"]["clear"] = longer(document["claims"]["clear"], "1/2")

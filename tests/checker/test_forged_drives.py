@@ -11,9 +11,9 @@ from functools import cache
 import pytest
 from forge import FIXTURES, Document, refused, verified, with_one_key_more, without
 
-from exactfold.checker.core.formats import MOTION, MOTION_VERSION
 from exactfold.checker.core.reading import CertificateError
 from exactfold.checker.motion import certificate as motion
+from exactfold.checker.motion.certificate import MOTION
 from exactfold.checker.motion.drive import Drive
 from exactfold.checker.motion.equations import LengthEquations
 from exactfold.checker.motion.pieces import arc_of
@@ -257,8 +257,8 @@ def _back() -> str:
     header, loop = (json.loads(line.partition("\t")[0]) for line in lines[:2])
     evidence = loop["evidence"]
     document = {
-        "format": MOTION,
-        "version": MOTION_VERSION,
+        "format": MOTION.format,
+        "version": MOTION.version,
         "pattern": header["pattern"],
         "claims": {**loop["from"], "length": loop["length"], "return": loop["to"]},
         "evidence": {

@@ -9,7 +9,7 @@ import pytest
 from forge import Document, refused, stopped_by, verified
 
 from exactfold import checker
-from exactfold.checker.core.formats import BRANCH, BRANCH_VERSION
+from exactfold.checker.branches.branch import BRANCH, FLAT
 from exactfold.checker.sheets.sheet import Sheet, read_sheet
 
 Corner = tuple[int, int]
@@ -20,8 +20,8 @@ def certificate(
 ) -> Document:
     """A certificate of heights that are exact, without signs and letters."""
     return {
-        "format": BRANCH,
-        "version": BRANCH_VERSION,
+        "format": BRANCH.format,
+        "version": FLAT,
         "pattern": {"vertices": [[str(x), str(y)] for x, y in points], "triangles": faces},
         "claims": {
             "gauge": gauge,

@@ -88,7 +88,7 @@ def test_what_is_said(name: str, text: str) -> None:
 def test_one_half_and_one_letter() -> None:
     claims = {"letters": "MU", "halves": [{}], "sha256": "0"}
     said = "VALID: exactly 1 half of a branch has the 1 letter asked for on 2 folds; sha256 0"
-    assert checker.summary(claims) == said
+    assert letters.summary(claims) == said
 
 
 @pytest.mark.parametrize(

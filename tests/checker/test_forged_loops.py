@@ -14,7 +14,6 @@ import numpy as np
 import pytest
 from forge import Document, Lines, chained, given_lines
 
-from exactfold import checker
 from exactfold.checker.core.lines import lines
 from exactfold.checker.core.reading import CertificateError, FormatError, UnfinishedError
 from exactfold.checker.motion import branch_points as motion_nodes
@@ -59,7 +58,7 @@ def test_the_loops_that_are_forged_here_verify() -> None:
         assert claims == forged[-1]["claims"]
         matched, whole = claims["matched"], claims["half_branches"]
         how = f"all {whole}" if matched == whole else f"{matched} of {whole}"
-        assert checker.summary(claims) == (
+        assert motion_loops.summary(claims) == (
             f"VALID: 1 loop of true motions, which match {how} half-branches; "
             f"sha256 {read_sheet(forged[0]['pattern'])[1]}"
         )

@@ -63,11 +63,11 @@ def test_claims_come_with_the_pattern(name: str) -> None:
 
 def test_summaries() -> None:
     claims = {"vertex_signs": [1] * 61, "side": -1, "length": "1", "tubes": 1, "sha256": "x"}
-    assert checker.summary(claims) == (
+    assert motion.summary(claims) == (
         f"VALID: the motion along the half-branch {'+' * 60}... (61), side -, is one curve "
         "without a gap of length 1 or more; 1 tube; sha256 x"
     )
-    assert f"{'+' * 60} (60)" in checker.summary({**claims, "vertex_signs": [1] * 60})
+    assert f"{'+' * 60} (60)" in motion.summary({**claims, "vertex_signs": [1] * 60})
 
 
 def test_formats() -> None:

@@ -67,7 +67,7 @@ def test_what_is_claimed_is_proved() -> None:
     assert f" or more, to a node where vertex {FLAT} is flat; " in line
     when = f"which is at {shown(claims['clear'])} or later"
     assert f"; no two faces touch before the node, {when}, nor at it; " in line
-    assert "to a node where vertices 5 and 7 are flat;" in checker.summary(
+    assert "to a node where vertices 5 and 7 are flat;" in motion.summary(
         {**claims, "node": {"flat": [5, 7], "clear": False}}
     )
 

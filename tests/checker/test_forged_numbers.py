@@ -15,6 +15,7 @@ from exactfold import checker
 from exactfold.checker.core.lines import digest
 from exactfold.checker.core.reading import CertificateError, FormatError, shown
 from exactfold.checker.motion import boxes as motion_boxes
+from exactfold.checker.motion import certificate as motion
 from exactfold.checker.motion.loops import check_lines
 
 LONG = "9" * 4001
@@ -221,7 +222,7 @@ def test_verified_numbers_of_any_size_are_shown() -> None:
     assert " of length -1e+400 or more; 0 tubes; " in checker.summary(verified(forged))
     contact = {"kind": "contact", "time": ["1", f"{10**400}"], "faces": [[0, 1, 2], [3, 4, 5]]}
     claims = {"vertex_signs": [1], "side": 1, "length": "1", "tubes": 1, "sha256": "x"}
-    line = checker.summary({**claims, "clear": f"-{10**400}", "contact": contact})
+    line = motion.summary({**claims, "clear": f"-{10**400}", "contact": contact})
     assert "; no two faces touch before -1e+400, (0, 1, 2) and (3, 4, 5) do by 1" in line
 
 

@@ -14,6 +14,7 @@ from forge import FIXTURES, chained, given, given_lines, unreadable
 from exactfold import checker
 from exactfold.checker import command
 
+NO_FORMAT = 'the object has no "format" that this checker knows'
 FOLD = "this is a FOLD file, a crease pattern and no certificate"
 COUNT = (
     "this is the result printed by count --json, and not a certificate; write a certificate with "
@@ -40,8 +41,10 @@ BRANCH = (
         ({"format": "exactfold count-stream result"}, STREAM),
         ({"format": "exactfold branch result", "vertex_signs": {}}, BRANCH),
         ({"pattern": {}, "a": 0.5}, "a certificate holds no floats, but here is 0.5"),
-        ({"status": "proved"}, 'the object has no "format": "exactfold certificate"'),
-        (["vertices_coords"], 'the object has no "format": "exactfold certificate"'),
+        ({"status": "proved"}, NO_FORMAT),
+        ({"format": ["exactfold branch"]}, NO_FORMAT),
+        ({"format": "exactfold certificate", "kind": 2}, "the kind 2 is not known to this checker"),
+        (["vertices_coords"], NO_FORMAT),
         ([0.5], "a certificate holds no floats, but here is 0.5"),
     ],
 )
@@ -101,7 +104,7 @@ def test_main(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert said([str(path)], capsys) == (
         3,
         "",
-        'not a certificate: the object has no "format": "exactfold certificate"\n',
+        f"not a certificate: {NO_FORMAT}\n",
     )
     path.write_bytes(b"\xff")
     code, out, err = said([str(path)], capsys)
@@ -130,14 +133,14 @@ def test_no_shortage_and_no_defect_is_a_verdict(
 def test_workers_are_passed_on(monkeypatch: pytest.MonkeyPatch) -> None:
     seen: list[tuple[object, int]] = []
     monkeypatch.setattr(command, "verify", lambda path, workers: seen.append((path, workers)) or {})
-    monkeypatch.setattr(command, "summary", lambda claims: "")
+    monkeypatch.setattr(command, "summary", lambda verified: "")
     checker.main(["c.json", "7"])
     checker.main(["c.json"])
     assert seen == [("c.json", 7), ("c.json", 1)]
 
 
 def test_what_is_quoted_in_a_listing_does_not_make_it_compact(tmp_path: Path) -> None:
-    """Beyond its first lines; and a compact certificate that says it is a listing is none."""
+    """Nor does a compact certificate hold that says that it is a listing."""
     path = tmp_path / "c.json"
     document = given("listing-cross")
     document["provenance"] = {"a": "x" * 5000, "format": "exactfold compact certificate"}
@@ -149,6 +152,6 @@ def test_what_is_quoted_in_a_listing_does_not_make_it_compact(tmp_path: Path) ->
     parts = given_lines("compact-exact")
     parts[0]["format"] = "exactfold certificate"
     path.write_bytes(chained(parts))
-    assert checker.is_compact(path)
-    with pytest.raises(checker.FormatError, match='no "format": "exactfold compact certificate"'):
+    assert not checker.is_compact(path)
+    with pytest.raises(checker.FormatError, match='no "format" of a certificate that is writt'):
         checker.verify(path)

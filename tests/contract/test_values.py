@@ -145,7 +145,6 @@ VALUES = {
     )[0],
     "no box": exactfold.solve.krawczyk(SYSTEM.chart.system, [[1e9, 1e9]])[0],
     "isolation": exactfold.solve.isolate(SYSTEM.chart.system, ENDS),
-    "splitting": exactfold.solve.split_form(PATTERN, 4),
     "solution": SOLUTION,
     "class": SOLUTION.classes[0],
     "algebra": exactfold.solve.quotient_algebra(SYSTEM.chart.system),
@@ -208,7 +207,7 @@ def value(request, tmp_path):
 def warmed(value):
     """The value after each of its cached properties was asked for, as after a day's work."""
     for name, attribute in inspect.getmembers(type(value)):
-        if isinstance(attribute, cached_property) or name in ("sha256", "graph"):
+        if isinstance(attribute, cached_property) or name == "sha256":
             getattr(value, name)
     return value
 
@@ -276,7 +275,6 @@ def test_an_unpickled_pattern_works_like_the_one_it_came_from():
     )
     assert [again.star(v) for v in range(6)] == [PATTERN.star(v) for v in range(6)]
     assert again.sha256 == PATTERN.sha256
-    assert again.graph.edges == PATTERN.graph.edges
     with pytest.raises(AttributeError):
         again.vertices = ()
 

@@ -15,7 +15,7 @@ from sixty_digits import driven_newton, holds
 from exactfold import CreasePattern, delaunay, families, find_branch
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.checker import check, summary
-from exactfold.errors import BadDriveError, NotDrivenError
+from exactfold.errors import BadDriveError, NotFollowedError
 from exactfold.motion import Motion, find_driven, follow, prove
 from exactfold.motion.curves.drive import Drive
 from exactfold.motion.tubes.driven import Driven, off_the_ratio
@@ -88,7 +88,7 @@ def test_with_four_corners_one_fold_is_driven_along_the_branch() -> None:
     # The other way: the mirror image of the branch with the opposite signs.
     other = find_driven(square, {(3, 5): -40}, "++")
     assert (other.side, other.branch.sign_text) == (-1, "--")
-    with pytest.raises(NotDrivenError, match="the fold goes the other way, or stays flat"):
+    with pytest.raises(NotFollowedError, match="the fold goes the other way, or stays flat"):
         find_driven(square, {(3, 5): -40}, "++", side=1)
 
 
@@ -178,7 +178,7 @@ def test_folds_that_are_missing_are_named_and_can_be_driven() -> None:
 
 def test_a_ratio_that_is_not_met() -> None:
     """At a vertex with four folds the signs of all depend on its own: here 1-5 is no valley."""
-    with pytest.raises(NotDrivenError, match="the nearest that was met is") as caught:
+    with pytest.raises(NotFollowedError, match="the nearest that was met is") as caught:
         find_driven(PENTAGON, {(1, 5): 90, (2, 6): -45}, "+-")
     assert caught.value.folds == ((1, 5), (2, 6))
     with pytest.raises(BadDriveError, match="do not start in the ratio"):
@@ -317,6 +317,6 @@ def test_at_one_vertex_the_solutions_are_those_of_a_quadratic_equation(seed: int
     for signs in "+-":
         try:
             found += 1 + find_driven(star, angles, signs).others
-        except NotDrivenError:
+        except NotFollowedError:
             continue
     assert found == real

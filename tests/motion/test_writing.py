@@ -15,7 +15,7 @@ import trimesh
 from panel_sheets import regular_twist
 
 from exactfold import find_branch, follow, random_square
-from exactfold.errors import GltfMissingError, UnwritableFileError, UsageError
+from exactfold.errors import PackageMissingError, UnwritableFileError, UsageError
 from exactfold.interop import meshes
 from exactfold.motion import follow_panels, write_motion
 from exactfold.pattern import PanelPattern, load_fold, open_pattern
@@ -230,7 +230,7 @@ def test_another_reader_sees_the_flat_sheet_with_y_up(tmp_path):
 
 def test_without_pygltflib_it_is_said(tmp_path, monkeypatch):
     monkeypatch.setattr(meshes, "find_spec", lambda name: None)
-    with pytest.raises(GltfMissingError, match=r"pip install 'exactfold\[motion\]'"):
+    with pytest.raises(PackageMissingError, match=r"pip install 'exactfold\[motion\]'"):
         write_motion(MOTION, tmp_path / "motion.glb")
     assert not list(tmp_path.iterdir())
 

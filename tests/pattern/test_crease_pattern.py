@@ -10,17 +10,12 @@ from pattern_strategies import patterns, quick, relabelled, similarities, transf
 from exactfold.errors import (
     DegenerateFaceError,
     DisconnectedError,
-    DuplicateVertexError,
     FloatRefusedError,
-    HoleError,
     InputError,
-    IsolatedVertexError,
     MalformedPatternError,
-    MixedOrientationError,
-    NonManifoldEdgeError,
-    NotANumberError,
+    NotADiskError,
+    NumberError,
     OverlapError,
-    PinchError,
     UsageError,
 )
 from exactfold.pattern.crease_pattern import CreasePattern
@@ -63,23 +58,23 @@ def test_malformed_error(vertices, triangles, culprit):
 def test_number_errors_name_the_vertex():
     with pytest.raises(FloatRefusedError, match=r'vertex 2: the float 0\.5 .* write "0\.5"'):
         CreasePattern([(0, 0), (1, 0), (0, 0.5)], [(0, 1, 2)])
-    with pytest.raises(NotANumberError, match="vertex 1: 'one'"):
+    with pytest.raises(NumberError, match="vertex 1: 'one'"):
         CreasePattern([(0, 0), ("one", 0), (0, 1)], [(0, 1, 2)])
 
 
 def test_duplicate_vertex_error():
-    with pytest.raises(DuplicateVertexError, match=r"vertices 1 and 4 .* \(1, 0\)") as caught:
+    with pytest.raises(MalformedPatternError, match=r"vertices 1 and 4 .* \(1, 0\)") as caught:
         CreasePattern([*CORNERS, ("2/2", "0.0")], HALVES)
     assert caught.value.vertices == (1, 4)
 
 
 def test_duplicate_vertex_error_at_a_huge_point():
-    with pytest.raises(DuplicateVertexError, match="vertices 1 and 2"):
+    with pytest.raises(MalformedPatternError, match="vertices 1 and 2"):
         CreasePattern([(0, 0), (10**6000, 1), (10**6000, 1)], [(0, 1, 2)])
 
 
 def test_isolated_vertex_error():
-    with pytest.raises(IsolatedVertexError, match=r"vertex 4 .*and 1 more") as caught:
+    with pytest.raises(MalformedPatternError, match=r"vertex 4 .*and 1 more") as caught:
         CreasePattern([*CORNERS, (7, 7), (8, 8)], HALVES)
     assert caught.value.vertices == (4, 5)
 
@@ -93,7 +88,7 @@ def test_degenerate_face_error():
 
 
 def test_mixed_orientation_error():
-    with pytest.raises(MixedOrientationError, match=r"face 1 \(0, 3, 2\) is clockwise") as caught:
+    with pytest.raises(OverlapError, match=r"face 1 \(0, 3, 2\) is clockwise") as caught:
         CreasePattern(CORNERS, [(0, 1, 2), (0, 3, 2)])
     assert caught.value.faces == (1, 0)
 
@@ -156,7 +151,7 @@ def test_segments_meet(c, d, meet):
 
 def test_non_manifold_edge_error():
     vertices = [(0, 0), (4, 0), (1, 3), (2, -3), (3, 4)]
-    with pytest.raises(NonManifoldEdgeError, match=r"edge 0-1 .* \[0, 1, 2\]") as caught:
+    with pytest.raises(NotADiskError, match=r"edge 0-1 .* \[0, 1, 2\]") as caught:
         CreasePattern(vertices, [(0, 1, 2), (1, 0, 3), (0, 1, 4)])
     assert caught.value.edges == ((0, 1),)
     assert caught.value.faces == (0, 1, 2)
@@ -177,14 +172,14 @@ def test_hole_error():
         for j in range(4)
         for t in ((j, (j + 1) % 4, 4 + j), ((j + 1) % 4, 4 + (j + 1) % 4, 4 + j))
     ]
-    with pytest.raises(HoleError, match="vertices 0 and 4"):
+    with pytest.raises(NotADiskError, match="vertices 0 and 4"):
         CreasePattern(outer + inner, ring)
     assert CreasePattern(outer + inner, [*ring, (4, 5, 6), (4, 6, 7)]).Vi == 4
 
 
 def test_pinch_error():
     vertices = [(0, 0), (1, 0), (0, 1), (-1, 0), (0, -1)]
-    with pytest.raises(PinchError, match="vertex 0") as caught:
+    with pytest.raises(NotADiskError, match="vertex 0") as caught:
         CreasePattern(vertices, [(0, 1, 2), (0, 3, 4)])
     assert caught.value.vertices == (0,)
 
@@ -193,7 +188,7 @@ def test_pinch_error_between_two_boundaries():
     outer = [(0, 0), (6, 0), (0, 6)]  # a ring whose hole touches the outer boundary in vertex 0
     inner = [(3, 1), (1, 3)]
     faces = [(0, 1, 3), (1, 2, 3), (2, 4, 3), (2, 0, 4)]
-    with pytest.raises(PinchError, match="vertex 0"):
+    with pytest.raises(NotADiskError, match="vertex 0"):
         CreasePattern(outer + inner, faces)
     assert CreasePattern(outer + inner, [*faces, (0, 3, 4)]).Vi == 2
 
@@ -240,19 +235,6 @@ def test_star_order():
     assert pattern.star(0) == (1, 5, 4)
     assert pattern.opposite((2, 5)) == (1, 3)
     assert [pattern.degree(v) for v in range(6)] == [3, 3, 3, 3, 3, 5]
-
-
-def test_graph_is_frozen_and_labelled():
-    graph = single_vertex(4).graph
-    assert {tuple(sorted(e)) for e in graph.edges if graph.edges[e]["fold"]} == {
-        (0, 4),
-        (1, 4),
-        (2, 4),
-        (3, 4),
-    }
-    assert graph.nodes[4]["pos"] == (0, 0)
-    with pytest.raises(Exception, match=r"[Ff]rozen"):
-        graph.add_edge(0, 2)
 
 
 def test_frozen():
@@ -330,7 +312,7 @@ def test_stars_are_counter_clockwise(pattern):
     for v in range(len(pattern.vertices)):
         star = pattern.star(v)
         closed = v in pattern.interior
-        assert set(star) == set(pattern.graph[v])
+        assert set(star) == {i for edge in pattern.edges if v in edge for i in edge} - {v}
         pairs = list(zip(star, star[1:] + star[:1], strict=True))[: None if closed else -1]
         for a, b in pairs:
             assert {a, b, v} in faces
@@ -380,7 +362,7 @@ def test_moving_a_vertex_out_of_its_star_is_refused(pattern, data):
     v = data.draw(st.sampled_from(pattern.interior))
     vertices = list(pattern.vertices)
     vertices[v] = (Fraction(100), Fraction(101, 7))
-    with pytest.raises((MixedOrientationError, DegenerateFaceError)):
+    with pytest.raises((OverlapError, DegenerateFaceError)):
         CreasePattern(vertices, pattern.triangles)
 
 
@@ -403,5 +385,5 @@ def test_snap_denominator_error(denominator):
 
 def test_snapping_onto_another_vertex_is_refused():
     close = CreasePattern([(0, 0), (1, 0), ("1.1", "0.1"), (0, 1)], [(0, 1, 3), (1, 2, 3)])
-    with pytest.raises(DuplicateVertexError, match="vertices 1 and 2"):
+    with pytest.raises(MalformedPatternError, match="vertices 1 and 2"):
         close.snapped(1)

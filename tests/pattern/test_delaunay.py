@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pattern_strategies import point_sets, quick, same_up_to_labels, similarities
 
-from exactfold.errors import CollinearPointsError, DuplicateVertexError, FloatRefusedError
+from exactfold.errors import FloatRefusedError, MalformedPatternError
 from exactfold.pattern.delaunay_sheets import delaunay
 
 
@@ -111,13 +111,13 @@ def test_a_circle_missed_by_one_part_in_ten_to_the_sixty():
 
 
 def test_collinear_points_error():
-    with pytest.raises(CollinearPointsError, match="all 4 points") as caught:
+    with pytest.raises(MalformedPatternError, match="all 4 points") as caught:
         delaunay([(0, 0), (3, 1), (6, 2), (-3, -1)])
     assert caught.value.vertices == (0, 1, 2, 3)
 
 
 def test_duplicate_vertex_error():
-    with pytest.raises(DuplicateVertexError, match="vertices 0 and 3"):
+    with pytest.raises(MalformedPatternError, match="vertices 0 and 3"):
         delaunay([(0, 0), (1, 0), (0, 1), ("0/5", 0)])
 
 

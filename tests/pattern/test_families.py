@@ -3,6 +3,7 @@ from fractions import Fraction
 import pytest
 
 from exactfold.errors import NotApplicableError, PatternError, UsageError
+from exactfold.interop.graphs import to_networkx
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.data import SHEETS, example_path
 from exactfold.pattern.families import (
@@ -78,7 +79,7 @@ def test_flat_octahedron():
     assert collinear_folds(pattern) == ()
     assert pattern.chords == ()
     # Each outer vertex misses exactly the inner vertex across: the graph is the octahedron's.
-    inside = pattern.graph.subgraph(range(4, 10))
+    inside = to_networkx(pattern).subgraph(range(4, 10))
     assert [d for _, d in inside.degree] == [4] * 6
 
 

@@ -8,13 +8,13 @@ from itertools import combinations
 
 import numpy as np
 import pytest
+from rivals.hermite import hermite_counts
 
 from exactfold import count_branches, random_square
 from exactfold.design import actuate
 from exactfold.rigidity import BranchSystem, perturbed
 from exactfold.rigidity.functionals import saddle_functional
 from exactfold.solve.algebraic.groebner_bases import quotient_algebra
-from exactfold.solve.algebraic.hermite import hermite_counts
 from exactfold.studies import loops as motions
 from exactfold.studies import mv, run_study, selffold
 from exactfold.studies import perturbed as perturbed_study

@@ -15,13 +15,10 @@ from toy import TOY
 
 from exactfold.branches.counting.pools import process_pool
 from exactfold.errors import (
-    BrokenRowsError,
-    ForeignRowsError,
+    ForeignJournalError,
+    InputError,
     JournalInUseError,
     RowFailedError,
-    RowNumbersError,
-    UnknownRowError,
-    UnknownStudyError,
     UnwritableFileError,
     UsageError,
 )
@@ -119,12 +116,12 @@ def test_a_row_is_computed_again_and_compared(tmp_path):
 
 def test_a_row_that_is_not_there_is_said(tmp_path):
     path = tmp_path / "a.sqlite"
-    with pytest.raises(UnknownRowError, match="run the study first"):
+    with pytest.raises(InputError, match="run the study first"):
         read_row(path, TOY, "a")
     run_study(TOY, path)
-    with pytest.raises(UnknownRowError, match="more than one row"):
+    with pytest.raises(InputError, match="more than one row"):
         read_row(path, TOY, "")
-    with pytest.raises(UnknownRowError, match="has no row"):
+    with pytest.raises(InputError, match="has no row"):
         read_row(path, TOY, "xyz")
 
 
@@ -133,16 +130,23 @@ def test_the_journal_of_another_study_is_left_alone(tmp_path, other):
     path = tmp_path / "a.sqlite"
     run_study(TOY, path)
     before = path.read_bytes()
-    with pytest.raises(ForeignRowsError, match="holds rows of the study toy, version 1, not of"):
+    with pytest.raises(ForeignJournalError, match="holds rows of the study toy, version 1, not of"):
         run_study(replace(TOY, **other), path)
     assert path.read_bytes() == before
 
 
-@pytest.mark.parametrize("content", [b"SQLite", b"no journal", b"SQLite format 3\0 and then not"])
-def test_a_file_of_another_kind_is_left_alone(tmp_path, content):
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (b"SQLite", "is not the journal of a study"),
+        (b"no journal", "is not the journal of a study"),
+        (b"SQLite format 3\0 and then not", "is damaged"),
+    ],
+)
+def test_a_file_of_another_kind_is_left_alone(tmp_path, content, said):
     path = tmp_path / "a.sqlite"
     path.write_bytes(content)
-    with pytest.raises(BrokenRowsError):
+    with pytest.raises(ForeignJournalError, match=said):
         run_study(TOY, path)
     assert path.read_bytes() == content
 
@@ -151,29 +155,29 @@ def test_a_database_of_another_program_is_left_alone(tmp_path):
     path = tmp_path / "a.sqlite"
     with sqlite3.connect(path) as rows:
         rows.execute("CREATE TABLE rows (id)")
-    with pytest.raises(BrokenRowsError, match="not the journal of a study"):
+    with pytest.raises(ForeignJournalError, match="not the journal of a study"):
         run_study(TOY, path)
 
 
 @pytest.mark.parametrize(
-    "change",
+    ("change", "said"),
     [
-        "UPDATE rows SET row = replace(row, '4', '5')",
-        "UPDATE rows SET row = '{'",
-        "UPDATE rows SET sha256 = 'no'",
-        'UPDATE rows SET recipe = \'{"size":2,"seed":7}\'',
-        "UPDATE about SET value = '9' WHERE name = 'version'",
-        "DROP TABLE about",
+        ("UPDATE rows SET row = replace(row, '4', '5')", "is not what was written"),
+        ("UPDATE rows SET row = '{'", "is not what was written"),
+        ("UPDATE rows SET sha256 = 'no'", "is not what was written"),
+        ('UPDATE rows SET recipe = \'{"size":2,"seed":7}\'', "is not what was written"),
+        ("UPDATE about SET value = '9' WHERE name = 'version'", "is not the journal of a study"),
+        ("DROP TABLE about", "is not the journal of a study"),
     ],
 )
-def test_a_changed_journal_is_found(tmp_path, change):
+def test_a_changed_journal_is_found(tmp_path, change, said):
     path = tmp_path / "a.sqlite"
     run_study(TOY, path, numbers={2: 1})
     rows = sqlite3.connect(path)
     rows.execute(change)
     rows.commit()
     rows.close()
-    with pytest.raises(BrokenRowsError):
+    with pytest.raises(ForeignJournalError, match=said):
         list(run_study(TOY, path, numbers={2: 1}).rows)
 
 
@@ -191,7 +195,7 @@ def test_a_journal_that_cannot_be_written_is_said(tmp_path):
 
 
 def test_wrong_usage_is_refused_before_anything_is_computed(tmp_path):
-    with pytest.raises(UnknownStudyError, match="no study 'x'; there are: table1"):
+    with pytest.raises(UsageError, match="no study 'x'; there are: table1"):
         run_study("x")
     with pytest.raises(UsageError, match="at least one worker"):
         run_study(TOY, workers=0)
@@ -230,7 +234,7 @@ def test_sizes_and_numbers_are_chosen():
     assert study.chosen([4, 5], {5: 7}) == {4: 1000, 5: 7}
     extended = study.chosen(number={5: 7, 20: 1}, extend=True)
     assert extended == {**study.numbers, **study.extended, 5: 7, 20: 1}
-    with pytest.raises(RowNumbersError, match="for size 5, which is not one of the sizes"):
+    with pytest.raises(UsageError, match="for size 5, which is not one of the sizes"):
         study.chosen([2, 3], {2: 1, 5: 7})
 
 

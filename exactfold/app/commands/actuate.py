@@ -13,7 +13,7 @@ from exactfold.app.shell.patterns import read
 from exactfold.app.shell.shell import EXIT, Bar, name_of, one_at_least
 from exactfold.branches.counting.find import BranchFinder
 from exactfold.design.actuation.actuate import actuate
-from exactfold.errors import BadTorquesError, NumberError
+from exactfold.errors import InputError, NumberError
 from exactfold.exact.numbers import as_rational
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.drawing.drawing import Snap
@@ -36,7 +36,7 @@ class Driven:
     def answer(self) -> int:
         """Find or judge the torques and print; the exit code.
 
-        Raises the errors of `read`, `BranchFinder` and `actuate`, `BadTorquesError`, and
+        Raises the errors of `read`, `BranchFinder` and `actuate`, `InputError`, and
         `UsageError` where neither `signs` nor `up` is given.
         """
         with Bar("reading") as bar:
@@ -62,17 +62,17 @@ class Driven:
 def torques_in(path: Path, pattern: CreasePattern) -> dict[Edge, Fraction]:
     """The torques in a JSON file {"i-j": number}, exactly as they are written.
 
-    A number may be text such as "1/3". Raises `UnreadableFileError` and `BadTorquesError`.
+    A number may be text such as "1/3". Raises `UnreadableFileError` and `InputError`.
     """
     shape = 'write {"0-4": 0.5, ...}, a torque for each crease'
-    data = numbers_by_name(path, BadTorquesError, "crease", shape)
+    data = numbers_by_name(path, InputError, "crease", shape)
     names = {f"{i}-{j}": (i, j) for i, j in pattern.folds}
     found: dict[Edge, Fraction] = {}
     for name, value in data.items():
         if name not in names:
-            raise BadTorquesError(f"{path}: {name} is not a fold i-j, i < j, of the pattern")
+            raise InputError(f"{path}: {name} is not a fold i-j, i < j, of the pattern")
         try:
             found[names[name]] = as_rational(value)
         except NumberError as error:
-            raise BadTorquesError(f"{path}: {name}: {error}") from None
+            raise InputError(f"{path}: {name}: {error}") from None
     return found

@@ -34,7 +34,7 @@ from exactfold.branches.counting.pools import Pool, dask_pool, process_pool
 from exactfold.branches.values.result import BranchCount
 from exactfold.errors import (
     NotEnoughMemoryError,
-    UnknownPatternError,
+    UnreadableFileError,
     UnwritableFileError,
     UsageError,
     WorkerDiedError,
@@ -245,7 +245,7 @@ class Known:
 def _source(path: Path) -> Source:
     try:
         return read_source(located(path))
-    except UnknownPatternError as error:
+    except UnreadableFileError as error:
         return error
 
 

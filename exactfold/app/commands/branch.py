@@ -15,7 +15,7 @@ from exactfold.app.shell.patterns import read
 from exactfold.app.shell.shell import Bar, name_of, one_at_least, say
 from exactfold.branches.counting.find import BranchFinder
 from exactfold.branches.values.branch import Branch
-from exactfold.errors import NotANumberError, NotCountedError, UsageError
+from exactfold.errors import NotCountedError, NumberError, UsageError
 from exactfold.exact.numbers import parse_whole
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.drawing.bounds import read_text
@@ -208,7 +208,7 @@ def _of_lines(finder: BranchFinder, path: Path, bar: Bar) -> Iterator[tuple[str,
 def _indices(option: str, text: str) -> list[int]:
     try:
         return [parse_whole(part) for part in text.split(",") if part.strip()]
-    except NotANumberError:
+    except NumberError:
         raise UsageError(f"{option} takes vertex indices such as 5,7, not {text!r}") from None
 
 

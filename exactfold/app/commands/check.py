@@ -8,7 +8,10 @@ from typing import Any, Literal, TypedDict
 
 from exactfold import checker
 from exactfold.app.shell.shell import Bar, name_of, regular, said
+from exactfold.checker.branches.compact import COMPACT
 from exactfold.checker.command import refusal
+from exactfold.checker.core.kinds import LineKind, Verified
+from exactfold.checker.core.parts import Engine
 from exactfold.checker.core.reading import UnfinishedError, plain
 from exactfold.errors import CertificateFormatError, UnreadableFileError, WorkerDiedError
 
@@ -49,37 +52,34 @@ def valid(path: Path, workers: int | None, as_json: bool) -> bool:
     return claims is not None
 
 
-def verified(path: Path, workers: int | None) -> tuple[dict[str, Any] | None, str, str]:
+def verified(path: Path, workers: int | None) -> tuple[Verified[Any] | None, str, str]:
     """The claims of a file, what to print, and the reason; None if one does not hold.
 
     Raises `CertificateFormatError`, `UnreadableFileError`, `WorkerDiedError`.
     """
+    from exactfold._support.processes import available_cores
+
     with regular(path) as file:
         try:
-            claims = _claims(file, workers, path)
+            claims = checker.verify(file, workers or available_cores(), _quickest)
         except checker.CertificateError as error:
             unfinished = "unfinished: " if isinstance(error, UnfinishedError) else ""
             return None, refusal(error), unfinished + plain(error)
         except checker.FormatError as error:
             raise CertificateFormatError(f"{said(path)}: {plain(error)}") from None
+        except WorkerDiedError as error:
+            raise type(error)(f"{error}; nothing is known of the file") from None
         except OSError as error:
             raise UnreadableFileError(f"cannot read {path}: {error.strerror}") from None
     return claims, checker.summary(claims), "every claim holds"
 
 
-def _claims(file: Path, workers: int | None, name: Path) -> dict[str, Any]:
-    from exactfold._support.processes import available_cores
+def _quickest(kind: LineKind[Any]) -> Engine:
+    """How the lines of a file are verified: on processes, and where it can be in floats first."""
+    if kind is COMPACT:
+        from exactfold.branches.certificates.check import FLOATS  # needs NumPy, as no other does
+
+        return FLOATS
     from exactfold.certificates.sharing import shared
-    from exactfold.checker.branches.compact import INTEGERS
 
-    workers = workers or available_cores()
-    if not checker.is_compact(file):
-        try:
-            return checker.verify(file, workers, INTEGERS._replace(share=shared))
-        except WorkerDiedError as error:
-            raise type(error)(f"{error}; nothing is known of the file") from None
-    from exactfold.branches.certificates.check import (
-        check_compact,  # needs NumPy, as no other kind does
-    )
-
-    return check_compact(file, workers=workers, name=name)
+    return kind.engine._replace(share=shared)

@@ -13,7 +13,7 @@ from exactfold._support.documents import FieldName, FoldText
 from exactfold._support.plurals import agreeing, counted
 from exactfold.app.shell.patterns import located
 from exactfold.app.shell.shell import Bar, apart, name_of, said, say, tell
-from exactfold.errors import FoldError, PatternError, UsageError
+from exactfold.errors import FoldError, NotFoldError, PatternError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import PanelsDocument, PatternDocument, described, described_panels
 from exactfold.pattern.drawing.drawing import Snap
@@ -72,7 +72,7 @@ class Conversion:
                 merge=self.merge,
             )
         except (FoldError, PatternError) as error:
-            if not self.repair:
+            if not self.repair and not isinstance(error, NotFoldError):
                 error.args = (f"{error}; perhaps --repair mends it",)
             raise
 

@@ -9,7 +9,7 @@ import typer
 
 from exactfold.app.shell.json_numbers import numbers_by_name
 from exactfold.app.shell.parameters import fold_name
-from exactfold.errors import BadDriveError, NotANumberError, UsageError
+from exactfold.errors import BadDriveError, NumberError, UsageError
 from exactfold.exact.numbers import approx_number
 from exactfold.pattern.crease_pattern import Edge
 
@@ -54,5 +54,5 @@ def _add(found: Angles, name: str, value: str | None, error: Callable[[str], Exc
         raise error(f"fold {name} is there twice")
     try:
         found[fold] = None if value is None else approx_number(value.removesuffix("deg"))
-    except NotANumberError:
+    except NumberError:
         raise error(f"fold {name}: {value!r} is no angle such as 90deg") from None

@@ -21,10 +21,9 @@ from exactfold.design.assignments.nearest import nearest_branches
 from exactfold.design.assignments.search import Match, match
 from exactfold.design.panels.match import PanelMatch, match_panels
 from exactfold.errors import (
-    LettersError,
-    NoLettersError,
     NotApplicableError,
     NotCountedError,
+    UsageError,
 )
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.drawing.bounds import read_text
@@ -56,7 +55,8 @@ class Asked:
 
         Sheets of panels, and triangles with more than four corners, are asked whether they start
         to fold. 1 where it is proved that no branch has the letters, or that they do not. Raises
-        the errors of `read_any`, `triangles` and `match`, `LettersError` and `NoLettersError`.
+        the errors of `read_any`, `triangles` and `match`, and `UsageError` for letters that do not
+        fit the folds or that the file does not have.
         """
         begin = time.perf_counter()
         nearest = None
@@ -132,7 +132,7 @@ class Asked:
         if self.letters is None:
             if opened.letters:
                 return opened.letters
-            raise NoLettersError(
+            raise UsageError(
                 f"{name_of(self.file)}: no fold is a mountain or a valley in the file: give "
                 "letters with --letters"
             )
@@ -150,7 +150,7 @@ def _in_reach(pattern: CreasePattern) -> None:
 def given_letters(pattern: CreasePattern | PanelPattern, text: str) -> dict[Edge, str]:
     """The letters of --letters: in the order of the folds, or by fold as in "0-4=M,1-5=V".
 
-    @FILE reads them from a file; folds that are not named are free. Raises `LettersError` and
+    @FILE reads them from a file; folds that are not named are free. Raises `UsageError` and
     `UnreadableFileError`.
     """
     where = ""
@@ -159,8 +159,8 @@ def given_letters(pattern: CreasePattern | PanelPattern, text: str) -> dict[Edge
     letters = "".join(text.split())
     try:
         return _by_name(pattern, letters) if "=" in letters else _in_order(pattern, letters)
-    except LettersError as error:
-        raise LettersError(f"{where}{error}") from None
+    except UsageError as error:
+        raise UsageError(f"{where}{error}") from None
 
 
 def _in_order(pattern: CreasePattern | PanelPattern, letters: str) -> dict[Edge, str]:
@@ -168,7 +168,7 @@ def _in_order(pattern: CreasePattern | PanelPattern, letters: str) -> dict[Edge,
     for fold, letter in zip(folds, letters, strict=False):
         _check(fold, letter)
     if len(letters) != len(folds):
-        raise LettersError(
+        raise UsageError(
             f"{counted(len(letters), 'letter')} for {counted(len(folds), 'fold')}: one of M, V, F, "
             "U for each, in the order of `exactfold count`, or by fold as in 0-4=M,1-5=V"
         )
@@ -182,17 +182,17 @@ def _by_name(pattern: CreasePattern | PanelPattern, text: str) -> dict[Edge, str
     for part in filter(None, text.split(",")):
         name, _, letter = part.partition("=")
         if name not in names:
-            raise LettersError(f"{part!r} names no fold of the sheet: write 0-4=M for fold 0-4")
+            raise UsageError(f"{part!r} names no fold of the sheet: write 0-4=M for fold 0-4")
         fold = names[name]
         _check(fold, letter)
         if found.setdefault(fold, letter) != letter:
-            raise LettersError(f"fold {fold[0]}-{fold[1]} has two letters")
+            raise UsageError(f"fold {fold[0]}-{fold[1]} has two letters")
     return found
 
 
 def _check(fold: Edge, letter: str) -> None:
     if letter not in tuple("MVFU"):
-        raise LettersError(
+        raise UsageError(
             f"fold {fold[0]}-{fold[1]} has the letter {letter!r}: M mountain, V valley, F flat and "
             "U free are known"
         )

@@ -11,7 +11,7 @@ import numpy as np
 from exactfold._support.arrays import FloatArray
 from exactfold.app.pictures.crease_drawing import SIZE
 from exactfold.app.pictures.stills import motion_still
-from exactfold.errors import NotANumberError, UsageError
+from exactfold.errors import NumberError, UsageError
 from exactfold.exact.numbers import approx_number
 from exactfold.motion.curves.in_motion import SheetInMotion
 
@@ -38,7 +38,7 @@ class Amount:
         """
         try:
             number = approx_number(text.removesuffix("deg"))
-        except NotANumberError:
+        except NumberError:
             number = -1.0
         is_angle = text.endswith("deg")
         if not (isfinite(number) and 0 < number <= (180 if is_angle else 1)):

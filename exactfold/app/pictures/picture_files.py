@@ -6,7 +6,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Final
 
-from exactfold.errors import PicturesMissingError
+from exactfold.errors import PackageMissingError
 from exactfold.pattern.fold_writing import checked_target, write_bytes
 
 ENDINGS: Final = (".svg", ".png", ".pdf")
@@ -23,7 +23,7 @@ def write_picture(text: str, path: str | PathLike[str]) -> None:
     """Write an SVG picture in the format that the ending of the path names.
 
     ".svg": as it is. ".png", two pixels for one, and ".pdf": with CairoSVG, which is in the extra
-    `exactfold[pictures]`. Raises `UsageError` for another ending, `PicturesMissingError` without
+    `exactfold[pictures]`. Raises `UsageError` for another ending, `PackageMissingError` without
     CairoSVG, and `UnwritableFileError`.
     """
     ending = checked_picture(Path(path))
@@ -33,7 +33,7 @@ def write_picture(text: str, path: str | PathLike[str]) -> None:
     try:
         import cairosvg
     except (ImportError, OSError) as error:  # OSError: Cairo itself is missing
-        raise PicturesMissingError(
+        raise PackageMissingError(
             f"{path}: PNG and PDF files need CairoSVG ({error}): "
             "pip install 'exactfold[pictures]', or write .svg"
         ) from None

@@ -12,9 +12,6 @@ from exactfold.branches.counting.find import BranchFinder, branch_finder
 from exactfold.errors import (
     BadCurvatureError,
     BadRimError,
-    FlatRimError,
-    RimHeightError,
-    RimVertexError,
 )
 from exactfold.pattern.crease_pattern import CreasePattern
 
@@ -41,7 +38,7 @@ class Given:
         finder = branch_finder(pattern, rim, curvature)  # type: ignore[arg-type]
         try:
             finder.problem  # noqa: B018 - it is set up here, so that errors name the file
-        except (RimVertexError, RimHeightError, FlatRimError, BadCurvatureError) as error:
+        except (BadRimError, BadCurvatureError) as error:
             file = self.curvature if isinstance(error, BadCurvatureError) else self.rim
             if file is None:
                 raise

@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from exactfold.errors import InputError, NotANumberError
+from exactfold.errors import InputError, NumberError
 from exactfold.exact.numbers import parse_rational
 from exactfold.pattern.drawing.bounds import read_bytes
 
@@ -29,7 +29,7 @@ def numbers_by_name(path: Path, error: type[InputError], noun: str, shape: str) 
         )
     except _RepeatedError as repeated:
         raise error(f"{path}: {noun} {repeated} is there twice") from None
-    except NotANumberError as number:
+    except NumberError as number:
         raise error(f"{path}: {number}") from None
     except (ValueError, RecursionError):
         raise error(f"{path} is not JSON: {shape}") from None

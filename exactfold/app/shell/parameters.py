@@ -12,7 +12,7 @@ import typer
 from exactfold.app.shell.row_numbers import read_sizes
 from exactfold.app.shell.shell import not_a_dash, standard_input
 from exactfold.branches.counting.registry import ALIASES, METHODS
-from exactfold.errors import NotANumberError, RowNumbersError
+from exactfold.errors import NumberError, UsageError
 from exactfold.exact.numbers import approx_number, parse_rational, parse_whole
 from exactfold.pattern.drawing.drawing import Snap as Snapping
 
@@ -50,7 +50,7 @@ def whole(least: int | None = None) -> Callable[[object], int]:
     def read(text: object) -> int:
         try:
             number = parse_whole(str(text))
-        except NotANumberError:
+        except NumberError:
             raise typer.BadParameter(f"{str(text)!r} is not a whole number") from None
         if least is not None and number < least:
             raise typer.BadParameter(f"{number} is less than {least}")
@@ -73,7 +73,7 @@ def degrees(text: object) -> float:
     """A number with a decimal point."""
     try:
         return approx_number(str(text))
-    except NotANumberError:
+    except NumberError:
         raise typer.BadParameter(f"{str(text)!r} is not a number") from None
 
 
@@ -88,7 +88,7 @@ def fold_name(text: object) -> tuple[int, int]:
     """A fold as it is printed, such as 4-7."""
     try:
         i, j = (parse_whole(part) for part in str(text).split("-"))
-    except ValueError:  # also NotANumberError, which is one
+    except ValueError:  # also NumberError, which is one
         raise typer.BadParameter(f"{str(text)!r} is not a fold such as 4-7") from None
     return min(i, j), max(i, j)
 
@@ -102,7 +102,7 @@ def sizes(text: object) -> tuple[int, ...]:
     """Numbers from 1 on and ranges of them, such as 2-5,8."""
     try:
         return tuple(sorted({size for part in str(text).split(",") for size in read_sizes(part)}))
-    except RowNumbersError as error:
+    except UsageError as error:
         raise typer.BadParameter(str(error)) from None
 
 
@@ -118,7 +118,7 @@ def distance(text: object) -> Fraction:
     """A positive number, such as 1e-6, exactly as it is written."""
     try:
         value = parse_rational(str(text))
-    except NotANumberError:
+    except NumberError:
         raise typer.BadParameter(f"{str(text)!r} is not a number") from None
     if value <= 0:
         raise typer.BadParameter(f"{text} is not positive")

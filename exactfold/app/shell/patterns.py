@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from exactfold.app.shell.shell import STDIN, said, say
-from exactfold.errors import UnknownPatternError
+from exactfold.errors import UnreadableFileError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.data import EXAMPLES, example_path
 from exactfold.pattern.drawing.drawing import Snap
@@ -25,14 +25,14 @@ class Triangulated:
 def located(path: Path) -> Path:
     """The file that is meant; the name of an example is that example, as for `load`.
 
-    Raises `UnknownPatternError` for a bare name that is neither.
+    Raises `UnreadableFileError` for a bare name that is neither.
     """
     name = str(path)
     if name in EXAMPLES:
         return example_path(name)
     if path == STDIN or path.exists() or path.suffix or len(path.parts) != 1:
         return path  # reading it says what is wrong
-    raise UnknownPatternError(
+    raise UnreadableFileError(
         f"{name} is neither a file nor a shipped pattern; the shipped patterns are: "
         f"{', '.join(EXAMPLES)}"
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from exactfold.errors import NotANumberError, RowNumbersError
+from exactfold.errors import NumberError, UsageError
 from exactfold.exact.numbers import parse_whole
 
 MOST_SIZES = 1000
@@ -14,7 +14,7 @@ _FORMS = "write one number for all sizes, such as 1000, or numbers by size, such
 
 
 def read_sizes(text: str) -> range:
-    """One size from 1 on, or a range of sizes such as 2-4; raises `RowNumbersError`.
+    """One size from 1 on, or a range of sizes such as 2-4; raises `UsageError`.
 
     >>> read_sizes("2-4")
     range(2, 5)
@@ -22,43 +22,43 @@ def read_sizes(text: str) -> range:
     first, _, last = text.strip().partition("-")
     low, high = _whole(first), _whole(last or first)
     if low < 1:
-        raise RowNumbersError(f"sizes are from 1 on, not {low}")
+        raise UsageError(f"sizes are from 1 on, not {low}")
     if high < low:
-        raise RowNumbersError(f"{text.strip()!r} ends before it begins")
+        raise UsageError(f"{text.strip()!r} ends before it begins")
     if high - low >= MOST_SIZES:
-        raise RowNumbersError(f"{text.strip()!r} are more than {MOST_SIZES} sizes")
+        raise UsageError(f"{text.strip()!r} are more than {MOST_SIZES} sizes")
     return range(low, high + 1)
 
 
 def read_numbers(text: str) -> int | dict[int, int]:
-    """The number of rows of all sizes, or those of each size; raises `RowNumbersError`.
+    """The number of rows of all sizes, or those of each size; raises `UsageError`.
 
     >>> read_numbers("1000"), read_numbers("2-4:1000,5:200")
     (1000, {2: 1000, 3: 1000, 4: 1000, 5: 200})
     """
     try:
         return _numbers(text)
-    except RowNumbersError as error:
-        raise RowNumbersError(f"--number: {error}; {_FORMS}") from None
+    except UsageError as error:
+        raise UsageError(f"--number: {error}; {_FORMS}") from None
 
 
 def _numbers(text: str) -> int | dict[int, int]:
     if ":" not in text and "," not in text:
         number = _whole(text)
         if number < 1:
-            raise RowNumbersError(f"{number} is less than 1")
+            raise UsageError(f"{number} is less than 1")
         return number
     found: dict[int, int] = {}
     for part in text.split(","):
         sizes, colon, number_text = part.partition(":")
         if not colon:
-            raise RowNumbersError(f"{part.strip()!r} has no number after a colon")
+            raise UsageError(f"{part.strip()!r} has no number after a colon")
         number = _whole(number_text)
         if number < 0:
-            raise RowNumbersError(f"{number} is less than 0")
+            raise UsageError(f"{number} is less than 0")
         for size in read_sizes(sizes):
             if size in found:
-                raise RowNumbersError(f"size {size} has two numbers")
+                raise UsageError(f"size {size} has two numbers")
             found[size] = number
     return found
 
@@ -66,8 +66,8 @@ def _numbers(text: str) -> int | dict[int, int]:
 def _whole(text: str) -> int:
     try:
         return parse_whole(text)
-    except NotANumberError as error:
-        raise RowNumbersError(str(error)) from None
+    except NumberError as error:
+        raise UsageError(str(error)) from None
 
 
 def written_sizes(sizes: Iterable[int]) -> str:

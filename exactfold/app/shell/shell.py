@@ -32,6 +32,7 @@ from exactfold.errors import (
     NotEnoughMemoryError,
     NotFollowedError,
     RowFailedError,
+    UndecidedBranchError,
     UnreadableFileError,
     UsageError,
     WorkerDiedError,
@@ -112,7 +113,7 @@ def exit_code(error: Exception) -> int:
         return NO_MEMORY
     if isinstance(error, WorkerDiedError | RowFailedError) or not isinstance(error, ExactfoldError):
         return INTERNAL
-    if isinstance(error, NotCountedError | NotFollowedError):
+    if isinstance(error, NotCountedError | NotFollowedError | UndecidedBranchError):
         return EXIT[UNDECIDED]
     return BAD_INPUT if isinstance(error, InputError) else USAGE
 

@@ -17,7 +17,7 @@ from exactfold.app.viewer.page import view_page
 from exactfold.app.viewer.ways import Following, Way, branch_way
 from exactfold.branches.counting.find import BranchFinder
 from exactfold.branches.counting.ways import Sheet
-from exactfold.errors import ExactfoldError, NotANumberError, UsageError
+from exactfold.errors import ExactfoldError, NumberError, UsageError
 from exactfold.exact.numbers import parse_whole
 from exactfold.pattern.crease_pattern import CreasePattern
 
@@ -168,5 +168,5 @@ class _Handler(BaseHTTPRequestHandler):
 def _whole(text: str) -> int:
     try:
         return parse_whole(text)
-    except NotANumberError:
+    except NumberError:
         raise UsageError(f"{text!r} is not the number of a way") from None

@@ -12,7 +12,7 @@ from exactfold.certificates.sharing import shared
 from exactfold.checker.branches import compact
 from exactfold.checker.branches.compact_blocks import Block, CompactSheet
 from exactfold.checker.core.limits import MOST_UNITS
-from exactfold.checker.core.lines import read_header
+from exactfold.checker.core.parts import Engine
 from exactfold.checker.core.reading import CertificateError, FormatError, plain, refusing
 from exactfold.errors import CertificateFormatError, UnreadableFileError, WorkerDiedError
 from exactfold.rigidity.equations.quadratic import QuadraticSystem
@@ -108,8 +108,8 @@ class FastChecker:
 
 
 def _fast(header: str) -> FastChecker:
-    return FastChecker(CompactSheet(read_header(header)))
+    return FastChecker(CompactSheet(compact.COMPACT.header(header)))
 
 
-FLOATS = compact.Engine(_fast, LEAST, shared)
+FLOATS = Engine(_fast, LEAST, shared)
 """In floats first, by `FastChecker`."""

@@ -9,9 +9,9 @@ from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.classify import BranchMaker
 from exactfold.branches.values.roots import BoxRoot
 from exactfold.certificates.entries import chart_evidence
-from exactfold.checker.branches.compact_blocks import CompactSheet
-from exactfold.checker.core.formats import UNPROVED
-from exactfold.checker.core.lines import lines, read_header
+from exactfold.checker.branches.compact import COMPACT
+from exactfold.checker.branches.compact_blocks import UNPROVED, CompactSheet
+from exactfold.checker.core.lines import lines
 from exactfold.checker.core.reading import MALFORMED, CertificateError, FormatError, require
 from exactfold.checker.sheets.equations import read_chart
 from exactfold.errors import CertificateFormatError, ExactfoldError, UnreadableFileError
@@ -41,7 +41,7 @@ def read_branches(path: str | os.PathLike[str]) -> Iterator[Branch]:
 
 def _branches(found: Iterator[str]) -> Iterator[Branch]:
     """The branches of the lines of a file."""
-    header = read_header(next(found, "{}"))
+    header = COMPACT.header(next(found, "{}"))
     known = CompactSheet(header)
     vertices = [(as_rational(x), as_rational(y)) for x, y in header["pattern"]["vertices"]]
     problem = Problem.of(CreasePattern(vertices, header["pattern"]["triangles"]))

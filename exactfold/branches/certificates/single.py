@@ -11,7 +11,7 @@ from exactfold._support.verdict import PROVED
 from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.roots import EnclosedRoot
 from exactfold.certificates.entries import Document, emptied_evidence, pattern_document
-from exactfold.checker.core.formats import BRANCH, BRANCH_VERSION, CURVED_VERSION
+from exactfold.checker.branches.branch import BRANCH, CURVED, FLAT
 from exactfold.errors import UsageError
 from exactfold.exact.numbers import format_integer, format_rational
 from exactfold.rigidity.equations.gauge import RIM, SADDLE
@@ -34,8 +34,8 @@ def branch_certificate(branch: Branch) -> dict[str, Any]:
     heights, denominator = heights_evidence(branch, emptied)
     deficits = [format_rational(curvature.get(v, Fraction(0))) for v in pattern.interior]
     return {
-        "format": BRANCH,
-        "version": CURVED_VERSION if curvature else BRANCH_VERSION,
+        "format": BRANCH.format,
+        "version": CURVED if curvature else FLAT,
         "pattern": pattern_document(pattern),
         "claims": {
             "gauge": RIM if branch.gauge == RIM else SADDLE,

@@ -12,7 +12,8 @@ import numpy.typing as npt
 
 from exactfold.branches.values.blocks import ProvedBlock
 from exactfold.certificates.entries import chart_evidence, pattern_document, triangle_evidence
-from exactfold.checker.core.formats import COMPACT, COMPACT_VERSION, UNPROVED
+from exactfold.checker.branches.compact import COMPACT
+from exactfold.checker.branches.compact_blocks import UNPROVED
 from exactfold.exact.numbers import format_integer
 from exactfold.rigidity.equations.problem import Problem
 
@@ -21,8 +22,8 @@ def header_line(problem: Problem, block_size: int) -> str:
     """The first line: the pattern and what its roots are proved with."""
     return _text(
         {
-            "format": COMPACT,
-            "version": COMPACT_VERSION,
+            "format": COMPACT.format,
+            "version": COMPACT.version,
             "pattern": pattern_document(problem.pattern),
             "evidence": {
                 "kind": "chambers",

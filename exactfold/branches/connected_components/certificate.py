@@ -8,8 +8,7 @@ from typing import Final
 from exactfold import checker
 from exactfold.branches.connected_components.result import PartProof, Pieces, RegularPoint
 from exactfold.certificates.entries import Document, emptied_evidence, pattern_document
-from exactfold.checker.branches.connected_components import MOST_VERTICES
-from exactfold.checker.core.formats import PIECES, PIECES_VERSION
+from exactfold.checker.branches.connected_components import MOST_VERTICES, PIECES
 from exactfold.checker.core.reading import CertificateError
 from exactfold.errors import NotApplicableError
 from exactfold.exact.numbers import format_integer, format_rational
@@ -42,8 +41,8 @@ def pieces_certificate(pattern: PatternLike, pieces: Pieces) -> Document:
         )
     complete = {v for proof in pieces.proofs for v in proof.complete}
     document: Document = {
-        "format": PIECES,
-        "version": PIECES_VERSION,
+        "format": PIECES.format,
+        "version": PIECES.version,
         "pattern": pattern_document(sheet),
         "claims": {
             "vertices": list(pieces.vertices),

@@ -17,7 +17,7 @@ from exactfold.branches.counting.true_bounds import with_true_bounds
 from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.result import BranchCount, Proof
 from exactfold.checker.core.limits import MOST_UNKNOWNS
-from exactfold.errors import NoInteriorVertexError
+from exactfold.errors import NotCountedError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.loading import PatternLike, as_pattern
 from exactfold.rigidity.definite_stresses import definite_stress
@@ -55,7 +55,7 @@ def count_branches(
     in memory: `too_many` says what is known, at once; `stream_branches` goes on to 40.
 
     UNDECIDED does not mean that the count is unusual, only that it was not proved. Raises
-    `NoInteriorVertexError` if there is nothing to count, `UsageError` for an unknown method.
+    `NotCountedError` if there is nothing to count, `UsageError` for an unknown method.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> result = count_branches(single_vertex(4))
@@ -89,9 +89,9 @@ def count_branches(
 
 
 def check_countable(pattern: CreasePattern) -> None:
-    """Raise `NoInteriorVertexError` if there is nothing to count."""
+    """Raise `NotCountedError` if there is nothing to count."""
     if not pattern.interior:
-        raise NoInteriorVertexError(
+        raise NotCountedError(
             "the pattern has no interior vertex, so there is nothing to count: every fold bends by "
             "itself"
         )

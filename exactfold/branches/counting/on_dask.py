@@ -18,7 +18,7 @@ from exactfold.branches.certificates.streamed import block_line
 from exactfold.branches.counting.conveyor import Conveyor
 from exactfold.branches.counting.engines import Engine
 from exactfold.branches.values.blocks import ProvedBlock
-from exactfold.errors import ClusterError, DaskMissingError, WorkerDiedError
+from exactfold.errors import ClusterError, PackageMissingError, WorkerDiedError
 from exactfold.pattern.crease_pattern import CreasePattern, Point, Triangle
 
 LOCAL = "local"
@@ -46,7 +46,7 @@ def dask_engine(
     script that asks for it needs the usual `if __name__ == "__main__"`.
 
     Workers need the same version of exactfold; they are believed, as processes of this machine
-    are, until `check_compact` is run. Raises `DaskMissingError`, `ClusterError` if no scheduler
+    are, until `check_compact` is run. Raises `PackageMissingError`, `ClusterError` if no scheduler
     answers or no worker joins within `timeout` seconds; the engine raises `WorkerDiedError` if one
     block kills worker after worker or the scheduler is lost.
     """
@@ -68,7 +68,7 @@ def cluster_client(
     try:
         import distributed
     except ImportError:
-        raise DaskMissingError(
+        raise PackageMissingError(
             "dask.distributed is not installed: pip install 'exactfold[dask]'"
         ) from None
     with ExitStack() as stack:

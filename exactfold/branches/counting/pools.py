@@ -56,7 +56,7 @@ def process_pool(processes: int) -> Pool:
 def dask_pool(address: str, workers: int | None = None, *, timeout: float = 30.0) -> Iterator[Pool]:
     """The cluster whose scheduler is at `address`, or a "local" one: see `dask_engine`.
 
-    Raises `DaskMissingError` and `ClusterError` at once, and `WorkerDiedError` while it works if
+    Raises `PackageMissingError` and `ClusterError` at once, and `WorkerDiedError` while it works if
     the scheduler is lost.
     """
     with cluster_client(address, workers, timeout=timeout) as client:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Protocol, overload
 
 from exactfold._support.progress import Steps
-from exactfold.errors import BadCandidatesError, UsageError
+from exactfold.errors import SolverError, UsageError
 
 if TYPE_CHECKING:
     from exactfold.rigidity.equations.branch_system import Chart
@@ -151,7 +151,7 @@ def find_candidates(
     `method` is one of `METHODS`; of the solvers of exactfold only the complex homotopy uses `seed`.
     `progress(done, total)` is called as work advances. A pattern beyond the range of floats gives
     no candidates, and says so in `lost`, as does a registered solver that raises an exception.
-    Raises `UsageError` for an unknown method or a negative seed, `BadCandidatesError` if a solver
+    Raises `UsageError` for an unknown method or a negative seed, `SolverError` if a solver
     returns anything but finite points of the right shape.
 
     >>> from exactfold.pattern.families import two_vertex
@@ -212,29 +212,27 @@ def _checked(name: str, found: Any, size: int) -> Candidates:
 
     if not isinstance(found, Candidates):
         kind = type(found).__name__
-        raise BadCandidatesError(f"the solver {name!r} returned a {kind}, not Candidates")
+        raise SolverError(f"the solver {name!r} returned a {kind}, not Candidates")
     try:
         points = np.asarray(found.points, dtype=np.complex128)
     except (TypeError, ValueError) as error:
-        raise BadCandidatesError(
+        raise SolverError(
             f"the points of the solver {name!r} are no array of complex numbers: {error}"
         ) from None
     if points.ndim != 2 or points.shape[1] != size:
-        raise BadCandidatesError(
+        raise SolverError(
             f"the points of the solver {name!r} have shape {points.shape}, not (m, {size})"
         )
     bad = int((~np.isfinite(points)).any(axis=1).sum())
     if bad:
-        raise BadCandidatesError(f"{bad} points of the solver {name!r} are not finite")
+        raise SolverError(f"{bad} points of the solver {name!r} are not finite")
     if isinstance(found.lost, str) or not all(isinstance(text, str) for text in found.lost):
-        raise BadCandidatesError(f"`lost` of the solver {name!r} is not a sequence of texts")
+        raise SolverError(f"`lost` of the solver {name!r} is not a sequence of texts")
     if not isinstance(found.settings, Mapping) or not all(
         isinstance(key, str) and isinstance(value, int | str)
         for key, value in found.settings.items()
     ):
-        raise BadCandidatesError(
-            f"`settings` of the solver {name!r} are not numbers and texts by name"
-        )
+        raise SolverError(f"`settings` of the solver {name!r} are not numbers and texts by name")
     return replace(found, method=name, points=points, lost=tuple(found.lost))
 
 

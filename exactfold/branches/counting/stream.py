@@ -21,8 +21,8 @@ from exactfold.branches.counting.engines import Engine, processes
 from exactfold.branches.counting.open_roots import OpenRoot, Tally, by_limit
 from exactfold.branches.values.result import BranchCount
 from exactfold.certificates.journal import Journal
+from exactfold.checker.branches.compact import COMPACT
 from exactfold.checker.branches.compact_blocks import CompactSheet
-from exactfold.checker.core.lines import read_header
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.loading import PatternLike, as_pattern
 
@@ -118,7 +118,7 @@ def stream_branches(
     `dask_engine`, takes the place of the `workers`.
 
     Raises `NotApplicableError` unless D = 1 and some vertex is foldable, 40 at most,
-    `NoInteriorVertexError`, `ForeignJournalError`, `JournalInUseError` while another run writes the
+    `NotCountedError`, `ForeignJournalError`, `JournalInUseError` while another run writes the
     file, `UnwritableFileError`, `UsageError`, `WorkerDiedError`. An interruption leaves a file that
     can be resumed. UNDECIDED does not mean that the count is unusual.
 
@@ -136,7 +136,7 @@ def stream_branches(
     header = header_line(problem, conveyor.block_size)
     tally = Tally()
     if resume:
-        known = FastChecker(CompactSheet(read_header(header)))
+        known = FastChecker(CompactSheet(COMPACT.header(header)))
 
         def refusal(text: str, number: int) -> str | None:
             if progress is not None:

@@ -13,7 +13,7 @@ from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED
 from exactfold.branches.counting.collect import count_branches, not_convex
 from exactfold.branches.counting.registry import METHODS, choose
-from exactfold.errors import SeveralSheetsError, UnknownPatternError, UsageError
+from exactfold.errors import SeveralSheetsError, UnreadableFileError, UsageError
 from exactfold.exact.numbers import shown
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.data import EXAMPLES, example_path
@@ -142,7 +142,7 @@ def open_sheet(sheet: Sheet, snap: Snap | None = None, number: int | None = None
     if isinstance(sheet, str) and sheet in EXAMPLES:
         return open_pattern(example_path(sheet), snap, name=sheet, number=number)
     if isinstance(sheet, str) and not os.path.exists(sheet):
-        raise UnknownPatternError(
+        raise UnreadableFileError(
             f"{shown(sheet)} is neither a file nor an example; the examples are: "
             f"{', '.join(EXAMPLES)}"
         )

@@ -16,18 +16,14 @@ from fractions import Fraction
 from math import lcm
 from typing import Any
 
-from ..core.formats import BRANCH, BRANCH_VERSION, CURVED_VERSION
-from ..core.reading import document, items, keys, parse_integer, parse_rational, refusing, require
+from ..core.kinds import DocumentKind
+from ..core.reading import items, keys, parse_integer, parse_rational, refusing, require
 from ..sheets.reduced import check_convex, closed, emptied_sheet
 from ..sheets.sheet import Sheet, read_sheet, turn
 from .branch_proof import Heights, Proof
 
-
-def read(data: Any) -> dict[str, Any]:
-    """`data` if it is a certificate of one branch; raises `FormatError`."""
-    curved = isinstance(data, dict) and data.get("version") == CURVED_VERSION
-    version = CURVED_VERSION if curved else BRANCH_VERSION
-    return document(data, BRANCH, version, "format version pattern claims evidence")
+FLAT, CURVED = 1, 2
+"""The versions: of a branch, and of one shape of a sheet with angle deficits."""
 
 
 @refusing()
@@ -43,7 +39,7 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
     given, digest = read_sheet(data["pattern"])
     claims, evidence = data["claims"], data["evidence"]
     names = "gauge vertex_signs assignment squared_distance"
-    curved = data["version"] == CURVED_VERSION
+    curved = data["version"] == CURVED
     keys(claims, f"{names} curvature" if curved else names, "claims")
     keys(evidence, "emptied heights denominator", "evidence")
     place = Place(given, evidence["emptied"])
@@ -185,3 +181,13 @@ def summary(claims: dict[str, Any]) -> str:
         f"VALID: exactly one {what} has the vertex signs {shown} ({len(signs)}); "
         f"{decided} of {len(claims['assignment'])} letters decided; sha256 {claims['sha256']}"
     )
+
+
+BRANCH = DocumentKind(
+    format="exactfold branch",
+    versions=(FLAT, CURVED),
+    names="format version pattern claims evidence",
+    check=check,
+    summary=summary,
+)
+"""One branch with given vertex signs (docs/branch.md)."""

@@ -5,94 +5,23 @@ Memory does not grow with the file. Blocks may be shared among processes.
 
 from __future__ import annotations
 
-from collections import deque
-from collections.abc import Callable, Generator, Iterator
-from concurrent.futures import Future, ProcessPoolExecutor
-from contextlib import ExitStack, closing
-from multiprocessing import get_context, parent_process
-from typing import Any, NamedTuple, Protocol
+from collections.abc import Iterator
+from contextlib import closing
+from typing import Any
 
-from ..core.lines import lines, read_header, read_object
+from ..core.kinds import LineKind
+from ..core.lines import lines, read_object
+from ..core.parts import Engine, here, on_processes
 from ..core.reading import CertificateError, FormatError, UnfinishedError, keys, refusing, require
 from .compact_blocks import CompactSheet
-
-Said = Generator[str | None, None, None]
-"""What is wrong with each part of a file, or None."""
-
-
-class Verifier(Protocol):
-    """What verifies the parts of one file, and holds all that is known of this file."""
-
-    def refusal(self, text: str, number: int) -> str | None:
-        """Verify the line of one part: None, or why it does not hold."""
-
-
-class Engine(NamedTuple):
-    """How the parts of a file are verified.
-
-    `verifier(header)` makes the verifier of one file, from its first line; it is a function or a
-    class that worker processes can import. They are started only if there are `least` parts for
-    each. `share(engine, workers, header, parts)` starts them and yields what their verifiers say of
-    the parts, in order.
-    """
-
-    verifier: Callable[[str], Verifier]
-    least: int
-    share: Share
-
-
-Share = Callable[[Engine, int, str, Iterator[tuple[str, int]]], Said]
-
-
-def here(engine: Engine, header: str, parts: Iterator[tuple[str, int]]) -> Said:
-    """Parts verified in this process, by a verifier that nobody else knows."""
-    verifier = engine.verifier(header)
-    for text, number in parts:
-        yield verifier.refusal(text, number)
-
-
-def on_processes(
-    engine: Engine, workers: int, header: str, parts: Iterator[tuple[str, int]]
-) -> Said:
-    """Parts verified in several processes of this check, at most two waiting for each."""
-    with ExitStack() as stack:
-        pool = ProcessPoolExecutor(
-            workers, get_context("spawn"), _become_worker, (engine.verifier, header)
-        )
-        stack.callback(pool.shutdown, cancel_futures=True)
-        waiting: deque[Future[str | None]] = deque()
-        for text, number in parts:
-            waiting.append(pool.submit(_in_worker, text, number))
-            while len(waiting) > 2 * workers:
-                yield waiting.popleft().result()
-        while waiting:
-            yield waiting.popleft().result()
-
-
-_of_this_worker: Verifier | None = None
-"""In a worker process of `on_processes`: the verifier of the one file for which it was started."""
-
-
-def _become_worker(verifier: Callable[[str], Verifier], header: str) -> None:
-    """The first thing that a worker process does; no other process may do it."""
-    global _of_this_worker
-    if parent_process() is None or _of_this_worker is not None:
-        raise RuntimeError("only a new worker process may keep the verifier of a file")
-    _of_this_worker = verifier(header)
-
-
-def _in_worker(text: str, number: int) -> str | None:
-    """What a worker process does with each part."""
-    if _of_this_worker is None:
-        raise RuntimeError("this process is not a worker of a check")
-    return _of_this_worker.refusal(text, number)
+from .listing import summary
 
 
 class IntegerVerifier:
     """Verifies the blocks of one file in integers."""
 
     def __init__(self, header: str) -> None:
-        self.sheet = CompactSheet(read_header(header))
+        self.sheet = CompactSheet(COMPACT.header(header))
 
     def refusal(self, text: str, number: int) -> str | None:
         """Verify one block: None, or why it does not hold."""
@@ -128,7 +57,7 @@ def check_lines(
     first = next(found, None)
     if first is None:
         raise FormatError("the file is empty")
-    header = read_header(first)
+    header = COMPACT.header(first)
     with refusing("in the first line"):
         sheet = CompactSheet(header)
     _check_blocks(found, first, sheet.blocks, workers, engine)
@@ -173,3 +102,14 @@ def _check_blocks(
                 raise CertificateError(reason)
     if missing:  # a block before it that does not hold comes first
         raise missing[0]
+
+
+COMPACT = LineKind(
+    format="exactfold compact certificate",
+    versions=(1,),
+    names="format version pattern evidence provenance",
+    check=check_lines,
+    summary=summary,
+    engine=INTEGERS,
+)
+"""One root for each sign vector, line by line (docs/compact-certificate.md)."""

@@ -13,7 +13,6 @@ import binascii
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
-from ..core.formats import COUNTS, UNPROVED
 from ..core.krawczyk import Krawczyk
 from ..core.limits import MOST_BLOCK, MOST_DIGITS, MOST_UNITS, MOST_UNKNOWNS, MOST_WIDTH
 from ..core.lines import read_object
@@ -23,7 +22,10 @@ from ..sheets.equations import BranchSystem, read_chart
 from ..sheets.flat_folds import close_flat
 from ..sheets.sheet import facts_of, read_sheet
 from ..sheets.stress import check_triangles
-from .listing import agrees, digit
+from .listing import COUNTS, agrees, digit
+
+UNPROVED = 255
+"""The radius byte of a root that is given under "exact"."""
 
 
 class Block(NamedTuple):

@@ -15,8 +15,8 @@ from __future__ import annotations
 from typing import Any
 
 from ..core import limits
-from ..core.formats import PIECES, PIECES_VERSION
-from ..core.reading import counted, document, items, keys, natural, refusing, require, same
+from ..core.kinds import DocumentKind
+from ..core.reading import counted, items, keys, natural, refusing, require, same
 from ..core.towers import Tower
 from ..panels.spaces import Spaces
 from ..sheets.panels import PanelSheet, pair
@@ -29,11 +29,6 @@ MOST_VERTICES = limits.PIECE_VERTICES
 _REFLECTED = str.maketrans("+-", "-+")
 Cube = tuple[int, int]
 """All sign vectors that agree with the second number on the bits of the first."""
-
-
-def read(data: Any) -> dict[str, Any]:
-    """`data` if it is a certificate of pieces; raises `FormatError`."""
-    return document(data, PIECES, PIECES_VERSION, "format version pattern claims evidence")
 
 
 @refusing()
@@ -197,3 +192,13 @@ def summary(claims: dict[str, Any]) -> str:
     return (
         f"VALID: the solutions are {graphs} graphs in {pieces}, {joints}; sha256 {claims['sha256']}"
     )
+
+
+PIECES = DocumentKind(
+    format="exactfold pieces",
+    versions=(1,),
+    names="format version pattern claims evidence",
+    check=check,
+    summary=summary,
+)
+"""Into how many pieces the solutions fall with more than four corners (docs/any_border.md)."""

@@ -16,11 +16,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..core.formats import COUNTS, FACTS, LISTING, LISTING_VERSION
+from ..core.kinds import DocumentKind
 from ..core.reading import (
     CertificateError,
     counted,
-    document,
     items,
     keys,
     refusing,
@@ -30,18 +29,13 @@ from ..core.reading import (
 from ..sheets.boxes import Root, check_isolated
 from ..sheets.equations import BranchSystem, read_chart
 from ..sheets.flat_folds import close_flat
-from ..sheets.sheet import Sheet, facts_of, read_sheet
+from ..sheets.sheet import FACTS, Sheet, facts_of, read_sheet
 from ..sheets.stress import check_lorentzian, check_triangles
 from .algebraic import check_algebraic
 
 UPSIDE_DOWN = str.maketrans("+-MV", "-+VM")
+COUNTS = "distinct with_multiplicity real nonreal true_branches"
 Counts = tuple[int, int, int, int, str]
-
-
-def read(data: Any) -> dict[str, Any]:
-    """`data` if it is a certificate that lists branches; raises `FormatError`."""
-    names = "format version pattern claims evidence provenance"
-    return document(data, LISTING, LISTING_VERSION, names)
 
 
 @refusing()
@@ -180,3 +174,13 @@ def summary(claims: dict[str, Any]) -> str:
         f"multiplicity, {claims['real']} real) of the sheet with {claims['interior']} interior "
         f"and {claims['boundary']} boundary vertices, sha256 {claims['sha256']}"
     )
+
+
+LISTING = DocumentKind(
+    format="exactfold certificate",
+    versions=(2,),
+    names="format version pattern claims evidence provenance",
+    check=check,
+    summary=summary,
+)
+"""All branches of a sheet in one JSON object (docs/certificate.md)."""

@@ -1,4 +1,4 @@
-"""The lines of a compact certificate: each chained to the one before it by a digest."""
+"""Files of lines: each is chained to the one before it by a digest."""
 
 from __future__ import annotations
 
@@ -6,9 +6,8 @@ import hashlib
 from collections.abc import Iterator
 from typing import IO, Any
 
-from .formats import COMPACT, COMPACT_VERSION
 from .limits import MOST_LINE
-from .reading import FormatError, document, read_json
+from .reading import FormatError, read_json
 
 
 def digest(previous: str, body: str) -> str:
@@ -41,9 +40,3 @@ def read_object(text: str, what: str) -> dict[str, Any]:
     if not isinstance(data, dict):
         raise FormatError(f"{what} is not an object")
     return data
-
-
-def read_header(text: str) -> dict[str, Any]:
-    """The first line, if it is that of a compact certificate."""
-    names = "format version pattern evidence provenance"
-    return document(read_json(text), COMPACT, COMPACT_VERSION, names)

@@ -132,16 +132,6 @@ def read_json(text: str) -> Any:
         raise FormatError(f"not JSON, or cut off: {error}") from None
 
 
-def document(data: Any, form: str, version: int, names: str) -> dict[str, Any]:
-    """`data` if it is a JSON object of the given format and version with the keys `names`."""
-    if not isinstance(data, dict) or data.get("format") != form:
-        raise FormatError(f'the object has no "format": "{form}"')
-    if type(data.get("version")) is not int or data["version"] != version:
-        raise FormatError(f"version {data.get('version')!a} is not known to this checker")
-    keys(data, names, "the object", FormatError)
-    return data
-
-
 def keys(value: Any, names: str, what: str, error: type[Exception] = CertificateError) -> None:
     """Raise unless `value` is an object with exactly these keys."""
     if not isinstance(value, dict) or sorted(value) != sorted(names.split()):

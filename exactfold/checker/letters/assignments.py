@@ -16,21 +16,14 @@ from typing import Any
 
 from ..branches.branch import Place
 from ..core import limits
-from ..core.formats import ASSIGNMENTS, ASSIGNMENTS_VERSION
-from ..core.reading import counted, document, items, keys, parse_integer, refusing, require
+from ..core.kinds import DocumentKind
+from ..core.reading import counted, items, keys, parse_integer, refusing, require
 from ..sheets.reduced import check_convex
 from ..sheets.sheet import Edge, Sheet, read_sheet, turn
 from .arcs import Arcs, Word
 
 MOST_VERTICES = limits.ASSIGNED_VERTICES
 """Most vertices that can pop."""
-
-
-def read(data: Any) -> dict[str, Any]:
-    """`data` if it is a certificate of assignments; raises `FormatError`."""
-    return document(
-        data, ASSIGNMENTS, ASSIGNMENTS_VERSION, "format version pattern claims evidence"
-    )
 
 
 @refusing()
@@ -143,3 +136,13 @@ def summary(claims: dict[str, Any]) -> str:
         number, "mountain-valley assignment occurs", "mountain-valley assignments occur"
     )
     return f"VALID: exactly {which} with no fold flat; sha256 {claims['sha256']}"
+
+
+ASSIGNMENTS = DocumentKind(
+    format="exactfold assignments",
+    versions=(1,),
+    names="format version pattern claims evidence",
+    check=check,
+    summary=summary,
+)
+"""All mountain-valley assignments of a sheet with five corners (docs/circles.md)."""

@@ -16,8 +16,8 @@ from typing import Any
 
 from ..branches.branch import Place
 from ..branches.branch_proof import Proof
-from ..core.formats import LETTERS, LETTERS_VERSION
-from ..core.reading import counted, document, integer, items, keys, natural, refusing, require
+from ..core.kinds import DocumentKind
+from ..core.reading import counted, integer, items, keys, natural, refusing, require
 from ..sheets.sheet import Edge, read_sheet
 from .refuted import Signs, Stars
 
@@ -25,11 +25,6 @@ Half = tuple[tuple[int, ...], int]
 """The signs of the interior vertices, 0 where the star is flat, and the side."""
 
 _TURNED = str.maketrans("MV", "VM")
-
-
-def read(data: Any) -> dict[str, Any]:
-    """`data` if it is a certificate of letters; raises `FormatError`."""
-    return document(data, LETTERS, LETTERS_VERSION, "format version pattern claims evidence")
 
 
 @refusing()
@@ -150,3 +145,13 @@ def summary(claims: dict[str, Any]) -> str:
     found = counted(halves, "half of a branch has", "halves of branches have")
     which = f"exactly {found}" if halves else "no branch has"
     return f"VALID: {which} the {asked} asked for on {len(text)} folds; sha256 {claims['sha256']}"
+
+
+LETTERS = DocumentKind(
+    format="exactfold letters",
+    versions=(1,),
+    names="format version pattern claims evidence",
+    check=check,
+    summary=summary,
+)
+"""All halves of branches with given mountains and valleys (docs/assignment.md)."""

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..core.formats import PANEL_LETTERS, PANEL_LETTERS_VERSION
-from ..core.reading import counted, document, items, keys, refusing, require
+from ..core.kinds import DocumentKind
+from ..core.reading import counted, items, keys, refusing, require
 from ..sheets.panels import read_panels
 from .panels_motion import check_motion
 from .panels_refuted import Cases
@@ -21,12 +21,6 @@ _TRULY = {
     "refuted": "and no true motion begins like this",
     "undecided": "of true motions nothing is claimed",
 }
-
-
-def read(data: Any) -> dict[str, Any]:
-    """`data` if it is a certificate of letters on panels; raises `FormatError`."""
-    names = "format version pattern claims evidence"
-    return document(data, PANEL_LETTERS, PANEL_LETTERS_VERSION, names)
 
 
 @refusing()
@@ -89,3 +83,13 @@ def summary(claims: dict[str, Any]) -> str:
         f"VALID: the sheet of rigid panels {answer} to fold with the {asked} asked for on {folds}, "
         f"{_TRULY[claims['truly']]}{first}; sha256 {claims['sha256']}"
     )
+
+
+PANEL_LETTERS = DocumentKind(
+    format="exactfold letters on panels",
+    versions=(1,),
+    names="format version pattern claims evidence",
+    check=check,
+    summary=summary,
+)
+"""Whether rigid panels start to fold with given mountains and valleys (docs/assignment.md)."""

@@ -14,11 +14,10 @@ from fractions import Fraction
 from itertools import zip_longest
 from typing import Any
 
-from ..core.formats import MOTION, MOTION_VERSION
+from ..core.kinds import DocumentKind
 from ..core.limits import MOST_TUBES, MOST_WORK, MOTION_BITS, NODE_WORK
 from ..core.reading import (
     counted,
-    document,
     items,
     keys,
     natural,
@@ -39,11 +38,6 @@ from .pieces import arc_of, first_piece, land, parameter_of, tube_of
 from .reached import check_reached
 from .stretches import Arc, Link, Step
 from .tubes import Start
-
-
-def read(data: Any) -> dict[str, Any]:
-    """`data` if it is a certificate of a motion; raises `FormatError`."""
-    return document(data, MOTION, MOTION_VERSION, "format version pattern claims evidence")
 
 
 @refusing()
@@ -259,3 +253,13 @@ def _flat(flat: list[int]) -> str:
     several = len(flat) > 1
     names = " and ".join(map(str, flat))
     return f"{'vertices' if several else 'vertex'} {names} {'are' if several else 'is'} flat"
+
+
+MOTION = DocumentKind(
+    format="exactfold motion",
+    versions=(1,),
+    names="format version pattern claims evidence",
+    check=check,
+    summary=summary,
+)
+"""The motion along a half-branch, as a chain of tubes (docs/motion.md)."""

@@ -13,20 +13,18 @@ from collections.abc import Iterator
 from contextlib import closing
 from typing import Any
 
-from ..branches.compact import Engine, Share, here, on_processes
-from ..core.formats import LOOPS, LOOPS_VERSION
+from ..core.kinds import LineKind
 from ..core.lines import read_object
+from ..core.parts import Engine, here, on_processes
 from ..core.reading import (
     CertificateError,
     FormatError,
     UnfinishedError,
     counted,
-    document,
     integer,
     items,
     keys,
     parse_rational,
-    read_json,
     refusing,
     require,
 )
@@ -39,12 +37,6 @@ from .tubes import Start
 
 HalfBranch = tuple[tuple[int, ...], int]
 """The signs of the interior vertices, 0 for those that cannot fold, and the side."""
-
-
-def read_header(text: str) -> dict[str, Any]:
-    """The first line, if it is that of a certificate of loops."""
-    names_of = "format version pattern emptied pinned bits"
-    return document(read_json(text), LOOPS, LOOPS_VERSION, names_of)
 
 
 class LoopSheet:
@@ -99,7 +91,7 @@ class LoopVerifier:
     """Verifies the loops of one file."""
 
     def __init__(self, header: str) -> None:
-        self.sheet = LoopSheet(read_header(header))
+        self.sheet = LoopSheet(LOOPS.header(header))
 
     def refusal(self, text: str, number: int) -> str | None:
         """Verify one loop: None, or why it does not hold."""
@@ -128,19 +120,23 @@ class Matching:
         self.matched |= ends
 
 
+BY_TUBES = Engine(LoopVerifier, 1, on_processes)
+"""Loops are followed from tube to tube."""
+
+
 def check_lines(
-    found: Iterator[str], workers: int = 1, share: Share = on_processes
+    found: Iterator[str], workers: int = 1, engine: Engine = BY_TUBES
 ) -> dict[str, Any]:
     """Verify every claim, given the lines of a file; returns the claims.
 
-    With several workers, loops are checked in that many processes, which `share` starts. The claims
-    are: so many loops, as `LoopSheet.check_loop` says, which match so many of the half-branches,
-    none twice, none with itself; and whether these are all.
+    With several workers, loops are checked in that many processes. The claims are: so many loops,
+    as `LoopSheet.check_loop` says, which match so many of the half-branches, none twice, none with
+    itself; and whether these are all.
     """
     first = next(found, None)
     if first is None:
         raise FormatError("the file is empty")
-    header = read_header(first)
+    header = LOOPS.header(first)
     with refusing("in the first line"):
         sheet = LoopSheet(header)
     matching, last, late = Matching(), list[Any](), list[Exception]()
@@ -161,7 +157,6 @@ def check_lines(
         except (CertificateError, FormatError) as error:
             late.append(error)
 
-    engine = Engine(LoopVerifier, 1, share)
     if workers > 1:
         said = engine.share(engine, workers, first, loops())
     else:
@@ -197,3 +192,14 @@ def summary(claims: dict[str, Any]) -> str:
     how = f"all {all_of_them}" if claims["complete"] else f"{matched} of {all_of_them}"
     digest = claims["sha256"]
     return f"VALID: {loops} of true motions, which match {how} half-branches; sha256 {digest}"
+
+
+LOOPS = LineKind(
+    format="exactfold loops",
+    versions=(1,),
+    names="format version pattern emptied pinned bits",
+    check=check_lines,
+    summary=summary,
+    engine=BY_TUBES,
+)
+"""The loops of true motions through the flat state, line by line (docs/motions.md)."""

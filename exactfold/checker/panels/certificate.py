@@ -13,11 +13,9 @@ from collections.abc import Sequence
 from typing import Any
 
 from ..core import limits
-from ..core.formats import LISTING, PANELS, PANELS_VERSION
+from ..core.kinds import DocumentKind
 from ..core.reading import (
-    FormatError,
     counted,
-    document,
     items,
     keys,
     natural,
@@ -35,14 +33,6 @@ MOST_LISTED = limits.MOST_LISTED
 MOST_SUPPORTS = limits.MOST_SUPPORTS
 
 FACTS = "interior border folds sha256 held flat free second_order true rigid modes"
-
-
-def read(data: Any) -> dict[str, Any]:
-    """`data` if it is a certificate of a sheet of panels; raises `FormatError`."""
-    names = "format version kind pattern claims provenance"
-    if document(data, LISTING, PANELS_VERSION, names)["kind"] != PANELS:
-        raise FormatError(f"the kind {data['kind']!a} is not known to this checker")
-    return dict(data)
 
 
 @refusing()
@@ -271,3 +261,14 @@ def summary(claims: dict[str, Any]) -> str:
         f"VALID: the motions of the sheet of {size} and {inner}{held} have the components "
         f"{shown} to second order, truly {true}; sha256 {claims['sha256']}"
     )
+
+
+PANELS = DocumentKind(
+    format="exactfold certificate",
+    named="panels",
+    versions=(3,),
+    names="format version kind pattern claims provenance",
+    check=check,
+    summary=summary,
+)
+"""All motions of a sheet of rigid panels (docs/certificate.md)."""

@@ -8,10 +8,10 @@ from fractions import Fraction
 from math import isqrt
 from typing import Any
 
-from ..core.formats import FACTS
 from ..core.limits import MOST_ABOVE, MOST_MEETINGS
 from ..core.reading import Coordinates, at_most, digits, items, keys, natural, require
 
+FACTS = "interior boundary folds degrees_of_freedom sha256"
 Point = tuple[Fraction, Fraction]
 Edge = tuple[int, int]
 Form = dict[tuple[int, int], Fraction]

@@ -23,8 +23,8 @@ from exactfold.design.actuation.programs import largest_margin
 from exactfold.design.actuation.result import Actuation, Bounds, checked_torques, outward
 from exactfold.errors import (
     NotApplicableError,
-    TooManyRivalsError,
-    UnprovedRivalsError,
+    NotCountedError,
+    UndecidedBranchError,
     UsageError,
 )
 from exactfold.exact.numbers import RationalLike
@@ -67,7 +67,7 @@ def actuate(
     enough, the bound is larger than the margin, but still proved. With `torques`, exact numbers by
     fold, these are judged instead: `best` is then that of torques as large as the largest given.
 
-    Raises `TooManyRivalsError` for more than 12 foldable vertices, `UnprovedRivalsError` if not all
+    Raises `NotCountedError` for more than 12 foldable vertices, `UndecidedBranchError` if not all
     branches are proved, `UsageError` for wrong arguments, and the errors of `find_branch`.
 
     >>> found = actuate("two-vertex", "+-")
@@ -85,7 +85,7 @@ def actuate(
     require_few(size)
     named = finder.find(wanted, progress=progress)
     if named.root is None:
-        raise UnprovedRivalsError(f"the branch is not proved: {named.reason}")
+        raise UndecidedBranchError(f"the branch is not proved: {named.reason}")
     branches = proved_branches(pattern, progress)
     return Search(pattern, named, branches, size + 1, creases, torques, nodes, progress).found(
         start
@@ -93,19 +93,19 @@ def actuate(
 
 
 def require_few(size: int) -> None:
-    """Raise `TooManyRivalsError` if too many vertices can pop."""
+    """Raise `NotCountedError` if too many vertices can pop."""
     if size > MOST_FOLDABLE:
-        raise TooManyRivalsError(
+        raise NotCountedError(
             f"{size} vertices can pop: exactfold compares a branch with its rivals where at most "
             f"{MOST_FOLDABLE} can, as every branch is a rival and there are 2^{size}"
         )
 
 
 def proved_branches(pattern: CreasePattern, progress: Progress | None) -> list[Branch]:
-    """All branches; raises `UnprovedRivalsError` if they are not proved."""
+    """All branches; raises `UndecidedBranchError` if they are not proved."""
     count = count_branches(pattern, progress=progress)
     if count.status is not PROVED:
-        raise UnprovedRivalsError(f"not all branches are proved: {count.reason}")
+        raise UndecidedBranchError(f"not all branches are proved: {count.reason}")
     return list(count.branches)
 
 
@@ -162,7 +162,7 @@ class Search:
                 self._sharpen([b for b, _ in meeting], bits)
                 meeting = self.directions.meeting(self.own)
         if len(meeting) != 1:
-            raise UnprovedRivalsError("two branches are too close to be told apart")
+            raise UndecidedBranchError("two branches are too close to be told apart")
         [(place, sign)] = meeting
         row = self.directions.alone(place, sign).narrowed(self.own)
         self.directions = self.directions.with_row(place, row)

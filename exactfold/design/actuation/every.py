@@ -46,7 +46,7 @@ def actuate_all(pattern: PatternLike, *, progress: Progress | None = None) -> tu
     whatever does not depend on the branch is computed once. Torques are decimals with twelve digits
     after the point; where several are equally good they may be others than those of `actuate`.
 
-    Raises `TooManyRivalsError` for more than 12 foldable vertices, `UnprovedRivalsError` if not all
+    Raises `NotCountedError` for more than 12 foldable vertices, `UndecidedBranchError` if not all
     branches are proved, and the errors of `count_branches`.
 
     >>> for found in actuate_all("two-vertex"):

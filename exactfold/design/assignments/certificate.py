@@ -7,7 +7,7 @@ from math import lcm
 from exactfold._support.verdict import PROVED
 from exactfold.branches.certificates.single import branch_certificate, heights_evidence
 from exactfold.certificates.entries import Document, emptied_evidence, pattern_document
-from exactfold.checker.core.formats import LETTERS, LETTERS_VERSION
+from exactfold.checker.letters.letters import LETTERS
 from exactfold.design.assignments.boundary_match import RimMatch
 from exactfold.design.assignments.search import Match, Matched
 from exactfold.design.circles.certificate import assignments_certificate
@@ -68,8 +68,8 @@ def _letters(
 ) -> Document:
     pattern = found.pattern
     return {
-        "format": LETTERS,
-        "version": LETTERS_VERSION,
+        "format": LETTERS.format,
+        "version": LETTERS.version,
         "pattern": pattern_document(pattern),
         "claims": {
             "letters": "".join(found.letters[fold] for fold in pattern.folds),

@@ -18,10 +18,9 @@ from typing import Final
 
 from exactfold._support.progress import Progress
 from exactfold.certificates.entries import Document, emptied_evidence, pattern_document
-from exactfold.checker.core.formats import ASSIGNMENTS, ASSIGNMENTS_VERSION
 from exactfold.checker.core.reading import CertificateError
 from exactfold.checker.letters.arcs import Arcs, Word
-from exactfold.checker.letters.assignments import MOST_VERTICES, check, free_border
+from exactfold.checker.letters.assignments import ASSIGNMENTS, MOST_VERTICES, free_border
 from exactfold.checker.sheets.sheet import Sheet
 from exactfold.design.circles.nappe_points import NappePoints
 from exactfold.exact.numbers import format_integer
@@ -84,8 +83,8 @@ def covering(pattern: CreasePattern, progress: Progress | None = None) -> Coveri
 def covering_document(pattern: CreasePattern, points: Covering) -> Document:
     """The certificate of the list, not verified (docs/circles.md, The certificate)."""
     return {
-        "format": ASSIGNMENTS,
-        "version": ASSIGNMENTS_VERSION,
+        "format": ASSIGNMENTS.format,
+        "version": ASSIGNMENTS.version,
         "pattern": pattern_document(pattern),
         "claims": {"assignments": list(points.assignments)},
         "evidence": {
@@ -102,7 +101,7 @@ def verified(pattern: CreasePattern, points: Covering) -> Document:
     """The certificate, verified by the checker; raises `NotCoveredError` if it is refused."""
     document = covering_document(pattern, points)
     try:
-        check(document)
+        ASSIGNMENTS.check(document)
     except CertificateError as error:
         raise NotCoveredError(f"the checker does not follow: {error}") from None
     return document

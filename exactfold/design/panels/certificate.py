@@ -12,7 +12,7 @@ import numpy as np
 from exactfold._support.arrays import FloatArray
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.certificates.entries import Document
-from exactfold.checker.core.formats import PANEL_LETTERS, PANEL_LETTERS_VERSION
+from exactfold.checker.letters.panels import PANEL_LETTERS
 from exactfold.design.panels.cells import CellSearch, Steps
 from exactfold.design.panels.match import PanelMatch, flat_with_letters
 from exactfold.design.panels.parts import PartAnswer
@@ -55,8 +55,8 @@ def starting_certificate(found: PanelMatch) -> Document:
         moved = {"together": [], "never": []}
     evidence |= _first_order(found)
     return {
-        "format": PANEL_LETTERS,
-        "version": PANEL_LETTERS_VERSION,
+        "format": PANEL_LETTERS.format,
+        "version": PANEL_LETTERS.version,
         "pattern": panels_document(found.pattern),
         "claims": {
             "letters": "".join(found.letters[fold] for fold in found.pattern.folds),

@@ -17,7 +17,7 @@ from exactfold.pattern.crease_pattern import CreasePattern, Edge
 _DENOMINATOR = 10**12
 
 
-class Goal(TypedDict):
+class GoalDocument(TypedDict):
     """The angle to which a fold is driven."""
 
     angle: Degrees
@@ -26,7 +26,7 @@ class Goal(TypedDict):
     """sin^2 of half this angle, exactly, with the sign of the angle."""
 
 
-Goals: TypeAlias = dict[FoldText, Goal]
+Goals: TypeAlias = dict[FoldText, GoalDocument]
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from exactfold.certificates.entries import Document, emptied_evidence, pattern_document
-from exactfold.checker.core.formats import LOOPS, LOOPS_VERSION
+from exactfold.checker.motion.loops import LOOPS
 from exactfold.pattern.crease_pattern import CreasePattern
 
 OPENING = '{"from":'
@@ -18,8 +18,8 @@ def header_line(pattern: CreasePattern, pinned: Sequence[int], bits: int) -> str
     """The first line: the sheet, the triangle that is held, and the unit 2^-bits of all numbers."""
     return _text(
         {
-            "format": LOOPS,
-            "version": LOOPS_VERSION,
+            "format": LOOPS.format,
+            "version": LOOPS.version,
             "pattern": pattern_document(pattern),
             "emptied": emptied_evidence(pattern),
             "pinned": list(pinned),

@@ -6,7 +6,7 @@ from fractions import Fraction
 from math import ceil, cos, floor, sin
 
 from exactfold.certificates.entries import Document
-from exactfold.checker.core.formats import PANEL_MOTION, PANEL_MOTION_VERSION, RATED_VERSION
+from exactfold.checker.motion.panels.certificate import PANEL_MOTION, PLAIN, RATED
 from exactfold.checker.motion.panels.times import OneRate, Rates, time_of
 from exactfold.errors import NotApplicableError
 from exactfold.exact.numbers import format_rational
@@ -59,8 +59,8 @@ def certificate_of_panel_motion(motion: PanelMotion, contacts: PanelClearance) -
     else:
         clear = _rounded(clock.time(last)[0], -1)
     document: Document = {
-        "format": PANEL_MOTION,
-        "version": RATED_VERSION if rated else PANEL_MOTION_VERSION,
+        "format": PANEL_MOTION.format,
+        "version": RATED if rated else PLAIN,
         "pattern": panels_document(pattern),
         "claims": {
             "assignment": "".join(letters[fold] for fold in pattern.folds),

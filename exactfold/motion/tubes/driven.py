@@ -17,7 +17,7 @@ from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.branches.counting.find import BranchFinder, Rim, Signs, branch_finder
 from exactfold.branches.values.branch import Branch, BranchDocument
-from exactfold.errors import BadDriveError, NotDrivenError, NotProvedAtTheFlatStateError
+from exactfold.errors import BadDriveError, NotFollowedError, NotProvedAtTheFlatStateError
 from exactfold.motion.curves.boundary_path import framework_of, problem_of
 from exactfold.motion.curves.drive import Drive, Goals, fold_text, not_a_fold
 from exactfold.motion.curves.driven_folds import DrivenFolds
@@ -127,7 +127,7 @@ def find_driven(
     bend least, by the sum of squares. With four corners there is one fold to drive, and `side` may
     be asked for as in `follow`.
 
-    Raises `BadDriveError` for folds or angles that cannot be driven, `NotDrivenError` where no
+    Raises `BadDriveError` for folds or angles that cannot be driven, `NotFollowedError` where no
     branch is found, which does not say that there is none, and the errors of `find_branch`.
 
     >>> from exactfold.pattern.families import single_vertex
@@ -288,7 +288,7 @@ class _Search:
             return None
         return drive, reached
 
-    def failure(self, signs: Mapping[int, int] | None) -> NotDrivenError:
+    def failure(self, signs: Mapping[int, int] | None) -> NotFollowedError:
         """Why nothing was found, with what the branch of the rim does."""
         names = ", ".join(map(fold_text, self.folds))
         which = "any signs that were tried" if signs is None else "these signs"
@@ -299,7 +299,7 @@ class _Search:
             text += f"; the nearest that was met is {there}"
         elif signs is not None and self.problem.sheet.Ve == 4:
             text += ": the fold goes the other way, or stays flat"
-        return NotDrivenError(text, self.folds)
+        return NotFollowedError(text, self.folds)
 
     # --- four corners ----------------------------------------------------------------------------
 

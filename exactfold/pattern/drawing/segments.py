@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import Final, TypeAlias
 
 from exactfold._support.plurals import counted
-from exactfold.errors import EmptyDrawingError
+from exactfold.errors import MalformedDrawingError
 from exactfold.pattern.drawing.drawing import Drawing, Line
 
 Place: TypeAlias = tuple[Fraction, Fraction]
@@ -28,7 +28,7 @@ _WORDS: Final = {
 def drawing_of(segments: Iterable[Segment], source: str, remarks: Sequence[str] = ()) -> Drawing:
     """The drawing of straight lines between places; equal places are one point.
 
-    Lines of length zero are left out with a remark. Raises `EmptyDrawingError` if none is left.
+    Lines of length zero are left out with a remark. Raises `MalformedDrawingError` if none is left.
 
     >>> zero, one = Fraction(0), Fraction(1)
     >>> drawing_of([((zero, zero), (one, zero), "B"), ((one, zero), (one, one), "M")], "CP").lines
@@ -46,7 +46,7 @@ def drawing_of(segments: Iterable[Segment], source: str, remarks: Sequence[str] 
     notes = [*remarks, *left_out(empty, "empty line")]
     if not lines:
         why = f" ({'; '.join(notes)})" if notes else ""
-        raise EmptyDrawingError(f"the {source} file has no lines of a crease pattern{why}")
+        raise MalformedDrawingError(f"the {source} file has no lines of a crease pattern{why}")
     return Drawing(tuple(numbers), tuple(lines), source, tuple(notes))
 
 

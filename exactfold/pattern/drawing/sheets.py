@@ -10,7 +10,7 @@ import numpy as np
 
 from exactfold._support.arrays import FloatArray
 from exactfold._support.plurals import agreeing, counted
-from exactfold.errors import CutEdgeError, DisconnectedError, HoleError, MalformedPatternError
+from exactfold.errors import DisconnectedError, FoldError, MalformedPatternError, NotADiskError
 from exactfold.pattern.drawing.drawing import Drawing, Line
 from exactfold.pattern.drawing.mending import Repair, floats, repair, used, with_lines
 
@@ -52,8 +52,8 @@ def sheets(drawing: Drawing) -> tuple[Drawing, ...]:
 
     The drawing is one that `repaired` returned: lines meet in common ends, and the border is B.
 
-    Raises `MalformedPatternError` if the lines enclose nothing, `HoleError` for a sheet with a
-    hole, `CutEdgeError` for a line B or C between two panels, and `DisconnectedError` for creases
+    Raises `MalformedPatternError` if the lines enclose nothing, `NotADiskError` for a sheet with a
+    hole, `FoldError` for a line B or C between two panels, and `DisconnectedError` for creases
     inside a panel that no line joins to the rest, and for lines that enclose nothing: none is
     dropped here.
     """
@@ -142,7 +142,7 @@ def _check_nested(part: _Part, parts: Sequence[_Part], places: FloatArray) -> No
         where = f"near ({places[v][0]:.6g}, {places[v][1]:.6g})"
         rim = {frozenset(pair) for pair in _sides(part.outline)}
         if all(line.letter in "BC" for line in part.lines if frozenset(line[:2]) in rim):
-            raise HoleError(f"the sheet has a hole {where}", vertices=part.outline)
+            raise NotADiskError(f"the sheet has a hole {where}", vertices=part.outline)
         raise DisconnectedError(
             f"creases {where} lie inside a panel and are joined to the rest by no line",
             vertices=[v],
@@ -162,12 +162,12 @@ def _check_inside(part: _Part, places: FloatArray) -> None:
     for face in part.faces:
         if {frozenset(pair) for pair in _sides(face)} <= cut:
             x, y = places[list(face)].mean(axis=0)
-            raise HoleError(
+            raise NotADiskError(
                 f"the sheet has a hole near ({x:.6g}, {y:.6g}): border lines surround it",
                 vertices=face,
             )
     a, b, letter = inside[0]
-    raise CutEdgeError(
+    raise FoldError(
         f"line {a}-{b} from ({places[a][0]:.6g}, {places[a][1]:.6g}) to ({places[b][0]:.6g}, "
         f"{places[b][1]:.6g}) is {'a cut' if letter == 'C' else 'border'} between two panels "
         f"({counted(len(inside), 'such line')})"

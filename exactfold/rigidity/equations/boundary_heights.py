@@ -7,12 +7,9 @@ from fractions import Fraction
 
 from exactfold.errors import (
     BadCurvatureError,
-    FlatRimError,
-    NegativeDeficitError,
+    BadRimError,
     NotApplicableError,
     NumberError,
-    RimHeightError,
-    RimVertexError,
 )
 from exactfold.exact.numbers import RationalLike, as_rational
 from exactfold.pattern.crease_pattern import CreasePattern
@@ -123,26 +120,27 @@ def given_rim(
 ) -> dict[int, Fraction]:
     """Heights of the boundary vertices, checked, in the order of the boundary.
 
-    Raises `RimVertexError`, `RimHeightError` and `FlatRimError`, whose `vertices` are to blame, and
-    `NotApplicableError` for a border that is not convex.
+    Raises `BadRimError`, whose `vertices` are to blame, for a missing height, a height of another
+    vertex, one that is no number and heights in one plane, and `NotApplicableError` for a border
+    that is not convex.
     """
     boundary = pattern.boundary
     wanted = f"give a height for each boundary vertex: {', '.join(map(str, boundary))}"
     for v in rim:
         if v not in boundary:
-            raise RimVertexError(f"{v} is no vertex of the border; {wanted}", (v,))
+            raise BadRimError(f"{v} is no vertex of the border; {wanted}", (v,))
     missing = [v for v in boundary if v not in rim]
     if missing:
-        raise RimVertexError(f"vertex {missing[0]} of the border has no height; {wanted}", missing)
+        raise BadRimError(f"vertex {missing[0]} of the border has no height; {wanted}", missing)
     _require_convex(pattern)
     heights = {}
     for v in boundary:
         try:
             heights[v] = as_rational(rim[v])
         except NumberError as error:
-            raise RimHeightError(f"the height of vertex {v}: {error}", (v,)) from None
+            raise BadRimError(f"the height of vertex {v}: {error}", (v,)) from None
     if not may_be_flat and not any(above_plane(pattern, heights).values()):
-        raise FlatRimError(
+        raise BadRimError(
             f"the rim is flat: the heights of vertices {', '.join(map(str, boundary))} lie in one "
             "plane, and the only solution with such a border is the flat sheet",
             boundary,
@@ -156,7 +154,7 @@ def given_deficits(
     """The angle deficits of interior vertices that are not 0, checked.
 
     Vertices that are not named have the deficit 0. Raises `BadCurvatureError` for what is no
-    interior vertex or no number, `NegativeDeficitError` for a negative one.
+    interior vertex or no number, and for a negative deficit.
     """
     interior = set(pattern.interior)
     found = {}
@@ -168,7 +166,7 @@ def given_deficits(
         except NumberError as error:
             raise BadCurvatureError(f"the angle deficit of vertex {v}: {error}", (v,)) from None
         if deficit < 0:
-            raise NegativeDeficitError(
+            raise BadCurvatureError(
                 f"the angle deficit of vertex {v} is negative: a vertex with an angle excess is a "
                 "saddle, which is neither up nor down, and a shape need not exist",
                 (v,),

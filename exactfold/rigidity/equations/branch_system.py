@@ -9,7 +9,7 @@ from functools import cached_property
 from math import gcd, lcm
 from typing import Any
 
-from exactfold.errors import CollinearPointsError, NotApplicableError, UsageError
+from exactfold.errors import MalformedPatternError, NotApplicableError, UsageError
 from exactfold.exact.forms import QuadraticForm
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.loading import PatternLike, as_pattern
@@ -27,8 +27,8 @@ class BranchSystem:
     the pinned vertices lie on the boundary; for D = 1 they are the boundary vertices but the one
     whose height the chart `saddle = 1` then fixes to 1.
 
-    Raises `CollinearPointsError` if the pinned vertices are collinear, `UsageError` if they are not
-    three different vertices.
+    Raises `MalformedPatternError` if the pinned vertices are collinear, `UsageError` if they are
+    not three different vertices.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> system = BranchSystem(single_vertex(4))
@@ -47,7 +47,7 @@ class BranchSystem:
         if len(set(chosen)) != 3 or not all(0 <= v < count for v in chosen):
             raise UsageError(f"pin three different vertices, not {tuple(chosen)}")
         if _collinear(pattern, chosen):
-            raise CollinearPointsError(
+            raise MalformedPatternError(
                 f"the pinned vertices {tuple(chosen)} are collinear", vertices=chosen
             )
         object.__setattr__(self, "pinned", tuple(chosen))

@@ -8,7 +8,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from exactfold.errors import NoInteriorVertexError, NotCountedError
+from exactfold.errors import NotCountedError
 from exactfold.exact.numbers import RationalLike
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.rigidity.equations.boundary_heights import given_deficits, given_rim
@@ -74,7 +74,7 @@ class Problem:
     def require_foldable(self) -> None:
         """Raise `NotCountedError` if all interior vertices stay flat, or there are none."""
         if not self.pattern.interior:
-            raise NoInteriorVertexError("no vertex can pop: the pattern has no interior vertex")
+            raise NotCountedError("no vertex can pop: the pattern has no interior vertex")
         if not self.sheet.interior:
             raise NotCountedError(
                 "no vertex can pop: all interior vertices lie in triangulated triangles and stay "

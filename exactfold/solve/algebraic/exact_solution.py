@@ -12,7 +12,7 @@ import numpy as np
 from flint import acb, acb_poly, arb, ctx, fmpq, fmpq_mat, fmpq_poly, fmpz_poly
 
 from exactfold._support.arrays import ComplexArray
-from exactfold.errors import ParametrisationError
+from exactfold.errors import SolverError
 from exactfold.exact.divisibility import are_multiples, is_squarefree
 from exactfold.exact.factors import irreducibility_primes
 from exactfold.exact.numbers import over_common_denominator
@@ -253,11 +253,11 @@ class RootClass:
         """Substitute the parametrisation in every quadric: all must vanish modulo p, exactly.
 
         Also checks that t is the stated linear form of the coordinates, so that different roots t
-        belong to different zeros. Raises `ParametrisationError` if anything fails.
+        belong to different zeros. Raises `SolverError` if anything fails.
         """
         modulus = fmpz_poly(list(self.polynomial))
         if modulus.degree() < 1 or not is_squarefree(modulus):
-            raise ParametrisationError("the polynomial of a root class is not squarefree")
+            raise SolverError("the polynomial of a root class is not squarefree")
         # Over one denominator: substitution and division are then over Z.
         scale = lcm(*(c.denominator for w in self.numerators for c in w))
         slope = modulus.derivative() * scale
@@ -280,11 +280,9 @@ class RootClass:
         form = sum((x * c for x, c in zip(lifted, self.separating, strict=False)), fmpz_poly())
         *fine, agrees = are_multiples([*values, form - fmpz_poly([0, 1]) * slope], modulus)
         if not all(fine):
-            raise ParametrisationError(
-                f"quadric {fine.index(False)} does not vanish on the root class"
-            )
+            raise SolverError(f"quadric {fine.index(False)} does not vanish on the root class")
         if not agrees:
-            raise ParametrisationError("the parameter is not the stated form of the coordinates")
+            raise SolverError("the parameter is not the stated form of the coordinates")
 
 
 def _width(box: Sequence[Interval]) -> Fraction:

@@ -7,7 +7,7 @@ from fractions import Fraction
 
 from flint import fmpq_mat
 
-from exactfold.errors import ParametrisationError
+from exactfold.errors import SolverError
 from exactfold.exact.linalg import from_fmpq
 from exactfold.exact.numbers import over_common_denominator
 from exactfold.rigidity.equations.branch_system import Chart
@@ -25,7 +25,7 @@ def zeros_flat_at(sheets: FlatSheets) -> list[RootClass]:
 
     By a Groebner basis on the flat sheets. Each class is verified by substitution, and has
     multiplicity 2^(number of flat vertices) (docs/theorem.md, Theorem 3). Raises
-    `ParametrisationError` if there are infinitely many, which no definite stress allows.
+    `SolverError` if there are infinitely many, which no definite stress allows.
 
     >>> from exactfold.pattern.families import flat_vertex_square
     >>> from exactfold.rigidity.equations.branch_system import BranchSystem
@@ -40,9 +40,7 @@ def zeros_flat_at(sheets: FlatSheets) -> list[RootClass]:
     else:
         classes = classes_of_ideal(quadrics, len(sheets.free))
     if classes is None:
-        raise ParametrisationError(
-            f"infinitely many zeros with flat stars at {sorted(sheets.vertices)}"
-        )
+        raise SolverError(f"infinitely many zeros with flat stars at {sorted(sheets.vertices)}")
     found = []
     for inner in classes:
         lifted = lift(sheets, inner)
@@ -94,7 +92,7 @@ def common_parameter(classes: Sequence[RootClass], size: int) -> list[RootClass]
         found = [c for c in again if c is not None]
         if len(found) == len(classes) and len({c.polynomial for c in found}) == len(found):
             return found
-    raise ParametrisationError("no linear form separates the zeros")  # cannot happen
+    raise SolverError("no linear form separates the zeros")  # cannot happen
 
 
 def _sparse(form: fmpq_mat) -> dict[Exponent, int]:

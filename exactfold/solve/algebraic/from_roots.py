@@ -17,7 +17,7 @@ from typing import TypeAlias, TypeVar
 
 from flint import acb, arb, arb_poly, ctx, fmpz_mat
 
-from exactfold.errors import ParametrisationError
+from exactfold.errors import SolverError
 from exactfold.rigidity.equations.quadratic import QuadraticSystem
 from exactfold.solve.algebraic.exact_solution import RootClass
 from exactfold.solve.algebraic.quotient import separating_forms
@@ -104,7 +104,7 @@ def _parametrised(system: QuadraticSystem, refined: RefinedRoots) -> RootClass |
         if found is not None:
             try:
                 found.verify(system)
-            except ParametrisationError:
+            except SolverError:
                 pass  # too little precision: the numbers found are not the true ones
             else:
                 return found

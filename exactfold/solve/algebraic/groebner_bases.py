@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from flint import Ordering, fmpq, fmpq_mat, fmpq_poly, fmpz_mpoly_ctx, fmpz_mpoly_vec
 
-from exactfold.errors import NotApplicableError, ParametrisationError, UsageError
+from exactfold.errors import NotApplicableError, SolverError, UsageError
 from exactfold.exact.univariate import from_rational_poly
 from exactfold.rigidity.equations.quadratic import QuadraticSystem
 from exactfold.solve.algebraic.exact_solution import ExactSolution, RootClass
@@ -50,8 +50,8 @@ def groebner(system: QuadraticSystem, *, engine: str = "auto") -> ExactSolution:
     A system with infinitely many zeros gives `dimension` None, and the dimension and degree of its
     zero set as `krull_dimension` and `degree`; an inconsistent one has `dimension` 0. Raises
     `UsageError` for an unknown engine, `NotApplicableError` if an engine was asked for that does
-    not apply, `MsolveMissingError` and `MsolveFailedError` for msolve, `ParametrisationError`
-    if a check fails (an internal error, or a wrong answer of msolve).
+    not apply, `PackageMissingError` without msolve, `SolverError` if msolve fails
+    or a check fails (an internal error, or a wrong answer of msolve).
 
     >>> circle = [[1, 0, 0], [0, 1, 0], [0, 0, -2]]
     >>> axes = [[0, 1, 0], [1, 0, 0], [0, 0, 0]]
@@ -129,7 +129,7 @@ def _verified(
     system: QuadraticSystem, dimension: int, classes: tuple[RootClass, ...], engine: str
 ) -> ExactSolution:
     if sum(c.degree * c.multiplicity for c in classes) != dimension:
-        raise ParametrisationError("the multiplicities do not add up to the quotient dimension")
+        raise SolverError("the multiplicities do not add up to the quotient dimension")
     for root_class in classes:
         root_class.verify(system)
     krull = 0 if dimension else -1
@@ -177,7 +177,7 @@ def root_classes(algebra: QuotientAlgebra) -> tuple[RootClass, ...]:
         characteristic = fmpq_poly(reduced.multiplication(form).charpoly().coeffs())
         if characteristic.gcd(characteristic.derivative()).degree() == 0:
             return _classes_of_form(algebra, form, characteristic)
-    raise ParametrisationError("no linear form separates the zeros")  # cannot happen
+    raise SolverError("no linear form separates the zeros")  # cannot happen
 
 
 def _classes_of_form(

@@ -16,7 +16,7 @@ from math import isqrt
 
 from flint import nmod_poly
 
-from exactfold.errors import ParametrisationError
+from exactfold.errors import SolverError
 from exactfold.rigidity.equations.quadratic import QuadraticSystem
 from exactfold.solve.algebraic.coranks import with_proved_multiplicities
 from exactfold.solve.algebraic.deflation import Deflation
@@ -106,7 +106,7 @@ def _lift(
         ring = replace(ring, modulus=ring.modulus - ring.times(shift, ring.modulus.derivative()))
         found = _reconstructed(ring, equations.pushed_forward(ring, v), form, power)
         if found is not None:
-            with suppress(ParametrisationError):  # raised for too little precision
+            with suppress(SolverError):  # raised for too little precision
                 found.verify(system)
                 return replace(found, multiplicity=start.multiplicity)
         block = ring.refined(block, equations.block(ring, v))

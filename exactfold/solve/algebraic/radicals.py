@@ -11,7 +11,7 @@ from typing import TypeAlias
 import sympy
 from flint import fmpq, fmpq_mat
 
-from exactfold.errors import NotApplicableError, ParametrisationError, UsageError
+from exactfold.errors import NotApplicableError, SolverError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern, Triangle
 from exactfold.pattern.validate import orientation
 from exactfold.rigidity.curvature import curvature_form
@@ -147,7 +147,7 @@ class BranchTower:
     def verify(self) -> None:
         """Substitute the heights in every curvature form: all must vanish in the tower, exactly.
 
-        Raises `ParametrisationError` if one does not.
+        Raises `SolverError` if one does not.
         """
         for v in self.pattern.interior:
             form = curvature_form(self.pattern, v)
@@ -159,7 +159,7 @@ class BranchTower:
                     x + y for x, y in zip(total, self.tower.times(left, value), strict=True)
                 )
             if any(total):
-                raise ParametrisationError(f"the curvature form of vertex {v} does not vanish")
+                raise SolverError(f"the curvature form of vertex {v} does not vanish")
 
 
 def branch_tower(pattern: CreasePattern) -> BranchTower:

@@ -63,7 +63,7 @@ def prove_algebraic(
     The classes need different irreducible polynomials in one separating form; the boxes must be
     disjoint within each kind, and no zero may be in two kinds, which is left to the caller.
     `complete` is UNDECIDED, with a reason, if a stress or a part of the sum of multiplicities is
-    missing; that does not mean that roots are missing. Raises `ParametrisationError` if a root
+    missing; that does not mean that roots are missing. Raises `SolverError` if a root
     fails its check.
     """
     closed = chart.branch_system.pattern.with_notch_closed()

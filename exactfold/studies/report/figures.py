@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 from typing import Any
 
-from exactfold.errors import StudyPartsMissingError
+from exactfold.errors import PackageMissingError
 from exactfold.studies.running.study import StudyFigure
 
 STYLE = {
@@ -33,11 +33,11 @@ STYLE = {
 
 
 def check_figures() -> None:
-    """Raise `StudyPartsMissingError` unless figures can be drawn."""
+    """Raise `PackageMissingError` unless figures can be drawn."""
     try:
         import matplotlib  # noqa: F401
     except ImportError:
-        raise StudyPartsMissingError(
+        raise PackageMissingError(
             "pictures of studies need Matplotlib: pip install 'exactfold[study]'"
         ) from None
 
@@ -46,7 +46,7 @@ def drawn(figure: StudyFigure, kind: str = "svg") -> bytes:
     """A figure as a file of a kind, "svg", "pdf" or "png", without the time of its making.
 
     What is drawn with a label is named in a legend beside its axes, where it hides nothing.
-    Raises `StudyPartsMissingError`.
+    Raises `PackageMissingError`.
     """
     check_figures()
     import matplotlib as mpl

@@ -35,7 +35,7 @@ code { font-size: .9rem; overflow-wrap: anywhere; }
 
 
 def study_page(run: StudyRun, command: str) -> str:
-    """The page of a run; `command` is what made it. Raises `StudyPartsMissingError`."""
+    """The page of a run; `command` is what made it. Raises `PackageMissingError`."""
     study = run.study
     sizes = ", ".join(f"{number} of size {size}" for size, number in run.numbers.items() if number)
     rows = counted(run.total, "row") + (f" ({sizes})" if sizes else "")

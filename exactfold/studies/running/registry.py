@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from importlib import import_module
 
-from exactfold.errors import UnknownStudyError
+from exactfold.errors import UsageError
 from exactfold.studies.running.study import Study
 
 MODULES = {
@@ -22,13 +22,13 @@ MODULES = {
 
 
 def study_named(name: str) -> Study:
-    """The study with a name; raises `UnknownStudyError`, which lists the names.
+    """The study with a name; raises `UsageError`, which lists the names.
 
     >>> study_named("table1").numbers[5]
     1000
     """
     if name not in MODULES:
-        raise UnknownStudyError(f"no study {name!r}; there are: {', '.join(MODULES)}")
+        raise UsageError(f"no study {name!r}; there are: {', '.join(MODULES)}")
     found: Study = import_module(MODULES[name]).STUDY
     return found
 

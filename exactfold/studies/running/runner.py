@@ -79,7 +79,7 @@ def run_study(
     goes on after an interruption; without a journal they are in memory. An `engine`, such as
     `dask_pool`, takes the place of the `workers`. `progress("computing", done, total)`.
 
-    Raises `UnknownStudyError`, the errors of `RowStore`, and, once all others are written,
+    Raises `UsageError`, the errors of `RowStore`, and, once all others are written,
     `RowFailedError` for rows that ended with an error.
 
     >>> run = run_study("table1", numbers={2: 3})
@@ -139,7 +139,7 @@ class Recomputed:
 def recompute_row(study: str | Study, journal: str | os.PathLike[str], name: str) -> Recomputed:
     """Compute a row of a journal once more, from its recipe alone.
 
-    `name` may be cut short. Raises `UnknownRowError`, the errors of `RowStore` and those of the
+    `name` may be cut short. Raises `InputError`, the errors of `RowStore` and those of the
     row.
     """
     found = study_named(study) if isinstance(study, str) else study

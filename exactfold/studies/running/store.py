@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from exactfold.certificates.durable import locked, unwritable
-from exactfold.errors import BrokenRowsError, ForeignRowsError, UnknownRowError
+from exactfold.errors import ForeignJournalError, InputError
 from exactfold.studies.running.study import Recipe, Row, Study, canonical, digest
 
 FORMAT = "exactfold study rows"
@@ -55,8 +55,8 @@ class RowStore:
 
     Each row is committed by itself (SQLite, write-ahead log): a run that is killed loses the rows
     under way and no other, and none is there twice. Raises `JournalInUseError`,
-    `UnwritableFileError`, `ForeignRowsError` for the journal of another study or version, and
-    `BrokenRowsError` for what is no journal; such files are left as they are.
+    `UnwritableFileError`, and `ForeignJournalError` for the journal of another study or version and
+    for what is no journal; such files are left as they are.
     """
 
     def __init__(self, path: str | os.PathLike[str], study: Study) -> None:
@@ -113,7 +113,7 @@ class RowStore:
 class StoredRows:
     """The rows of some recipes in a journal, read each time they are gone through, in that order.
 
-    Recipes without a row are left out. Raises `BrokenRowsError` for a row that is not what was
+    Recipes without a row are left out. Raises `ForeignJournalError` for a row that is not what was
     written.
     """
 
@@ -132,28 +132,28 @@ class StoredRows:
 def read_row(path: str | os.PathLike[str], study: Study, name: str) -> StoredRow:
     """The row whose name begins with a text.
 
-    Raises `UnknownRowError` if there is none or are several, and as `RowStore`.
+    Raises `InputError` if there is none or are several, and as `RowStore`.
     """
     path = os.fspath(path)
     if not os.path.exists(path):
-        raise UnknownRowError(f"there is no journal {path}: run the study first")
+        raise InputError(f"there is no journal {path}: run the study first")
     with _reading(path, study) as rows, _told(path):
         found = rows.execute(
             "SELECT id FROM rows WHERE substr(id, 1, ?) = ? LIMIT 2", (len(name), name)
         ).fetchall()
         if len(found) != 1:
             what = "no row" if not found else "more than one row"
-            raise UnknownRowError(f"{path} has {what} whose name begins with {name!r}")
+            raise InputError(f"{path} has {what} whose name begins with {name!r}")
         row = _row(rows, path, study, found[0][0])
     if row is None:  # the name was read a moment ago
-        raise BrokenRowsError(f"{path} lost the row {name}")
+        raise ForeignJournalError(f"{path} lost the row {name}")
     return row
 
 
 @contextmanager
 def _reading(path: str, study: Study) -> Iterator[sqlite3.Connection]:
     if _check_kind(path):
-        raise BrokenRowsError(f"{path} is empty: it is not the journal of a study")
+        raise ForeignJournalError(f"{path} is empty: it is not the journal of a study")
     with _told(path):
         rows = sqlite3.connect(path, isolation_level=None)
     with closing(rows):
@@ -174,7 +174,7 @@ def _row(rows: sqlite3.Connection, path: str, study: Study, name: str) -> Stored
     except (ValueError, TypeError):
         good = False
     if not good:
-        raise BrokenRowsError(f"{path}: the row {name} is not what was written")
+        raise ForeignJournalError(f"{path}: the row {name} is not what was written")
     return stored
 
 
@@ -190,13 +190,13 @@ def _about(study: Study) -> dict[str, str]:
 def _check_about(rows: sqlite3.Connection, path: str, study: Study) -> None:
     tables = {name for (name,) in rows.execute("SELECT name FROM sqlite_master")}
     if not {"about", "rows"} <= tables:
-        raise BrokenRowsError(f"{path} is not the journal of a study")
+        raise ForeignJournalError(f"{path} is not the journal of a study")
     found = dict(rows.execute("SELECT name, value FROM about"))
     if (found.get("format"), found.get("version")) != (FORMAT, str(VERSION)):
-        raise BrokenRowsError(f"{path} is not the journal of a study")
+        raise ForeignJournalError(f"{path} is not the journal of a study")
     if found != _about(study):
         other = f"{found.get('study')}, version {found.get('study version')}"
-        raise ForeignRowsError(
+        raise ForeignJournalError(
             f"{path} holds rows of the study {other}, not of {study.name}, version "
             f"{study.version}: name another file"
         )
@@ -212,7 +212,7 @@ def _check_kind(path: str) -> bool:
     except OSError as error:
         raise unwritable(path, error) from None
     if begin and begin != _MAGIC:
-        raise BrokenRowsError(f"{path} is not the journal of a study")
+        raise ForeignJournalError(f"{path} is not the journal of a study")
     return not begin
 
 
@@ -225,4 +225,4 @@ def _told(path: str) -> Iterator[None]:
         code = getattr(error, "sqlite_errorcode", 0) & 0xFF
         if code in _FULL or code == sqlite3.SQLITE_CANTOPEN:
             raise unwritable(path, OSError(str(error))) from None
-        raise BrokenRowsError(f"{path} is damaged: {error}") from None
+        raise ForeignJournalError(f"{path} is damaged: {error}") from None

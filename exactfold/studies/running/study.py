@@ -10,7 +10,7 @@ from typing import Any, TypeAlias, TypedDict
 
 from exactfold._support.plurals import counted
 from exactfold._support.verdict import PROVED, UNDECIDED
-from exactfold.errors import RowNumbersError
+from exactfold.errors import UsageError
 
 Recipe: TypeAlias = Mapping[str, int | str]
 """What makes a row: numbers and texts by name, such as a size and a seed."""
@@ -138,7 +138,7 @@ class Study:
         """How many rows of each size: those of the study, of these `sizes` only, or this `number`.
 
         A `number` by size replaces those of the study for the sizes that it names; with neither
-        `sizes` nor `extend` these are all sizes. Raises `RowNumbersError` for a size that has no
+        `sizes` nor `extend` these are all sizes. Raises `UsageError` for a size that has no
         number, and for a number of a size that is not among `sizes`.
 
         >>> from exactfold.studies.running.registry import study_named
@@ -157,14 +157,14 @@ class Study:
             return dict.fromkeys(wanted, number)
         beside = sorted(by_size.keys() - set(wanted))
         if beside:
-            raise RowNumbersError(
+            raise UsageError(
                 f"there is a number of rows for size {beside[0]}, which is not one of the sizes "
                 "asked for"
             )
         known.update(by_size)
         missing = [size for size in wanted if size not in known]
         if missing:
-            raise RowNumbersError(
+            raise UsageError(
                 f"the study {self.name} has no number of rows for size {missing[0]}: give --number"
             )
         return {size: known[size] for size in wanted}

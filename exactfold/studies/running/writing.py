@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
-from exactfold.errors import StudyPartsMissingError
+from exactfold.errors import PackageMissingError
 from exactfold.pattern.fold_writing import checked_target, write_bytes
 from exactfold.studies.running.study import Row, canonical
 
@@ -44,17 +44,17 @@ def _field(value: Any) -> Any:
 
 
 def check_parquet() -> None:
-    """Raise `StudyPartsMissingError` unless Parquet files can be written."""
+    """Raise `PackageMissingError` unless Parquet files can be written."""
     try:
         import pyarrow.parquet  # noqa: F401
     except ImportError:
-        raise StudyPartsMissingError(f"Parquet files need pyarrow: {_INSTALL}") from None
+        raise PackageMissingError(f"Parquet files need pyarrow: {_INSTALL}") from None
 
 
 def write_parquet(rows: Iterable[Row], path: str | os.PathLike[str]) -> None:
     """Write rows as a Parquet file, with pyarrow, which is in the extra `exactfold[study]`.
 
-    Raises `StudyPartsMissingError` without it, `UsageError` for another ending than .parquet, and
+    Raises `PackageMissingError` without it, `UsageError` for another ending than .parquet, and
     `UnwritableFileError`.
     """
     checked_target(Path(path), (".parquet",), "a table")
@@ -76,12 +76,12 @@ def write_parquet(rows: Iterable[Row], path: str | os.PathLike[str]) -> None:
 def frame(rows: Iterable[Row]) -> Any:
     """Rows as a frame of pandas, which is in the extra `exactfold[study]`.
 
-    Raises `StudyPartsMissingError` without it.
+    Raises `PackageMissingError` without it.
     """
     try:
         import pandas as pd
     except ImportError:
-        raise StudyPartsMissingError(f"frames need pandas: {_INSTALL}") from None
+        raise PackageMissingError(f"frames need pandas: {_INSTALL}") from None
     return pd.DataFrame.from_records([dict(row) for row in rows], columns=columns(rows))
 
 

@@ -141,7 +141,7 @@ def test_bad_files_of_torques(tmp_path, text, message):
     result = run("actuate", "two-vertex", "--signs", "+-", "--torques", path, "--json")
     assert result.exit_code == BAD_INPUT
     assert message in result.stderr
-    assert error_class(result) == "BadTorquesError"
+    assert error_class(result) == "InputError"
 
 
 def test_a_file_of_torques_that_is_missing(tmp_path):
@@ -155,4 +155,4 @@ def test_too_many_rivals(tmp_path):
     result = run("actuate", tmp_path / "p.fold", "--signs", "+" * 13, "--json")
     assert result.exit_code == UNDECIDED
     assert "at most 12 can" in result.stderr
-    assert error_class(result) == "TooManyRivalsError"
+    assert error_class(result) == "NotCountedError"

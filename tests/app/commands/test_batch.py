@@ -29,7 +29,7 @@ from exactfold.app.commands import batch
 from exactfold.app.shell.shell import Bar
 from exactfold.branches.counting.batch import count_many
 from exactfold.branches.counting.pools import dask_pool, process_pool
-from exactfold.errors import NotJSONError, UnreadableFileError, UsageError, WorkerDiedError
+from exactfold.errors import NotFoldError, UnreadableFileError, UsageError, WorkerDiedError
 from exactfold.pattern.data import example_path
 
 KEYS = {
@@ -68,7 +68,8 @@ def test_a_line_for_each_file_and_the_worst_exit_code(tmp_path: Path) -> None:
     alone = json.loads(run("count", good, "--json").stdout)
     counted = found[0]["result"]
     assert {**counted, "seconds": 0} == {**alone, "seconds": 0}
-    assert found[2]["error"]["class"] == "NotJSONError"
+    assert found[2]["error"]["class"] == "NotFoldError"
+    assert "not JSON at" in found[2]["error"]["message"]
     assert str(tmp_path / "none.fold") in found[3]["error"]["message"]
     assert found[3]["sha256"] is None
     assert run("count", good, open_).exit_code == UNDECIDED
@@ -254,7 +255,8 @@ def test_count_many_in_this_process(tmp_path: Path) -> None:
     assert [name for name, _ in found] == [str(path), "1", str(bad), str(tmp_path / "none")]
     assert found[0][1].distinct == 8
     assert found[1][1].distinct == 4
-    assert isinstance(found[2][1], NotJSONError)
+    assert isinstance(found[2][1], NotFoldError)
+    assert "not JSON at" in str(found[2][1])
     assert isinstance(found[3][1], UnreadableFileError)
     assert seen == [("counting", k, 4) for k in range(1, 5)]
 

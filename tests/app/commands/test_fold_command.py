@@ -323,7 +323,8 @@ def test_files_that_cannot_be_written(tmp_path, monkeypatch):
     monkeypatch.setattr(meshes, "find_spec", lambda name: None)
     result = run("fold", "two-vertex", "--up", "4", "-o", tmp_path / "m.glb", "--json")
     assert result.exit_code == USAGE
-    assert error_class(result) == "GltfMissingError"
+    assert error_class(result) == "PackageMissingError"
+    assert "pygltflib" in result.stderr
 
 
 def test_large_sheets_are_followed(tmp_path):

@@ -69,7 +69,7 @@ def test_every_command_refuses_them_with_one_sentence(here, command):
 
 
 def test_the_class_of_their_errors(here):
-    for name, error in (("bomb.svg", "TooLargeError"), ("long.fold", "NotANumberError")):
+    for name, error in (("bomb.svg", "TooLargeError"), ("long.fold", "NumberError")):
         assert error_class(run("count", name, "--json")) == error
 
 

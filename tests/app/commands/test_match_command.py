@@ -191,7 +191,7 @@ def test_letters_that_do_not_fit(letters, message):
     result = run("match", "two-vertex", "--letters", letters, "--json")
     assert result.exit_code == USAGE
     assert message in result.stderr
-    assert error_class(result) == "LettersError"
+    assert error_class(result) == "UsageError"
 
 
 def test_files_of_letters_that_cannot_be_read(tmp_path):
@@ -209,7 +209,7 @@ def test_files_of_letters_that_cannot_be_read(tmp_path):
 def test_a_file_without_letters():
     result = run("match", "two-vertex", "--json")
     assert result.exit_code == USAGE
-    assert error_class(result) == "NoLettersError"
+    assert error_class(result) == "UsageError"
     assert "no fold is a mountain or a valley in the file" in result.stderr
 
 

@@ -60,15 +60,15 @@ def test_a_shape_with_deficits(here: Path) -> None:
 @pytest.mark.parametrize(
     ("option", "text", "name", "said"),
     [
-        ("--rim", '{"0": 1}', "RimVertexError", "vertex 1 of the border has no height"),
-        ("--rim", RIM.replace("0.25", '"x"'), "RimHeightError", "the height of vertex 2: 'x'"),
-        ("--rim", RIM.replace("0.25", "NaN"), "RimHeightError", "the height of vertex 2: 'NaN'"),
+        ("--rim", '{"0": 1}', "BadRimError", "vertex 1 of the border has no height"),
+        ("--rim", RIM.replace("0.25", '"x"'), "BadRimError", "the height of vertex 2: 'x'"),
+        ("--rim", RIM.replace("0.25", "NaN"), "BadRimError", "the height of vertex 2: 'NaN'"),
         ("--rim", RIM.replace('"3"', '"0"'), "BadRimError", "vertex 0 is there twice"),
-        ("--rim", RIM.replace('"3"', '"0-5"'), "RimVertexError", "0-5 is no vertex of the border"),
+        ("--rim", RIM.replace('"3"', '"0-5"'), "BadRimError", "0-5 is no vertex of the border"),
         (
             "--rim",
             RIM.replace("}", ', "00": 2}'),
-            "RimVertexError",
+            "BadRimError",
             "00 is no vertex of the border",
         ),
         ("--rim", "[1, 2]", "BadRimError", "holds no numbers by vertex"),
@@ -76,10 +76,10 @@ def test_a_shape_with_deficits(here: Path) -> None:
         (
             "--rim",
             '{"0": 0, "1": 10, "2": 16, "3": 9, "4": -2}',
-            "FlatRimError",
+            "BadRimError",
             "lie in one plane",
         ),
-        ("--curvature", '{"5": -1}', "NegativeDeficitError", "deficit of vertex 5 is negative"),
+        ("--curvature", '{"5": -1}', "BadCurvatureError", "deficit of vertex 5 is negative"),
         ("--curvature", '{"0": 1}', "BadCurvatureError", "0 is no interior vertex"),
         ("--curvature", '{"5": 1, "05": 0}', "BadCurvatureError", "05 is no interior vertex"),
         ("--curvature", '{"6": true}', "BadCurvatureError", "deficit of vertex 6"),

@@ -96,7 +96,7 @@ def test_numbers_by_size(here):
 )
 def test_numbers_that_cannot_be_read(here, text, said):
     found = run("study", "table1", "--number", text, "--json")
-    assert (found.exit_code, error_class(found)) == (USAGE, "RowNumbersError")
+    assert (found.exit_code, error_class(found)) == (USAGE, "UsageError")
     assert f"--number: {said}; write one number for all sizes" in found.stderr
     assert os.listdir() == []
 
@@ -169,26 +169,57 @@ def test_a_row_that_differs_is_said(here, done, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("arguments", "code", "cause"),
+    ("arguments", "code", "cause", "said"),
     [
-        (("nothing",), USAGE, "UnknownStudyError"),
-        (("table1", "--row", "00"), BAD_INPUT, "UnknownRowError"),
-        (("table1", "--sizes", "40"), USAGE, "RowNumbersError"),
-        (("table1", "--sizes", "2", "--number", "3:1"), USAGE, "RowNumbersError"),
-        (("table1", "--number", "3:0"), USAGE, "UsageError"),
-        (("table1", "--row", "00", "--seed", "2"), USAGE, "UsageError"),
-        (("--seed", "2"), USAGE, "UsageError"),
-        (("table1", "--csv", "a.txt"), USAGE, "UsageError"),
-        (("table1", "--csv", "a.csv", "--journal", "a.csv"), USAGE, "UsageError"),
-        (("table1", "--dask", "tcp://127.0.0.1:1", "--workers", "2"), USAGE, "UsageError"),
-        (("table1", "--journal", "text"), BAD_INPUT, "BrokenRowsError"),
-        (("table1", "--figures", "text"), USAGE, "UsageError"),
+        (("nothing",), USAGE, "UsageError", "no study 'nothing'; there are: table1"),
+        (("table1", "--row", "00"), BAD_INPUT, "InputError", "there is no journal table1.sqlite"),
+        (("table1", "--sizes", "40"), USAGE, "UsageError", "has no number of rows for size 40"),
+        (
+            ("table1", "--sizes", "2", "--number", "3:1"),
+            USAGE,
+            "UsageError",
+            "rows for size 3, which is",
+        ),
+        (("table1", "--number", "3:0"), USAGE, "UsageError", "a study without rows says nothing"),
+        (
+            ("table1", "--row", "00", "--seed", "2"),
+            USAGE,
+            "UsageError",
+            "--row goes with",
+        ),
+        (("--seed", "2"), USAGE, "UsageError", "name a study; there are"),
+        (
+            ("table1", "--csv", "a.txt"),
+            USAGE,
+            "UsageError",
+            "is written as .csv",
+        ),
+        (
+            ("table1", "--csv", "a.csv", "--journal", "a.csv"),
+            USAGE,
+            "UsageError",
+            "is also read or written",
+        ),
+        (
+            ("table1", "--dask", "tcp://127.0.0.1:1", "--workers", "2"),
+            USAGE,
+            "UsageError",
+            "has its workers",
+        ),
+        (
+            ("table1", "--journal", "text"),
+            BAD_INPUT,
+            "ForeignJournalError",
+            "not the journal",
+        ),
+        (("table1", "--figures", "text"), USAGE, "UsageError", "text is not a folder"),
     ],
 )
-def test_wrong_usage_has_a_class_of_its_own(here, arguments, code, cause):
+def test_wrong_usage_is_refused_by_a_sentence_of_its_own(here, arguments, code, cause, said):
     Path("text").write_text("no journal")
     found = run("study", *arguments, "--json")
     assert (found.exit_code, error_class(found)) == (code, cause)
+    assert said in found.stderr
     assert os.listdir() == ["text"]
 
 

@@ -17,6 +17,7 @@ import numpy as np
 import pytest
 from certifiers import CERTIFIERS, Certifier
 from flint import fmpq, fmpq_mat
+from rivals.hermite import hermite_counts
 from sheets import SQUARE, reflex_corners, scrambled, straight_side
 
 from exactfold import (
@@ -52,7 +53,6 @@ from exactfold.rigidity.equations.quadratic import QuadraticSystem
 from exactfold.solve import isolate
 from exactfold.solve.algebraic import groebner_bases as engine
 from exactfold.solve.algebraic.exact_solution import ExactSolution
-from exactfold.solve.algebraic.hermite import hermite_counts
 from exactfold.solve.algebraic.msolve import find_msolve, msolve_classes
 from exactfold.solve.algebraic.quotient import QuotientAlgebra, from_groebner_basis
 from exactfold.solve.certify.box import IsolatingBox

@@ -20,7 +20,7 @@ from exactfold.branches.counting import pools
 from exactfold.branches.counting.conveyor import Conveyor
 from exactfold.branches.counting.on_dask import dask_engine, prove_block
 from exactfold.branches.counting.stream import stream_branches
-from exactfold.errors import ClusterError, DaskMissingError, WorkerDiedError
+from exactfold.errors import ClusterError, PackageMissingError, WorkerDiedError
 from exactfold.pattern.data import example_path
 
 TWO = example_path("two-vertex")
@@ -167,7 +167,7 @@ def test_an_address_that_cannot_be_read_is_bad_input_at_once(tmp_path: Path, add
 
 def test_without_dask_the_extra_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "distributed", None)
-    with pytest.raises(DaskMissingError, match=r"exactfold\[dask\]"), dask_engine("local"):
+    with pytest.raises(PackageMissingError, match=r"exactfold\[dask\]"), dask_engine("local"):
         raise AssertionError("no engine should be there")
     file = tmp_path / "c.txt"
     result = CliRunner().invoke(app, ["count", str(TWO), "--stream", str(file), "--dask", "local"])

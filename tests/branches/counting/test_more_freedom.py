@@ -7,7 +7,7 @@ from counting import counts
 from sheets import DENTED, HEXAGON, SQUARE, random_wheel, scrambled, wheel
 
 from exactfold import PROVED, UNDECIDED, CreasePattern, count_branches
-from exactfold.errors import NoInteriorVertexError, UsageError
+from exactfold.errors import NotCountedError, UsageError
 from exactfold.pattern.families import two_vertex
 from exactfold.rigidity.equations.branch_system import BranchSystem
 from exactfold.rigidity.equations.quadratic import QuadraticSystem
@@ -77,7 +77,7 @@ def test_dimension_and_degree_of_sheets_with_more_freedom():
 
 
 def test_no_interior_vertex_error():
-    with pytest.raises(NoInteriorVertexError, match="no interior vertex"):
+    with pytest.raises(NotCountedError, match="no interior vertex"):
         count_branches(CreasePattern(SQUARE, [(0, 1, 2), (0, 2, 3)]))
 
 

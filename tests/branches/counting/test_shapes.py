@@ -14,7 +14,7 @@ from exactfold.app.report import shapes_report
 from exactfold.app.report.terminal import console
 from exactfold.app.schemas import schema
 from exactfold.branches import count_shapes
-from exactfold.errors import NegativeDeficitError
+from exactfold.errors import BadCurvatureError
 from exactfold.pattern.crease_pattern import CreasePattern
 
 SIX = scrambled(5, HEXAGON, 12)
@@ -47,7 +47,7 @@ def test_what_is_not_proved_flat_leaves_bounds() -> None:
 
 
 def test_negative_deficits_are_refused() -> None:
-    with pytest.raises(NegativeDeficitError, match="vertex 6"):
+    with pytest.raises(BadCurvatureError, match="vertex 6"):
         count_shapes(THREE, {6: -1})
 
 

@@ -12,7 +12,7 @@ from sheets import DENTED, scrambled
 from exactfold import PROVED, count_branches, count_many, write_fold
 from exactfold.branches.counting.motion_facts import panel_facts
 from exactfold.branches.counting.ways import count_ways
-from exactfold.errors import SeveralSheetsError, UnknownPatternError, UsageError
+from exactfold.errors import SeveralSheetsError, UnreadableFileError, UsageError
 from exactfold.panels.decomposition import decompose
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.drawing.formats.read import parse_drawing
@@ -93,7 +93,7 @@ def test_rounding_is_never_silent(tmp_path: Path) -> None:
 def test_what_is_no_sheet_is_refused(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="3 is not a pattern"):
         count_ways(3)  # type: ignore[arg-type]
-    with pytest.raises(UnknownPatternError, match="two-vertex"):
+    with pytest.raises(UnreadableFileError, match="two-vertex"):
         count_ways("crane")
     with pytest.raises(UsageError, match="--snap auto is for drawings"):
         count_ways(two_vertex(), snap="auto")

@@ -7,11 +7,11 @@ import pytest
 from drawings import SQUARE, as_fold, drawn, places
 
 from exactfold.errors import (
-    EmptyDrawingError,
     FoldedStateError,
+    MalformedDrawingError,
     MissingCoordinatesError,
-    NotANumberError,
     NotFoldError,
+    NumberError,
     StaleExactCoordinatesError,
 )
 from exactfold.pattern.data import SHEETS, example_path
@@ -237,7 +237,7 @@ def test_sides_without_an_edge_are_added():
     [
         ({"vertices_coords": None}, MissingCoordinatesError, "`vertices_coords` is missing"),
         ({"vertices_coords": [[0, 0], [1]]}, MissingCoordinatesError, "vertex 1"),
-        ({"vertices_coords": [[0, None]]}, NotANumberError, "vertex 0: y"),
+        ({"vertices_coords": [[0, None]]}, NumberError, "vertex 0: y"),
         ({"edges_vertices": [[0, 9]]}, NotFoldError, "edge 0 .* vertex 9"),
         ({"edges_vertices": [[0, 1, 2]]}, NotFoldError, "edge 0 has 3 ends"),
         ({"edges_assignment": ["M"]}, NotFoldError, "1 letters for 5 edges"),
@@ -245,7 +245,7 @@ def test_sides_without_an_edge_are_added():
         ({"edges_assignment": [*"BBBB", "MV"]}, NotFoldError, "edge 4 has the assignment 'MV'"),
         (
             {"edges_vertices": None, "edges_assignment": None},
-            EmptyDrawingError,
+            MalformedDrawingError,
             "neither `edges_vertices` nor",
         ),
     ],
@@ -256,5 +256,5 @@ def test_refusals(keys, error, message):
 
 
 def test_not_a_number_is_refused():
-    with pytest.raises(NotANumberError, match="vertex 0: x"):
+    with pytest.raises(NumberError, match="vertex 0: x"):
         read_fold_drawing('{"vertices_coords": [[NaN, 0]]}')

@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import pytest
 
-from exactfold.errors import CutEdgeError, DisconnectedError
+from exactfold.errors import DisconnectedError, FoldError
 from exactfold.pattern.drawing.drawing import Drawing, Line
 from exactfold.pattern.drawing.inexactness import clear_distances
 from exactfold.pattern.drawing.repair import exact_sheets
@@ -85,7 +85,7 @@ def test_misses_of_all_sizes_are_refused_with_the_distance_that_would_do():
     again = [("0", "10.09"), ("10", "10.05"), *points]
     lines = [(3, 4, "B"), (4, 5, "B"), (5, 2, "B"), *((4 + k, 2, "M") for k in range(2, 10))]
     drawn = drawing(again, lines)
-    with pytest.raises(CutEdgeError, match=r"--merge 0\.\d+` would read it") as refused:
+    with pytest.raises(FoldError, match=r"--merge 0\.\d+` would read it") as refused:
         exact_sheets(drawn)
     advised = str(refused.value).split("--merge ")[1].split("`")[0]
     assert panels(exact_sheets(drawn, merge=Fraction(advised))).faces

@@ -5,7 +5,7 @@ import json
 import pytest
 from drawings import SQUARE, as_opx, as_orh, as_ori
 
-from exactfold.errors import EmptyDrawingError, MalformedDrawingError, NotJSONError
+from exactfold.errors import MalformedDrawingError, NotFoldError
 from exactfold.pattern.drawing.formats.cp import read_cp
 from exactfold.pattern.drawing.formats.opx import read_opx
 from exactfold.pattern.drawing.formats.ori import read_orh, read_ori
@@ -19,7 +19,7 @@ def test_auxiliary_lines_of_cp_are_left_out():
 
 
 def test_only_auxiliary_lines_are_no_pattern():
-    with pytest.raises(EmptyDrawingError, match=r"CP file.*left out 1 auxiliary line"):
+    with pytest.raises(MalformedDrawingError, match=r"CP file.*left out 1 auxiliary line"):
         read_cp("4 0 0 1 1")
 
 
@@ -94,7 +94,7 @@ def test_ori_refusals_name_the_line(change, message):
 
 
 def test_an_ori_file_that_is_cut_off():
-    with pytest.raises(NotJSONError):
+    with pytest.raises(NotFoldError, match="not JSON at"):
         read_ori(as_ori(SQUARE)[:-5])
 
 

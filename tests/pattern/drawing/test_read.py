@@ -6,11 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from exactfold.errors import (
-    EmptyDrawingError,
     InputError,
     MalformedDrawingError,
     NotFoldError,
-    NotJSONError,
     UnknownFormatError,
     UnreadableFileError,
 )
@@ -86,13 +84,13 @@ def test_unknown_formats_are_refused_with_the_list(content, name):
     ("content", "name", "error"),
     [
         ("{}", "a.fold", NotFoldError),
-        ('{"vertices_coords": [', "a", NotJSONError),
-        ("", "a.cp", EmptyDrawingError),
+        ('{"vertices_coords": [', "a", NotFoldError),
+        ("", "a.cp", MalformedDrawingError),
         ("1 0 0", "a.cp", MalformedDrawingError),
         ("<svg>", "a", MalformedDrawingError),
         ("<html/>", "a.svg", MalformedDrawingError),
-        ("<java/>", "a.opx", EmptyDrawingError),
-        ("<タイトル>", "a.orh", EmptyDrawingError),
+        ("<java/>", "a.opx", MalformedDrawingError),
+        ("<タイトル>", "a.orh", MalformedDrawingError),
         ("{}", "a.ori", MalformedDrawingError),
     ],
 )

@@ -7,10 +7,10 @@ from time import perf_counter
 import pytest
 
 from exactfold.errors import (
-    CutEdgeError,
     DisconnectedError,
-    HoleError,
+    FoldError,
     MalformedPatternError,
+    NotADiskError,
     UsageError,
 )
 from exactfold.exact.surds import RATIONALS, Surd
@@ -265,20 +265,20 @@ def ring(letter, *more):
 
 
 def test_a_loose_hole_is_named():
-    with pytest.raises(HoleError, match=r"the sheet has a hole near \(1, 1\)"):
+    with pytest.raises(NotADiskError, match=r"the sheet has a hole near \(1, 1\)"):
         sheets(drawing([*CORNERS, *INNER], ring("B")))
 
 
 def test_a_hole_between_creases_is_named():
     joints = [(k, k + 4, "M") for k in range(4)]
-    with pytest.raises(HoleError, match=r"the sheet has a hole near \(2, 2\)"):
+    with pytest.raises(NotADiskError, match=r"the sheet has a hole near \(2, 2\)"):
         sheets(drawing([*CORNERS, *INNER], ring("B", *joints)))
 
 
 def test_a_cut_is_named():
-    with pytest.raises(CutEdgeError, match=r"line 0-2 from \(0, 0\) to \(4, 4\) is a cut between"):
+    with pytest.raises(FoldError, match=r"line 0-2 from \(0, 0\) to \(4, 4\) is a cut between"):
         sheets(drawing(CORNERS, [*RIM, (0, 2, "C")]))
-    with pytest.raises(CutEdgeError, match="is border between two panels"):
+    with pytest.raises(FoldError, match="is border between two panels"):
         sheets(drawing(CORNERS, [*RIM, (0, 2, "B")]))
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 import pytest
+from rivals.ball_krawczyk import arb_krawczyk
 from sheets import SQUARE, scrambled
 
 from exactfold import PROVED, CreasePattern, random_square
@@ -13,7 +14,6 @@ from exactfold.rigidity import BranchSystem
 from exactfold.rigidity.equations.perturbation import perturbed
 from exactfold.rigidity.equations.quadratic import QuadraticSystem
 from exactfold.solve import groebner, homotopy, isolate
-from exactfold.solve.certify.ball_krawczyk import arb_krawczyk
 from exactfold.solve.certify.box import IsolatingBox
 
 

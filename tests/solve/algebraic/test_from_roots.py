@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from flint import fmpz
 
-from exactfold.errors import ParametrisationError
+from exactfold.errors import SolverError
 from exactfold.exact.factors import factor_degrees, modular_degrees, symmetric_group_primes
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.random_squares import random_square
@@ -171,8 +171,15 @@ def test_too_little_precision_gives_none(monkeypatch):
     assert parametrisation_from_roots(chart.system, popping(chart)) is None
 
 
-@pytest.mark.parametrize("place", ["polynomial", "numerators", "separating"])
-def test_verification_refuses_changes(place):
+@pytest.mark.parametrize(
+    ("place", "said"),
+    [
+        ("polynomial", "does not vanish on the root class"),
+        ("numerators", "does not vanish on the root class"),
+        ("separating", "not the stated form"),
+    ],
+)
+def test_verification_refuses_changes(place, said):
     chart = random_chart(3, 1)
     good = parametrisation_from_roots(chart.system, popping(chart))
     assert good is not None
@@ -184,14 +191,14 @@ def test_verification_refuses_changes(place):
     else:
         bad = replace(good, separating=(1, *good.separating[1:]))
     good.verify(chart.system)
-    with pytest.raises(ParametrisationError):
+    with pytest.raises(SolverError, match=said):
         bad.verify(chart.system)
 
 
 def test_verification_refuses_multiple_roots():
     system = QuadraticSystem((((1, 0), (0, -2)),))
     double = RootClass((4, 0, -4, 0, 1), ((Fraction(0), Fraction(0), Fraction(8)),), 1, (1,))
-    with pytest.raises(ParametrisationError, match="squarefree"):
+    with pytest.raises(SolverError, match="squarefree"):
         double.verify(system)
 
 

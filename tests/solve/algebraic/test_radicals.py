@@ -9,7 +9,7 @@ import pytest
 import sympy
 from sheets import wheel, with_point
 
-from exactfold.errors import NotApplicableError, ParametrisationError, UsageError
+from exactfold.errors import NotApplicableError, SolverError, UsageError
 from exactfold.pattern import families
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.random_squares import random_square
@@ -170,5 +170,5 @@ def test_changed_heights_are_refused_error():
     last = tower.moves[-1][3]
     changed = list(tower.elements)
     changed[last] = (changed[last][0] + 1, *changed[last][1:])
-    with pytest.raises(ParametrisationError, match="does not vanish"):
+    with pytest.raises(SolverError, match="does not vanish"):
         replace(tower, elements=tuple(changed)).verify()

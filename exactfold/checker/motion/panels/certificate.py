@@ -10,11 +10,10 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any
 
-from ...core.formats import PANEL_MOTION, PANEL_MOTION_VERSION, RATED_VERSION
+from ...core.kinds import DocumentKind
 from ...core.limits import MOST_TESTS
 from ...core.reading import (
     counted,
-    document,
     items,
     keys,
     natural,
@@ -37,11 +36,8 @@ _KINDS = "contact", "flat-fold"
 _PARAMETER_BITS = 40
 
 
-def read(data: Any) -> dict[str, Any]:
-    """`data` if it is a certificate of a motion of panels; raises `FormatError`."""
-    names = "format version pattern claims evidence"
-    rated = isinstance(data, dict) and data.get("version") == RATED_VERSION
-    return document(data, PANEL_MOTION, RATED_VERSION if rated else PANEL_MOTION_VERSION, names)
+PLAIN, RATED = 1, 2
+"""The versions: of folds that are driven alike, and of folds that move at rates of their own."""
 
 
 @refusing()
@@ -57,7 +53,7 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
     sheet, digest = read_panels(data["pattern"])
     claims, evidence = data["claims"], data["evidence"]
     more = " contact" if isinstance(claims, dict) and "contact" in claims else ""
-    rated = data["version"] == RATED_VERSION
+    rated = data["version"] == RATED
     keys(claims, f"assignment drivers{' rates' * rated} clear{more}", "claims")
     contact = claims.get("contact")
     through = contact is not None and contact["kind"] == "contact"
@@ -196,3 +192,13 @@ def _told_apart(values: list[Fraction]) -> list[str]:
         if len(set(found)) == len(found):
             break
     return found
+
+
+PANEL_MOTION = DocumentKind(
+    format="exactfold panel motion",
+    versions=(PLAIN, RATED),
+    names="format version pattern claims evidence",
+    check=check,
+    summary=summary,
+)
+"""A motion of rigid panels, and what touches first (docs/panel_motion.md)."""

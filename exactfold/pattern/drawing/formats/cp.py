@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from exactfold.errors import MalformedDrawingError, NotANumberError
+from exactfold.errors import MalformedDrawingError, NumberError
 from exactfold.exact.numbers import parse_rational, shown
 from exactfold.pattern.drawing.drawing import Drawing
 from exactfold.pattern.drawing.segments import Segment, drawing_of, left_out
@@ -18,7 +18,7 @@ def read_cp(text: str) -> Drawing:
 
     Type 1 is a border, 2 a mountain, 3 a valley; 0 and 4 are auxiliary lines, which are left out.
     Coordinates are kept as they stand, as the converter of the FOLD project keeps them. Raises
-    `MalformedDrawingError`, which names the line of the file, and `EmptyDrawingError`.
+    `MalformedDrawingError`, which names the line of the file, also for a file without lines.
 
     >>> drawing = read_cp("1 0 0 1 0\\n3 0 0 0.5 0.1\\n")
     >>> drawing.lines[1], drawing.points[2]
@@ -39,7 +39,7 @@ def read_cp(text: str) -> Drawing:
             )
         try:
             x1, y1, x2, y2 = map(parse_rational, words[1:])
-        except NotANumberError as error:
+        except NumberError as error:
             raise MalformedDrawingError(f"line {number}: {error}") from None
         if letter:
             segments.append(((x1, y1), (x2, y2), letter))

@@ -10,8 +10,8 @@ from typing import Any, Final
 from exactfold._support.plurals import counted
 from exactfold.checker.core.limits import MOST_FRAMES, MOST_INHERITED
 from exactfold.errors import (
-    EmptyDrawingError,
     FoldedStateError,
+    MalformedDrawingError,
     MissingCoordinatesError,
     NotFoldError,
     TooLargeError,
@@ -45,7 +45,7 @@ def read_fold_drawing(text: str) -> Drawing:
     become lines, B if they belong to one face, else U. Repeated edges are kept, and are named in
     the remarks if their letters differ.
 
-    Raises `NotJSONError`, `NotANumberError`, a subclass of `FoldError`, `EmptyDrawingError`, or
+    Raises `NotFoldError`, `NumberError`, a subclass of `FoldError`, `MalformedDrawingError`, or
     `FoldedStateError` if all coordinates are those of a folded state.
 
     >>> drawing = read_fold_drawing('{"vertices_coords": [[0, 0, 5], [0.1, 0, 5]],'
@@ -153,7 +153,7 @@ def _drawing(frame: Mapping[str, Any], source: str) -> Drawing:
         remarks.append(f"left out {counted(empty, 'edge')} from a vertex to itself")
     lines = [line for line in lines if line.start != line.end] + missing
     if not lines:
-        raise EmptyDrawingError("neither `edges_vertices` nor `faces_vertices` is given")
+        raise MalformedDrawingError("neither `edges_vertices` nor `faces_vertices` is given")
     return Drawing(
         tuple(exact or points), tuple(lines), source + plane, tuple(remarks), bool(exact)
     )

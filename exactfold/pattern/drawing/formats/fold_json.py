@@ -10,11 +10,10 @@ from typing import Any, Final
 
 from exactfold._support.plurals import agreeing, counted
 from exactfold.errors import (
+    FoldError,
     MissingCoordinatesError,
-    NotANumberError,
     NotFoldError,
-    NotJSONError,
-    OffPlaneError,
+    NumberError,
     StaleExactCoordinatesError,
 )
 from exactfold.exact.numbers import parse_rational, shown
@@ -47,7 +46,7 @@ def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     if len(result) < len(pairs):
         keys = [key for key, _ in pairs]
         twice = next(key for key in keys if keys.count(key) > 1)
-        raise NotJSONError(f"the key {shown(twice)} is given twice")
+        raise NotFoldError(f"the key {shown(twice)} is given twice")
     return result
 
 
@@ -57,7 +56,7 @@ def _integer(digits: str) -> int:
 
 
 def json_object(text: str) -> dict[str, Any]:
-    """The one JSON object of a text; raises `NotJSONError`, `NotFoldError` for other values."""
+    """The one JSON object of a text; raises `NotFoldError` for text that is no JSON object."""
     try:
         document = json.loads(
             text.removeprefix("\ufeff"),
@@ -69,16 +68,16 @@ def json_object(text: str) -> dict[str, Any]:
     except json.JSONDecodeError as error:
         place = f"line {error.lineno}, column {error.colno}"
         cut = ": it ends too early" if error.pos >= len(error.doc.rstrip()) else f": {error.msg}"
-        raise NotJSONError(f"not JSON at {place}{cut}") from None
+        raise NotFoldError(f"not JSON at {place}{cut}") from None
     except RecursionError:
-        raise NotJSONError("the JSON is nested too deeply") from None
+        raise NotFoldError("the JSON is nested too deeply") from None
     if not isinstance(document, dict):
         raise NotFoldError(f"a FOLD file holds one JSON object, not {shown(document)}")
     return document
 
 
 def fold_document(text: str) -> dict[str, Any]:
-    """The JSON object of a FOLD file; raises `NotJSONError`, `NotFoldError` without FOLD keys."""
+    """The JSON object of a FOLD file; raises `NotFoldError`, also where it has no FOLD keys."""
     document = json_object(text)
     if not any(key.startswith(_PREFIXES) for key in document):
         raise NotFoldError(
@@ -120,7 +119,7 @@ def index_lists(
 def components(vertex: int, row: object) -> tuple[Fraction, Fraction, Fraction]:
     """The coordinates of a vertex through their text, z = 0 if there are two.
 
-    Raises `MissingCoordinatesError`, `NotANumberError`, or `OffPlaneError` for more than three.
+    Raises `MissingCoordinatesError`, `NumberError`, or `FoldError` for more than three.
     """
     if not isinstance(row, list):
         raise MissingCoordinatesError(f"vertex {vertex} has {shown(row)} for coordinates")
@@ -128,12 +127,12 @@ def components(vertex: int, row: object) -> tuple[Fraction, Fraction, Fraction]:
     for name, value in zip("xyz", row, strict=False):
         try:
             values.append(_number(value))
-        except NotANumberError as error:
-            raise NotANumberError(f"vertex {vertex}: {name}: {error}") from None
+        except NumberError as error:
+            raise NumberError(f"vertex {vertex}: {name}: {error}") from None
     if len(row) < 2:
         raise MissingCoordinatesError(f"vertex {vertex} has only {len(row)} coordinates")
     if len(row) > 3:
-        raise OffPlaneError(f"vertex {vertex} has {len(row)} coordinates, more than three")
+        raise FoldError(f"vertex {vertex} has {len(row)} coordinates, more than three")
     x, y, z = values if len(values) == 3 else (*values, Fraction(0))
     return x, y, z
 
@@ -143,7 +142,7 @@ def _number(value: object) -> Fraction:
         return parse_rational(value.text)
     if isinstance(value, int) and not isinstance(value, bool):
         return Fraction(value)
-    raise NotANumberError(f"{shown(value)} is not a JSON number")
+    raise NumberError(f"{shown(value)} is not a JSON number")
 
 
 def exact_points(
@@ -152,7 +151,7 @@ def exact_points(
     """The pairs of `vertices_exactfold:coords`, empty if there are none.
 
     They must agree with the first two components of `stated` to within 1e-9 of the largest of them;
-    raises `StaleExactCoordinatesError`, `NotANumberError`.
+    raises `StaleExactCoordinatesError`, `NumberError`.
     """
     rows = list_at(document, EXACT_KEY)
     if not rows:
@@ -166,13 +165,11 @@ def exact_points(
     result = []
     for v, row in enumerate(rows):
         if not isinstance(row, list) or len(row) != 2 or not all(isinstance(c, str) for c in row):
-            raise NotANumberError(
-                f'vertex {v}: {shown(row)} in `{EXACT_KEY}` is not ["p/q", "p/q"]'
-            )
+            raise NumberError(f'vertex {v}: {shown(row)} in `{EXACT_KEY}` is not ["p/q", "p/q"]')
         try:
             x, y = parse_rational(row[0]), parse_rational(row[1])
-        except NotANumberError as error:
-            raise NotANumberError(f"vertex {v} in `{EXACT_KEY}`: {error}") from None
+        except NumberError as error:
+            raise NumberError(f"vertex {v} in `{EXACT_KEY}`: {error}") from None
         if max(abs(x - stated[v][0]), abs(y - stated[v][1])) > tolerance:
             raise StaleExactCoordinatesError(
                 f"vertex {v}: `{EXACT_KEY}` and `vertices_coords` disagree; delete `{EXACT_KEY}` "

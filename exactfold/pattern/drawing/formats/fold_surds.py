@@ -8,7 +8,7 @@ from typing import Any
 
 from exactfold.checker.core.limits import MOST_ROOTS
 from exactfold.errors import (
-    NotANumberError,
+    NumberError,
     StaleExactCoordinatesError,
     TooLargeError,
     UsageError,
@@ -45,7 +45,7 @@ def surd_points(document: Mapping[str, Any], stated: Sequence[tuple[Fraction, ..
     """The points of `vertices_exactfold:surds`, empty if there are none.
 
     They must agree with the first two components of `stated` to within 1e-9 of the largest of them;
-    raises `StaleExactCoordinatesError`, and `NotANumberError` for a field or coefficients that are
+    raises `StaleExactCoordinatesError`, and `NumberError` for a field or coefficients that are
     none.
 
     >>> root = RATIONALS.adjoined(2).root
@@ -66,7 +66,7 @@ def surd_points(document: Mapping[str, Any], stated: Sequence[tuple[Fraction, ..
     found: list[Point] = []
     for v, (row, place) in enumerate(zip(rows, stated, strict=True)):
         if not isinstance(row, list) or len(row) != 2:
-            raise NotANumberError(f"vertex {v}: {shown(row)} in `{SURDS_KEY}` is not two numbers")
+            raise NumberError(f"vertex {v}: {shown(row)} in `{SURDS_KEY}` is not two numbers")
         x, y = (Surd(field, _coefficients(part, field.dimension, f"vertex {v}")) for part in row)
         for value, drawn in ((x, place[0]), (y, place[1])):
             if value - drawn > tolerance or drawn - value > tolerance:
@@ -91,9 +91,9 @@ def _field(rows: Sequence[object]) -> SurdField:
         try:
             larger = field.adjoined(radicand)
         except UsageError:
-            raise NotANumberError(f"{name} is not positive: {shown(row)}") from None
+            raise NumberError(f"{name} is not positive: {shown(row)}") from None
         if larger is field:
-            raise NotANumberError(f"{name} is a square already: {shown(row)}")
+            raise NumberError(f"{name} is a square already: {shown(row)}")
         field = larger
     return field
 
@@ -101,8 +101,8 @@ def _field(rows: Sequence[object]) -> SurdField:
 def _coefficients(row: object, count: int, name: str) -> tuple[Fraction, ...]:
     texts = isinstance(row, list) and len(row) == count and all(isinstance(c, str) for c in row)
     if not texts or not isinstance(row, list):
-        raise NotANumberError(f'{name}: {shown(row)} is not a list of {count} texts "p/q"')
+        raise NumberError(f'{name}: {shown(row)} is not a list of {count} texts "p/q"')
     try:
         return tuple(parse_rational(c) for c in row)
-    except NotANumberError as error:
-        raise NotANumberError(f"{name}: {error}") from None
+    except NumberError as error:
+        raise NumberError(f"{name}: {error}") from None

@@ -6,7 +6,7 @@ from fractions import Fraction
 from typing import Final
 from xml.etree.ElementTree import Element
 
-from exactfold.errors import MalformedDrawingError, NotANumberError
+from exactfold.errors import MalformedDrawingError, NumberError
 from exactfold.exact.numbers import parse_rational, shown
 from exactfold.pattern.drawing.drawing import Drawing
 from exactfold.pattern.drawing.formats.cp import ORIPA_TYPES
@@ -21,7 +21,7 @@ def read_opx(text: str) -> Drawing:
 
     Each line is an object `OriLineProxy` with the properties `type`, `x0`, `y0`, `x1`, `y1`; Java
     leaves out those that are 0. The types are those of `read_cp`. Raises `MalformedDrawingError`,
-    which numbers the line from 0, and `EmptyDrawingError`.
+    which numbers the line from 0, also for a file without lines.
 
     >>> number = '<void property="{}"><double>{}</double></void>'.format
     >>> line = '<void property="type"><int>2</int></void>' + number("x1", 1.5) + number("y1", 2)
@@ -48,7 +48,7 @@ def read_opx(text: str) -> Drawing:
                 parse_rational(stated[name]) if name in stated else Fraction(0)
                 for name in _COORDINATES
             )
-        except NotANumberError as error:
+        except NumberError as error:
             raise MalformedDrawingError(f"line {k}: {error}") from None
         if letter:
             segments.append(((x0, y0), (x1, y1), letter))

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import Any, Final
 
-from exactfold.errors import MalformedDrawingError, NotANumberError
+from exactfold.errors import MalformedDrawingError, NumberError
 from exactfold.exact.numbers import parse_rational, shown
 from exactfold.pattern.drawing.drawing import Drawing
 from exactfold.pattern.drawing.formats.fold_json import json_object
@@ -24,8 +24,8 @@ def read_ori(text: str) -> Drawing:
 
     Black lines are the border, red ones mountains, blue ones valleys; lines in other colours and
     `auxLineSegments` are auxiliary lines, which are left out. Coordinates are kept as they stand,
-    as in Oriedita's own FOLD files. Raises `NotJSONError`, `MalformedDrawingError`, which numbers
-    the line from 0, and `EmptyDrawingError`.
+    as in Oriedita's own FOLD files. Raises `NotFoldError`, `MalformedDrawingError`, which numbers
+    the line from 0, also for a file without lines.
 
     >>> line = '{"a": "0.0,0.0", "b": "0.1,-2", "color": "RED_1"}'
     >>> read_ori('{"lineSegments": [' + line + ']}').points[1]
@@ -62,7 +62,7 @@ def _end(k: int, value: Any) -> Place:
 def _place(what: str, parts: Sequence[str]) -> Place:
     try:
         return parse_rational(parts[0]), parse_rational(parts[1])
-    except NotANumberError as error:
+    except NumberError as error:
         raise MalformedDrawingError(f"{what}: {error}") from None
 
 
@@ -71,7 +71,7 @@ def read_orh(text: str) -> Drawing:
 
     After the heading of the lines, each line of the drawing has a row "色,colour" (0 border,
     1 mountain, 2 valley, others auxiliary, which are left out) and a row "座標,x1,y1,x2,y2". Raises
-    `MalformedDrawingError`, which names the row of the file, and `EmptyDrawingError`.
+    `MalformedDrawingError`, which names the row of the file, also for a file without lines.
 
     >>> read_orh("<線分集合>\\n番号,1\\n色,2\\n座標,0.0,0.0,10.5,0.0\\n").points[1]
     (Fraction(21, 2), Fraction(0, 1))

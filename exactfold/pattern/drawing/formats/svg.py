@@ -12,7 +12,7 @@ from typing import Any, Final
 from xml.etree import ElementTree
 
 from exactfold._support.plurals import counted
-from exactfold.errors import CurvedCreaseError, MalformedDrawingError, NotANumberError
+from exactfold.errors import MalformedDrawingError, NumberError
 from exactfold.exact.numbers import parse_rational, shown
 from exactfold.pattern.drawing.drawing import Drawing
 from exactfold.pattern.drawing.formats.markup import xml_root
@@ -57,8 +57,8 @@ def read_svg(text: str) -> Drawing:
     picture (`width`, `height`, `viewBox`) is not applied. Numbers are read through their text; only
     transforms are products of floats.
 
-    Raises `MalformedDrawingError`, `EmptyDrawingError`, and `CurvedCreaseError` for curves, which
-    names the element.
+    Raises `MalformedDrawingError`, also for a file without lines and for curves; for these it names
+    the element.
 
     >>> drawing = read_svg('<svg><g stroke="red"><line x2="0.1" y2="3"/></g></svg>')
     >>> drawing.points[1], drawing.lines[0].letter
@@ -168,7 +168,7 @@ def _lines(
             return _sides(_points(own.get("points", ""))), 0
         if tag == "polyline":
             return _sides(_points(own.get("points", "")))[:-1], 0
-    except (CurvedCreaseError, MalformedDrawingError, NotANumberError) as error:
+    except (MalformedDrawingError, NumberError) as error:
         raise type(error)(f"{name}: {error}") from None
     return None, 0
 
@@ -183,7 +183,7 @@ def _corners(own: Mapping[str, str]) -> list[Place]:
         _length(own, key) for key in ("x", "y", "width", "height", "rx", "ry")
     )
     if rx or ry:
-        raise CurvedCreaseError(f"the corners are rounded; {STRAIGHT}")
+        raise MalformedDrawingError(f"the corners are rounded; {STRAIGHT}")
     return [(x, y), (x + width, y), (x + width, y + height), (x, y + height)]
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import Final
 
-from exactfold.errors import CurvedCreaseError, MalformedDrawingError
+from exactfold.errors import MalformedDrawingError
 from exactfold.exact.numbers import parse_rational, shown
 from exactfold.pattern.drawing.segments import Place
 
@@ -24,15 +24,15 @@ def path_lines(data: str) -> tuple[list[tuple[Place, Place]], int]:
     """The lines of path data, and how many of them are written as curves that do not bend.
 
     Numbers are read through their text, and relative places are added exactly. Raises
-    `CurvedCreaseError` for arcs, and for Bezier curves that leave their chord by more than a
-    thousandth of its length; `MalformedDrawingError` for data that is not understood.
+    `MalformedDrawingError` for arcs, and for Bezier curves that leave their chord by more than a
+    thousandth of its length, and for data that is not understood.
 
     >>> lines, curves = path_lines("m.1.2h1v1z")
     >>> lines[1], curves
     (((Fraction(11, 10), Fraction(1, 5)), (Fraction(11, 10), Fraction(6, 5))), 0)
     >>> path_lines("M0 0 Q 1 1 2 0")
     Traceback (most recent call last):
-    exactfold.errors.CurvedCreaseError: a curve (Q) from (0, 0) to (2, 0); creases must
+    exactfold.errors.MalformedDrawingError: a curve (Q) from (0, 0) to (2, 0); creases must
     be straight
     """
     lines: list[tuple[Place, Place]] = []
@@ -41,7 +41,7 @@ def path_lines(data: str) -> tuple[list[tuple[Place, Place]], int]:
     for command, numbers in _commands(data):
         kind = command.upper()
         if kind == "A":
-            raise CurvedCreaseError(f"an arc from {_shown(here)}; {STRAIGHT}")
+            raise MalformedDrawingError(f"an arc from {_shown(here)}; {STRAIGHT}")
         origin = here if command.islower() else (Fraction(0), Fraction(0))
         if kind == "H":
             places = [(origin[0] + numbers[0], here[1])]
@@ -60,7 +60,7 @@ def path_lines(data: str) -> tuple[list[tuple[Place, Place]], int]:
             places.insert(0, (2 * here[0] - control[0], 2 * here[1] - control[1]))
         if kind in "CSQT":
             if not all(_on_chord(here, end, place) for place in places[:-1]):
-                raise CurvedCreaseError(
+                raise MalformedDrawingError(
                     f"a curve ({command}) from {_shown(here)} to {_shown(end)}; {STRAIGHT}"
                 )
             unbent += 1

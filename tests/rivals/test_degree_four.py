@@ -6,6 +6,7 @@ from math import isqrt
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from rivals.degree_four import area_product, split_form
 from sheets import random_wheel, wheel
 
 from exactfold.errors import NotApplicableError
@@ -14,7 +15,6 @@ from exactfold.pattern import families
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.equations.branch_system import BranchSystem
-from exactfold.solve.algebraic.degree_four import area_product, split_form
 from exactfold.solve.algebraic.groebner_bases import groebner
 
 

@@ -8,6 +8,12 @@ import pytest
 from flint import fmpq, fmpq_mat
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from rivals.hermite import (
+    hermite_counts,
+    hermite_form,
+    hermite_signs,
+    rank_and_signature,
+)
 from sheets import with_point
 
 from exactfold.errors import UsageError
@@ -18,12 +24,6 @@ from exactfold.rigidity.equations.branch_system import BranchSystem
 from exactfold.rigidity.equations.quadratic import QuadraticSystem
 from exactfold.rigidity.functionals import vertex_sign_functional
 from exactfold.solve.algebraic.groebner_bases import groebner, quotient_algebra
-from exactfold.solve.algebraic.hermite import (
-    hermite_counts,
-    hermite_form,
-    hermite_signs,
-    rank_and_signature,
-)
 from exactfold.solve.algebraic.quotient import from_groebner_basis
 from exactfold.solve.numeric.homotopy import homotopy
 from exactfold.solve.numeric.popping import popping

@@ -10,11 +10,11 @@ import pytest
 from flint import acb, acb_mat, arb, arb_mat, ctx
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from rivals import ball_krawczyk as module
+from rivals.ball_krawczyk import arb_krawczyk, decide_contains_one_zero
 
 from exactfold._support.verdict import PROVED
 from exactfold.rigidity.equations.quadratic import QuadraticSystem
-from exactfold.solve.certify import ball_krawczyk as module
-from exactfold.solve.certify.ball_krawczyk import arb_krawczyk, decide_contains_one_zero
 from exactfold.solve.certify.box import IsolatingBox, Uncertified
 
 SQRT2 = QuadraticSystem.from_rational([[[1, 0], [0, -2]]])
