@@ -45,8 +45,9 @@ class ListedBranch(TypedDict):
     """By interior vertex: 1 up, -1 down, 0 flat."""
     assignment: Assignment
     """By fold i-j: mountain, valley, flat, undecided; seen from +z."""
+    # Any, as an undecided branch has None; no count lists one.
     multiplicity: Annotated[Any, Keywords(type="integer", minimum=1)]
-    """Not known of a branch that is undecided, which no count lists."""
+    """That of the solution of the branch system."""
     representative: Annotated[str, Keywords(enum=["saddle", "either"])]
     heights: dict[VertexText, Pair[Rational]]
     """Lower and upper bound by vertex."""
