@@ -15,7 +15,7 @@ from textwrap import fill
 from typing import Final
 from xml.etree import ElementTree
 
-from exactfold import count_branches, count_ways, families, follow, open_pattern
+from exactfold import count, follow, read
 from exactfold._support.verdict import PROVED
 from exactfold.app.pictures.drawn_ways import DrawnWay
 from exactfold.app.pictures.folded import Amount, folded
@@ -26,9 +26,10 @@ from exactfold.app.report.count import answer
 from exactfold.app.report.panels import panels_answer
 from exactfold.branches import BranchCount
 from exactfold.errors import NotFollowedError
-from exactfold.motion import Motion, PanelMotion, follow_panels
+from exactfold.motion import Motion, PanelMotion
 from exactfold.panels import Decomposition
-from exactfold.pattern.data import BY_OTHERS, DRAWINGS, SHEETS, example_path, examples
+from exactfold.pattern import families
+from exactfold.pattern.data import BY_OTHERS, DRAWINGS, SHEETS, examples
 from exactfold.pattern.degenerate import DEGENERATE
 
 PAGE: Final = Path(__file__).with_name("gallery.md")
@@ -146,14 +147,11 @@ class Card:
         """What makes the pictures: commands, or Python for what is no file."""
         name, number = self.name, number_listed(self.found)
         if name in BUILT:
-            follow = ", follow" if self.way else ""
             (module,) = re.findall(r"^\w+", BUILT[name])
-            imports = [f"from exactfold import count_branches, {module}{follow}", ""]
-            if module == "DEGENERATE":
-                imports = [f"from exactfold import count_branches{follow}"]
-                imports += ["from exactfold.pattern.degenerate import DEGENERATE", ""]
-            lines = [*imports, f"found = count_branches({BUILT[name]})"]
-            return [*lines, f"motion = follow(found.branches[{self.way - 1}])"] if follow else lines
+            home = "pattern.degenerate" if module == "DEGENERATE" else "pattern"
+            lines = ["import exactfold", f"from exactfold.{home} import {module}", ""]
+            lines.append(f"found = exactfold.count({BUILT[name]})")
+            return [*lines, f"motion = exactfold.follow(found, {self.way})"] if self.way else lines
         count, draw = f"exactfold count {name}", f"exactfold draw {name}"
         if not number:
             return [count, f"{draw} -o {name}.svg"]
@@ -208,8 +206,8 @@ def names() -> list[str]:
 def counted(name: str) -> BranchCount | Decomposition:
     """All ways to fold an entry of the gallery."""
     if name in BUILT:
-        return count_branches(eval(BUILT[name], {"families": families, "DEGENERATE": DEGENERATE}))
-    return count_ways(name) if name in DRAWINGS else count_branches(name)
+        return count(eval(BUILT[name], {"families": families, "DEGENERATE": DEGENERATE}))
+    return count(name)
 
 
 def card(name: str) -> Card:
@@ -222,7 +220,7 @@ def card(name: str) -> Card:
         return Card(name, found, ways, motion_still(motion, time, "", name, SMALL), still, way)
     sheet, letters = found.pattern, {}
     if name not in BUILT:
-        opened = open_pattern(example_path(name))
+        opened = read(name)
         sheet, letters = opened.sheet, opened.assignment
     small = pattern_picture(sheet, letters, size=SMALL, keyed=False, labelled=False)
     return Card(name, found, pattern_picture(sheet, letters, title=name), small)
@@ -233,9 +231,7 @@ def fullest(found: BranchCount | Decomposition) -> tuple[int, Motion | PanelMoti
     for way in sorted(ways_of(found), key=folds, reverse=True):
         number = way.number or 1
         try:
-            if isinstance(found, BranchCount):
-                return number, follow(found.branches[number - 1])
-            return number, follow_panels(found, modes=(number,))
+            return number, follow(found, number)
         except NotFollowedError:
             continue
     raise NotFollowedError("no way of the list can be followed")

@@ -4,22 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from exactfold import PROVED, count_ways, find_branch, follow, load, open_pattern
+from exactfold import PROVED, branch, count, decompose, draw, follow
 from exactfold.app.pictures.crease_drawing import CreaseDrawing
 from exactfold.app.pictures.crease_lines import crease_lines
 from exactfold.app.pictures.folded import Amount, folded
 from exactfold.app.pictures.svg import element, number, picture, text
-from exactfold.app.pictures.way_sheets import sheet_of_ways
-from exactfold.app.report import (
-    branch_way,
-    motion_animation,
-    motion_stills,
-    pattern_picture,
-)
+from exactfold.app.report import motion_animation, motion_stills
 from exactfold.motion import follow_panels
 from exactfold.pattern import CreasePattern
-from exactfold.pattern.data import example_path
-from exactfold.rigidity.equations.boundary_heights import default_rim
 
 FOLDER = Path(__file__).with_name("pictures")
 MOTIONS = {
@@ -36,14 +28,12 @@ PANELS = {"zigzags": ("zigzags", 1), "zigzags-strips": ("zigzags", 3)}
 def pictures() -> dict[str, str]:
     """Each picture by the name of its file."""
     branches = {
-        f"{name}.svg": motion_stills(
-            follow(find_branch(load(pattern), signs)), 5, f"{pattern}, branch {signs}"
-        )
+        f"{name}.svg": motion_stills(follow(pattern, signs=signs), 5, f"{pattern}, branch {signs}")
         for name, (pattern, signs) in MOTIONS.items()
     }
     panels = {}
     for name, (pattern, component) in PANELS.items():
-        motion = follow_panels(count_ways(pattern), component=component)
+        motion = follow_panels(decompose(pattern), component=component)
         panels[f"{name}.svg"] = motion_stills(motion, 5, f"{pattern}, component {component}")
     others = {"folding.svg": folding(), "rim.svg": rim(), "rim-path.svg": rim_path()}
     return branches | panels | drawings() | others
@@ -51,9 +41,8 @@ def pictures() -> dict[str, str]:
 
 def rim_path() -> str:
     """A sheet with six corners, folded with the heights of its border in a given ratio."""
-    pattern = load("waterbomb")
-    branch = find_branch(pattern, "+", rim=default_rim(pattern))
-    return motion_stills(follow(branch, until="150deg"), 5, "waterbomb, branch +")
+    motion = follow("waterbomb", signs="+", until="150deg")
+    return motion_stills(motion, 5, "waterbomb, branch +")
 
 
 def rim() -> str:
@@ -77,7 +66,7 @@ def rim() -> str:
 
 def folding() -> str:
     """The sheet of the first page, which folds along a motion that is proved."""
-    motion = follow_panels(count_ways("miura"), modes=[8])
+    motion = follow("miura", 8)
     if motion.closes is not PROVED:
         raise RuntimeError("the motion on the first page is not proved")
     return motion_animation(motion, title="miura")
@@ -85,15 +74,14 @@ def folding() -> str:
 
 def drawings() -> dict[str, str]:
     """Those of the page on drawing, as `exactfold draw` makes them."""
-    opened = open_pattern(example_path("zigzags"))
-    branch = find_branch("random-8", "+-++--+-")
+    one = branch("random-8", "+-++--+-")
     return {
-        "draw-zigzags.svg": pattern_picture(opened.sheet, opened.assignment, title="zigzags"),
-        "draw-branch.svg": branch_way(branch).picture("random-8"),
-        "draw-folded.svg": folded(follow(branch), Amount.of("60deg"), "random-8").text,
-        "draw-all.svg": sheet_of_ways(count_ways("flat-octahedron"), "flat-octahedron"),
-        "draw-two-vertex.svg": sheet_of_ways(count_ways("two-vertex"), "two-vertex"),
-        "draw-modes.svg": sheet_of_ways(count_ways("zigzags"), "zigzags"),
+        "draw-zigzags.svg": draw("zigzags", title="zigzags"),
+        "draw-branch.svg": draw(one, title="random-8"),
+        "draw-folded.svg": folded(follow(one), Amount.of("60deg"), "random-8").text,
+        "draw-all.svg": draw(count("flat-octahedron"), title="flat-octahedron"),
+        "draw-two-vertex.svg": draw(count("two-vertex"), title="two-vertex"),
+        "draw-modes.svg": draw(count("zigzags"), title="zigzags"),
     }
 
 

@@ -1,17 +1,32 @@
 """exactfold: proven branch counts of triangulated origami near the unfolded state.
 
-Given a flat triangulated sheet with rational coordinates, `count_branches` says in how many ways it
-starts to fold, proves it, and tells the ways apart by vertex signs and mountain-valley assignments.
+    read       a crease pattern from a file, FOLD text, or by the name of a shipped pattern
+    count      in how many ways it starts to fold, proved, with the ways
+    branch     one way of a triangulated sheet, by vertex signs, letters or number
+    decompose  the ways of a sheet whose panels stay rigid
+    match      which ways have given mountains and valleys, or why none has
+    actuate    torques that drive a sheet along one way and no other
+    follow     the motion along a way, in space
+    prove      a motion proved, with its first contact
+    loops      all motions that come back to the flat sheet, proved
+    check      a certificate verified by the stand-alone checker
+    draw       a sheet, a way, all ways or a motion as a picture
+    view       a page that shows the sheet as it folds
+
+All of them take any sheet: what `read` takes, or what it returns. Every result has a `status`,
+which is `PROVED`, `REFUTED` or `UNDECIDED`.
 
 >>> import exactfold
->>> result = exactfold.count_branches("two-vertex")
+>>> result = exactfold.count("two-vertex")
 >>> result
 <BranchCount: proved, 4 branches, <CreasePattern: 2 interior and 4 boundary vertices>>
->>> [branch.sign_text for branch in result.branches]
+>>> [branch.sign_text for branch in result]
 ['--', '-+', '+-', '++']
+>>> exactfold.follow(result, 3)
+<Motion: branch +-, 60 frames to flat-fold at 3.01547>
 
-Here is what counting branches takes. The engines are in rooms of their own, such as
-`exactfold.solve.groebner` and `exactfold.solve.krawczyk`; the documentation lists them all.
+Each engine is in a room of its own, such as `exactfold.solve.groebner` and
+`exactfold.motion.follow_panels`; the documentation lists them all.
 """
 
 from exactfold._support.lazy import attached as _attached

@@ -16,7 +16,8 @@ if not __package__:  # run as a file
 import numpy as np
 from numpy.typing import NDArray
 
-from exactfold import count_branches, random_square
+from exactfold import random_square
+from exactfold.branches import count_branches
 from proofs.framework import Proof, Script, run
 from proofs.statements import Severity
 

@@ -11,8 +11,10 @@ from pathlib import Path
 if not __package__:  # run as a file
     sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from exactfold import CreasePattern, count_branches, families
+from exactfold import CreasePattern
+from exactfold.branches import count_branches
 from exactfold.exact.linalg import inertia
+from exactfold.pattern import families
 from exactfold.rigidity import BranchSystem, curvature_form, definite_stress
 from exactfold.rigidity.functionals import fold_functional
 from proofs.framework import Proof, Script, run

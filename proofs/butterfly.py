@@ -30,7 +30,9 @@ if not __package__:  # run as a file
 
 import sympy
 
-from exactfold import CreasePattern, count_branches, families
+from exactfold import CreasePattern
+from exactfold.branches import count_branches
+from exactfold.pattern import families
 from exactfold.rigidity import curvature_form, definite_stress
 from proofs.framework import Proof, Script, run
 from proofs.mountain_valley import sector

@@ -9,8 +9,9 @@ from fractions import Fraction
 from functools import lru_cache
 from itertools import product
 
-from exactfold import BranchCount, CreasePattern, count_branches
+from exactfold import BranchCount, CreasePattern
 from exactfold._support.verdict import PROVED, Verdict
+from exactfold.branches import count_branches
 from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.roots import BoxRoot, EnclosedRoot
 from exactfold.errors import NotApplicableError

@@ -16,9 +16,11 @@ if not __package__:  # run as a file
 
 import sympy
 
-from exactfold import CreasePattern, count_branches, families, random_square
+from exactfold import CreasePattern, random_square
+from exactfold.branches import count_branches
 from exactfold.exact import QuadraticForm
 from exactfold.exact.linalg import from_fmpq, inertia, nullspace, to_flint
+from exactfold.pattern import families
 from exactfold.rigidity import curvature_form
 from exactfold.rigidity.functionals import fold_functional
 from proofs.framework import Proof, Script, run

@@ -15,8 +15,9 @@ if not __package__:  # run as a file
 import networkx as nx
 import sympy
 
-from exactfold import CreasePattern, count_branches, find_branches
+from exactfold import CreasePattern
 from exactfold._support.verdict import PROVED
+from exactfold.branches import count_branches, find_branches
 from exactfold.pattern.crease_pattern import Edge, Triangle
 from proofs.framework import Proof, Script, run
 

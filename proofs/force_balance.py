@@ -13,7 +13,8 @@ if not __package__:  # run as a file
 from sympy import QQ
 from sympy.polys.fields import field
 
-from exactfold import CreasePattern, families
+from exactfold import CreasePattern
+from exactfold.pattern import families
 from exactfold.rigidity import wheel_stress
 from proofs.framework import Proof, Script, run
 from proofs.spokes import drawn, ladder, wheel

@@ -41,8 +41,10 @@ if not __package__:  # run as a file
 
 import sympy
 
-from exactfold import CreasePattern, count_branches, families, random_square
+from exactfold import CreasePattern, random_square
+from exactfold.branches import count_branches
 from exactfold.branches.values.result import BranchCount
+from exactfold.pattern import families
 from proofs.butterfly import DART, FAN, KITE, quadratic
 from proofs.framework import Proof, Script, run
 from proofs.mountain_valley import sector

@@ -20,7 +20,7 @@ if not __package__:  # run as a file
 
 import networkx as nx
 
-from exactfold import families
+from exactfold.pattern import families
 from exactfold.studies.triangulations import degrees, insertions
 from proofs.framework import Proof, Script, run
 from proofs.statements import Severity

@@ -14,8 +14,9 @@ import sympy
 from sympy import QQ
 from sympy.polys.fields import field
 
-from exactfold import CreasePattern, families
+from exactfold import CreasePattern
 from exactfold.exact.linalg import rank
+from exactfold.pattern import families
 from exactfold.rigidity import curvature_form, rigidity_matrix, self_stresses
 from proofs.claims import is_zero
 from proofs.formulas import Names

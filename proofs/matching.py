@@ -20,8 +20,9 @@ import sympy
 from sympy import QQ
 from sympy.polys.rings import ring
 
-from exactfold import CreasePattern, families, random_square
+from exactfold import CreasePattern, random_square
 from exactfold.exact.linalg import to_flint
+from exactfold.pattern import families
 from exactfold.rigidity import curvature_form, rigidity_matrix, wheel_stress
 from exactfold.rigidity.timelike import round_cone
 from proofs.framework import Proof, Script, run

@@ -29,7 +29,9 @@ if not __package__:  # run as a file
 
 import sympy
 
-from exactfold import CreasePattern, count_branches, families
+from exactfold import CreasePattern
+from exactfold.branches import count_branches
+from exactfold.pattern import families
 from exactfold.rigidity import curvature_form
 from exactfold.rigidity.functionals import fold_functional, vertex_sign_functional
 from proofs.framework import Proof, Script, run

@@ -27,8 +27,10 @@ if not __package__:  # run as a file
 from sympy import QQ
 from sympy.polys.fields import field
 
-from exactfold import CreasePattern, count_branches, families
+from exactfold import CreasePattern
+from exactfold.branches import count_branches
 from exactfold.exact.linalg import inertia, nullspace
+from exactfold.pattern import families
 from exactfold.rigidity import BranchSystem, QuadraticSystem
 from exactfold.rigidity.definite_stresses import disk_multipliers
 from exactfold.rigidity.equations.branch_system import Chart, notch_chart

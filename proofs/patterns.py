@@ -6,8 +6,9 @@ import random
 from collections.abc import Iterator
 from fractions import Fraction
 
-from exactfold import CreasePattern, families
+from exactfold import CreasePattern
 from exactfold.errors import PatternError
+from exactfold.pattern import families
 from exactfold.pattern.crease_pattern import Point, Triangle
 
 DART = CreasePattern(

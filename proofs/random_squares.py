@@ -21,8 +21,9 @@ if not __package__:  # run as a file
 import numpy as np
 import sympy
 
-from exactfold import CreasePattern, count_branches, random_square
+from exactfold import CreasePattern, random_square
 from exactfold._support.verdict import PROVED
+from exactfold.branches import count_branches
 from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.result import BranchCount
 from exactfold.rigidity import BranchSystem, QuadraticSystem

@@ -11,10 +11,11 @@ if not __package__:  # run as a file
 
 import sympy
 
-from exactfold import CreasePattern, decompose, families
+from exactfold import CreasePattern
 from exactfold._support.verdict import REFUTED
 from exactfold.exact.linalg import rank
-from exactfold.pattern import PanelPattern
+from exactfold.panels import decompose
+from exactfold.pattern import PanelPattern, families
 from exactfold.rigidity import curvature_form, rigidity_matrix
 from exactfold.rigidity.functionals import fold_functional
 from proofs.framework import Proof, Script, run

@@ -20,7 +20,7 @@ import sympy
 from sympy import QQ
 from sympy.polys.fields import field
 
-from exactfold import families
+from exactfold.pattern import families
 from exactfold.rigidity import curvature_form, wheel_stress
 from proofs.claims import is_zero
 from proofs.wheel_stress import Angle, cross, dot, with_vertices

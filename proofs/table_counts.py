@@ -11,8 +11,9 @@ if not __package__:  # run as a file
 
 import sympy
 
-from exactfold import count_branches, families
+from exactfold.branches import count_branches
 from exactfold.exact.linalg import rank
+from exactfold.pattern import families
 from exactfold.rigidity.functionals import fold_functional
 from proofs.framework import Proof, Script, run
 from proofs.statements import Severity

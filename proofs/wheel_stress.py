@@ -14,8 +14,9 @@ from sympy import QQ
 from sympy.polys.fields import field
 from sympy.polys.rings import ring
 
-from exactfold import CreasePattern, families
+from exactfold import CreasePattern
 from exactfold.exact.linalg import rank
+from exactfold.pattern import families
 from exactfold.rigidity import rigidity_matrix, self_stresses, wheel_stress
 from proofs.framework import Proof, Script, run
 

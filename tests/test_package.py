@@ -12,6 +12,21 @@ import rooms
 
 import exactfold
 
+VERBS = {
+    "actuate",
+    "branch",
+    "check",
+    "count",
+    "decompose",
+    "draw",
+    "follow",
+    "loops",
+    "match",
+    "prove",
+    "read",
+    "view",
+}
+
 
 def test_the_version_is_that_of_the_installed_package():
     assert exactfold.__version__ == importlib.metadata.version("exactfold")
@@ -32,7 +47,20 @@ def test_few_names_are_on_top_and_all_of_them_are_in_a_room():
     inside = {id(value) for name, value in found.items() if "." in name}
     alone = {name for name in on_top if id(found[name]) not in inside}
     verdicts = {"PROVED", "REFUTED", "UNDECIDED", "Verdict"}
-    assert alone == verdicts | {"ExactfoldError", "InputError", "schema"}
+    assert alone == verdicts | VERBS | {"Checked", "ExactfoldError", "InputError", "schema"}
+
+
+def test_no_room_has_the_name_of_a_verb():
+    folder = Path(exactfold.__file__).parent
+    on_top = {path.stem for path in folder.iterdir()}
+    assert {"branches", "checker", "errors"} <= on_top
+    assert on_top & VERBS == set()
+
+
+def test_the_help_names_every_verb_in_one_line():
+    lines = [line.split() for line in exactfold.__doc__.splitlines() if line.startswith("    ")]
+    assert {words[0] for words in lines} == VERBS
+    assert len(lines) == len(VERBS)
 
 
 def test_a_module_hides_no_public_name_of_its_room():

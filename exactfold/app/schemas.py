@@ -72,7 +72,7 @@ DOCUMENTS: Final = {
         "branches.counting.motion_facts:PanelFactsDocument",
     ),
     "convert": ("exactfold convert --json", "app.commands.convert:ConvertDocument"),
-    "check": ("exactfold check --json", "app.commands.check:CheckDocument"),
+    "check": ("exactfold check --json", "app.commands.check_document:CheckDocument"),
     "examples": ("exactfold examples --json", "app.cli.main:ExamplesDocument"),
     "study": ("exactfold study NAME --json", "app.commands.study:StudyDocument"),
     "study-row": ("exactfold study NAME --row ID --json", "app.commands.study:StudyRowDocument"),

@@ -1,1 +1,2 @@
+from exactfold.certificates.entries import CertificateLines as CertificateLines
 from exactfold.certificates.entries import write_certificate as write_certificate

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from typing import Any
 
-from exactfold.checker.branches.listing import LISTING
+from exactfold._support.plurals import counted
+from exactfold.checker.core.lines import chained
 from exactfold.exact.numbers import format_integer, format_rational
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.fold_writing import write_text
@@ -21,28 +22,22 @@ from exactfold.solve.certify.box import IsolatingBox
 Document = dict[str, Any]
 
 
-def document(
-    pattern: CreasePattern,
-    claims: Mapping[str, Any],
-    evidence: Mapping[str, Any],
-    provenance: Mapping[str, Any],
-) -> Document:
-    """The certificate as a JSON object; `docs/certificate.md` describes every key."""
-    return {
-        "format": LISTING.format,
-        "version": LISTING.version,
-        "pattern": pattern_document(pattern),
-        "claims": {
-            "interior": pattern.Vi,
-            "boundary": pattern.Ve,
-            "folds": len(pattern.folds),
-            "degrees_of_freedom": pattern.degrees_of_freedom,
-            "sha256": pattern.sha256,
-            **claims,
-        },
-        "evidence": dict(evidence),
-        "provenance": dict(provenance),
-    }
+class CertificateLines(tuple[str, ...]):
+    """A certificate of several lines, each the text of a JSON object.
+
+    >>> CertificateLines(["{}", "{}"])
+    <CertificateLines: 2 lines>
+    """
+
+    __slots__ = ()
+
+    @property
+    def text(self) -> str:
+        """The file: each line with the digest that chains it to the line before."""
+        return chained(self)
+
+    def __repr__(self) -> str:
+        return f"<CertificateLines: {counted(len(self), 'line')}>"
 
 
 def pattern_document(pattern: CreasePattern) -> Document:
@@ -98,13 +93,8 @@ def box_entry(box: IsolatingBox) -> Document:
     }
 
 
-def algebraic_evidence(
-    proof: AlgebraicProof, roots: Sequence[dict[str, Any]], labels: Sequence[int]
-) -> dict[str, Any]:
-    """The proof as certificate evidence; `roots` holds an entry for each branch, in their order.
-
-    `labels` names the vertices in the certificate.
-    """
+def algebraic_evidence(proof: AlgebraicProof, labels: Sequence[int]) -> dict[str, Any]:
+    """The proof as certificate evidence; `labels` names the vertices in the certificate."""
     return {
         "multipliers": [format_rational(m) for m in proof.multipliers],
         "separating": list(proof.classes[0][0].separating) if proof.classes else [],
@@ -116,7 +106,6 @@ def algebraic_evidence(
             }
             for root_class, flat in proof.classes
         ],
-        "roots": list(roots),
     }
 
 
@@ -134,6 +123,12 @@ def class_entry(
     return {"class": number, "interval": [format_rational(x) for x in interval]}
 
 
-def write_certificate(certificate: Document, path: str | os.PathLike[str]) -> None:
+def write_certificate(
+    certificate: Document | CertificateLines, path: str | os.PathLike[str]
+) -> None:
     """Write a certificate whole or not at all; raises `UnwritableFileError`."""
-    write_text(path, json.dumps(certificate, separators=(",", ":")) + "\n")
+    if isinstance(certificate, CertificateLines):
+        text = certificate.text
+    else:
+        text = json.dumps(certificate, separators=(",", ":")) + "\n"
+    write_text(path, text)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from exactfold._support.shared_work import in_order
+from exactfold._support.processes import in_order
 from exactfold.checker.core.parts import Engine, Said, Verifier
 
 

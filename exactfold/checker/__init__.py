@@ -9,18 +9,17 @@ their own, and verify every claim. The folder alone is enough. Exit code 0: ever
 some claim is not supported, or the file is not finished. 3: not a certificate. 70: a worker process
 died, memory is short, or a defect of this program; nothing is known of the file.
 
-Eleven kinds of certificates are told apart by what is in the file: listings of all branches
-(`listing`, docs/certificate.md), compact ones with one root for each sign vector (`compact`,
-docs/compact-certificate.md), proofs of one branch (`branch`, docs/branch.md), which are checked by
-formulas of their own, all halves of branches with given mountains and valleys (`letters`,
-docs/assignment.md), whether rigid panels start to fold with them (`panel_letters`,
-docs/assignment.md), all assignments of a sheet with five corners (`assignments`, docs/circles.md),
-the pieces of a sheet with more than four (`pieces`, docs/certificate.md), all motions of a sheet of
-rigid panels (`panels`, docs/certificate.md), the true motion along one branch (`motion`,
-docs/motion.md), one of rigid panels (`panel_motion`, docs/panel_motion.md), and the loops of true
-motions through the flat state (`motion_loops`, docs/motions.md).
-Each theory has the `Kind` of its certificates beside what it checks; `command` has the table of them,
-`limits` how much one file may ask for.
+A kind of certificate is one `Kind`, beside the theory that checks it; `command` has the table of
+the eleven kinds. In `branches` are listings of all branches (`listing`, docs/certificate.md),
+compact ones with one root for each sign vector (`compact`, docs/compact-certificate.md), proofs of
+one branch (`branch`, docs/branch.md), which are checked by formulas of their own, and the pieces of
+a sheet with more than four corners (`connected_components`, docs/any_border.md); in `panels` all
+motions of a sheet of rigid panels (docs/certificate.md); in `letters` all halves of branches with
+given mountains and valleys (`letters`), whether rigid panels start to fold with them (`panels`,
+both in docs/assignment.md), and all assignments of a sheet with five corners (`assignments`,
+docs/circles.md); in `motion` the true motion along one branch (docs/motion.md), the loops of true
+motions through the flat state (`loops`, docs/motions.md), and the motion of rigid panels (`panels`,
+docs/panel_motion.md). `core/limits.py` says how much one file may ask for.
 
 Floating point is used to choose the matrices and weights of Krawczyk's and of Newton's test, which
 may be any, and nowhere else.

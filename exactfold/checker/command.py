@@ -81,12 +81,19 @@ def load(text: str) -> dict[str, Any]:
         raise FormatError(_stranger(text) or error) from None
 
 
-def check(data: dict[str, Any]) -> Verified[Any]:
-    """Verify every claim of the JSON object of a certificate.
+def check(
+    data: dict[str, Any] | tuple[str, ...],
+    workers: int = 1,
+    engine_of: Callable[[LineKind[Any]], Engine] = lambda kind: kind.engine,
+) -> Verified[Any]:
+    """Verify every claim of a certificate: its JSON object, or the texts of its lines.
 
-    Raises `CertificateError` at the first claim that is not supported, `FormatError` for an object
-    of no known kind.
+    `workers` and `engine_of` are for lines, as in `verify`. Raises `CertificateError` at the first
+    claim that is not supported, `FormatError` for an object or a first line of no known kind.
     """
+    if isinstance(data, tuple):
+        in_lines = _kind_in_lines(data[0] if data else "{}")
+        return Verified(in_lines, in_lines.check(iter(data), workers, engine_of(in_lines)))
     kind = _kind_of(data)
     return Verified(kind, kind.check(data))
 
@@ -119,7 +126,7 @@ def verify(
     with open(path, "rb") as stream:
         first = stream.readline(MOST_LINE)
         if _sealed(first):
-            kind = _kind_in_lines(first)
+            kind = _kind_of_file(first)
             return Verified(kind, kind.check(lines(stream, first), workers, engine_of(kind)))
         try:
             text = (first + stream.read(MOST_BYTES + 1 - len(first))).decode()
@@ -129,14 +136,19 @@ def verify(
     return check(load(text))
 
 
-def is_compact(path: str | PathLike[str]) -> bool:
-    """Whether the first line of a file is that of a compact certificate; raises `OSError`."""
+def kind_in_lines(path: str | PathLike[str]) -> LineKind[Any] | None:
+    """The kind of a file that is written line by line, None for any other; raises `OSError`."""
     with open(path, "rb") as stream:
         first = stream.readline(MOST_LINE)
     try:
-        return _sealed(first) and _kind_in_lines(first) is COMPACT
+        return _kind_of_file(first) if _sealed(first) else None
     except FormatError:
-        return False
+        return None
+
+
+def is_compact(path: str | PathLike[str]) -> bool:
+    """Whether the first line of a file is that of a compact certificate; raises `OSError`."""
+    return kind_in_lines(path) is COMPACT
 
 
 def _sealed(line: bytes) -> bool:
@@ -144,9 +156,14 @@ def _sealed(line: bytes) -> bool:
     return re.fullmatch(rb"[0-9a-f]{64}\n", line.rpartition(b"\t")[2]) is not None
 
 
-def _kind_in_lines(first: bytes) -> LineKind[Any]:
-    """The kind of a file of lines, by the "format" in the first; raises `FormatError`."""
+def _kind_of_file(first: bytes) -> LineKind[Any]:
+    """The kind of a file of lines, by the first; raises `FormatError`."""
     (text,) = lines(BytesIO(first))
+    return _kind_in_lines(text)
+
+
+def _kind_in_lines(text: str) -> LineKind[Any]:
+    """The kind of a certificate in lines, by the "format" in the first; raises `FormatError`."""
     form = read_object(text, "the first line").get("format")
     for kind in IN_LINES:
         if kind.format == form:

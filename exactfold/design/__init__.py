@@ -1,4 +1,4 @@
-"""From a wish to a way to fold: letters asked for, and torques that drive one branch."""
+"""From a wish to a way to fold: the letters asked for, and torques that drive one branch."""
 
 from exactfold._support.lazy import attached as _attached
 

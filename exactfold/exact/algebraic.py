@@ -14,11 +14,11 @@ Vector: TypeAlias = list[fmpq_poly]
 
 @dataclass(frozen=True)
 class NumberField:
-    """K = Q[T]/p for an irreducible p; elements are `fmpq_poly` of degree < deg p.
+    """The field K = Q[T]/p for an irreducible p; elements are `fmpq_poly` of degree < deg p.
 
-    `polynomial` holds the integer coefficients of p, constant term first. Division raises
-    `ZeroDivisionError` for an element that is not invertible, which for an irreducible p is zero
-    alone.
+    `polynomial` holds the integer coefficients of p, constant term first. Division by an element
+    that is not invertible raises `ZeroDivisionError`. As p is irreducible, only zero is such an
+    element.
 
     >>> field = NumberField((-2, 0, 1))
     >>> field.inverse(fmpq_poly([0, 1]))
@@ -37,7 +37,7 @@ class NumberField:
         return a * b % self.modulus
 
     def inverse(self, a: fmpq_poly) -> fmpq_poly:
-        """1/a."""
+        """The inverse 1/a, reduced modulo p."""
         if a.degree() == 0:
             return fmpq_poly([1 / a[0]])
         divisor, inverse, _ = a.xgcd(self.modulus)

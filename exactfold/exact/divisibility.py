@@ -1,4 +1,4 @@
-"""Exact and fast: which integer polynomials another one divides, and whether one is squarefree."""
+"""Exact and fast tests: does an integer polynomial divide others, and is it squarefree?"""
 
 from __future__ import annotations
 
@@ -11,10 +11,12 @@ _PRIME = (1 << 61) - 1
 
 
 def is_squarefree(polynomial: fmpz_poly) -> bool:
-    """Whether p, not zero, has no multiple root: gcd(p, p') = 1 modulo a prime, or else over Q.
+    """Whether the polynomial p, which must not be zero, has no multiple root.
 
-    A prime that does not divide the leading coefficient of p keeps the degree of a common factor,
-    so that one over Q would be seen modulo the prime.
+    p is squarefree if and only if gcd(p, p') = 1 over Q. This is tried first modulo a prime that
+    does not divide the leading coefficient of p: a common factor over Q would keep its degree
+    modulo this prime, so that gcd 1 modulo the prime proves gcd 1 over Q. If the prime proves
+    nothing, the gcd over Q decides.
 
     >>> is_squarefree(fmpz_poly([-2, 0, 1])), is_squarefree(fmpz_poly([1, 2, 1]))
     (True, False)
@@ -28,11 +30,12 @@ def is_squarefree(polynomial: fmpz_poly) -> bool:
 def are_multiples(polynomials: Sequence[fmpz_poly], divisor: fmpz_poly) -> list[bool]:
     """For each polynomial, whether `divisor` divides it over Q; decided exactly.
 
-    The divisor q is made primitive; by Gauss's lemma the quotient h of a multiple g is integral.
-    Its coefficients are at most 2^deg(h) |g|_2 / |lc(q)| (Mignotte's bound; von zur Gathen,
-    Gerhard, Modern Computer Algebra, corollary 6.33). So h is known from its residues modulo an M
-    beyond twice that, and g = q h over Z is tried. Much faster than division over Z when
-    coefficients are long.
+    First the divisor q is made primitive. If a polynomial g is a multiple of q, Gauss's lemma says
+    that the quotient h is integral. The coefficients of h are at most 2^deg(h) |g|_2 / |lc(q)|
+    (Mignotte's bound; von zur Gathen, Gerhard, Modern Computer Algebra, corollary 6.33). So h is
+    determined by its residues modulo any M that is more than twice this bound, and the equation
+    g = q h is then tested over Z. When coefficients are long, this is much faster than division
+    over Z.
 
     >>> are_multiples([fmpz_poly([-4, 0, 0, 0, 1]), fmpz_poly([1, 1, 1])], fmpz_poly([-2, 0, 1]))
     [True, False]

@@ -1,8 +1,9 @@
-"""Degrees of the irreducible factors over Q, and the Galois group, from factorisations modulo p.
+"""Degrees of irreducible factors over Q, and Galois groups, proved by factoring modulo primes.
 
-If p does not divide the leading coefficient of f and f is squarefree modulo p, the degrees of its
-factors modulo p are the cycle lengths of an element of the Galois group on the roots (Dedekind;
-Frobenius). What a few primes prove can be replayed from those primes.
+Let p be a prime that does not divide the leading coefficient of f, and let f be squarefree modulo
+p. Then the degrees of the factors of f modulo p are the cycle lengths of an element of the Galois
+group, which permutes the roots (Dedekind; Frobenius). What a few primes prove can be checked again
+from these primes alone.
 """
 
 from __future__ import annotations
@@ -17,9 +18,10 @@ _TRIED = 48
 
 
 def modular_degrees(polynomial: Sequence[int], prime: int) -> tuple[int, ...] | None:
-    """Degrees, ascending, of the irreducible factors modulo a prime; None if it is unsuitable.
+    """Degrees of the irreducible factors modulo a prime, ascending; None for an unsuitable prime.
 
-    Suitable primes do not divide the leading coefficient and keep the polynomial squarefree.
+    A prime is suitable if it does not divide the leading coefficient and the polynomial is
+    squarefree modulo this prime.
 
     >>> [modular_degrees((-2, 0, 1), p) for p in (7, 5, 2)]
     [(1, 1), (2,), None]
@@ -36,9 +38,10 @@ def modular_degrees(polynomial: Sequence[int], prime: int) -> tuple[int, ...] | 
 def irreducibility_primes(polynomial: Sequence[int], tried: int = _TRIED) -> tuple[int, ...] | None:
     """Primes whose `modular_degrees` together prove a polynomial irreducible over Q.
 
-    The degree of a factor over Q is a sum of some of the degrees modulo every suitable prime; if 0
-    and d are the only such numbers, there is no proper factor. None if the first `tried` primes
-    above 1000 prove nothing: the polynomial may be irreducible all the same.
+    For every suitable prime, the degree of a factor over Q is a sum of some of the degrees modulo
+    that prime. If only 0 and d are such sums for all primes, there is no proper factor. The result
+    is None if the first `tried` primes above 1000 prove nothing: the polynomial may be irreducible
+    all the same.
 
     >>> irreducibility_primes((-2, 0, 1)), irreducibility_primes((1, 0, 0, 0, 1))  # T^4 + 1
     ((1013,), None)
@@ -59,9 +62,10 @@ def irreducibility_primes(polynomial: Sequence[int], tried: int = _TRIED) -> tup
 
 
 def factor_degrees(polynomial: Sequence[int]) -> tuple[int, ...]:
-    """Degrees, ascending, of the irreducible factors over Q of a squarefree polynomial, exactly.
+    """Degrees of the irreducible factors over Q of a squarefree polynomial, ascending and exact.
 
-    By `irreducibility_primes`; only if these prove nothing by factoring over Z, which may be slow.
+    `irreducibility_primes` is tried first. Only if it proves nothing, the polynomial is factored
+    over Z, which may be slow.
 
     >>> factor_degrees((-2, 0, 1)), factor_degrees((1, 0, 0, 0, 1)), factor_degrees((-1, 0, 0, 1))
     ((2,), (4,), (1, 2))
@@ -77,11 +81,12 @@ def symmetric_group_primes(
 ) -> tuple[int, ...] | None:
     """Primes that prove the Galois group of a polynomial to be the symmetric group S_d.
 
-    Besides irreducibility: a factor modulo p of prime degree l, d/2 < l < d - 2, gives an l-cycle,
-    which makes a transitive group primitive and then, by Jordan's theorem (Wielandt, Finite
-    Permutation Groups, theorem 13.9), one that contains the alternating group; and some odd
-    permutation. For d >= 5 the roots then are not expressible by radicals. None if the primes
-    tried prove nothing, as for every d < 8.
+    The primes prove three things. The polynomial is irreducible, so the group is transitive. Some
+    prime has a factor of prime degree l with d/2 < l < d - 2; this gives an l-cycle, which makes
+    the transitive group primitive, and by Jordan's theorem (Wielandt, Finite Permutation Groups,
+    theorem 13.9) the group then contains the alternating group. Some prime gives an odd
+    permutation. For d >= 5 the roots are then not expressible by radicals. The result is None if
+    the primes tried prove nothing; for d < 8 there is no such l, and the result is always None.
 
     >>> symmetric_group_primes((-1, -1, 0, 0, 0, 0, 0, 0, 1))  # T^8 - T - 1
     (1009, 1013, 1021)
@@ -104,7 +109,7 @@ def symmetric_group_primes(
 
 
 def _patterns(polynomial: Sequence[int], tried: int) -> Iterator[tuple[int, tuple[int, ...]]]:
-    """Suitable primes among the first above 1000, and the degrees modulo them."""
+    """Yields each suitable prime among the first `tried` above 1000, with the degrees modulo it."""
     for prime in islice((p for p in range(_FROM, _FROM * tried) if _is_prime(p)), tried):
         degrees = modular_degrees(polynomial, prime)
         if degrees is not None:

@@ -17,13 +17,14 @@ if TYPE_CHECKING:
     from exactfold.exact.linalg import Inertia
 
 _SHOWN = 12
-"""Variables of the largest form that a notebook writes out."""
+"""A notebook writes out forms of at most this many variables."""
 
 
 @dataclass(frozen=True)
 class Diagonal:
-    """sum_k weights_k (rows_k . h)^2 with independent rows, h in the order of the form's labels.
+    """A quadratic form as the sum over k of weights_k (rows_k . h)^2.
 
+    The rows are independent, and h lists the variables in the order of the form's labels. The
     `weights` are not zero; `zero` is the dimension of the kernel of the form.
     """
 
@@ -39,7 +40,7 @@ class Diagonal:
 
     @property
     def signature(self) -> int:
-        """Number of positive less number of negative weights."""
+        """The number of positive weights minus the number of negative weights."""
         positive, negative, _ = self.inertia
         return positive - negative
 
@@ -48,10 +49,10 @@ class Diagonal:
 
 
 class QuadraticForm:
-    """Q(h) = h^T M h on the variables named by `labels`, with M symmetric over Q.
+    """The quadratic form Q(h) = h^T M h on the variables named by `labels`, M symmetric over Q.
 
-    `matrix` has the entries of M as fractions. `integers` / `denominator` is M in lowest terms: no
-    integer above 1 divides all entries and the denominator, which is positive.
+    `matrix` has the entries of M as fractions. `integers` / `denominator` is M in lowest terms: the
+    denominator is positive, and no integer above 1 divides it and all entries of `integers`.
 
     >>> form = QuadraticForm((4, 7), ((Fraction(1), Fraction(0)), (Fraction(0), Fraction(-1))))
     >>> form({4: Fraction(3), 7: Fraction(2)}), form.inertia
@@ -67,7 +68,7 @@ class QuadraticForm:
     def over(
         cls, denominator: int, labels: Iterable[int], integers: Iterable[Sequence[int]]
     ) -> QuadraticForm:
-        """The form with the matrix `integers` / `denominator`, whose denominator is positive.
+        """The form with the matrix `integers` / `denominator`; the denominator must be positive.
 
         >>> QuadraticForm.over(4, [7], [[2]]).matrix
         ((Fraction(1, 2),),)
@@ -83,10 +84,10 @@ class QuadraticForm:
         return form
 
     def __setattr__(self, name: str, value: object) -> None:
-        raise FrozenInstanceError(f"a form does not change: {name}")
+        raise FrozenInstanceError(f"a quadratic form cannot be changed: {name}")
 
     def __delattr__(self, name: str) -> None:
-        raise FrozenInstanceError(f"a form does not change: {name}")
+        raise FrozenInstanceError(f"a quadratic form cannot be changed: {name}")
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, QuadraticForm):
@@ -115,7 +116,7 @@ class QuadraticForm:
         return lcm(*(x.denominator for row in self.matrix for x in row))
 
     def polar(self, a: Mapping[int, Fraction], b: Mapping[int, Fraction]) -> Fraction:
-        """The symmetric bilinear form B(a, b) with B(h, h) = Q(h)."""
+        """The symmetric bilinear form B(a, b), for which B(h, h) = Q(h)."""
         if not self._is_rational(a, b):
             row = self.functional(a)
             return sum((row[v] * b[v] for v in self.labels if b[v]), Fraction(0))
@@ -140,7 +141,7 @@ class QuadraticForm:
         return {v: Fraction(x, denominator) for v, x in zip(self.labels, images, strict=True)}
 
     def integer_functional(self, a: Mapping[int, Fraction]) -> dict[int, int]:
-        """A positive multiple of the functional h -> B(a, h), the least with integer coefficients.
+        """The least positive multiple of the functional h -> B(a, h) with integer coefficients.
 
         >>> form = QuadraticForm((4, 7), [[Fraction(1, 3), 1], [1, 0]])
         >>> form.integer_functional({4: Fraction(1), 7: Fraction(1)})
@@ -151,7 +152,7 @@ class QuadraticForm:
         return {v: x // common for v, x in zip(self.labels, images, strict=True)}
 
     def _is_rational(self, *points: Mapping[int, object]) -> bool:
-        """Whether all is in fractions: floats, symbols and other fields take the entries singly."""
+        """Whether M and all points are rational; other entries (floats, symbols) need `matrix`."""
         values = (point[v] for point in points for v in self.labels)
         return all(isinstance(x, int | Fraction) for x in values) and (
             "integers" in vars(self)
@@ -159,7 +160,7 @@ class QuadraticForm:
         )
 
     def _images(self, a: Mapping[int, Fraction]) -> tuple[list[int], int]:
-        """M a, in integers over a common denominator."""
+        """The vector M a as integers, and their common denominator."""
         vector, below = over_common_denominator(a[v] for v in self.labels)
         return [sum(map(mul, row, vector)) for row in self.integers], self.denominator * below
 
@@ -169,7 +170,7 @@ class QuadraticForm:
     @property
     def inertia(self) -> Inertia:
         """(positive, negative, zero), exactly."""
-        from exactfold.exact.linalg import inertia  # FLINT, for this alone
+        from exactfold.exact.linalg import inertia  # here: only this property needs FLINT
 
         return inertia(self.matrix)
 
@@ -177,14 +178,14 @@ class QuadraticForm:
     def diagonalised(self) -> Diagonal:
         """The form as a sum of weighted squares of independent linear forms, exactly.
 
-        By Lagrange's reduction, see `sum_of_squares`; its inertia is an independent second way to
-        `inertia`, which goes by the characteristic polynomial.
+        `sum_of_squares` finds it by Lagrange's reduction. So the inertia of the result is computed
+        independently of `inertia`, which uses the characteristic polynomial.
 
         >>> one, two = Fraction(1), Fraction(2)
         >>> QuadraticForm((4, 7), ((two, two), (two, one))).diagonalised.weights
         (Fraction(2, 1), Fraction(-1, 1))
         """
-        from exactfold.exact.linalg import sum_of_squares  # as in `inertia`
+        from exactfold.exact.linalg import sum_of_squares  # here, as in `inertia`
 
         squares = sum_of_squares(self.matrix)
         return Diagonal(
@@ -196,8 +197,9 @@ class QuadraticForm:
     def to_sympy(self, symbols: Mapping[int, Any] | None = None) -> Any:
         """Q(h) as an expanded SymPy expression with rational coefficients.
 
-        `symbols` gives a symbol or expression by label; by default the height of vertex 4 is the
-        symbol `h4`, as in `exactfold.interop.to_sympy`. Raises `UsageError` if a label has none.
+        `symbols` gives a symbol or an expression for each label. By default the height of vertex 4
+        is the symbol `h4`, as in `exactfold.interop.to_sympy`. Raises `UsageError` if a label has
+        no symbol.
 
         >>> form = QuadraticForm((4, 7), ((Fraction(1), Fraction(1)), (Fraction(1), Fraction(0))))
         >>> form.to_sympy()
@@ -209,7 +211,9 @@ class QuadraticForm:
             symbols = {v: sympy.Symbol(f"h{v}") for v in self.labels}
         missing = [v for v in self.labels if v not in symbols]
         if missing:
-            raise UsageError(f"there is no symbol for the height of vertex {missing[0]}")
+            raise UsageError(
+                f"vertex {missing[0]} has no symbol for its height: add it to `symbols`"
+            )
         heights = [symbols[v] for v in self.labels]
         return sympy.expand(
             sum(
@@ -223,6 +227,6 @@ class QuadraticForm:
     def _repr_latex_(self) -> str | None:
         if len(self.labels) > _SHOWN:
             return None
-        import sympy  # as in `to_sympy`
+        import sympy  # here, as in `to_sympy`
 
         return f"$Q(h) = {sympy.latex(self.to_sympy())}$"

@@ -1,4 +1,4 @@
-"""Numbers of several fields of square roots together: in one tower, or enclosed in balls."""
+"""Numbers from several fields of square roots, put into one common tower of fields."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from exactfold.exact.surds import RATIONALS, Number, Surd
 
 
 class JoinedField:
-    """A tower that grows to hold numbers of several fields, and those numbers in it.
+    """A tower of square roots that grows until it contains all numbers it is given.
 
     >>> two, three = RATIONALS.adjoined(2).root, RATIONALS.adjoined(3).root
     >>> tower = JoinedField([two, three])
@@ -27,7 +27,7 @@ class JoinedField:
                     self._root(value.field.radicands[:level])
 
     def number(self, value: Number) -> Surd:
-        """The number in the tower."""
+        """The given number as an element of the tower."""
         if not isinstance(value, Surd):
             return self.field.number(value)
         return self._lifted(value.field.radicands, value.coefficients)
@@ -48,13 +48,13 @@ class JoinedField:
             self.field = self.field.adjoined(square)
             known = self.field.square_root(square)
             if known is None:
-                raise UsageError(f"{square} has no square root in the field made for it")
+                raise UsageError(f"{square} has no square root in the field that was made for it")
             self._roots[radicands] = known
         return known
 
 
 def joined(rows: Sequence[Sequence[Number]]) -> list[list[Number]]:
-    """The entries of a matrix in one field, if they are not all in a chain of fields."""
+    """The entries of a matrix as numbers of one field; unchanged if at most one field occurs."""
     fields = {x.field for row in rows for x in row if isinstance(x, Surd)}
     if len(fields) < 2:
         return [list(row) for row in rows]

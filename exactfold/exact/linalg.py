@@ -16,7 +16,7 @@ Inertia: TypeAlias = tuple[int, int, int]
 
 
 def to_flint(matrix: Matrix) -> fmpq_mat:
-    """The matrix with entries in FLINT's rationals."""
+    """The matrix as a FLINT matrix of rational numbers."""
     columns = len(matrix[0]) if matrix else 0
     entries = [fmpq(x.numerator, x.denominator) for row in matrix for x in row]
     return fmpq_mat(len(matrix), columns, entries)
@@ -37,9 +37,10 @@ def rank(matrix: Matrix) -> int:
 
 
 def rank_modulo(rows: Sequence[Mapping[int, int]], columns: int, prime: int) -> int:
-    """Rank over F_p of integer rows, given as entries by column; at most the rank over Q.
+    """The rank over F_p of integer rows; each row is a dictionary from columns to entries.
 
-    A minor that is not zero modulo p is not zero. The prime must be below 2^64.
+    It is at most the rank over Q, as a minor that is not zero modulo p is not zero. The prime must
+    be below 2^64.
 
     >>> rank_modulo([{0: 1, 1: 2}, {0: 2, 1: 1}], 2, 7), rank_modulo([{0: 1, 1: 2}, {0: 2}], 2, 2)
     (2, 1)
@@ -74,10 +75,10 @@ def nullspace(matrix: Matrix) -> list[list[Fraction]]:
 
 
 def inertia(matrix: Matrix) -> Inertia:
-    """(positive, negative, zero) eigenvalue counts of a symmetric rational matrix.
+    """The numbers of (positive, negative, zero) eigenvalues of a symmetric rational matrix.
 
-    Descartes' rule of signs on the characteristic polynomial, which is exact because all its roots
-    are real. Raises `ValueError` if the matrix is not symmetric.
+    Descartes' rule of signs is applied to the characteristic polynomial. It is exact here, because
+    all roots are real. Raises `ValueError` if the matrix is not symmetric.
 
     >>> inertia([[0, 1, 0], [1, 0, 0], [0, 0, 0]])
     (1, 1, 1)
@@ -93,10 +94,11 @@ def inertia(matrix: Matrix) -> Inertia:
 def sum_of_squares(matrix: Matrix) -> list[tuple[Fraction, list[Fraction]]]:
     """Weights w_k, not 0, and independent rows r_k with x^T M x = sum_k w_k (r_k . x)^2, exactly.
 
-    Lagrange's reduction of a symmetric rational matrix, the largest diagonal entry first; where the
-    diagonal is zero, along x_i + x_j for the first entry m_ij that is not. Each row is 1 along the
-    direction it was taken in. By Sylvester's law of inertia the signs of the weights are those of
-    the eigenvalues other than zero. Raises `ValueError` if the matrix is not symmetric.
+    This is Lagrange's reduction of a symmetric rational matrix. Each step takes the direction of
+    the largest diagonal entry. If the diagonal is zero, it takes the direction x_i + x_j of the
+    first nonzero entry m_ij. The row r_k has the value 1 on the direction of its step. By
+    Sylvester's law of inertia the weights have the signs of the nonzero eigenvalues. Raises
+    `ValueError` if the matrix is not symmetric.
 
     >>> [(int(w), [int(x) for x in row]) for w, row in sum_of_squares([[2, 2], [2, 1]])]
     [(2, [1, 1]), (-1, [0, 1])]
@@ -114,10 +116,10 @@ def sum_of_squares(matrix: Matrix) -> list[tuple[Fraction, list[Fraction]]]:
 def integer_squares(matrix: Sequence[Sequence[int]]) -> list[tuple[int, int, list[int]]]:
     """Integers p_k and p_(k-1), not 0, and rows s_k: x^T M x = sum_k (s_k . x)^2 / (p_k p_(k-1)).
 
-    The reduction of `sum_of_squares` without fractions: after each step all that is left is divided
-    by the lead of the last one, exactly (Bareiss, Math. Comp. 22, 1968), as the entries are
-    determinants of M in the directions taken so far. p_(-1) = 1. Raises `ValueError` if the matrix
-    is not symmetric.
+    This is the reduction of `sum_of_squares` without fractions. After each step the remaining
+    matrix is divided by the pivot p_(k-1) of the step before, where p_(-1) = 1. The division is
+    exact, because the entries are determinants of M in the directions taken so far (Bareiss, Math.
+    Comp. 22, 1968). Raises `ValueError` if the matrix is not symmetric.
 
     >>> integer_squares([[2, 2], [2, 1]])
     [(2, 1, [2, 2]), (-2, 2, [0, -2])]
@@ -146,7 +148,7 @@ def integer_squares(matrix: Sequence[Sequence[int]]) -> list[tuple[int, int, lis
 
 
 def inertia_by_elimination(matrix: Matrix) -> Inertia:
-    """The same counts from `sum_of_squares`; independent of `inertia`.
+    """The inertia of a matrix, computed from `sum_of_squares`, independently of `inertia`.
 
     >>> inertia_by_elimination([[0, 1, 0], [1, 0, 0], [0, 0, 0]])
     (1, 1, 1)

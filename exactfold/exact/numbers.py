@@ -1,4 +1,7 @@
-"""The only door for numbers: int, Fraction, Decimal, "p/q" and decimal text; a float is refused."""
+"""Exact reading and writing of numbers: int, Fraction, Decimal, "p/q" and decimal text.
+
+All numbers enter exactfold here. Floats are refused.
+"""
 
 from __future__ import annotations
 
@@ -18,11 +21,11 @@ RationalLike: TypeAlias = "int | Fraction | Decimal | str"
 _INTEGER = re.compile(r"[+-]?[0-9]+\Z")
 _QUOTIENT = re.compile(r"([+-]?[0-9]+)/([0-9]+)\Z")
 _DECIMAL = re.compile(r"([+-]?)([0-9]*)(?:\.([0-9]*))?(?:[eE]([+-]?[0-9]+))?\Z")
-_MOST_DIGITS = 4000  # that `int` reads, and prints
+_MOST_DIGITS = 4000  # the most digits that are left to `int` and `str`
 
 
 def long_integer(text: str) -> int:
-    """The integer of decimal digits of any length; `int` alone stops at 4300 digits."""
+    """The integer that decimal digits of any length denote; `int` alone refuses above 4300."""
     if len(text) <= _MOST_DIGITS:
         return int(text)
     from flint import fmpz  # here, as loading it takes longer than reading a pattern
@@ -31,19 +34,22 @@ def long_integer(text: str) -> int:
 
 
 def _int(text: str) -> int:
-    """As `long_integer`; raises `NumberError` for more digits than a file may ask for."""
+    """Reads like `long_integer`, but refuses more digits than a file may ask for.
+
+    Raises `NumberError` for them.
+    """
     if (digits := len(text.lstrip("+-"))) > MOST_NUMBER:
         raise NumberError(
-            f"{shown(text)} has {digits} digits, and {MOST_NUMBER} are the most that are read: "
+            f"{shown(text)} has {digits} digits, but at most {MOST_NUMBER} digits are read: "
             "round the number"
         )
     return long_integer(text)
 
 
 def parse_rational(text: str) -> Fraction:
-    """Exact value of "p", "p/q" or decimal text such as "-1.25e-3".
+    """The exact value of "p", "p/q" or decimal text such as "-1.25e-3".
 
-    Raises `NumberError` for anything else, including "NaN", "Infinity" and a zero denominator,
+    Raises `NumberError` for any other text, such as "NaN", "Infinity" and a zero denominator,
     and for numbers that are longer than the limits of `exactfold.checker.core.limits`.
 
     >>> parse_rational("0.1")
@@ -66,7 +72,10 @@ def parse_rational(text: str) -> Fraction:
     if decimal and (decimal[2] or decimal[3]):
         sign, whole, part, power = decimal[1], decimal[2], decimal[3] or "", _int(decimal[4] or "0")
         if abs(power) > MOST_EXPONENT:
-            raise NumberError(f"{shown(text)} has an exponent beyond {MOST_EXPONENT}")
+            raise NumberError(
+                f"the exponent of {shown(text)} exceeds {MOST_EXPONENT} in size: "
+                "rescale the coordinates"
+            )
         digits = _int(f"{sign}{whole}{part}")
         power -= len(part)
         return Fraction(digits * 10**power) if power >= 0 else Fraction(digits, 10**-power)
@@ -74,9 +83,9 @@ def parse_rational(text: str) -> Fraction:
 
 
 def parse_whole(text: str) -> int:
-    """A whole number of at most 4000 decimal digits, such as "-12".
+    """Reads a whole number of at most 4000 decimal digits, such as "-12".
 
-    Raises `NumberError` for anything else, also for "1_0", which `int` reads as 10.
+    Raises `NumberError` for any other text, also for "1_0", which `int` would read as 10.
 
     >>> parse_whole(" -12 ")
     -12
@@ -91,9 +100,9 @@ def parse_whole(text: str) -> int:
 
 
 def approx_number(text: str) -> float:
-    """The float nearest to the number that `parse_rational` reads, infinite beyond all floats.
+    """The float nearest to the number that `parse_rational` reads; infinite if no float is near.
 
-    Raises `NumberError` where `parse_rational` does: "nan" and "1_0" are no numbers.
+    Raises `NumberError` for the same texts as `parse_rational`, such as "nan" and "1_0".
 
     >>> approx_number("0.1"), approx_number("-1e400")
     (0.1, -inf)
@@ -115,7 +124,7 @@ def shown(value: object) -> str:
         return repr(value if len(value) <= 40 else value[:37] + "...")
     try:
         text = repr(value)
-    except (ValueError, RecursionError):  # an int of more digits than repr allows, deep nesting
+    except (ValueError, RecursionError):  # too many digits for repr, or too deeply nested
         if isinstance(value, int):
             return f"an integer of {value.bit_length()} bits"
         return f"a {type(value).__name__}"
@@ -123,10 +132,10 @@ def shown(value: object) -> str:
 
 
 def as_rational(value: object) -> Fraction:
-    """`value` as a Fraction: int, Fraction, any `numbers.Rational`, Decimal, or text.
+    """The Fraction equal to `value`: an int, Fraction, `numbers.Rational`, Decimal, or text.
 
-    Raises `FloatRefusedError` for floats (their binary value is rarely what was meant) and
-    `NumberError` for booleans, non-finite numbers and other objects.
+    Raises `FloatRefusedError` for floats, as their binary value is rarely what was meant, and
+    `NumberError` for booleans, non-finite numbers and all other objects.
 
     >>> as_rational("0.25"), as_rational(3)
     (Fraction(1, 4), Fraction(3, 1))
@@ -171,21 +180,23 @@ def snap(value: Fraction, denominator: int) -> Fraction:
     Fraction(1, 4)
     """
     if isinstance(denominator, bool) or not isinstance(denominator, int) or denominator < 1:
-        raise UsageError(f"snap to multiples of 1/n with an integer n >= 1, not {denominator!r}")
+        raise UsageError(
+            f"numbers snap to multiples of 1/n for an integer n >= 1, not for n = {denominator!r}"
+        )
     return Fraction(round(value * denominator), denominator)
 
 
 def format_integer(value: int) -> str:
-    """Decimal text of an integer of any length."""
+    """The decimal text of an integer of any length."""
     if value.bit_length() <= 13_000:
         return str(value)
-    from flint import fmpz  # as in `_int`
+    from flint import fmpz  # here, as in `long_integer`
 
     return str(fmpz(value))
 
 
 def format_rational(value: Fraction) -> str:
-    """Canonical text: "p" or "p/q" in lowest terms with q > 1.
+    """The canonical text of a rational number: "p", or "p/q" in lowest terms with q > 1.
 
     >>> format_rational(Fraction(2, 4)), format_rational(Fraction(3))
     ('1/2', '3')
@@ -197,7 +208,7 @@ def format_rational(value: Fraction) -> str:
 
 
 def decimal_above(value: Fraction, digits: int) -> str:
-    """The least decimal number with so many significant digits that is at least `value` >= 0.
+    """The least decimal number with `digits` significant digits that is at least `value` >= 0.
 
     >>> decimal_above(Fraction(1, 3), 1), decimal_above(Fraction(1, 3 * 10**400), 2)
     ('0.4', '3.4e-401')
@@ -206,7 +217,7 @@ def decimal_above(value: Fraction, digits: int) -> str:
 
 
 def decimal_below(value: Fraction, digits: int) -> str:
-    """The largest decimal number with so many significant digits that is at most `value`.
+    """The largest decimal number with `digits` significant digits that is at most `value`.
 
     >>> decimal_below(Fraction(2, 3), 1), decimal_below(Fraction(-2, 3), 1)
     ('0.6', '-0.7')
@@ -215,7 +226,7 @@ def decimal_below(value: Fraction, digits: int) -> str:
 
 
 def decimal_near(value: Fraction, digits: int) -> str:
-    """The nearest decimal number with so many significant digits.
+    """The nearest decimal number with `digits` significant digits.
 
     >>> decimal_near(Fraction(1, 3), 4), decimal_near(Fraction(1919999, 3), 4)
     ('0.3333', '640000')
@@ -243,7 +254,7 @@ def over_common_denominator(values: Iterable[Fraction | int]) -> tuple[list[int]
 
 
 def integer_row(row: Sequence[Fraction]) -> tuple[int, ...]:
-    """A positive integer multiple of a rational row: the same signs.
+    """A positive multiple of a rational row, with integer entries; the signs stay the same.
 
     >>> integer_row([Fraction(1, 2), Fraction(-1, 3)])
     (3, -2)

@@ -1,4 +1,4 @@
-"""The real roots of integer polynomials, isolated exactly: Descartes' rule, then refinement.
+"""Isolates the real roots of integer polynomials exactly: Descartes' rule, then refinement.
 
 A polynomial is the tuple of its coefficients, constant term first.
 """
@@ -20,7 +20,7 @@ _SHIFT = fmpz_poly([1, 1])
 
 @dataclass(frozen=True)
 class _Cell:
-    """[at, at + 1] / 2^bits, of either sign of `bits`; `point`: only the lower end."""
+    """The interval [at, at + 1] / 2^bits; only its lower end if `point`. `bits` may be negative."""
 
     at: int
     bits: int
@@ -35,12 +35,14 @@ class _Cell:
 def isolate_real_roots(polynomial: Sequence[int], bits: int) -> list[Interval]:
     """Disjoint intervals of width at most 2^-bits, one for each real root, in increasing order.
 
-    The polynomial must be squarefree. An interval is one point where the root is a rational that
-    was recognised; otherwise its endpoints are dyadic, the signs there are opposite, and the root
-    lies strictly inside. Intervals are halved until Descartes' rule of signs, applied to each half
-    (Collins and Akritas 1976), leaves no root or exactly one; then they are refined by exact signs.
-    Roots once isolated stay so: asking for more bits only refines, and close roots cost little more
-    than others.
+    The polynomial must be squarefree. If a root was recognised as a rational number, its interval
+    is one point. Every other interval has dyadic endpoints at which the polynomial has opposite
+    signs, and the root lies strictly inside.
+
+    First, intervals are halved until Descartes' rule of signs shows that each half contains no root
+    or exactly one (Collins and Akritas 1976). Then the isolating intervals are refined by exact
+    signs. Roots are isolated only once: asking for more bits only refines, and close roots cost
+    little more than others.
 
     Raises `ValueError` for the zero polynomial and for one that is not squarefree.
 
@@ -72,7 +74,7 @@ def _isolated(polynomial: IntPolynomial, bits: int) -> tuple[Interval, ...]:
 
 @lru_cache(maxsize=64)
 def _isolating_cells(polynomial: IntPolynomial) -> tuple[_Cell, ...]:
-    """For each real root, ascending, the root itself or a cell in which it is the only one."""
+    """For each real root, ascending: the root itself, or a cell that contains no other root."""
     p = fmpz_poly(list(polynomial))
     zero = [_Cell(0, 0, point=True)] if p[0] == 0 else []
     p = fmpz_poly(p.coeffs()[len(zero) :])
@@ -85,10 +87,10 @@ def _isolating_cells(polynomial: IntPolynomial) -> tuple[_Cell, ...]:
 
 
 def _positive_cells(p: fmpz_poly) -> list[_Cell]:
-    """Cells of the positive roots of p, p(0) not 0, from left to right."""
+    """Cells of the positive roots of p, from left to right; p(0) must not be 0."""
     reach = _root_bound(p)
     found: list[_Cell] = []
-    waiting = [(0, -reach, _stretched(p, -reach))]  # roots in (0, 1) are those in the cell
+    waiting = [(0, -reach, _stretched(p, -reach))]  # q has a root in (0, 1) for each in the cell
     while waiting:
         at, bits, q = waiting.pop()
         count = _descartes(q)
@@ -106,7 +108,7 @@ def _positive_cells(p: fmpz_poly) -> list[_Cell]:
 
 
 def _root_bound(p: fmpz_poly) -> int:
-    """An r for which all roots are below 2^r (Fujiwara's bound, rounded up)."""
+    """An integer r such that all positive roots are below 2^r (Fujiwara's bound, rounded up)."""
     *lower, lead = (int(c) for c in p.coeffs())
     size = len(lower)
     ratios = (
@@ -118,7 +120,7 @@ def _root_bound(p: fmpz_poly) -> int:
 
 
 def _stretched(p: fmpz_poly, bits: int) -> fmpz_poly:
-    """A multiple by a power of two of p(x / 2^bits), over the integers."""
+    """The polynomial p(x / 2^bits) times a power of two that makes its coefficients integers."""
     last = p.degree()
     return fmpz_poly(
         [c << (bits * (last - k) if bits > 0 else -bits * k) for k, c in enumerate(p.coeffs())]
@@ -126,10 +128,10 @@ def _stretched(p: fmpz_poly, bits: int) -> fmpz_poly:
 
 
 def _descartes(q: fmpz_poly) -> int:
-    """A bound on the number of roots in (0, 1), exact if it is 0 or 1.
+    """An upper bound on the number of roots of q in (0, 1), which is exact if it is 0 or 1.
 
-    The sign changes of (1 + x)^n q(1 / (1 + x)), by Descartes' rule; a root of q at 0 lowers the
-    degree of what is reversed, and is not counted.
+    By Descartes' rule it is the number of sign changes of (1 + x)^n q(1 / (1 + x)). A root of q at
+    0 is not counted, because it lowers the degree of the reversed polynomial.
     """
     signs = [c > 0 for c in fmpz_poly(q.coeffs()[::-1])(_SHIFT).coeffs() if c != 0]
     return sum(a != b for a, b in pairwise(signs))
@@ -139,11 +141,12 @@ def _descartes(q: fmpz_poly) -> int:
 
 
 def _on_grid(p: fmpz_poly, cell: _Cell, bits: int) -> _Cell:
-    """The cell of width 2^-bits in which the one root of a cell lies, or the root itself.
+    """The cell of width 2^-bits that contains the one root of a given cell, or the root itself.
 
-    Quadratic interval refinement (Abbott 2006): the line through the values at the ends proposes
-    one of 2^step parts. If the signs at its ends confirm it, step is doubled, else halved; at last
-    the sign in the middle decides.
+    This is quadratic interval refinement (Abbott 2006). The cell is divided into 2^step parts, and
+    the line through the values at its ends proposes one of them. If the signs at the ends of this
+    part confirm it, step is doubled; otherwise step is halved. With step 1 the sign in the middle
+    of the cell decides.
     """
     if cell.point or cell.bits >= bits:
         lost = max(0, cell.bits - bits)
@@ -175,7 +178,7 @@ def _on_grid(p: fmpz_poly, cell: _Cell, bits: int) -> _Cell:
 
 
 def _proposed(low: fmpz, high: fmpz, step: int) -> int:
-    """Which of 2^step parts of a cell holds the zero of the line through the values at its ends."""
+    """The number, among 2^step parts, of the part in which the secant through the ends is zero."""
     least = max(0, max(int(low.bit_length()), int(high.bit_length())) - step - 64)
     low, high = low >> least, high >> least
     if low == high:

@@ -1,4 +1,4 @@
-"""Arithmetic in Q(sqrt a)(sqrt b)... on tuples of coefficients, for the numbers of `surds`."""
+"""Arithmetic in Q(sqrt a)(sqrt b)... on tuples of coefficients; `surds` makes numbers of them."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ ZERO: Final = fmpq(0)
 
 @dataclass(frozen=True)
 class RootTower:
-    """Q, and one square root after the other: r_k is that of a positive number before it.
+    """A tower of fields over Q: level k adjoins a root r_k of a positive number of level k - 1.
 
     `radicands[k - 1]` are the 2^(k-1) coefficients of r_k^2. An element of level k is a tuple of
-    2^k rational numbers, of which number m belongs to the product of the roots r_(i+1) over the
-    bits i of m; so its first half, and its second times r_k, are its parts a0 + a1 r_k. `SurdField`
-    makes numbers of them.
+    2^k rational numbers. Coefficient m belongs to the product of the roots r_(i+1) over all bits i
+    that are set in m. So an element is a0 + a1 r_k, where a0 is the first half of its coefficients
+    and a1 the second half. `SurdField` makes numbers of such elements.
 
     >>> root = (fmpq(0), fmpq(1))
     >>> tower = RootTower(((Fraction(2),),))
@@ -34,7 +34,7 @@ class RootTower:
 
     @property
     def dimension(self) -> int:
-        """2^m, the degree over Q."""
+        """The degree 2^m of the field over Q, for m roots."""
         return 1 << len(self.radicands)
 
     def times(self, a: Parts, b: Parts) -> Parts:
@@ -53,7 +53,7 @@ class RootTower:
         return low + sum_of(self.times(a0, b1), self.times(a1, b0))
 
     def inverse(self, a: Parts) -> Parts:
-        """1/a; raises `ZeroDivisionError` for zero."""
+        """The inverse 1/a; raises `ZeroDivisionError` for zero."""
         if len(a) == 1:
             return (1 / a[0],)
         half = len(a) // 2
@@ -62,7 +62,7 @@ class RootTower:
         return self.times(a0, scale) + tuple([-x for x in self.times(a1, scale)])
 
     def sign(self, a: Parts) -> int:
-        """The sign of a0 + a1 r from those of a0, a1 and a0^2 - a1^2 r^2, exactly."""
+        """The exact sign of a0 + a1 r, computed from the signs of a0, a1 and a0^2 - a1^2 r^2."""
         if len(a) == 1:
             return int(a[0] > 0) - int(a[0] < 0)
         half = len(a) // 2
@@ -72,7 +72,7 @@ class RootTower:
         return first * self.sign(self._norm(a))
 
     def products(self, bits: int) -> tuple[arb, ...]:
-        """Enclosures of the 2^m products of roots."""
+        """Enclosures of the 2^m products of roots, computed with `bits` bits."""
         known = self._enclosed
         if bits not in known:
             before = ctx.prec
@@ -89,9 +89,10 @@ class RootTower:
         return known[bits]
 
     def square_root_of(self, a: Parts) -> Parts | None:
-        """A root of a = a0 + a1 r: (x + y r)^2 has x^2 + y^2 r^2 = a0 and 2 x y = a1.
+        """A square root of a = a0 + a1 r at the same level; None if there is none.
 
-        With n^2 = a0^2 - a1^2 r^2, x^2 is (a0 + n)/2 or (a0 - n)/2; if a1 = 0 the root is x or y r.
+        The root x + y r satisfies x^2 + y^2 r^2 = a0 and 2 x y = a1. With n^2 = a0^2 - a1^2 r^2,
+        x^2 is (a0 + n)/2 or (a0 - n)/2. If a1 = 0, the root is x or y r.
         """
         if len(a) == 1:
             return _rational_root(a[0])
@@ -129,11 +130,11 @@ class RootTower:
 
 
 def to_fmpq(value: Fraction | fmpq | int) -> fmpq:
-    """A rational number as FLINT's; a float is none, as its value is rarely what was meant."""
+    """A rational number as FLINT's; a float raises `TypeError`, as it is rarely what was meant."""
     if isinstance(value, fmpq):
         return value
     if not isinstance(value, Rational):
-        raise TypeError(f"{value!r} is no exact number")
+        raise TypeError(f"{value!r} is not an exact number: write a Fraction")
     return fmpq(int(value.numerator), int(value.denominator))
 
 

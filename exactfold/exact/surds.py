@@ -16,17 +16,18 @@ from exactfold.exact.linalg import from_fmpq
 from exactfold.exact.root_tower import ZERO, Coefficients, Parts, RootTower, sum_of, to_fmpq
 
 _GUARDED: Final = 60
-"""Bits with which a sign is looked for before it is decided exactly."""
+"""A sign is first looked for in a ball of so many bits, and only then decided exactly."""
 
 
 class Surd:
-    """A real number in a `SurdField`: sums of products of square roots, every test exact.
+    """A real number in a `SurdField`, a sum of products of square roots; every test is exact.
 
-    `coefficients[m]` belongs to the product of the roots r_(i+1) over the bits i of m. Numbers of
-    two fields can be combined if one field extends the other; whole numbers and fractions belong to
-    every field. Comparisons and `sign` are exact: a ball of Arb decides where it can, and the
-    signs of a + b r and a^2 - b^2 r^2 where it cannot. `parts` are the coefficients as FLINT's
-    rationals, with which everything is computed. A number is never changed.
+    `coefficients[m]` belongs to the product of the roots r_(i+1) over all bits i that are set in m.
+    `parts` are the same coefficients as FLINT's rationals; all computations use these. Numbers of
+    two fields can be combined if one field extends the other. Integers and fractions belong to
+    every field. Comparisons and `sign` are exact: an enclosure in balls of Arb decides where it
+    can, and otherwise the signs of a, b and a^2 - b^2 r^2 decide that of a + b r. A number is
+    immutable.
 
     >>> field = SurdField(()).adjoined(2)
     >>> root = field.root
@@ -113,7 +114,7 @@ class Surd:
 
     def __float__(self) -> float:
         bits, ball = _GUARDED, self.ball(_GUARDED)
-        while self and ball.rel_accuracy_bits() < float_info.mant_dig:  # its terms nearly cancel
+        while self and ball.rel_accuracy_bits() < float_info.mant_dig:  # terms nearly cancel
             bits *= 2
             ball = self.ball(bits)
         return float(ball)
@@ -127,7 +128,7 @@ class Surd:
         return " + ".join(terms) or "0"
 
     def sign(self) -> int:
-        """1, 0 or -1, exactly."""
+        """The exact sign: 1, 0 or -1."""
         if not self:
             return 0
         ball = self.ball(_GUARDED)
@@ -151,7 +152,7 @@ class Surd:
     def in_field(self, field: SurdField) -> Surd:
         """The same number in a field that extends its own."""
         if field.radicands[: len(self.field.radicands)] != self.field.radicands:
-            raise UsageError("the number is in no subfield of this field")
+            raise UsageError("the number lies in a field that the given field does not extend")
         return _made(field, self.parts + (ZERO,) * (field.dimension - len(self.parts)))
 
     def _paired(self, other: Number | fmpq) -> tuple[Parts, Parts, SurdField]:
@@ -169,7 +170,7 @@ Number: TypeAlias = Surd | Fraction | int
 
 
 def _made(field: SurdField, parts: Parts) -> Surd:
-    """A number of these parts, which are FLINT's already."""
+    """A number with parts that are FLINT's rationals already."""
     made = Surd.__new__(Surd)
     made.field = field
     made.parts = parts
@@ -178,10 +179,10 @@ def _made(field: SurdField, parts: Parts) -> Surd:
 
 @dataclass(frozen=True)
 class SurdField(RootTower):
-    """Q(r_1, ..., r_m), real, with r_k the positive square root of a positive number before it.
+    """The real field Q(r_1, ..., r_m); r_k is the positive square root of a number of level k - 1.
 
-    `radicands[k - 1]` are the 2^(k-1) coefficients of r_k^2, which is no square in the field
-    before; `adjoined` sees to that. Q itself is `SurdField(())`.
+    `radicands[k - 1]` are the 2^(k-1) coefficients of r_k^2. This number is positive and has no
+    square root in the field before; `adjoined` takes care of that. Q itself is `SurdField(())`.
 
     >>> field = SurdField(()).adjoined(2).adjoined(3)
     >>> field.dimension, field.square_root(field.number(8)), field.square_root(field.number(5))
@@ -209,9 +210,9 @@ class SurdField(RootTower):
 
     @property
     def root(self) -> Surd:
-        """r_m, the last root adjoined; raises `UsageError` in Q."""
+        """The root r_m, which was adjoined last; raises `UsageError` in Q."""
         if not self.radicands:
-            raise UsageError("no root was adjoined to the rational numbers")
+            raise UsageError("Q is the field without roots: no root was adjoined")
         half = self.dimension // 2
         return _made(self, tuple(fmpq(k == half) for k in range(self.dimension)))
 
@@ -222,7 +223,7 @@ class SurdField(RootTower):
         return _made(self, (to_fmpq(value), *(ZERO,) * (self.dimension - 1)))
 
     def adjoined(self, radicand: Number) -> SurdField:
-        """The field with the square root of a positive number; itself if that root is in it.
+        """The field with the square root of a positive number; this field if it has that root.
 
         Raises `UsageError` for a number that is not positive.
         """
@@ -234,7 +235,7 @@ class SurdField(RootTower):
         return SurdField((*self.radicands, value.coefficients))
 
     def square_root(self, value: Number) -> Surd | None:
-        """The root >= 0 of a number, None if it is not in this field."""
+        """The root >= 0 of a number; None if the root is not in this field."""
         root = self.square_root_of(self.number(value).parts)
         if root is None:
             return None
@@ -242,7 +243,7 @@ class SurdField(RootTower):
         return -found if found.sign() < 0 else found
 
     def __reduce__(self) -> tuple[object, ...]:
-        return SurdField, (self.radicands,)  # enclosures stay behind
+        return SurdField, (self.radicands,)  # without the cached enclosures
 
 
 RATIONALS: Final = SurdField(())
@@ -250,17 +251,17 @@ RATIONALS: Final = SurdField(())
 
 
 def sign(value: Number | fmpq) -> int:
-    """1, 0 or -1 for a surd, a fraction or an integer, exactly."""
+    """The exact sign 1, 0 or -1 of a surd, a fraction or an integer."""
     return value.sign() if isinstance(value, Surd) else (value > 0) - (value < 0)
 
 
 def exact(value: Number) -> Surd | Fraction:
-    """The number as one that can be divided by: 1 / exact(2) is a fraction."""
+    """The number in a type with exact division: an integer becomes a fraction."""
     return value if isinstance(value, Surd) else Fraction(value)
 
 
 def simple(value: Number) -> Number:
-    """The number as a fraction if it is one.
+    """The number as a fraction if it is rational, else unchanged.
 
     >>> root = RATIONALS.adjoined(2).root
     >>> simple(root * root)
@@ -285,7 +286,7 @@ def rational(value: Number) -> Fraction:
 
 
 def float_bounds(value: Number) -> tuple[float, float]:
-    """Two floats, possibly infinite, with the value strictly between them.
+    """Two floats, possibly infinite; the value lies strictly between them.
 
     >>> low, high = float_bounds(RATIONALS.adjoined(2).root)
     >>> low < 2**0.5 < high, high - low < 1e-15, float_bounds(10**400)[1]
@@ -304,7 +305,10 @@ def float_bounds(value: Number) -> tuple[float, float]:
 
 
 def common_field(values: Iterable[Number | fmpq]) -> SurdField:
-    """The largest field among those of the numbers; raises `UsageError` if they are no chain."""
+    """The largest field among the fields of the numbers.
+
+    Raises `UsageError` if the fields do not form a chain.
+    """
     field = RATIONALS
     for value in values:
         if isinstance(value, Surd) and value.field.dimension > field.dimension:
@@ -314,7 +318,7 @@ def common_field(values: Iterable[Number | fmpq]) -> SurdField:
 
 
 def real_root(value: Number | fmpq, field: SurdField) -> Number:
-    """The root >= 0 of a number of the field, in it or with one more root adjoined.
+    """The root >= 0 of a number of a field, in this field or with this root adjoined.
 
     >>> real_root(Fraction(9, 4), RATIONALS), real_root(3, RATIONALS)
     (Fraction(3, 2), r1)

@@ -19,7 +19,7 @@ Interval: TypeAlias = tuple[Fraction, Fraction]
 
 
 def sign_at(polynomial: Sequence[int], x: Fraction) -> int:
-    """Sign of p(x): -1, 0 or 1, by Horner's rule in integers.
+    """The sign of p(x), -1, 0 or 1, by Horner's rule in integers.
 
     >>> sign_at((-2, 0, 1), Fraction(3, 2)), sign_at((-1, 1), Fraction(1))
     (1, 0)
@@ -34,8 +34,8 @@ def sign_at(polynomial: Sequence[int], x: Fraction) -> int:
 def evaluate_on_interval(polynomial: Sequence[Fraction | int], interval: Interval) -> Interval:
     """Bounds of p on [low, high] by Horner's rule in exact interval arithmetic.
 
-    The result contains every value p(t) with low <= t <= high; it is exact for one point and in
-    general wider than the range by O(width).
+    The result contains every value p(t) with low <= t <= high. It is exact if low = high; in
+    general it is wider than the range of p by O(high - low).
 
     >>> evaluate_on_interval((0, 0, 1), (Fraction(-1), Fraction(2)))
     (Fraction(-2, 1), Fraction(4, 1))
@@ -47,7 +47,7 @@ def evaluate_on_interval(polynomial: Sequence[Fraction | int], interval: Interva
 def _integer_bounds(
     polynomial: Sequence[Fraction | int], interval: Interval
 ) -> tuple[int, int, int]:
-    """Bounds of p on an interval as integers over one positive denominator."""
+    """Bounds of p on an interval, as two integers and their positive common denominator."""
     (low, high), scale = over_common_denominator(interval)
     coefficients, denominator = over_common_denominator(Fraction(c) for c in polynomial)
     bottom = top = 0
@@ -68,8 +68,8 @@ def quotients_on_interval(
 ) -> tuple[Interval, ...] | None:
     """Bounds of each p_i / q on an interval, or None if the bounds of q contain zero.
 
-    Exact at a point. On a proper interval the bounds are rounded outwards to multiples of a power
-    of two below a quarter of its width, which keeps their size in check.
+    The bounds are exact at a point. On a proper interval they are rounded outwards to multiples of
+    a power of two below a quarter of the width of the interval, so that they do not become long.
 
     >>> quotients_on_interval([(1,), (0, 1)], (0, 1), (Fraction(2), Fraction(4)))
     ((Fraction(1, 4), Fraction(1, 2)), (Fraction(1, 2), Fraction(2, 1)))
@@ -96,10 +96,10 @@ def quotients_on_interval(
 
 
 def to_rational_poly(coefficients: Sequence[Fraction | int]) -> fmpq_poly:
-    """The polynomial in FLINT's rationals."""
+    """The polynomial as a FLINT polynomial with rational coefficients."""
     return fmpq_poly([fmpq(c.numerator, c.denominator) for c in coefficients])
 
 
 def from_rational_poly(polynomial: fmpq_poly) -> tuple[Fraction, ...]:
-    """Coefficients as Fractions, constant term first, no trailing zeros."""
+    """The coefficients as Fractions, constant term first, without trailing zeros."""
     return tuple(from_fmpq(c) for c in polynomial.coeffs())

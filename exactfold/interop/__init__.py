@@ -1,4 +1,4 @@
-"""The same problem in the languages of other programs."""
+"""Writes sheets, equations and motions for other programs, and reads some of them back."""
 
 from exactfold._support.lazy import attached as _attached
 

@@ -1,12 +1,13 @@
 """Polynomial systems in the input formats of other programs, with exact integer coefficients.
 
-Every function takes a `QuadraticSystem` (n affine quadrics in n unknowns, finitely many zeros in
-general) or a `BranchSystem` (the homogeneous quadrics K_v in the heights of its unpinned vertices:
-a cone, so that its zeros are lines and a solver of isolated zeros wants its chart instead). The
-quadrics come as integer polynomials in the order of the system, each scaled by a positive rational.
+Every function takes a `QuadraticSystem` or a `BranchSystem`. The former has n affine quadrics in n
+unknowns and in general finitely many zeros. The latter has the homogeneous quadrics K_v in the
+heights of its unpinned vertices. Its zeros are lines; a solver for isolated zeros needs its chart
+instead. The quadrics become integer polynomials in the order of the system, each scaled by a
+positive rational.
 
-Variables are called x0, x1, ... for a `QuadraticSystem` and h<vertex> for a `BranchSystem`; `names`
-overrides that, one identifier of letters and digits a variable. For a `Chart` use
+Variables are called x0, x1, ... for a `QuadraticSystem` and h<vertex> for a `BranchSystem`. `names`
+replaces these names; each must consist of letters and digits. For a `Chart` use
 `chart_names(chart)`.
 """
 
@@ -34,7 +35,7 @@ _NAME = re.compile(r"[A-Za-z][A-Za-z0-9]*\Z", re.ASCII)
 
 
 def chart_names(chart: Chart) -> tuple[str, ...]:
-    """Names h<vertex> for the unknowns of `chart.system`.
+    """The names h<vertex> of the unknowns of `chart.system`.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> chart_names(BranchSystem(single_vertex(4)).chart)
@@ -44,9 +45,9 @@ def chart_names(chart: Chart) -> tuple[str, ...]:
 
 
 def to_msolve(system: QuadraticSystem | BranchSystem, names: Sequence[str] | None = None) -> str:
-    """Input file of msolve: variables, characteristic 0, polynomials separated by commas.
+    """An input file of msolve: variables, characteristic 0, polynomials separated by commas.
 
-    No polynomial starts with a sign "+", which msolve cannot read. Raises `UsageError` for
+    No polynomial starts with the sign "+", as msolve cannot read that. Raises `UsageError` for
     unusable names.
 
     >>> print(to_msolve(_EXAMPLE), end="")
@@ -94,9 +95,9 @@ def to_homotopy_continuation(
 ) -> str:
     """Julia commands that define the System F of HomotopyContinuation.jl.
 
-    Coefficients are written big"...": a Julia literal of more than 18 digits changes its type, and
-    products of 64-bit integers overflow without a word. (A solver in double precision rounds them
-    when it evaluates; `certify` does not.)
+    Coefficients are written big"...", because a Julia literal of more than 18 digits changes its
+    type, and products of 64-bit integers overflow silently. (A solver in double precision rounds
+    the coefficients when it evaluates; `certify` does not.)
 
     >>> print(to_homotopy_continuation(_EXAMPLE), end="")
     using HomotopyContinuation
@@ -138,11 +139,12 @@ def to_sympy(
 def to_sage(
     system: QuadraticSystem | BranchSystem, names: Sequence[str] | None = None
 ) -> MPolynomialIdeal:
-    """The ideal of the polynomials in Sage: over QQ, term order degrevlex, one generator for each.
+    """The ideal of the polynomials in Sage: over QQ, with term order degrevlex.
 
-    In Sage itself, or with the part of it that `pip install passagemath-singular` installs, for
-    example `to_sage(chart.system).vector_space_dimension()`. Raises `PackageMissingError` without
-    either, and `UsageError` for unusable names.
+    There is one generator for each polynomial. This works in Sage itself, or with the part of Sage
+    that `pip install passagemath-singular` installs; try for example
+    `to_sage(chart.system).vector_space_dimension()`. Raises `PackageMissingError` if neither is
+    installed, and `UsageError` for unusable names.
 
     >>> to_sage(_EXAMPLE).gens()  # doctest: +SKIP
     [x0^2 + x1^2 - 1, 2*x0*x1]
@@ -161,10 +163,10 @@ def to_sage(
 
 
 def form_to_sage(form: QuadraticForm) -> Any:
-    """A form as a Sage `QuadraticForm` over QQ, its variables in the order of `form.labels`.
+    """A form as a Sage `QuadraticForm` over QQ; its variables have the order of `form.labels`.
 
-    The Sage form has the same values; its `signature_vector()` is (positive, negative, zero), the
-    inertia. Raises `PackageMissingError` as `to_sage` does.
+    The Sage form has the same values. Its `signature_vector()` is the inertia (positive, negative,
+    zero). Raises `PackageMissingError` like `to_sage`.
 
     >>> from exactfold.rigidity.curvature import curvature_form
     >>> form_to_sage(curvature_form("two-vertex", 4)).signature_vector()  # doctest: +SKIP
@@ -182,14 +184,14 @@ _SAGE = "passagemath-singular"
 
 
 def _sage() -> None:
-    """Load Sage, or the part of it that is there: its modules cannot be imported in any order."""
+    """Loads Sage or its installed part first, as its modules cannot be imported in any order."""
     optional("sage.all" if is_available("sage.all") else "sage.all__sagemath_singular", _SAGE)
 
 
 def _polynomials(
     system: QuadraticSystem | BranchSystem, names: Sequence[str] | None
 ) -> tuple[tuple[str, ...], list[list[Term]]]:
-    """Variable names, and each quadric as terms (coefficient, indices of its variables)."""
+    """The variable names, and each quadric as terms (coefficient, indices of its variables)."""
     if isinstance(system, BranchSystem):
         default = tuple(f"h{v}" for v in system.variables)
         polynomials = _branch_terms(system)
@@ -201,12 +203,12 @@ def _polynomials(
         raise UsageError(f"the export needs {len(default)} different names, not {variables}")
     for name in variables:
         if not _NAME.match(name):
-            raise UsageError(f"{name!r} is not a name of letters and digits for a variable")
+            raise UsageError(f"{name!r} is not a variable name: use letters and digits only")
     return variables, polynomials
 
 
 def _branch_terms(system: BranchSystem) -> list[list[Term]]:
-    """K_v as integer polynomials in `system.variables`."""
+    """The forms K_v as integer polynomials in `system.variables`."""
     position = {v: k for k, v in enumerate(system.variables)}
     size = len(position)
     polynomials = []
@@ -222,7 +224,7 @@ def _branch_terms(system: BranchSystem) -> list[list[Term]]:
 
 
 def _terms(matrix: Sequence[Sequence[int]], size: int) -> list[Term]:
-    """Terms of z^T S z; index `size` stands for the homogenizing 1."""
+    """The terms of z^T S z; the index `size` stands for the homogenizing 1."""
     terms = []
     for i, row in enumerate(matrix):
         for j in range(i, len(row)):
@@ -233,7 +235,7 @@ def _terms(matrix: Sequence[Sequence[int]], size: int) -> list[Term]:
 
 
 def _expression(terms: Sequence[Term], variables: Sequence[str], julia: bool = False) -> str:
-    """Text of a polynomial: "-3*x0^2+x0*x1-5"; "0" if there are no terms."""
+    """The text of a polynomial, such as "-3*x0^2+x0*x1-5"; "0" if there are no terms."""
     text = ""
     for coefficient, factors in terms:
         sign = "-" if coefficient < 0 else "+" if text else ""

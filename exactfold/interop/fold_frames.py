@@ -1,4 +1,4 @@
-"""Branches and motions as FOLD files with frames, for programs that fold and draw."""
+"""Writes branches and motions as FOLD files with frames, for programs that fold and draw."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ TIME_BOUNDS_KEY: Final = "frame_exactfold:timeBounds"
 RADIUS_KEY: Final = "frame_exactfold:radius"
 HEIGHTS_KEY: Final = "vertices_exactfold:heights"
 _NOISE: Final = 1e-7
-"""Degrees: a smaller angle is flat."""
+"""Angles below this size, in degrees, count as flat."""
 
 
 def branch_document(
@@ -34,15 +34,15 @@ def branch_document(
     facts: Mapping[str, Any],
     heights: Sequence[Sequence[str]],
 ) -> dict[str, Any]:
-    """The FOLD 1.2 object of a branch: the flat sheet, and as frame 1 the sheet in space.
+    """The FOLD 1.2 object of a branch: the flat sheet, and the sheet in space as frame 1.
 
     See docs/export.md.
 
-    The first frame is `fold_document(pattern, assignment, angles=angles)`, angles in degrees, with
-    the custom keys `frame_exactfold:branch` (`facts`: what the branch is) and
-    `vertices_exactfold:heights` (`heights`: bounds "p/q" by vertex). Frame 1 inherits all of it
-    and replaces the coordinates by `folded`, three components a vertex. `name` names the branch,
-    `title` the pattern. Raises what `fold_document` raises.
+    The first frame is `fold_document(pattern, assignment, angles=angles)`, with angles in degrees.
+    It has the custom keys `frame_exactfold:branch` (`facts`: what the branch is) and
+    `vertices_exactfold:heights` (`heights`: bounds "p/q" by vertex). Frame 1 inherits everything
+    and replaces the coordinates by `folded`, with three components for each vertex. `name` names
+    the branch, `title` the pattern. Raises the errors of `fold_document`.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> document = branch_document(
@@ -77,13 +77,13 @@ def motion_document(
     facts: Mapping[str, Any],
     angles_are: str = "the first-order fold angles",
 ) -> dict[str, Any]:
-    """The FOLD 1.2 object of a motion: the flat sheet, and after it every frame in space.
+    """The FOLD 1.2 object of a motion: the flat sheet, and then every frame in space.
 
-    The first frame is that of `branch_document`, with `facts` under `frame_exactfold:motion`; of
+    The first frame is that of `branch_document`, with `facts` under `frame_exactfold:motion`. For
     panels it has the exact coordinates and the polygons of `Converted.document`. Each frame of
-    `frames` inherits it, and has coordinates and fold angles of its own; letters too where they
-    differ, as readers want letters and angles to agree. `angles_are` says what `angles` are. Raises
-    what `fold_document` raises.
+    `frames` inherits the first one and has its own coordinates and fold angles. It also has its own
+    letters if they differ, because programs expect letters and angles to agree. `angles_are`
+    describes `angles` in words. Raises the errors of `fold_document`.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> frame = MotionFrame(0.5, [(0, 0, 0)] * 4, {(0, 3): -1.0})
@@ -112,10 +112,10 @@ def motion_document(
 
 @dataclass(frozen=True)
 class MotionFrame:
-    """A sheet in space: `coords` with three components a vertex, `angles` in degrees by fold.
+    """A sheet in space: `coords` has three components for each vertex.
 
-    Where it is proved, every coordinate is within `radius` of that of one true configuration, which
-    has a time within `time_bounds`.
+    `angles` are in degrees, by fold. If the frame is proved, there is one true configuration, with
+    a time within `time_bounds`, such that every coordinate is within `radius` of it.
     """
 
     time: float
@@ -126,7 +126,7 @@ class MotionFrame:
 
 
 def _in_space() -> dict[str, Any]:
-    """The keys of a frame in space that inherits the flat sheet."""
+    """The keys of a frame in space; it inherits from the flat sheet."""
     return {
         "frame_classes": ["foldedForm"],
         "frame_attributes": ["3D"],
@@ -142,8 +142,8 @@ def _titled(name: str, title: str | None) -> str:
 def _panels_document(
     pattern: PanelPattern, assignment: Mapping[Edge, str], angles: Mapping[Edge, float], title: str
 ) -> dict[str, Any]:
-    """A flat sheet of panels, with these angles."""
-    from exactfold.pattern.panel_writing import converted  # here, as branches do without
+    """The FOLD object of a flat sheet of panels, with the given angles."""
+    from exactfold.pattern.panel_writing import converted  # here, as branches do not need it
 
     flat = converted(Opened(pattern, assignment)).document(title)
     flat["edges_foldAngle"] = [float(angles.get(edge, 0)) for edge in pattern.edges]
@@ -151,8 +151,8 @@ def _panels_document(
 
 
 def _headed(flat: dict[str, Any], frame_title: str, facts: Mapping[str, Any]) -> dict[str, Any]:
-    """The first frame, the exact flat sheet, with what is said of it."""
-    # The keys of the file come first, then those of the frame, as people read it.
+    """The first frame, which is the exact flat sheet, with its title and the facts about it."""
+    # The keys of the file come first, then those of the frame, for people who read the file.
     document = {key: value for key, value in flat.items() if key.startswith("file_")}
     document["frame_title"] = frame_title
     document["frame_unit"] = "unit"
@@ -177,14 +177,14 @@ def _frame(frame: MotionFrame, letters: Mapping[Edge, str], title: str) -> dict[
 
 
 def _principal(angle: float) -> float:
-    """The angle between -180 and 180 degrees, one that is closed on the side it came from."""
+    """The angle between -180 and 180 degrees; a closed fold keeps the sign of its side."""
     if abs(angle) > 180 + _NOISE:
         angle -= 360 * round(angle / 360)
     return max(-180.0, min(180.0, angle))
 
 
 def _letter(letter: str, angle: float) -> str:
-    """The letter of an edge at an angle, B for one of the boundary."""
+    """The letter of an edge at an angle; a boundary edge keeps B."""
     if letter == "B":
         return letter
     return "F" if not angle else "V" if angle > 0 else "M"

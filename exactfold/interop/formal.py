@@ -1,4 +1,4 @@
-"""Sheets as files of Coq, on which the formal proof of the theorem can be used."""
+"""Writes sheets as Coq files, to which the formal proof of the theorem can be applied."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ Definition this_sheet : sheet := sheet_of sheet_drawing sheet_checked.
 Lemma size : length (inner this_sheet) = {n}.
 Proof. reflexivity. Qed.
 
-(** With heights of the rim and curvatures > 0: 2^{n} shapes. *)
+(** For given boundary heights and curvatures > 0: 2^{n} shapes. *)
 Theorem shapes (k : nat -> R) (r : vec) : (forall v, In v (inside sheet_drawing) -> (0 < k v)%R) ->
   exists l : list vec, length l = 2 ^ {n} /\\ NoDup l /\\
     forall h, In h l <-> has_rim this_sheet r h /\\ solves this_sheet k h.
@@ -53,8 +53,8 @@ Proof. rewrite cross_IZR. now apply (IZR_neq _ 0). Qed.
 """
 
 _BRANCHES = """
-(** At most 2^{n} branches, all real.  That they are as many is in the file with all certificates
-    (`--all`), which show that no star is flat on any of them. *)
+(** At most 2^{n} branches, all real.  The file with all certificates (`--all`) proves that they are
+    exactly so many, as its certificates show that no star is flat on any branch. *)
 Theorem at_most : exists l : list vec, length l = 2 ^ {n} /\\
   (forall h, In h l <-> representative this_sheet {d} h) /\\
   forall z, complex_solution this_sheet z ->
@@ -73,13 +73,14 @@ Proof. exact (rigid this_sheet {a} {b} {c} z eq_refl corners). Qed.
 
 
 def to_coq(pattern: PatternLike) -> str:
-    """The sheet as a file for `proofs/formal`, with what is proved of it there.
+    """The sheet as a file for `proofs/formal`, with the theorems that are proved there.
 
-    Coordinates are integers, in the unit that makes them so. Coq decides by computation that the
-    hypotheses of the theorem hold (`check` in `proofs/formal/Drawing.v`). With three or four
-    corners the branches are bounded as well. That there are exactly 2^n is not stated here: it is
-    false if some star is flat on a branch, and `branches_to_coq` has the certificates that show
-    that none is. Raises `NotApplicableError` if the border is not convex, and the errors of `load`.
+    Coordinates become integers in a suitable unit. Coq decides by computation that the hypotheses
+    of the theorem hold (`check` in `proofs/formal/Drawing.v`). With three or four corners the
+    number of branches is bounded as well. This file does not state that there are exactly 2^n
+    branches, which is false if some star is flat on a branch; `branches_to_coq` adds the
+    certificates that show that no star is. Raises `NotApplicableError` if the boundary is not
+    convex, and the errors of `load`.
 
     >>> print(to_coq("two-vertex").splitlines()[8])
       points := [(0, 0); (840, 0); (840, 840); (0, 840); (280, 336); (525, 480)]%Z;
@@ -87,7 +88,7 @@ def to_coq(pattern: PatternLike) -> str:
     sheet = as_pattern(pattern)
     if not sheet.is_convex:
         raise NotApplicableError(
-            f"the formal proof is about a convex border: vertex {sheet.reflex_corner} is reflex"
+            f"the formal proof needs a convex boundary: vertex {sheet.reflex_corner} is reflex"
         )
     points, denominator = sheet.integer_vertices
     rim = pinned_first(sheet)
@@ -106,7 +107,7 @@ def to_coq(pattern: PatternLike) -> str:
 
 
 def listed(items: Iterable[object]) -> str:
-    """A list as Coq writes it.
+    """A list in the notation of Coq.
 
     >>> listed([1, 2])
     '[1; 2]'
@@ -115,7 +116,7 @@ def listed(items: Iterable[object]) -> str:
 
 
 def wrapped(name: str, items: Iterable[object], end: str = "") -> str:
-    """A field of the drawing, in lines of at most 100 characters."""
+    """A field of the drawing, broken into lines of at most 100 characters."""
     whole = (re.sub("(?<!;) ", "\0", str(item)) for item in items)
     text = f"  {name} := {listed(whole)}{end}"
     lines = fill(
@@ -125,15 +126,15 @@ def wrapped(name: str, items: Iterable[object], end: str = "") -> str:
 
 
 def _fan(sheet: CreasePattern, vertex: int) -> tuple[int, ...]:
-    """The neighbours in order; at an interior vertex the first one once more."""
+    """The neighbours in order; at an interior vertex the first one is repeated at the end."""
     star = sheet.star(vertex)
     return (*star, star[0]) if vertex in sheet.interior_set else star
 
 
 def pinned_first(sheet: CreasePattern) -> tuple[int, ...]:
-    """The boundary, turned so that the first three vertices form a triangle.
+    """The boundary, rotated so that its first three vertices form a triangle.
 
-    With four, the last is the one that `BranchSystem` gives the height 1.
+    If there are four, the last is the one to which `BranchSystem` gives the height 1.
 
     >>> pinned_first(as_pattern("two-vertex"))
     (1, 2, 3, 0)

@@ -1,4 +1,4 @@
-"""Certificates of single branches as files of Coq, which proves what they claim."""
+"""Writes certificates of branches as Coq files, in which Coq proves their claims."""
 
 from __future__ import annotations
 
@@ -38,7 +38,8 @@ Open Scope nat_scope.
 Lemma branch_checked : check_branch sheet_drawing branch_certificate = true.
 Proof. vm_compute. reflexivity. Qed.
 
-(** Exactly one solution with this rim has these signs; it is near, and has these letters. *)
+(** Exactly one solution with these boundary heights has these signs.
+    It is near the heights of the certificate, and has these letters. *)
 Theorem the_branch :
   let near_by := real_heights (height branch_certificate) in
   let up := pops_up branch_certificate in
@@ -81,14 +82,15 @@ Qed.
 
 
 def branch_to_coq(certificate: Mapping[str, Any]) -> str:
-    """The file of `to_coq` with one branch more: its certificate, which Coq verifies.
+    """The file of `to_coq`, and one branch with its certificate, which Coq verifies.
 
-    `certificate` is an object as `exactfold.branches.branch_certificate` returns it. Coq computes
-    with `check_branch` of `proofs/formal/Certificate.v`, which is proved to be right: exactly one
-    solution has these vertex signs and the rim of the heights, it is as near to them as claimed,
-    and its folds have the letters M and V that the distance decides. Flat folds are not claimed.
-    Raises `NotApplicableError` for what the test is not about: a reflex corner, triangulated
-    triangles, angle deficits, heights that solve the equations exactly, a vertex that may be flat.
+    `certificate` is an object that `exactfold.branches.branch_certificate` returns. Coq computes
+    with `check_branch` of `proofs/formal/Certificate.v`, which is proved to be right. So exactly
+    one solution has these vertex signs and these boundary heights, it is as near to the heights of
+    the certificate as claimed, and its folds have all letters M and V that this distance decides.
+    Flat folds are not claimed. Raises `NotApplicableError` for certificates that the formal proof
+    does not cover: with a reflex corner, triangulated triangles, angle deficits, heights that solve
+    the equations exactly, or a vertex that may be flat.
     """
     pattern = _pattern(certificate)
     record = _record("branch_certificate", pattern, certificate)
@@ -98,26 +100,27 @@ def branch_to_coq(certificate: Mapping[str, Any]) -> str:
 def branches_to_coq(certificates: Sequence[Mapping[str, Any]]) -> str:
     """The file of `to_coq` for a sheet with four corners, with certificates of all branches.
 
-    They are those of `branch_to_coq`, one for each of the 2^n sign vectors, in the gauge "saddle".
-    Then no star is flat on any branch, and Coq proves that there are exactly 2^n: complex ones
-    included, all of them real. Raises `NotApplicableError` if a vertex is flat on a branch, a sign
-    vector has no certificate, or the sheet not four corners, and what `branch_to_coq` raises.
+    The certificates are those of `branch_to_coq` in the gauge "saddle", one for each of the 2^n
+    sign vectors. Then no star is flat on any branch, and Coq proves that there are exactly 2^n
+    branches, complex ones included, and that all of them are real. Raises `NotApplicableError` if a
+    vertex is flat on a branch, if a sign vector has no certificate, or if the sheet does not have
+    four corners. Also raises the errors of `branch_to_coq`.
     """
     if not certificates:
-        raise NotApplicableError("branches are counted by their certificates, and there are none")
+        raise NotApplicableError("branches are counted by their certificates: give at least one")
     pattern = _pattern(certificates[0])
     text, signs = to_coq(pattern), {tuple(c["claims"]["vertex_signs"]) for c in certificates}
     if pattern.Ve != 4:
-        raise NotApplicableError(f"branches are counted with four corners, not {pattern.Ve}")
+        raise NotApplicableError(f"branches are counted for four corners, not for {pattern.Ve}")
     if flat := [s for s in signs if 0 in s]:
         shown, v = _shown(min(flat)), pattern.interior[min(flat).index(0)]
         raise NotApplicableError(
             f"vertex {v} is flat on the branch with the signs {shown}: the formal proof counts "
-            "branches of sheets on which no vertex can stay flat"
+            "only branches of sheets on which no vertex can stay flat"
         )
     if missing := set(product((1, -1), repeat=pattern.Vi)) - signs:
         raise NotApplicableError(
-            f"there is no certificate of the branch with the signs {_shown(max(missing))}"
+            f"the branch with the signs {_shown(max(missing))} has no certificate: give all"
         )
     names = [f"branch_{k}" for k in range(len(certificates))]
     records = zip(names, certificates, strict=True)
@@ -137,24 +140,27 @@ def _pattern(certificate: Mapping[str, Any]) -> CreasePattern:
 
 
 def _record(name: str, pattern: CreasePattern, certificate: Mapping[str, Any]) -> str:
-    """The definition of a certificate. Raises what `branch_to_coq` raises."""
+    """The definition of a certificate in Coq; raises the errors of `branch_to_coq`."""
     claims, evidence = certificate["claims"], certificate["evidence"]
     if evidence["emptied"]:
-        raise NotApplicableError("the formal proof takes no branch with triangulated triangles")
+        raise NotApplicableError("the formal proof does not cover triangulated triangles")
     if "curvature" in claims:
-        raise NotApplicableError("the formal proof takes no branch with angle deficits")
+        raise NotApplicableError("the formal proof does not cover angle deficits")
     denominator = int(evidence["denominator"])
     heights = {v: Fraction(int(h), denominator) for v, h in enumerate(evidence["heights"])}
     for v in pattern.interior:
         if curvature_form(pattern, v)(heights) <= 0:
             raise NotApplicableError(
-                f"the formal proof needs heights with positive curvatures, not that of vertex {v}"
+                "the formal proof needs heights with positive curvature at every vertex, but "
+                f"vertex {v} has none"
             )
     points, _ = pattern.integer_vertices
     distance = parse_rational(claims["squared_distance"])
     letters = sorted(_letters(pattern, heights, claims["assignment"], distance))
     if missing := set(pattern.interior) - {int(i) for i, *_ in letters}:
-        raise NotApplicableError(f"the letters do not show that vertex {min(missing)} is bent")
+        raise NotApplicableError(
+            f"vertex {min(missing)} may be flat: no letter of the certificate shows that it bends"
+        )
     signs = zip(pattern.interior, claims["vertex_signs"], strict=True)
     twice = [min(x) + max(x) for x in zip(*points, strict=True)]
     far = [
@@ -180,7 +186,7 @@ def _number(x: Fraction) -> str:
 
 
 def _cone(pattern: CreasePattern, v: int) -> list[tuple[int, int]]:
-    """Integer heights of a mountain around a vertex with K_v > 0: lengths, rounded."""
+    """Integer heights of a mountain around a vertex with K_v > 0: the rounded lengths."""
     points, _ = pattern.integer_vertices
     form, bits = curvature_form(pattern, v), 8
     while True:
@@ -196,7 +202,7 @@ def _cone(pattern: CreasePattern, v: int) -> list[tuple[int, int]]:
 def _letters(
     pattern: CreasePattern, heights: Heights, letters: str, distance: Fraction
 ) -> Iterator[tuple[int, int, int, int, str]]:
-    """The folds, from both ends, whose letter M or V the distance cannot undo."""
+    """Yields, from both ends, each fold whose letter M or V holds within the distance."""
     for (a, b), letter in zip(pattern.folds, letters, strict=True):
         left, right = pattern.opposite((a, b))
         if letter in "MV" and _is_far(pattern, heights, (a, b, left, right), distance):
@@ -208,7 +214,7 @@ def _letters(
 def _is_far(
     pattern: CreasePattern, heights: Heights, fold: tuple[int, int, int, int], distance: Fraction
 ) -> bool:
-    """Whether the square of the bend times the length exceeds L^2 (2/c + 2/c') times `distance`."""
+    """Whether the squared (bend times length) exceeds L^2 (2/c + 2/c') times `distance`."""
     i, j, left, right = fold
     along = _spoke(pattern, i, j)
     c, g = _slope(pattern, heights, (i, j, left))
@@ -225,7 +231,7 @@ def _spoke(pattern: CreasePattern, i: int, j: int) -> Pair:
 def _slope(
     pattern: CreasePattern, heights: Heights, corner: tuple[int, int, int]
 ) -> tuple[Fraction, Pair]:
-    """Twice the area of a face, and the gradient on it."""
+    """Twice the area of a face, and the gradient of the heights on it."""
     i, j, k = corner
     a, b = _spoke(pattern, i, j), _spoke(pattern, i, k)
     x, y = heights[j] - heights[i], heights[k] - heights[i]

@@ -1,4 +1,4 @@
-"""Sheets as bar frameworks of PyRigi, and back."""
+"""Converts sheets to bar frameworks of PyRigi, and back."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ Point = tuple[Fraction, Fraction]
 
 
 def to_pyrigi(pattern: PatternLike) -> pyrigi.Framework:
-    """The flat sheet in space as a `pyrigi.Framework` in dimension 3: a bar for each edge.
+    """The flat sheet as a `pyrigi.Framework` in dimension 3, with a bar for each edge.
 
-    Vertices keep their numbers; the points are (x, y, 0), exact rational numbers of SymPy in the
-    unit of the pattern. For a sheet with V vertices, Vi of them inside, PyRigi finds the rank
+    Vertices keep their numbers. The points are (x, y, 0), exact rational numbers of SymPy in the
+    unit of the pattern. For a sheet with V vertices, Vi of them interior, PyRigi finds the rank
     2V - 3, Vi independent equilibrium stresses (`exactfold.rigidity.self_stresses` gives the same
-    space, as densities) and V - 3 infinitesimal flexes that are not trivial: the heights.
+    space, as densities) and V - 3 nontrivial infinitesimal flexes: the heights.
 
     Raises `PackageMissingError` without PyRigi, and the errors of `load`.
 
@@ -40,7 +40,7 @@ def to_pyrigi(pattern: PatternLike) -> pyrigi.Framework:
     (9, 2)
     """
     package = optional("pyrigi", "'exactfold[bridges]'")
-    import sympy  # here, as loading it takes long
+    import sympy  # here, as it takes long to load
 
     pattern = as_pattern(pattern)
     graph = package.Graph.from_vertices_and_edges(range(len(pattern.vertices)), pattern.edges)
@@ -54,11 +54,11 @@ def to_pyrigi(pattern: PatternLike) -> pyrigi.Framework:
 def from_pyrigi(framework: pyrigi.Framework) -> CreasePattern:
     """The crease pattern whose edges are the bars of a `pyrigi.Framework`.
 
-    The framework lies in dimension 2, or in dimension 3 in a plane z = constant, with rational
-    coordinates. Faces and boundary are found from the bars: every bounded region has to be a
-    triangle. Vertex k of the pattern is the k-th of `framework.graph.vertex_list()`.
+    The framework must have dimension 2, or dimension 3 with all points in a plane z = constant, and
+    rational coordinates. Faces and boundary are found from the bars: every bounded region must be a
+    triangle. Vertex k of the pattern is entry k of `framework.graph.vertex_list()`.
 
-    Raises `PatternError` for any other framework; its cause is the error that says which
+    Raises `PatternError` for any other framework. The cause of this error says which
     vertices, edges or faces are to blame. Floats are refused, as their binary value is rarely what
     was meant.
 
@@ -94,7 +94,7 @@ def _sheet(framework: pyrigi.Framework) -> CreasePattern:
 
 
 def _rational(vertex: int, value: Any) -> Fraction:
-    """A coordinate, which PyRigi keeps as it was given or as a number of SymPy."""
+    """A coordinate; PyRigi keeps it as it was given, or as a number of SymPy."""
     if getattr(value, "is_Rational", False):
         return Fraction(int(value.p), int(value.q))
     if getattr(value, "is_Float", False):
@@ -108,7 +108,7 @@ def _rational(vertex: int, value: Any) -> Fraction:
 
 
 def _flat(points: Sequence[Sequence[Fraction]]) -> list[Point]:
-    """The points in their common plane."""
+    """The points as pairs of coordinates in their common plane z = constant."""
     dimension = len(points[0]) if points else 0
     if dimension not in (2, 3):
         raise MalformedPatternError(f"its dimension is {dimension}, not 2 or 3")

@@ -1,4 +1,4 @@
-"""Sheets as graphs of NetworkX with the letters of a branch or of a file."""
+"""Converts sheets to graphs of NetworkX, with the letters of a branch or of a file."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ if TYPE_CHECKING:
 def to_networkx(
     pattern: PatternLike | PanelPattern, assignment: Mapping[Edge, str] | None = None
 ) -> nx.Graph:
-    """Vertices and edges as a `networkx.Graph` of its own, which may be changed.
+    """The vertices and edges as a new `networkx.Graph`, which the caller may change.
 
-    Nodes have `pos`, the exact point in the unit of the pattern, and `interior`; edges have `fold`
-    (not on the boundary) and `letter`: that of `assignment`, as `Branch.assignment` holds it, "U"
-    where it has none, "B" on the boundary. `graph.graph["faces"]` are the faces, counter-clockwise.
-    Raises the errors of `load`.
+    Nodes have `pos`, the exact point in the unit of the pattern, and `interior`. Edges have `fold`
+    (not on the boundary) and `letter`. The letter is that of `assignment` (in the form of
+    `Branch.assignment`), "U" for a fold without one, and "B" on the boundary.
+    `graph.graph["faces"]` are the faces, counter-clockwise. Raises the errors of `load`.
 
     >>> graph = to_networkx("two-vertex", {(4, 5): "M"})
     >>> graph.nodes[4], graph.edges[4, 5]
@@ -29,7 +29,7 @@ def to_networkx(
     >>> graph.edges[0, 1], len(graph.graph["faces"])
     ({'fold': False, 'letter': 'B'}, 6)
     """
-    import networkx as nx  # here, as loading it takes long
+    import networkx as nx  # here, as it takes long to load
 
     sheet = pattern if isinstance(pattern, PanelPattern) else as_pattern(pattern)
     faces = sheet.triangles if isinstance(sheet, CreasePattern) else sheet.faces

@@ -1,4 +1,4 @@
-"""Sheets in space as meshes: OBJ files, glTF with an animation, and objects of trimesh."""
+"""Writes sheets in space as meshes: OBJ files, animated glTF, and objects of trimesh."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ if TYPE_CHECKING:
     from pygltflib import GLTF2
 
 FRONT: Final = (0.80, 0.24, 0.16)
-"""Linear RGB of the side that is +z in the flat sheet: red; the other is the colour of paper."""
+"""Linear RGB (red) of the side that shows +z in the flat sheet; the other is paper-coloured."""
 BACK: Final = (0.91, 0.88, 0.80)
 SECONDS: Final = 4.0
-"""How long the animation takes from the first frame to the last."""
+"""The animation takes so many seconds from the first frame to the last."""
 
 _FLOAT, _UINT = 5126, 5125
 _VERTICES, _INDICES = 34962, 34963
 
 
 def obj_text(coords: FloatArray, triangles: IndexArray, name: str) -> str:
-    """A sheet in space as an OBJ file: `coords` of shape (V, 3), `triangles` of shape (F, 3).
+    """A sheet in space as an OBJ file: `coords` has the shape (V, 3), `triangles` (F, 3).
 
-    Vertices and faces keep their order; OBJ counts from 1. The faces are counter-clockwise seen
-    from the side that is +z in the flat sheet.
+    Vertices and faces keep their order; OBJ counts from 1. Seen from the side that shows +z in the
+    flat sheet, the faces are counter-clockwise.
 
     >>> print(obj_text(np.eye(3), np.array([[0, 1, 2]]), "one"))
     o one
@@ -52,14 +52,14 @@ def obj_text(coords: FloatArray, triangles: IndexArray, name: str) -> str:
 def animated_gltf(
     coords: FloatArray, triangles: IndexArray, name: str, *, returns: bool, facts: dict[str, Any]
 ) -> GLTF2:
-    """Frames of a sheet in space as glTF 2.0 with an animation of morph targets.
+    """Frames of a sheet in space as glTF 2.0, with an animation of morph targets.
 
-    `coords`: shape (frames, V, 3). The mesh is the first frame, with corners of its own and one
-    normal for each face; every other frame is a morph target, named by its number. Both sides of
-    the paper are there, each with a material that is culled from behind. The animation takes
+    `coords` has the shape (frames, V, 3). The mesh is the first frame; each face has its own
+    corners and one normal. Every other frame is a morph target, named by its number. Both sides of
+    the paper are faces with their own material, and each is hidden from behind. The animation takes
     `SECONDS` from the first frame to the last, and as long back, unless the motion `returns` to the
-    first by itself. One unit of the sheet is a metre; z is turned up into the y of glTF. `facts`
-    are kept as extras. Raises `PackageMissingError`.
+    first frame by itself. One unit of the sheet is a metre. The z axis is turned into the y axis of
+    glTF, which points up. `facts` are kept as extras. Raises `PackageMissingError`.
     """
     if find_spec("pygltflib") is None:
         raise PackageMissingError(
@@ -130,11 +130,11 @@ def to_trimesh(
 ) -> trimesh.Trimesh:
     """The sheet as a `trimesh.Trimesh`, in floats, in the unit of the pattern.
 
-    `coords`: where the vertices are, shape (V, 3), such as a frame `motion.coords[k]` or
-    `motion.at(time)`; without it the sheet lies flat in z = 0. Vertices and triangles keep their
-    order and nothing is merged; panels are cut into triangles. Faces are counter-clockwise seen
-    from the side that is +z in the flat sheet. The mesh is a surface with a border, so that trimesh
-    calls it not watertight.
+    `coords` gives the places of the vertices, in the shape (V, 3): for example a frame
+    `motion.coords[k]`, or `motion.at(time)`. Without it the sheet lies flat in z = 0. Vertices and
+    triangles keep their order, and nothing is merged; panels are cut into triangles. Seen from the
+    side that shows +z in the flat sheet, the faces are counter-clockwise. The mesh is a surface
+    with a boundary, so that trimesh calls it not watertight.
 
     Raises `PackageMissingError` without trimesh, `UsageError` for coordinates of another shape, and
     the errors of `load`.
@@ -151,14 +151,14 @@ def to_trimesh(
         points = np.array(coords, dtype=np.float64)
         if points.shape != (len(sheet.vertices), 3):
             raise UsageError(
-                f"the coordinates of this sheet have the shape ({len(sheet.vertices)}, 3), not "
-                f"{points.shape}"
+                f"the coordinates of this sheet must have the shape ({len(sheet.vertices)}, 3), "
+                f"not {points.shape}"
             )
     return package.Trimesh(points, triangles_of(sheet), process=False)
 
 
 def gltf_bytes(model: GLTF2, *, binary: bool) -> bytes:
-    """A GLB file, or a .gltf file of JSON with its data inside."""
+    """A GLB file, or a .gltf file of JSON that contains its data."""
     if binary:
         return bytes(b"".join(model.save_to_bytes()))
     import pygltflib as gltf
@@ -169,7 +169,7 @@ def gltf_bytes(model: GLTF2, *, binary: bool) -> bytes:
 
 
 def _keys(frames: int, returns: bool) -> tuple[FloatArray, FloatArray]:
-    """The times of the keys in seconds, and for each the weights of all targets."""
+    """The times of the animation keys in seconds, and the weights of all targets at each key."""
     steps = list(range(frames))
     if not returns:
         steps += steps[-2::-1]
@@ -190,7 +190,7 @@ def _paper(gltf: Any, name: str, colour: tuple[float, float, float]) -> Any:
 
 
 class _File:
-    """A glTF model with one buffer that grows."""
+    """A glTF model with one buffer, which grows."""
 
     def __init__(self, gltf: Any) -> None:
         self.gltf = gltf
@@ -198,7 +198,7 @@ class _File:
         self.data = bytearray()
 
     def morphs(self, frames: FloatArray, *, bounds: bool = False) -> list[int]:
-        """Accessors of the first frame and of the displacements of the others from it."""
+        """The accessors of the first frame, and of the displacements of all others from it."""
         moved = np.vstack([frames[:1], frames[1:] - frames[:1]])
         return [self.add(rows, _FLOAT, _VERTICES, bounds=bounds) for rows in moved]
 
@@ -211,7 +211,7 @@ class _File:
         view = self.gltf.BufferView(
             buffer=0, byteOffset=len(self.data), byteLength=len(raw), target=target
         )
-        self.data += raw  # a multiple of four bytes, as all parts are
+        self.data += raw  # each part has a multiple of four bytes
         self.model.bufferViews.append(view)
         accessor = self.gltf.Accessor(
             bufferView=len(self.model.bufferViews) - 1,

@@ -1,4 +1,4 @@
-"""Optional packages, imported where a bridge to them is crossed."""
+"""Imports optional packages only when a function needs them."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from exactfold.errors import PackageMissingError
 
 
 def is_available(module: str) -> bool:
-    """Whether a module can be found; the packages it lies in are imported.
+    """Whether a module can be found; this imports the packages that contain it.
 
     >>> is_available("json.decoder"), is_available("no_such_package.part")
     (True, False)
@@ -22,10 +22,10 @@ def is_available(module: str) -> bool:
 
 
 def optional(module: str, install: str) -> Any:
-    """The module of an optional package; `install` is what pip installs it by.
+    """The module of an optional package; `install` is what pip needs to install it.
 
-    Raises `PackageMissingError` if it is not there. A module that is there and cannot be imported
-    raises its own error.
+    Raises `PackageMissingError` if it is not installed. If it is installed but cannot be imported,
+    its own error is raised.
 
     >>> optional("fractions", "nothing").Fraction(1, 2)
     Fraction(1, 2)

@@ -1,4 +1,4 @@
-"""Frames of a proved motion: float coordinates, each with a proved bound of how far it is off."""
+"""Frames of a proved motion: float coordinates with proved bounds of their errors."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ from exactfold.motion.tubes.tracks import Frame
 from exactfold.rigidity.equations.problem import Problem
 
 _NEAR = 1e-4
-"""In the unit of the framework: how far a motion in floats may be from the proved one."""
+"""A motion in floats may differ from the proved one by this, in the unit of the framework."""
 
 
 @dataclass(frozen=True, repr=False)
 class EnclosedPositions:
-    """Coordinates of all vertices of a pattern, each with a bound of its error, shape (V, 3).
+    """Coordinates of all vertices of a pattern, shape (V, 3), with an error bound for each vertex.
 
-    `from_the_pin`: the same points from the first pinned corner in the unit of the framework, in
-    floats without a bound, from which angles are read.
+    `from_the_pin` are the same points relative to the first pinned corner, in the unit of the
+    framework, in floats without a bound; angles are computed from them.
     """
 
     coords: FloatArray
@@ -37,7 +37,7 @@ class EnclosedPositions:
 
     @property
     def radius(self) -> float:
-        """A bound for all of them, rounded up."""
+        """An error bound for all vertices, rounded up."""
         return float_bounds(max(self.radii))[1]
 
     def __repr__(self) -> str:
@@ -45,11 +45,12 @@ class EnclosedPositions:
 
 
 def positions_in(problem: Problem, framework: Framework, frame: Frame) -> EnclosedPositions:
-    """The vertices at a frame as the nearest floats, and how far each is at most off.
+    """The vertices at a frame as the nearest floats, with bounds of their errors.
 
-    A coordinate in the unit and at the place of the pattern is X + unit d, X that of the flat
-    vertex, exactly, and |d - centre| <= radius in the box of the frame. What lies in a triangulated
-    triangle is a convex combination of its corners. Everything is rational until the last step.
+    In the unit and at the place of the pattern, a coordinate is X + unit d. X is that of the flat
+    vertex, exactly, and |d - centre| <= radius in the box of the frame. A vertex inside a
+    triangulated triangle is a convex combination of the corners of the triangle. Everything is
+    rational until the last step.
     """
     pattern, ball = problem.pattern, frame.ball
     one = 1 << ball.bits
@@ -90,9 +91,10 @@ def positions_in(problem: Problem, framework: Framework, frame: Frame) -> Enclos
 def with_enclosed_frames(
     motion: Motion, framework: Framework, frames: Sequence[Frame]
 ) -> Motion | None:
-    """The motion with the frames of the proved one, one for each time of the motion.
+    """The motion with the frames of the proved motion, one for each time of the motion.
 
-    None if they are not near those in floats: then these have left the branch somewhere.
+    None if these are not near the frames in floats, which means that the floats have left the
+    branch.
     """
     problem = problem_of(motion.branch)
     found = [positions_in(problem, framework, frame) for frame in frames]

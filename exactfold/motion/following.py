@@ -1,4 +1,4 @@
-"""`follow`: the motion that continues a branch, as the sheet folds for real."""
+"""`follow`: the motion that continues a branch with finite fold angles."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ from exactfold.rigidity.equations.problem import Problem
 
 _MOST_PIECES = 20_000
 _AT_ONCE = 1e-9
-"""Events that are closer than this, in parts of the whole, happen at one time."""
+"""Events closer than this share of the whole motion happen at the same time."""
 
 
 def follow(
@@ -66,24 +66,26 @@ def follow(
     """The motion that continues a simple branch, from the flat sheet until something happens.
 
     A simple branch is tangent to exactly one curve of true configurations (docs/motion.md). It is
-    followed in floats: the Taylor series at the flat sheet, then arclength continuation in the
-    length equations. `until`: "contact", the first contact of two faces or fold that closes;
-    "return", the flat sheet again; "90deg", the first fold angle of that size; or a number, the
-    time at which to stop. Where another curve crosses (an event "node") the motion stops, unless
-    `through_nodes`. `frames`: their number, at equal steps of time, or of the angle of the fold
-    `by`. `side`: 1 for the ray that `branch` shows, -1 for its mirror image. `pinned`: the triangle
-    that is held, by vertices of the sheet without what stays flat (`Problem.sheet`), by default the
-    largest; times depend on it. With more than four corners the branch has a rim: on the motion the
-    heights of the border above the face that is held stay in the ratio of that rim, but for an
-    affine function of the flat sheet, so that the motion depends on `pinned` as well. With a
-    `drive` instead the angles of the driven folds keep their ratio (`find_driven` finds the
-    branch), and the motion ends where they have the angles of the drive, if nothing ends it before;
-    this one does not depend on `pinned`.
+    followed in floats: first by the Taylor series at the flat sheet, then by arclength continuation
+    in the length equations. `until` says where to stop. "contact" is the first contact of two
+    faces, or the first fold that closes. "return" is the next flat sheet. "90deg" is the first fold
+    angle of that size. A number is a time. Where another curve crosses (an event "node") the motion
+    stops, unless `through_nodes` is true. `frames` is the number of frames, at equal steps of time,
+    or of the angle of the fold `by`. `side` is 1 for the ray that `branch` shows, and -1 for its
+    mirror image. `pinned` is the triangle that is held, given by vertices of the sheet without the
+    parts that stay flat (`Problem.sheet`); by default it is the largest one. Times depend on it.
+
+    With more than four corners the branch has boundary heights. On the motion the heights of the
+    border above the held face keep the ratio of these boundary heights, up to an affine function of
+    the flat sheet. So here the motion depends on `pinned`, too. With a `drive`, the angles of the
+    driven folds keep their ratio instead (`find_driven` finds the branch). The motion then ends
+    where they have the angles of the drive, unless something ends it earlier; it does not depend on
+    `pinned`.
 
     Raises `UsageError` for options that make no sense, `NotFollowedError` for a branch that is not
-    simple, or is a shape with angle deficits, `UndecidedBranchError` for a branch of which nothing
-    is proved. A motion that ends "singular" could not be followed further, which does not mean that
-    it ends there.
+    simple or is a shape with angle deficits, and `UndecidedBranchError` for a branch of which
+    nothing is proved. A motion that ends "singular" could not be followed further; this does not
+    mean that it ends there.
 
     >>> from exactfold.branches.counting.find import find_branch
     >>> follow(find_branch("two-vertex", "+-"), until="90deg", frames=5)
@@ -94,7 +96,7 @@ def follow(
     if drive is not None:
         goal = replace(goal, kinds=goal.kinds | {DRIVEN, DEAD_POINT})
     if frames < 2:
-        raise UsageError(f"{frames} frames: a motion has at least 2")
+        raise UsageError(f"{frames} frames: a motion needs at least 2")
     if side not in (1, -1):
         raise UsageError(f"side {side}: give 1 or -1")
     _check_followable(branch)
@@ -128,16 +130,16 @@ def follow(
 
 
 def _goals(problem: Problem, drive: Drive) -> tuple[tuple[Edge, float], ...]:
-    """The folds of the sheet that are driven, and the sizes of their goals in radians."""
+    """The driven folds of the sheet, and the sizes of their goals in radians."""
     folds = (fold for fold, _ in drive.ways(problem.labels))
     return tuple((f, radians(abs(a))) for f, a in zip(folds, drive.angles.values(), strict=True))
 
 
 @dataclass(frozen=True)
 class Goal:
-    """Where a motion stops: the events that end it, an angle in radians, or a time.
+    """Where a motion stops: the kinds of events that end it, an angle in radians, or a time.
 
-    `driven`: folds of the framework and the sizes of the angles to which they are driven.
+    `driven` are folds of the framework with the sizes of the angles to which they are driven.
     """
 
     kinds: frozenset[str]
@@ -147,7 +149,7 @@ class Goal:
 
     @classmethod
     def of(cls, until: str | float, through_nodes: bool = False) -> Goal:
-        """The goal from what a user gives; raises `UsageError`.
+        """The goal that a user describes; raises `UsageError`.
 
         >>> Goal.of("90deg").angle == radians(90)
         True
@@ -174,17 +176,19 @@ class Goal:
 
 
 def _check_followable(branch: Branch) -> None:
-    """Raise where a branch is not tangent to one curve, but to many or none; as `follow`."""
+    """Raise the errors of `follow` unless the branch is tangent to a single curve."""
     if branch.curvature:
         raise NotFollowedError(
-            "a shape with angle deficits is not followed: its sheet is not flat to begin with"
+            "a shape with angle deficits cannot be followed, because its sheet is not flat"
         )
     if not branch.approx_heights:
-        raise UndecidedBranchError("nothing is proved of the branch: there is nothing to follow")
+        raise UndecidedBranchError(
+            f"branch {branch.sign_text} cannot be followed, because nothing is proved of it"
+        )
     if branch.pattern.Ve > 4 and branch.rim is None:
         raise NotFollowedError(
-            f"of a sheet with {branch.pattern.Ve} boundary vertices only a branch with given "
-            "heights of the border is followed (`find_branch` with rim=)"
+            f"a sheet with {branch.pattern.Ve} boundary vertices can only be followed along a "
+            "branch with given heights of the border (`find_branch` with rim=)"
         )
 
 
@@ -196,10 +200,10 @@ def _start(framework: Framework, problem: Problem, branch: Branch) -> Start:
             raise NotFollowedError(
                 f"vertex {vertex} is flat on this branch: "
                 + (
-                    f"the sheet turns about the straight line {line}, exactly, up to 180 degrees; "
-                    "this is not followed"
+                    f"the sheet turns exactly about the straight line {line}, up to 180 degrees, "
+                    "and exactfold does not follow such motions"
                     if line
-                    else "several curves may be tangent to it, and none is followed"
+                    else "several curves may be tangent to it, so exactfold follows none of them"
                 )
             )
     return Start.of(framework, np.array([heights[v] for v in problem.labels]))
@@ -208,7 +212,7 @@ def _start(framework: Framework, problem: Problem, branch: Branch) -> Start:
 def _followed(
     framework: Framework, start: Start, goal: Goal, progress: Progress | None
 ) -> tuple[Curve, list[Event], str]:
-    """The curve up to the goal, the events on it, and what ended it."""
+    """The curve up to the goal, the events on it, and the kind of event that ended it."""
     watch = Watch(framework, goal.angle, driven=goal.driven)
     limit = None if goal.time is None else goal.time / float(framework.unit)
     pieces: list[Piece] = []
@@ -224,7 +228,7 @@ def _followed(
             last = None
             if any(event.kind == RETURN for _, event in found):
                 last = landing(framework, piece)
-                if last is None:  # the flat sheet is close, but out of reach of its series
+                if last is None:  # the flat sheet is close, but its series does not reach so far
                     found = [item for item in found if item[1].kind != RETURN]
             ending = _first(piece, found, goal)
             if ending is not None and (stop is None or ending[0] <= stop[0]):
@@ -237,7 +241,7 @@ def _followed(
             if stop is None:
                 pieces.append(piece)
                 continue
-            if stop[1] == NODE:  # found when the next piece begins
+            if stop[1] == NODE:  # a branch point is found only when the next piece begins
                 before = pieces.pop()
                 time = next(event.time[0] for event in reversed(events) if event.kind == NODE)
                 pieces.append(before.cut(before.parameter(time - before.time)))
@@ -248,7 +252,7 @@ def _followed(
     except LostCurveError as error:
         reason = str(error)
     else:
-        reason = f"{_MOST_PIECES} pieces were followed"
+        reason = f"the limit of {_MOST_PIECES} pieces was reached"
     if not pieces:
         raise NotFollowedError(f"the branch could not be followed: {reason}")
     curve = Curve(framework, tuple(pieces))
@@ -259,7 +263,8 @@ def _followed(
 def _first(piece: Piece, found: list[tuple[float, Event]], goal: Goal) -> tuple[float, str] | None:
     """The parameter and the kind of the first event that ends a motion.
 
-    A fold that closes brings its faces into contact: of both at once, that is named.
+    A fold that closes brings its faces into contact. If both happen at once, the closed fold is
+    named.
     """
     ending = [(parameter, event.kind) for parameter, event in found if event.kind in goal.kinds]
     at_once = [item for item in ending if item[0] <= ending[0][0] + _AT_ONCE * piece.reach]
@@ -267,7 +272,7 @@ def _first(piece: Piece, found: list[tuple[float, Event]], goal: Goal) -> tuple[
 
 
 def _in_order(events: list[Event], end: str) -> list[Event]:
-    """Events by time; those at one time, up to rounding, in an order without chance."""
+    """The events sorted by time; simultaneous ones, up to rounding, are in a fixed order."""
     events = sorted(events, key=lambda event: event.time)
     span = max((event.time[1] for event in events), default=0.0)
     groups: list[list[Event]] = []
@@ -282,10 +287,10 @@ def _in_order(events: list[Event], end: str) -> list[Event]:
 
 
 def landing(framework: Framework, piece: Piece) -> Piece | None:
-    """The last piece of a curve that comes back to the flat sheet, in place of one close to it.
+    """The last piece of a curve that returns to the flat sheet, in place of a piece near it.
 
-    Near the flat sheet the Jacobian is nearly singular, so that the series there is used, run
-    through backwards. None if `piece` starts out of its reach.
+    Near the flat sheet the Jacobian is nearly singular. Therefore the series at the flat sheet is
+    used, run through backwards. None if `piece` starts out of its reach.
     """
     x = piece.coefficients[0]
     try:
@@ -304,7 +309,7 @@ def landing(framework: Framework, piece: Piece) -> Piece | None:
 
 
 def _at_equal_angles(problem: Problem, curve: Curve, by: Edge, frames: int) -> FloatArray:
-    """Times at which the angle of a fold has equal steps from 0 to its last value."""
+    """Times at which the angle of a fold has equal steps from 0 to its final value."""
     unit = float(curve.framework.unit)
     at = problem.pattern.folds.index(by)
 
@@ -318,8 +323,8 @@ def _at_equal_angles(problem: Problem, curve: Curve, by: Edge, frames: int) -> F
     if not (np.all(steps > 0) or np.all(steps < 0)):
         back = int(np.argmax(steps * steps[0] <= 0))
         raise UsageError(
-            f"fold {by[0]}-{by[1]} turns back at time {coarse[back]:.4g}: its angle does not name "
-            "the frames; choose another fold, or stop earlier"
+            f"fold {by[0]}-{by[1]} turns back at time {coarse[back]:.4g}, so frames cannot be "
+            "spaced by its angle; choose another fold, or stop earlier"
         )
 
     def beyond(time: float, goal: float) -> float:
@@ -333,7 +338,7 @@ def _at_equal_angles(problem: Problem, curve: Curve, by: Edge, frames: int) -> F
 
 
 def _named(event: Event, problem: Problem, unit: float) -> Event:
-    """The event with the vertices and the unit of the pattern."""
+    """The event in terms of the vertices and the unit of the pattern."""
     low, high = event.time
     folds = tuple((problem.labels[i], problem.labels[j]) for i, j in event.folds)
     vertices = tuple(problem.labels[v] for v in event.vertices)

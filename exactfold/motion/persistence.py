@@ -1,4 +1,4 @@
-"""`prove_persistently`: a proof repeated with more bits, and with another face held."""
+"""`prove_persistently`: a proof that is repeated with more bits and with another face held."""
 
 from __future__ import annotations
 
@@ -19,11 +19,12 @@ def prove_persistently(
     *,
     progress: Progress | None = None,
 ) -> MotionProof:
-    """`prove`, and where tubes fail once more with more bits, then with another triangle held.
+    """Call `prove`; where tubes fail, try more bits, then hold another triangle.
 
-    `again` follows the same motion with a triangle of the framework held: times are others then,
-    and so is `MotionProof.motion`. Where floats found a node or a singular configuration at the
-    end nothing more is tried. What was tried is in `MotionProof.reason`. Raises as `prove`.
+    `again` follows the same motion while a given triangle of the framework is held; its times are
+    different then, and so is `MotionProof.motion`. If floats found a branch point or a singular
+    configuration at the end, nothing more is tried. `MotionProof.reason` says what was tried.
+    Raises the errors of `prove`.
 
     >>> from exactfold.branches.counting.find import find_branch
     >>> from exactfold.motion.following import follow
@@ -53,9 +54,10 @@ def prove_persistently(
 
 
 def _another(framework: Framework) -> Triangle | None:
-    """The triangle to hold instead: one with as few of the same corners as possible.
+    """The triangle to hold instead: one with as few corners in common as possible.
 
-    None where there is no other, and with a rim: the rim path with another one held is another.
+    None if there is no other triangle. Also None with boundary heights, because then another held
+    triangle changes the motion.
     """
     if framework.ties:
         return None

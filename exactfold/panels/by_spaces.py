@@ -1,4 +1,4 @@
-"""Parts of a sheet whose vertices have more than four folds: spaces of motions, and which fold."""
+"""Parts of a sheet with vertices of more than four folds: their spaces of motions, which fold."""
 
 from __future__ import annotations
 
@@ -32,10 +32,10 @@ MOST_FOUND = 20_000_000
 def by_spaces(pattern: PanelPattern, moving: Mapping[int, Star]) -> Part:
     """The motions of a part with vertices of any degree: linear spaces, and which of them fold.
 
-    The dimension of the first-order motions is exact. Where the part is not decomposed, because
-    several forms are left that are not shown to be one component, the spaces are too many or that
-    dimension is too large, the result has the components that were found and the folds that stay
-    flat to second order.
+    The dimension of the first-order motions is exact. The part is not decomposed if several forms
+    remain on a space and are not shown to be one component, if there are too many spaces, or if the
+    dimension is too large. Then the result contains the components that were found, and the folds
+    that stay flat to second order.
     """
     rows, size = first_order(moving)
     small, left = reduced(moving, rows, size, MOST_REDUCTION)
@@ -46,7 +46,7 @@ def by_spaces(pattern: PanelPattern, moving: Mapping[int, Star]) -> Part:
     if size > MOST_DIMENSION:
         reason = (
             f"the first-order motions of {counted(len(moving), 'vertex')} round vertex "
-            f"{next(iter(moving))} have dimension {size}; they are decomposed up to "
+            f"{next(iter(moving))} have dimension {size}; they are decomposed only up to dimension "
             f"{MOST_DIMENSION}"
         )
         found, ended = _found(pattern, moving, small, left)
@@ -71,9 +71,10 @@ def _complete(
     most: int,
     found: list[FoundComponent] | None,
 ) -> Part:
-    """All components; raises `TooManyModesError` where that is too much, or forms are left.
+    """All components; raises `TooManyModesError` if this is too much work or forms remain.
 
-    `first` are the first-order motions, `smaller` those that semidefinite forms leave.
+    `first` are the first-order motions. `smaller` are those that remain after the semidefinite
+    forms.
     """
     vertices = tuple(moving)
     (rows, size), (small, left) = first, smaller
@@ -115,18 +116,18 @@ def _check_component(moving: Mapping[int, Star], leaf: Leaf) -> None:
         cones = [v for v in leaf.vertices if set(moving[v].folds) & set(rows)]
         if len(cones) > 1 and cone_motion(moving, rows, size, cones) is None:
             raise TooManyModesError(
-                f"in a space of dimension {size} the conditions of vertices "
-                f"{', '.join(map(str, cones))} are left, and are not solved yet"
+                f"on a space of dimension {size} the second-order conditions of vertices "
+                f"{', '.join(map(str, cones))} remain, and exactfold could not solve them together"
             )
 
 
 def _open(known: bool, fold: bool) -> str:
-    """What is not decided of a part whose motions are known to second order."""
+    """What is undecided about a part whose motions to second order are known."""
     if known:
         return ""
     if fold:
-        return "that there are no other true motions is proved to second order only"
-    return "whether motions of vertices with more than four folds truly fold is not decided"
+        return "it is proved only to second order that there are no other true motions"
+    return "it is undecided whether the motions of vertices with more than four folds truly fold"
 
 
 def _found(
@@ -145,7 +146,9 @@ def _partial(
     found: list[FoundComponent],
     reason: str,
 ) -> Part:
-    """What is proved of a part that is not decomposed: components, or else modes that fold."""
+    """What is proved of a part that is not decomposed: components, or modes if none of
+    them folds.
+    """
     folds = any(one.folds for one in found)
     modes = [] if folds else folding_modes(pattern, moving, *smaller, MOST_FOUND)
     return Part(
@@ -167,13 +170,14 @@ def _still(moving: Mapping[int, Star], active: Iterable[Edge]) -> tuple[Edge, ..
 
 
 def _extends(pattern: PanelPattern, moving: Mapping[int, Star], leaf: Leaf) -> bool:
-    """Whether a space of motions is tangent to true ones: modes that fold apart from each other.
+    """Whether a space of motions is proved to be tangent to true motions.
 
-    One vertex alone has true motions near the flat state as its motions to second order, by Morse's
-    lemma. A part extends if all its conditions are independent at one of its points (`truly_folds`;
-    for cones at a point where their forms vanish), or if it is a mode that does. Other folds are
-    held flat, so this can prove that a space extends and never that it does not: a motion might use
-    them at a higher order.
+    The space is split into independent parts. By Morse's lemma, a single vertex has true motions
+    near the flat state that correspond to its motions to second order. Other parts extend if all
+    their conditions are independent at one of their points (`truly_folds`); for cones this is a
+    point at which their forms vanish. A part that is a mode extends if the mode does. Other folds
+    are held flat, so this can prove that a space extends but never that it does not: a true motion
+    might use those folds at a higher order.
     """
     for rows, size in independent_parts(_entries(leaf), leaf.size, moving):
         active = [star.vertex for star in moving.values() if set(star.folds) & set(rows)]
@@ -193,9 +197,9 @@ def _extends(pattern: PanelPattern, moving: Mapping[int, Star], leaf: Leaf) -> b
 def _is_regular(moving: Mapping[int, Star], rows: Rows, size: int, leaf: Leaf) -> bool:
     """Whether a leaf is a line at which the conditions have full rank.
 
-    At w on the line the derivatives `dK_v(w)` of all vertices leave in the space of first-order
-    motions that line alone, shown by balls; then one curve of true motions at most is tangent to it
-    (docs/panels.md, Vertices with more folds).
+    Let w be on the line. Balls show that the derivatives dK_v(w) of all vertices vanish, within the
+    space of first-order motions, only on that line. Then at most one curve of true motions is
+    tangent to it (docs/panels.md, Vertices with more folds).
     """
     if leaf.size != 1 or leaf.vertices:
         return False

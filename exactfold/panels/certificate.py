@@ -1,4 +1,4 @@
-"""The certificate of a decomposition: the exact pattern and every claim, from a proved result."""
+"""The certificate of a decomposition: the exact pattern and every claim of a proved result."""
 
 from __future__ import annotations
 
@@ -9,6 +9,13 @@ from dataclasses import dataclass
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED
 from exactfold.certificates.entries import Document
 from exactfold.checker.panels.certificate import PANELS
+from exactfold.checker.panels.claims import (
+    LeafClaim,
+    ModeClaim,
+    PanelsClaims,
+    PartClaim,
+    SupportClaim,
+)
 from exactfold.errors import NotApplicableError, TooManyModesError
 from exactfold.exact.numbers import format_rational
 from exactfold.exact.surds import Number, SurdField
@@ -24,8 +31,8 @@ from exactfold.pattern.panel_pattern import Edge, PanelPattern
 def certificate_of_panels(result: Decomposition) -> Document:
     """The certificate of a complete decomposition, as a JSON object for `exactfold.checker`.
 
-    It holds the pattern and the claims (docs/certificate.md, Panels); the checker finds all of them
-    again. Raises `NotApplicableError` if the decomposition is not proved.
+    It contains the pattern and the claims (docs/certificate.md, Panels). The checker computes all
+    the claims again. Raises `NotApplicableError` if the decomposition is not proved.
 
     >>> from exactfold.panels.decomposition import decompose
     >>> from exactfold.pattern.panel_pattern import PanelPattern
@@ -35,7 +42,10 @@ def certificate_of_panels(result: Decomposition) -> Document:
     {'1': 1}
     """
     if result.status is not PROVED or result.second_order is None:
-        raise NotApplicableError(f"the decomposition is {result.status} ({result.reason})")
+        raise NotApplicableError(
+            f"only a proved decomposition has a certificate; this one is {result.status} "
+            f"({result.reason})"
+        )
     pattern = result.pattern
     moving = stars(pattern, result.held)
     listed: dict[tuple[Edge, ...], list[Mode]] = {}
@@ -48,32 +58,34 @@ def certificate_of_panels(result: Decomposition) -> Document:
         for together in _by_folds(pattern, {v: moving[v] for v in part.vertices}, part.supports)
     ]
     spaces = [_spaces(part) for part in result.parts if part.theory == "subspaces"]
+    claims: PanelsClaims = {
+        "interior": len(pattern.interior),
+        "border": len(pattern.border),
+        "folds": len(pattern.folds),
+        "sha256": pattern.sha256,
+        "held": _pairs(result.held),
+        "flat": _pairs(result.flat),
+        "free": _pairs(result.free),
+        "second_order": _counts(result.second_order),
+        "true": None if result.true is None else _counts(result.true),
+        "rigid": str(result.rigid),
+        "modes": result.modes_count,
+        "supports": supports,
+    }
+    if spaces:
+        claims["spaces"] = spaces
     return {
         "format": PANELS.format,
         "version": PANELS.version,
         "kind": PANELS.named,
         "pattern": panels_document(pattern),
-        "claims": {
-            "interior": len(pattern.interior),
-            "border": len(pattern.border),
-            "folds": len(pattern.folds),
-            "sha256": pattern.sha256,
-            "held": _pairs(result.held),
-            "flat": _pairs(result.flat),
-            "free": _pairs(result.free),
-            "second_order": _counts(result.second_order),
-            "true": None if result.true is None else _counts(result.true),
-            "rigid": str(result.rigid),
-            "modes": result.modes_count,
-            "supports": supports,
-            **({"spaces": spaces} if spaces else {}),
-        },
+        "claims": claims,
         "provenance": {"method": result.theory, "python": platform.python_version()},
     }
 
 
 def panels_document(pattern: PanelPattern) -> Document:
-    """Vertices in their field, and edges, exactly."""
+    """The vertices, as exact numbers in their field, and the edges."""
     field = pattern.field
     return {
         "radicands": [[format_rational(c) for c in r] for r in field.radicands],
@@ -91,12 +103,12 @@ def number_document(value: Number, field: SurdField) -> list[str]:
     return [format_rational(c) for c in field.number(value).coefficients]
 
 
-def _spaces(part: Part) -> Document:
-    """The leaves of a part by their folds, dimension and cones, and how many of each kind fold."""
+def _spaces(part: Part) -> PartClaim:
+    """The leaves of a part, grouped by folds, dimension and cones, with the number that fold."""
     kinds: dict[tuple[tuple[Edge, ...], int, tuple[int, ...]], list[bool]] = {}
     for leaf, folds in zip(part.spaces, part.spaces_fold, strict=True):
         kinds.setdefault((leaf.folds, leaf.dimension, leaf.vertices), []).append(folds)
-    leaves = [
+    leaves: list[LeafClaim] = [
         {
             "folds": _pairs(folds),
             "dimension": dimension,
@@ -112,7 +124,7 @@ def _spaces(part: Part) -> Document:
 
 @dataclass(frozen=True)
 class _Together:
-    """Folds that move together, and in how many ways, which make up a part of a `Support`."""
+    """Folds that move together, and the number of ways in which they do; a part of a `Support`."""
 
     vertices: tuple[int, ...]
     folds: tuple[Edge, ...]
@@ -123,14 +135,18 @@ class _Together:
 def _by_folds(
     pattern: PanelPattern, moving: Mapping[int, Star], supports: Iterable[Support]
 ) -> Iterator[_Together]:
-    """The supports by their active folds: one for most, more where straight creases cross."""
+    """The supports, split by their active folds.
+
+    Most supports have a single set of active folds; crossing straight creases give several.
+    """
     search = ModeSearch(moving, pattern.field)
     for support in supports:
         kinds = [{mode.folds for mode in search.modes[v]} for v in support.vertices]
         if support.count > MOST_LISTED:
             if any(len(kind) > 1 for kind in kinds):
                 raise NotApplicableError(
-                    f"{support.count} modes of different folds are too many for a certificate"
+                    f"no certificate: it would have to list {support.count} modes of different "
+                    f"folds round vertex {support.vertices[0]}; at most {MOST_LISTED} are listed"
                 )
             folds = {edge for [found] in kinds for edge in found}
             yield _Together(
@@ -141,7 +157,9 @@ def _by_folds(
         try:
             modes = search.listed(support)
         except TooManyModesError as error:
-            raise NotApplicableError(f"a certificate lists the modes: {error}") from None
+            raise NotApplicableError(
+                f"no certificate, because it would have to list all modes: {error}"
+            ) from None
         for mode in modes:
             groups.setdefault(tuple(mode.densities), []).append(mode.choice)
         for edges, choices in sorted(groups.items()):
@@ -153,8 +171,10 @@ def _support(
     moving: Mapping[int, Star],
     together: _Together,
     listed: list[Mode] | None,
-) -> Document:
-    """A support with the number of its modes that truly fold, and the modes if they are listed."""
+) -> SupportClaim:
+    """A support with the number of its modes that truly fold, and with the modes if they are
+    listed.
+    """
     first = extension(pattern, moving, together.choices[0])
     by, extending = "loops", None
     if first.verdict is PROVED and not first.order:
@@ -174,7 +194,7 @@ def _support(
     }
 
 
-def _mode(mode: Mode, together: _Together, moving: Mapping[int, Star]) -> Document:
+def _mode(mode: Mode, together: _Together, moving: Mapping[int, Star]) -> ModeClaim:
     verdict = mode.extends.verdict
     refuted = verdict is REFUTED
     return {
@@ -187,7 +207,9 @@ def _mode(mode: Mode, together: _Together, moving: Mapping[int, Star]) -> Docume
 
 
 def _line(local: LocalMode, star: Star) -> str:
-    """Which of the local modes with the same active folds it is: by the gain of the first two."""
+    """Which of the local modes with the same active folds this is, by the gain of the first two
+    folds.
+    """
     first, second = sorted(local.folds, key=lambda edge: sum(edge) - local.vertex)[:2]
     gains = [mode.gain(first, second) for mode in local_modes(star) if mode.folds == local.folds]
     if len(gains) == 1:

@@ -17,14 +17,14 @@ _MOST_CLIQUES: Final = 1_000_000
 def components(supports: Sequence[Support], free_folds: int) -> dict[int, int]:
     """{dimension: number} of the components of all motions to second order.
 
-    Where every vertex has at most four folds, the motions are the union of the spans of sets of
-    elementary modes without a common vertex, each together with the folds that have both ends on
-    the border (docs/panels.md, Structure theorem). The components are the maximal such
-    sets, real linear spaces; each dimension counts modes and free folds. Maximal sets of supports
-    are the maximal cliques of the graph of disjoint supports; each stands for the product of their
-    counts. A sheet that cannot move has one component, the flat state, of dimension 0.
+    Let every vertex have at most four folds. Then the motions are a union of linear spaces. Each is
+    spanned by elementary modes without a common vertex, and by the folds whose two ends lie on the
+    border (docs/panels.md, Structure theorem). The components are the maximal spaces. The dimension
+    of a component is its number of modes plus the number of free folds. Maximal sets of supports
+    are the maximal cliques of the graph of disjoint supports; each set stands for the product of
+    its counts. A sheet that cannot move has one component, the flat state, of dimension 0.
 
-    Raises `TooManyModesError` beyond a million maximal sets of supports.
+    Raises `TooManyModesError` if there are more than a million maximal sets of supports.
 
     >>> components([Support((1, 2), 2), Support((3,), 1), Support((2, 3), 1)], 0)
     {1: 1, 2: 2}

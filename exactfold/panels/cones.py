@@ -1,4 +1,4 @@
-"""Several forms left on a space: when their common zeros are one component, and a point of it."""
+"""Several forms that remain on a space: whether their common zeros are one component."""
 
 from __future__ import annotations
 
@@ -26,16 +26,17 @@ _MOST_FORMS: Final = 16
 def cone_motion(
     stars: Mapping[int, Star], rows: Rows, size: int, vertices: Sequence[int]
 ) -> Balls | None:
-    """A motion of a space where the forms of these vertices vanish, if it shows that they are one.
+    """A motion of a space at which the forms of these vertices vanish, if they are one component.
 
-    The theorem is docs/panels.md, Double covers. The forms are put in an
-    order; for each there is a direction u in which it is not 0, and which those before do not
-    depend on. The line along u through a point w meets its zeros in the two roots of a quadratic
-    polynomial, which are real if the discriminant D(w) is positive. If D has both signs at regular
-    zeros of the forms before, it is no square, and the zeros of the form are one component with
-    those before. The first form has rank 3 at least, and needs no more. The motion is enclosed in
-    balls; the derivatives of the forms are independent there. None decides nothing; of more than 16
-    forms none is tried.
+    The theorem is in docs/panels.md, Double covers. The forms are ordered. For each form there is a
+    direction u at which the form is not 0 and on which no earlier form depends. The line along u
+    through a point w meets the zeros of the form at the two roots of a quadratic polynomial, which
+    are real if the discriminant D(w) is positive. If D takes both signs at regular zeros of the
+    earlier forms, D is no square, and the zeros of this form and the earlier ones are one
+    component. The first form has rank at least 3 and needs no discriminant. The motion is enclosed
+    in balls, and the derivatives of the forms are independent there.
+
+    None decides nothing. More than 16 forms are not tried.
     """
     if len(vertices) > _MOST_FORMS:
         return None
@@ -62,10 +63,10 @@ def cone_motion(
 def _ordered(
     stars: Mapping[int, Star], rows: Rows, size: int, vertices: Sequence[int]
 ) -> list[tuple[int, list[Balls]]]:
-    """The vertices in an order, each with a basis of the space that those before do not depend on.
+    """The ordered vertices, each with a basis of the space on which no earlier form depends.
 
-    The last is one whose form has the highest rank there, and so on for the others; floating point
-    is enough to choose, as any order would do.
+    The last vertex is one whose form has the highest rank there; the others follow in the same way.
+    Floating point may choose, because every order is correct.
     """
     squares = {v: squares_of(stars[v], rows, size) for v in vertices}
     functionals = {v: [functional for _, functional in squares[v]] for v in vertices}
@@ -99,7 +100,9 @@ def _basis(rows: Rows, size: int) -> list[Balls]:
 
 
 def _directions(forms: Forms, v: int, room: Sequence[Balls]) -> Iterator[Balls]:
-    """The vectors of a basis where the form is not 0, then such sums and differences of two."""
+    """Vectors at which the form is not 0: first those of the basis, then sums and differences of
+    two.
+    """
     pairs = list(combinations([u for u in room if forms.gradient(v, u)], 2))
     sums = (_plus(a, arb(sign), b) for a, b in pairs for sign in (1, -1))
     for u in chain(room, sums):
@@ -112,8 +115,9 @@ def _sides(
 ) -> tuple[list[Balls], bool]:
     """Zeros of the form on lines along u, and whether the discriminant is negative somewhere.
 
-    The lines go through the points shifted in `room`, which stay zeros of the forms before: as
-    they are, and after steps to a critical point of the discriminant.
+    The lines go through the given points, shifted by vectors of `room`, which keep them zeros of
+    the earlier forms. Afterwards the points are moved towards critical points of the discriminant,
+    and shifted again.
     """
     last = forms.value(v, u)
     found: list[Balls] = []
@@ -135,7 +139,7 @@ def _sides(
 
 
 def _centred(forms: Forms, v: int, w: Balls, room: Sequence[Balls], u: Balls) -> Balls:
-    """A point shifted to where the discriminant is critical, nearly: along each vector in turn."""
+    """A point moved by the vectors of `room`, one after the other, until D is nearly critical."""
     last = 2 * forms.value(v, u)
     slopes = forms.gradient(v, u)
     bends = [forms.gradient(v, b) for b in room]
@@ -154,7 +158,9 @@ def _product(weights: Balls, w: Balls) -> Any:
 
 
 def _shift(number: int, k: int) -> Any:
-    """The weight of the vector `k` of a basis in one of the shifts, from small to large ones."""
+    """The weight of vector `k` of a basis in shift `number`; the weights vary from small
+    to large.
+    """
     return (pow(31 * number + k + 2, 5, 101) % 7 - 3) * arb(8) ** (number % 5 - 1)
 
 
@@ -168,11 +174,11 @@ def _plus(w: Balls, weight: Any, u: Balls) -> Balls:
 def is_one_family(
     stars: Mapping[int, Star], size: int, leaf_size: int, vertices: Sequence[int]
 ) -> bool:
-    """Whether true motions near the flat state are one family, if the leaf they are tangent to is.
+    """Whether the true motions near the flat state are one family, if their leaf is one component.
 
-    So it is if the leaf is all of the first-order motions, of dimension `size`, on which the form
-    of each vertex with more than two folds is left, and the conditions of first order are
-    independent, two for each of these vertices and one for each straight pair (docs/panels.md,
+    They are if the leaf consists of all first-order motions, a space of dimension `size`, if the
+    form of each vertex with more than two folds remains on it, and if the first-order conditions
+    are independent: two for each of these vertices and one for each straight pair (docs/panels.md,
     Vertices with more folds).
 
     >>> right = Star(0, ((0, 1), (0, 2), (0, 3), (0, 4)), ((1, 0), (0, 1), (-1, 0), (0, -1)))

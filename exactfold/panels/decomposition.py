@@ -1,4 +1,4 @@
-"""All motions of a sheet of rigid panels: the complete decomposition, and what truly folds."""
+"""All motions of a sheet of rigid panels: their components, and which of them truly fold."""
 
 from __future__ import annotations
 
@@ -35,17 +35,18 @@ def decompose(
 ) -> Decomposition:
     """Every component of the motions of a sheet of rigid panels, to second order and truly.
 
-    First the folds that cannot fold in any real motion are found (`stars`), at any size. What is
-    left falls into independent parts. Where all vertices have at most four folds the structure
-    theorem gives all components (docs/panels.md, Structure theorem); elsewhere linear spaces are
-    split vertex by vertex (`leaves`), if the first-order motions have dimension 16 or less or the
-    spaces turn out to be few; else components are found one by one (`found_components`), or, where
-    none is known to fold, modes that do (`folding_modes`). A motion
-    of true configurations has its lowest order in the second-order motions, so a sheet without
-    these is rigid. `flat` holds folds flat that are in the drawing but are not to fold; up to
-    `listed` modes are listed one by one.
+    First the folds that cannot fold in any real motion are found (`stars`); this works at any size.
+    The remaining folds fall into independent parts. For a part whose vertices have at most four
+    folds, the structure theorem gives all components (docs/panels.md, Structure theorem). For other
+    parts, linear spaces are split vertex by vertex (`leaves`); this needs first-order motions of
+    dimension 16 or less, or few spaces. If it fails, components are found one by one
+    (`found_components`), and if none of these is known to fold, modes that fold are searched for
+    (`folding_modes`). The lowest-order term of a true motion is a second-order motion, so a sheet
+    without second-order motions is rigid.
 
-    UNDECIDED means that a part is too large or needs too many square roots; `reason` says which.
+    Folds in `flat` are in the drawing but are held flat. Up to `listed` modes are listed one by
+    one. If the status is UNDECIDED, some part is too large or needs too many square roots; `reason`
+    says which.
 
     >>> from exactfold.pattern.panel_pattern import PanelPattern
     >>> cross = PanelPattern([(-1, -1), (1, -1), (1, 1), (-1, 1), (0, 0), (0, -1), (1, 0),
@@ -100,7 +101,7 @@ def decompose(
 
 
 def _rigidity(result: Decomposition) -> Verdict:
-    """Rigid if nothing moves to second order; not rigid if something truly folds."""
+    """PROVED if nothing moves to second order, REFUTED if something truly folds."""
     if result.second_order is not None and set(result.second_order) == {0}:
         return PROVED
     if result.free or any(mode.extends.verdict is PROVED for mode in result.modes):
@@ -121,7 +122,10 @@ def _modes_count(found: Iterable[Part]) -> int | None:
 
 
 def groups_of(moving: Mapping[int, Star]) -> list[tuple[int, ...]]:
-    """Vertices joined by folds that may fold, smallest first."""
+    """The connected groups of vertices that are joined by folds that may fold.
+
+    They are sorted by their smallest vertex.
+    """
     graph = nx.Graph()
     graph.add_nodes_from(moving)
     for v, star in moving.items():
@@ -143,7 +147,7 @@ def _part(pattern: PanelPattern, moving: Mapping[int, Star], listed: int) -> Par
 
 
 def _by_modes(pattern: PanelPattern, moving: Mapping[int, Star], listed: int) -> Part:
-    """The structure theorem: elementary modes, and which of them extend."""
+    """A part by the structure theorem: its elementary modes, and which of them extend."""
     search = ModeSearch(moving, pattern.field)
     supports = search.supports(MOST_SUPPORTS)
     modes: list[Mode] = []

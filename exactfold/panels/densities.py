@@ -1,4 +1,4 @@
-"""Fold densities far from where they were given: products of gains, compared exactly."""
+"""Fold densities far away from the first fold: products of gains that are compared exactly."""
 
 from __future__ import annotations
 
@@ -17,21 +17,22 @@ Factors: TypeAlias = Mapping[int, int]
 _PRECISIONS: Final = (64, 256, 2048)
 _ROOTS_AT_ONCE: Final = 3
 _MOST_ROOTS: Final = 7
-"""Most square roots that are adjoined at once to decide an equality."""
+"""At most this many square roots are adjoined at once to decide an equality."""
 
 
 _NONE: Final[Factors] = MappingProxyType({})
 
 
 class UndecidedDensityError(ArithmeticError):
-    """Two densities agree to 2048 bits and need too many roots to be compared exactly."""
+    """Two densities agree to 2048 bits but need too many roots to be compared exactly."""
 
 
 class Roots:
-    """The square roots that densities need: a few in one field, all others one by one.
+    """The square roots that densities need: a few in one field, and all others one by one.
 
-    `field` holds the coordinates and the first roots that occur, up to three; numbers in it are
-    multiplied at once. A gain that needs another root is kept as a factor, by its number here.
+    `field` contains the coordinates and up to three of the roots, those that occur first. Numbers
+    in it are multiplied immediately. A gain that needs another root stays a separate factor,
+    identified by its number here.
     """
 
     def __init__(self, ground: SurdField) -> None:
@@ -42,7 +43,7 @@ class Roots:
         self.factors: list[Surd] = []
 
     def density(self, gain: Number) -> Density:
-        """A gain as a density."""
+        """The gain as a density."""
         if not isinstance(gain, Surd):
             return Density(gain, _NONE, self)
         radicand, low, high = split(gain)
@@ -61,7 +62,7 @@ class Roots:
 
 
 def split(gain: Surd) -> tuple[Surd, Surd, Surd]:
-    """r^2, a and b of a number a + b r with the last root r, in the field below it."""
+    """For a number a + b r, where r is the last root: r^2, a and b in the field without r."""
     below = SurdField(gain.field.radicands[:-1])
     half = len(gain.coefficients) // 2
     parts = (gain.field.radicands[-1], gain.coefficients[:half], gain.coefficients[half:])
@@ -73,8 +74,8 @@ def split(gain: Surd) -> tuple[Surd, Surd, Surd]:
 class Density:
     """A product `base * prod f^k` of real numbers that are not 0.
 
-    `base` lies in the field of the coordinates; the `factors` are gains that need a square root of
-    their own, and are multiplied out only where they must be.
+    `base` lies in the field of `Roots`. The `factors` are gains that need a square root of their
+    own; they are multiplied out only when necessary.
     """
 
     base: Number
@@ -101,8 +102,8 @@ class Density:
     def is_one(self) -> bool:
         """Whether the product is exactly 1.
 
-        An enclosure that leaves 1 out proves that it is not; that it is, is shown in the field of
-        all roots that occur. Raises `UndecidedDensityError` if these are too many.
+        An enclosure that does not contain 1 proves that it is not 1. That it is 1 is proved in the
+        field of all roots that occur. Raises `UndecidedDensityError` if there are too many roots.
 
         >>> rationals = SurdField(())
         >>> roots = Roots(rationals)
@@ -119,13 +120,13 @@ class Density:
             if bits > _PRECISIONS[0] and (exact := self._multiplied_out()) is not None:
                 return bool(exact == 1)
         raise UndecidedDensityError(
-            f"a product of {len(self.factors)} gains is 1 to {_PRECISIONS[-1]} bits; it needs too "
-            "many square roots to be compared exactly"
+            f"a product of {len(self.factors)} gains agrees with 1 to {_PRECISIONS[-1]} bits, but "
+            "needs too many square roots to be compared exactly"
         )
 
     @property
     def sign(self) -> int:
-        """1 or -1, exactly."""
+        """The exact sign: 1 or -1."""
         result = sign(self.base)
         for number, power in self.factors.items():
             if power % 2:
@@ -141,7 +142,7 @@ class Density:
 
     @cached_property
     def approx(self) -> float:
-        """The value in floating point, to find candidates for equality."""
+        """The value in floating point, used to find densities that may be equal."""
         return float(self.ball(_PRECISIONS[0]))
 
     def _multiplied_out(self) -> Surd | None:

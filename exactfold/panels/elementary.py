@@ -1,4 +1,4 @@
-"""Elementary modes of a sheet whose vertices have at most four folds: counted, not listed."""
+"""Elementary modes of a sheet whose vertices have at most four folds, counted without a list."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ from exactfold.pattern.panel_pattern import Edge
 
 Choice: TypeAlias = "tuple[LocalMode, Choice] | None"
 Known: TypeAlias = "Mapping[Edge, Density | None]"
-"""Folds that lead to vertices without a local mode yet: their density, None if they are flat."""
+"""The densities of folds that lead to vertices without a local mode yet; None if a fold is flat."""
 
 _MOST_STATES: Final = 20_000
-"""Most states that are carried along at once before a search is given up."""
+"""The search is given up if it has to keep more than this many states at once."""
 _MOST_STEPS: Final = 60_000
 
 
 @dataclass(frozen=True)
 class Support:
-    """A set of vertices that are active together, and in how many ways: `count` elementary modes.
+    """A set of vertices that are active together in `count` elementary modes.
 
-    `example` is one of these modes, as its local modes (docs/panels.md, Structure theorem).
+    `example` is one of these modes, given by its local modes (docs/panels.md, Structure theorem).
     """
 
     vertices: tuple[int, ...]
@@ -43,9 +43,10 @@ class Support:
 
 @dataclass(frozen=True)
 class ElementaryMode:
-    """A connected set of active vertices, one local mode each, that agree on all shared folds.
+    """A connected set of active vertices whose local modes agree on all shared folds.
 
-    `densities` are fold angle / length of the active folds, up to a common factor.
+    Each of the vertices has one local mode. `densities` are fold angle / length of the active
+    folds, up to a common factor.
     """
 
     choice: tuple[LocalMode, ...]
@@ -53,31 +54,34 @@ class ElementaryMode:
 
     @property
     def signs(self) -> dict[Edge, int]:
-        """1 or -1 for each active fold; all of them turn on the other side of the sheet."""
+        """1 or -1 for each active fold; seen from the other side of the sheet, all signs are
+        reversed.
+        """
         return {edge: density.sign for edge, density in self.densities.items()}
 
 
 @dataclass(frozen=True)
 class _State:
-    """What the rest of a search must know, and in how many ways it was reached."""
+    """What the search needs to know in order to go on, and the number of ways that led here."""
 
     assigned: int  # a bit for each vertex
     known: Known
     count: int
     choice: Choice
-    densities: Mapping[Edge, Density] | None  # of all folds, kept where modes are listed
+    densities: Mapping[Edge, Density] | None  # of all folds; only kept when modes are listed
 
 
 class ModeSearch:
     """The search for elementary modes on given stars, all with at most four folds.
 
-    For each vertex in turn the modes are found of which it is the smallest vertex. A state is a
-    set of vertices with local modes and the densities, up to a common factor, of the folds that
-    lead on. Next comes the vertex with fewest local modes that fit, and of these one with most
-    folds known, so that what is forced is done first and loops close early. States that agree are
-    one from then on, with their numbers added: modes are counted without being listed. Floats only
-    propose which states agree; every comparison of densities is exact. `near_misses` holds folds
-    where a loop closed to within 1e-6 and not exactly: the drawing may be rounded.
+    For each vertex in turn, the search finds the modes of which it is the smallest vertex. A state
+    consists of a set of vertices with local modes, and of the densities, up to a common factor, of
+    the folds that lead on. The next vertex is one with the fewest local modes that fit, and among
+    these one with the most known folds. So forced choices come first, and loops close early. Equal
+    states are merged and their counts added, so modes are counted without being listed. Floats only
+    propose which states are equal; every comparison of densities is exact. `near_misses` contains
+    folds at which a loop closed to within 1e-6 but not exactly; there the coordinates of the
+    drawing may be rounded.
     """
 
     def __init__(self, stars: Mapping[int, Star], ground: SurdField) -> None:
@@ -90,9 +94,9 @@ class ModeSearch:
         self._steps = 0
 
     def supports(self, limit: int) -> list[Support]:
-        """All sets of vertices with elementary modes, by their smallest vertex.
+        """All sets of vertices with elementary modes, by smallest vertex.
 
-        Raises `TooManyModesError` beyond `limit`, or if the search takes too long.
+        Raises `TooManyModesError` if there are more than `limit`, or if the search takes too long.
         """
         found: list[Support] = []
         for seed in sorted(self.stars):
@@ -110,7 +114,7 @@ class ModeSearch:
         return found
 
     def listed(self, support: Support) -> list[ElementaryMode]:
-        """Every elementary mode of a support; raises `TooManyModesError` if they are too many."""
+        """Every elementary mode of a support; raises `TooManyModesError` if there are too many."""
         wanted = self._bits(support.vertices)
         self._steps = 0
         return [
@@ -126,8 +130,8 @@ class ModeSearch:
         return tuple(v for v, bit in self._bit.items() if mask & bit)
 
     def _grown(self, seed: int, allowed: int, *, listing: bool) -> list[_State]:
-        """The final states of all modes on allowed vertices of which `seed` is the smallest."""
-        allowed &= -self._bit[seed]  # no vertex before the seed
+        """The final states of all modes on allowed vertices whose smallest vertex is `seed`."""
+        allowed &= -self._bit[seed]  # drop the vertices smaller than the seed
         ended: list[_State] = []
         level = [_State(0, {}, 1, None, {} if listing else None)]
         vertex: int | None = seed
@@ -145,12 +149,14 @@ class ModeSearch:
                     if new is not None:
                         table.add(new)
             if self._steps > _MOST_STEPS:
-                raise TooManyModesError(f"its modes were not all found in {_MOST_STEPS} steps")
+                raise TooManyModesError(
+                    f"the search did not find all modes within {_MOST_STEPS} steps"
+                )
             level = table.states
         return ended
 
     def _fits(self, state: _State, mode: LocalMode) -> bool:
-        """Whether a local mode has the folds active that are known to be, and no others."""
+        """Whether a local mode agrees with all known folds about which of them are active."""
         return all(
             (state.known[edge] is not None) == (edge in mode.folds)
             for edge in self.stars[mode.vertex].folds
@@ -158,7 +164,7 @@ class ModeSearch:
         )
 
     def _next(self, state: _State) -> int | None:
-        """An active vertex without a local mode; None if there is none."""
+        """An active vertex that has no local mode yet; None if there is none."""
         best, rank = None, (0, 0)
         seen = set()
         for edge, density in state.known.items():
@@ -175,7 +181,7 @@ class ModeSearch:
         return best
 
     def _joined(self, state: _State, mode: LocalMode, allowed: int) -> _State | None:
-        """The state with this local mode; None if it contradicts what is known."""
+        """The state extended by this local mode; None if the mode contradicts what is known."""
         if not self._fits(state, mode):
             return None
         given = {edge: d for edge in mode.folds if (d := state.known.get(edge)) is not None}
@@ -216,7 +222,7 @@ class ModeSearch:
 
 
 def _scaled(known: Known) -> dict[Edge, Density | None]:
-    """The same densities up to a factor, the first of them 1."""
+    """The same densities, divided by the density of the first active fold."""
     active = [edge for edge, density in known.items() if density is not None]
     unit = known[min(active)] if active else None
     if unit is None or (not unit.factors and unit.base == 1):
@@ -225,7 +231,10 @@ def _scaled(known: Known) -> dict[Edge, Density | None]:
 
 
 class _Table:
-    """States, equal ones merged with their counts added; floats only propose which are equal."""
+    """States; equal states are merged, and their counts added.
+
+    Floats only propose which states are equal.
+    """
 
     def __init__(self, listing: bool) -> None:
         self.states: list[_State] = []
@@ -233,7 +242,7 @@ class _Table:
         self._places: dict[tuple[object, ...], list[int]] = {}
 
     def add(self, state: _State) -> None:
-        """Add a state, or its count to that of an equal one."""
+        """Add a state; if an equal state is present, add the count to it."""
         if not self._listing:
             known = sorted(state.known.items())
             near = tuple((e, None if d is None else f"{d.approx:.6e}") for e, d in known)
@@ -248,12 +257,16 @@ class _Table:
         self.states.append(state)
         if len(self.states) > _MOST_STATES:
             raise TooManyModesError(
-                f"more than {_MOST_STATES} ways to move part of the sheet have to be kept apart"
+                f"the search has to distinguish more than {_MOST_STATES} ways to move a part of "
+                "the sheet"
             )
 
 
 def _equal(a: Known, b: Known) -> bool:
-    """Whether densities on the same folds, known to be flat on the same, are equal."""
+    """Whether densities on the same folds are equal.
+
+    Both states have the same flat folds.
+    """
     pairs = [(x, b[edge]) for edge, x in a.items()]
     return all(x is None or y is None or x.over(y).is_one() for x, y in pairs)
 

@@ -1,4 +1,4 @@
-"""Which elementary modes continue to true motions of the folded sheet."""
+"""Which elementary modes continue to true motions of the sheet."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ _MOST_NONLINEAR: Final = 6
 _MOST_ROOTS: Final = 5
 
 Loops: TypeAlias = "dict[tuple[object, ...], Extension]"
-"""What is known of loops: by the transmissions round them, so that loops of one shape share it."""
+"""The results for loops by the transmissions along them; loops of the same shape share a result."""
 
 
 @dataclass(frozen=True)
 class Extension:
-    """Whether a mode is tangent to a true motion: PROVED, REFUTED or UNDECIDED, and by what.
+    """Whether a mode is tangent to a true motion: `verdict`, and the reason for it, `by`.
 
-    `cycle` is the loop of vertices that does not close, at `order` in the fold angle, if REFUTED
-    (docs/panels.md, Extension theorem).
+    If the verdict is REFUTED, `cycle` is the loop of vertices that does not close, and `order` is
+    the order in the fold angle at which it fails (docs/panels.md, Extension theorem).
     """
 
     verdict: Verdict
@@ -45,18 +45,18 @@ def extension(
     modes: Iterable[LocalMode],
     known: Loops | None = None,
 ) -> Extension:
-    """Whether the elementary mode made of these local modes continues to a motion of rigid panels.
+    """Whether an elementary mode, given by its local modes, continues to a motion of rigid panels.
 
-    Each local mode continues to one analytic curve of true motions of its vertex, so a mode extends
-    if its active graph is a forest; or if all transmissions round its loops are linear, as they
-    then close because the mode does; or if round every loop of a cycle basis they close up to the
-    odd order 2^k + 1, with k nonlinear transmissions (docs/panels.md, Which modes truly fold: the
-    composite has bidegree at most (2^k, 2^k), and meets the diagonal at the origin no more often
-    unless it is the diagonal). The first order that fails proves that it does not extend.
+    Each local mode continues to one analytic curve of true motions of its vertex. So the mode
+    extends in three cases. First, its active graph is a forest. Second, all transmissions along its
+    loops are linear; the loops then close because the mode does. Third, every loop of a cycle basis
+    closes up to the odd order 2^k + 1, where k is its number of nonlinear transmissions
+    (docs/panels.md, Which modes truly fold: the composite has bidegree at most (2^k, 2^k), so it
+    meets the diagonal at the origin no more often unless it is the diagonal). The first order at
+    which a loop fails proves that the mode does not extend.
 
-    `known` keeps what was found of loops, for other modes of the same sheet.
-
-    UNDECIDED means that a loop has too many nonlinear transmissions or square roots for this test.
+    `known` stores the results of loops for other modes of the same sheet. UNDECIDED means that a
+    loop has too many nonlinear transmissions or square roots for this test.
     """
     chosen = {local.vertex: local for local in modes}
     graph = active_graph(chosen)
@@ -82,10 +82,10 @@ def extension(
 def extend_together(
     stars: Mapping[int, Star], modes: Mapping[int, Sequence[LocalMode]], vertices: Iterable[int]
 ) -> Extension | None:
-    """How all elementary modes on these vertices extend, if that needs no list of them; else None.
+    """How all elementary modes on these vertices extend, if this needs no list of them; else None.
 
-    They do if all folds between the vertices form a forest, or if at each vertex the transmissions
-    of every local mode between any two of its active folds are linear.
+    All of them extend if all folds between the vertices form a forest. They also extend if, at each
+    vertex, the transmissions of every local mode between any two of its active folds are linear.
     """
     active = set(vertices)
     graph = nx.Graph()
@@ -103,7 +103,7 @@ def extend_together(
 
 
 def active_graph(chosen: Mapping[int, LocalMode]) -> nx.Graph:
-    """The active vertices, joined by the active folds that two of them share."""
+    """The graph of the active vertices; its edges are the active folds between two of them."""
     graph = nx.Graph()
     graph.add_nodes_from(chosen)
     for local in chosen.values():
@@ -112,16 +112,16 @@ def active_graph(chosen: Mapping[int, LocalMode]) -> nx.Graph:
 
 
 def cycle_basis(pattern: PanelPattern, graph: nx.Graph) -> list[tuple[int, ...]]:
-    """Loops of active vertices that generate all: the faces of the active graph.
+    """Loops of active vertices that generate all loops: the faces of the active graph.
 
-    In each block (a part that no single vertex cuts) every fold is a side of two of its faces, so
-    that any one face is the sum of the others: the longest, mostly the outer one, is left out.
+    A block is a part that no single vertex cuts. In a block every fold is a side of two faces, so
+    each face is the sum of the others. The longest face, usually the outer one, is left out.
     """
     found: list[tuple[int, ...]] = []
     for block in nx.biconnected_component_edges(graph):
         sides = {half for i, j in block for half in ((i, j), (j, i))}
         if len(sides) == 2:
-            continue  # one fold is in no loop
+            continue  # a single fold lies in no loop
         faces = _faces(pattern, sides)
         faces.remove(max(faces, key=len))
         found += faces
@@ -129,7 +129,7 @@ def cycle_basis(pattern: PanelPattern, graph: nx.Graph) -> list[tuple[int, ...]]
 
 
 def _faces(pattern: PanelPattern, sides: set[tuple[int, int]]) -> list[tuple[int, ...]]:
-    """The faces of a plane graph, given by its directed edges."""
+    """The faces of a plane graph that is given by its directed edges."""
     after: dict[tuple[int, int], tuple[int, int]] = {}
     for v in sorted({v for v, _ in sides}):
         around = [u for u in pattern.stars[v] if (v, u) in sides]
@@ -149,7 +149,7 @@ def _faces(pattern: PanelPattern, sides: set[tuple[int, int]]) -> list[tuple[int
 def _steps(
     cycle: Sequence[int], stars: Mapping[int, Star], chosen: Mapping[int, LocalMode]
 ) -> list[Transmission]:
-    """The transmissions from fold to fold round a loop of vertices."""
+    """The transmissions from fold to fold along a loop of vertices."""
     count = len(cycle)
     folds: list[Edge] = [edge_of(cycle[k - 1], cycle[k]) for k in range(count)]
     return [
@@ -159,7 +159,10 @@ def _steps(
 
 
 def _round(steps: Sequence[Transmission]) -> Extension:
-    """Whether the transmissions round a loop compose to the identity, of any loop of its shape."""
+    """Whether the transmissions along a loop compose to the identity.
+
+    The result holds for every loop of the same shape.
+    """
     bent = sum(not step.is_linear for step in steps)
     if bent == 0:
         return Extension(PROVED, "linear transmissions", order=1)
@@ -172,7 +175,10 @@ def _round(steps: Sequence[Transmission]) -> Extension:
             return _refuted(failing)
     values = [x for step in steps for x in (step.gain, *(step.quadratic or ()))]
     if len({x.field.radicands for x in values if isinstance(x, Surd)}) > _MOST_ROOTS:
-        return Extension(UNDECIDED, f"closes to {_BITS} bits; it needs many square roots")
+        return Extension(
+            UNDECIDED,
+            f"closes to {_BITS} bits, but needs too many square roots to be decided exactly",
+        )
     number = JoinedField(values).number
     exact = composed([step.series(terms, number) for step in steps], number)
     for n in range(1, terms):
@@ -186,14 +192,14 @@ def _refuted(order: int) -> Extension:
 
 
 def _named(result: Extension, cycle: Sequence[int]) -> Extension:
-    """What is known of loops of a shape, said of one of them."""
+    """The result for a loop shape, worded for one loop of that shape."""
     where = "-".join(str(v) for v in cycle)
     refuted = tuple(cycle) if result.verdict is REFUTED else ()
     return Extension(result.verdict, f"the loop {where} {result.by}", refuted, result.order)
 
 
 def _failing_in_balls(steps: Sequence[Transmission], terms: int) -> int | None:
-    """The first odd order at which an enclosure of the loop leaves the identity out."""
+    """The first odd order at which an enclosure of the loop excludes the identity, or None."""
     before = ctx.prec
     ctx.prec = _BITS
     try:

@@ -1,4 +1,4 @@
-"""Modes of a large part that are known to truly fold, where not all components are known."""
+"""Modes of a large part that are known to truly fold, when not all components are known."""
 
 from __future__ import annotations
 
@@ -19,21 +19,22 @@ from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
 MOST_MODES: Final = 12
 _TRIES: Final = 5
-"""Proposals that are computed exactly before one of them has to give a mode."""
+"""If this many exactly computed proposals give no mode, the search stops."""
 _MOST_ROOTS: Final = 3
 
 
 def folding_modes(
     pattern: PanelPattern, moving: Mapping[int, Star], rows: Rows, size: int, most: int
 ) -> list[Mode]:
-    """Modes that are proved to truly fold: of those found the twelve with most folds.
+    """Modes that are proved to truly fold: among those found, the twelve with the most folds.
 
-    `rows` is a space that holds all real motions of the part. `Proposals` suggests linear spaces on
-    which all forms vanish. Each is computed again exactly; where it falls into lines, and on a line
-    no vertex has more than four active folds, the line is a mode, and the extension theorem says
-    whether it truly folds (docs/panels.md, Which modes truly fold). The motions of a mode need not
-    be a component: they may lie in a larger family, and there may be many more. The work is limited
-    to `most` steps, as in `found_components`. That no mode is found means nothing.
+    `rows` is a space that contains all real motions of the part. `Proposals` suggests linear spaces
+    on which all forms vanish, and each is computed again exactly. It may be a direct sum of spaces.
+    If one of these is a line on which no vertex has more than four active folds, the line is a
+    mode, and the extension theorem says whether it truly folds (docs/panels.md, Which modes truly
+    fold). The motions of a mode need not be a component: they may lie in a larger family, and there
+    may be many more modes. The work is limited to `most` steps, as in `found_components`. If no
+    mode is found, nothing follows.
     """
     found: dict[tuple[tuple[Edge, str], ...], Mode] = {}
     work = 0
@@ -53,10 +54,10 @@ def folding_modes(
 
 
 def folding_mode(pattern: PanelPattern, moving: Mapping[int, Star], line: Rows) -> Mode | None:
-    """The mode on a line of motions, if it is known to truly fold; None if it is not known.
+    """The mode on a line of motions if it is known to truly fold; otherwise None.
 
-    All other folds are held flat. None says nothing against it: a motion might use them at a higher
-    order.
+    All other folds are held flat. None does not show that the mode does not fold: a true motion
+    might use the other folds at a higher order.
     """
     choice = [_local(star, line) for star in moving.values() if set(star.folds) & set(line)]
     if any(len(mode.folds) > 4 for mode in choice):

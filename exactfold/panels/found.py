@@ -1,4 +1,4 @@
-"""Components of the motions of a large part, found one by one and proved; there may be others."""
+"""Components of the motions of a large part, found and proved one by one; there may be others."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ from exactfold.panels.subspaces import (
 
 @dataclass(frozen=True)
 class FoundComponent:
-    """A component that was found: the leaf it lies in, its dimension, and a regular motion of it.
+    """A component that was found: its dimension, a regular motion of it, and a leaf that holds it.
 
-    The space of `leaf` holds it; `folds` says whether it is known to fold truly.
+    `folds` says whether the component is known to fold truly.
     """
 
     leaf: Leaf
@@ -52,15 +52,16 @@ def found_components(
     most: int,
     extends: Callable[[Leaf], bool],
 ) -> tuple[list[FoundComponent], bool]:
-    """Components in the space of these rows, each proved to be one and to differ from the others.
+    """Components in a space; each is proved to be one, and to differ from the others.
 
-    `rows` is a space that holds all real motions. `Proposals` suggests motions w and the steps to
-    them; the steps are taken again exactly, which gives a space on which all forms but some vanish.
-    Where these have a common zero near w with independent derivatives on the space, and the
-    derivatives of all forms leave no more room in the space of `rows`, w lies on exactly one
-    component (docs/panels.md, Regular points). The work is limited to `most` steps, as in `leaves`.
-    The second value says whether the search in floating point came to its end, which proves
-    nothing.
+    `rows` is a space that contains all real motions. `Proposals` suggests motions w and the steps
+    that led to them. The steps are repeated exactly; they give a space on which all but some forms
+    vanish. Suppose that these forms have a common zero near w with independent derivatives on the
+    space, and that the derivatives of all forms leave no larger dimension in the space of `rows`.
+    Then w lies on exactly one component (docs/panels.md, Regular points). The work is limited to
+    `most` steps, as in `leaves`.
+
+    The second value says whether the floating-point search reached its end, which proves nothing.
     """
     forms = Forms(moving)
     whole = in_balls(rows)
@@ -92,9 +93,9 @@ def exact_leaf(
     proposal: Proposal,
     most_roots: int = MOST_ROOTS,
 ) -> Leaf | None:
-    """The exact space that the steps of a proposal lead to.
+    """The exact space to which the steps of a proposal lead.
 
-    None if they lead elsewhere, or need more square roots.
+    None if they lead to a different space, or if they need more square roots than allowed.
     """
     for v, inside in proposal.steps:
         if isinstance(v, tuple):
@@ -126,7 +127,7 @@ def exact_leaf(
 
 
 def _relative(functional: Sequence[Entry], at: Sequence[float]) -> float:
-    """How large a functional is at a point, for its size."""
+    """The size of a functional at a point, relative to the size of the functional."""
     weights = [float(x) for x in functional]
     total = sum(x * y for x, y in zip(weights, at, strict=True))
     return abs(total) / max(map(abs, weights))

@@ -1,4 +1,4 @@
-"""The space of first-order motions of a sheet of panels, exactly."""
+"""The space of first-order motions of a sheet of panels, computed exactly."""
 
 from __future__ import annotations
 
@@ -14,28 +14,28 @@ from exactfold.panels.stars import Star
 from exactfold.pattern.panel_pattern import Edge
 
 Entry: TypeAlias = Surd | fmpq
-"""A number to compute with: FLINT's rationals are some ten times faster than fractions."""
+"""A number to compute with; FLINT's rationals are about ten times faster than fractions."""
 
 Key = TypeVar("Key")
 
 Rows: TypeAlias = dict[Edge, Sequence[Entry]]
-"""The density of each fold as a linear function of parameters; folds that are flat left out."""
+"""The density of each fold as a linear function of parameters; flat folds are left out."""
 
 
 def entry(value: Number | fmpq) -> Entry:
-    """A number as one to compute with."""
+    """Convert a number of a result to a number to compute with."""
     return value if isinstance(value, Surd) else to_fmpq(value)
 
 
 def number(value: Entry) -> Number:
-    """A number as it stands in results."""
+    """Convert a number to compute with to a number of a result."""
     return value if isinstance(value, Surd) else from_fmpq(value)
 
 
 def first_order(stars: Mapping[int, Star]) -> tuple[Rows, int]:
-    """The first-order motions `sum_j w_j d_j = 0` at all vertices, in parameters, and their number.
+    """The first-order motions sum_j w_j d_j = 0 at all vertices, and their number of parameters.
 
-    Conditions are eliminated one by one; each parameter is the density of one fold.
+    The conditions are eliminated one by one. Each parameter is the density of one fold.
 
     >>> star = Star(0, ((0, 1), (0, 2)), ((1, 0), (-2, 0)))
     >>> first_order({0: star})
@@ -80,7 +80,7 @@ def first_order(stars: Mapping[int, Star]) -> tuple[Rows, int]:
 
 
 def imposed(rows: Rows, size: int, *functionals: Sequence[Entry]) -> tuple[Rows, int]:
-    """The subspace where linear functions of the parameters vanish, in fewer parameters.
+    """The subspace on which linear functions of the parameters vanish, with fewer parameters.
 
     >>> one, zero = fmpq(1), fmpq(0)
     >>> imposed({(0, 1): [one, zero], (0, 2): [zero, one]}, 2, [one, one])
@@ -103,7 +103,7 @@ def imposed(rows: Rows, size: int, *functionals: Sequence[Entry]) -> tuple[Rows,
 
 
 def _without(row: Sequence[Entry], pivot: int, solved: Sequence[Entry]) -> list[Entry]:
-    """The row with the parameter `pivot` expressed in the others."""
+    """The row in which the parameter `pivot` is expressed by the others."""
     x = row[pivot]
     rest = [k for k in range(len(row)) if k != pivot]
     if not x:
@@ -122,7 +122,7 @@ def _add(
 
 
 def increase(row: dict[Key, Entry], key: Key, value: Entry) -> None:
-    """Add a value to an entry of a sparse row, which has no zeros."""
+    """Add a value to an entry of a sparse row; a row contains no zeros."""
     total = row[key] + value if key in row else value
     if total:
         row[key] = total

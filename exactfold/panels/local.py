@@ -13,10 +13,10 @@ from exactfold.pattern.panel_pattern import Edge
 
 @dataclass(frozen=True)
 class LocalMode:
-    """One line of motions at a vertex: `values[k]` is the fold density of `folds[k]`.
+    """One line of motions at a vertex; `values[k]` is the fold density of `folds[k]`.
 
-    Folds with value 0 are left out, so every fold listed is active. Densities are fold angle /
-    length, up to a common factor; `index` tells the modes of one vertex apart.
+    Folds with value 0 are left out, so every listed fold is active. Densities are fold angle /
+    length, up to a common factor. `index` distinguishes the modes of a vertex.
     """
 
     vertex: int
@@ -25,17 +25,18 @@ class LocalMode:
     values: tuple[Number, ...]
 
     def gain(self, start: Edge, end: Edge) -> Number:
-        """density of `end` / density of `start`."""
+        """The density of `end` divided by the density of `start`."""
         return self.values[self.folds.index(end)] / exact(self.values[self.folds.index(start)])
 
 
 def local_modes(star: Star) -> tuple[LocalMode, ...]:
     """The motions to second order of a vertex with at most four folds, after the flat closure.
 
-    A straight pair has one mode, the straight crease. Four folds with all sectors below pi have
-    two: the zeros of a form of inertia (1, 1, 0) on the plane of the local motions, found by its
-    discriminant; an entry is 0 exactly if there is a straight pair. Exact: values lie in the field
-    of the coordinates, or in it with one square root adjoined.
+    A straight pair has one mode, the straight crease. Four folds whose sectors are all less than pi
+    have two modes. They are the zeros of a form of inertia (1, 1, 0) on the plane of the local
+    motions, and the discriminant gives them. A value is 0 exactly if there is a straight pair. The
+    computation is exact: the values lie in the field of the coordinates, or in that field with one
+    square root adjoined.
 
     >>> star = Star(4, ((0, 4), (1, 4), (2, 4), (3, 4)), ((2, 1), (-1, 1), (-1, -1), (1, -2)))
     >>> modes = local_modes(star)
@@ -64,7 +65,10 @@ def local_modes(star: Star) -> tuple[LocalMode, ...]:
 
 
 def _plane(star: Star) -> tuple[list[Number], list[Number]]:
-    """Two independent local motions of four folds: all but the first, and all but one other."""
+    """Two independent local motions of four folds, each with one fold flat.
+
+    In the first motion fold 0 is flat.
+    """
     d = star.directions
     found: list[list[Number]] = []
     for skip in range(4):

@@ -1,4 +1,7 @@
-"""Loops of folds that nearly close: the drawing may be rounded, and a snap may close them."""
+"""Loops of folds that nearly close.
+
+The coordinates of the drawing may be rounded; snapping them may close such loops.
+"""
 
 from __future__ import annotations
 
@@ -18,16 +21,18 @@ from exactfold.panels.stars import edge_of, stars
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
 NEAR: Final = 1e-6
-"""A product that is so near to 1, and is not 1, is a near miss."""
+"""A product that is not 1 but differs from 1 by less than this is a near miss."""
 SNAPS: Final = ("auto", 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 12, 15, 16, 20, 24, 30, 32, 48, 60, 64, 100)
-"""What is tried, in this order: as `--snap` takes it."""
+"""The snaps that are tried, in this order; they are values of `--snap`."""
 _BITS: Final = 256
 _FARTHEST: Final = 1e-4
 _MOST_VERTICES: Final = 400
 _MOST_MISSES: Final = 16
 
 Reopened = Callable[[Any], tuple[PanelPattern, float]]
-"""The sheet read with another snap, and the largest move of a coordinate, by the size."""
+"""Reads the sheet with another snap; returns it and the largest move of a coordinate over
+the size.
+"""
 
 
 class NearMissDocument(TypedDict):
@@ -50,12 +55,13 @@ class NearMissDocument(TypedDict):
 
 @dataclass(frozen=True)
 class NearMiss:
-    """A loop whose product of gains is within 1e-6 of 1 and is not 1.
+    """A loop whose product of gains is not 1 but within 1e-6 of 1.
 
-    `loop` are its vertices, of which the first two are the ends of `fold`; `modes` their local
-    modes; `quotient` is the product and `off` its distance from 1. `snap` is the first of the snaps
-    in `tried` that closes the loop exactly, and `largest_move` how far it moves a coordinate, by
-    the size of the sheet; None if none does, or none was tried.
+    `loop` are its vertices; the first two are the ends of `fold`. `modes` are the local modes at
+    these vertices. `quotient` is the product, and `off` its distance from 1. `snap` is the first
+    snap in `tried` that closes the loop exactly, and `largest_move` is how far it moves a
+    coordinate, divided by the size of the sheet. Both are None if no snap closes the loop or none
+    was tried.
     """
 
     fold: Edge
@@ -68,7 +74,7 @@ class NearMiss:
     tried: tuple[str | int, ...] = ()
 
     def to_dict(self) -> NearMissDocument:
-        """The near miss as it stands in JSON."""
+        """The object of this near miss in the JSON output."""
         return {
             "fold": f"{self.fold[0]}-{self.fold[1]}",
             "quotient": self.quotient,
@@ -81,7 +87,7 @@ class NearMiss:
 
     @property
     def text(self) -> str:
-        """What to know of it, in words."""
+        """The near miss and its remedy in words."""
         shown = "-".join(map(str, (*self.loop, self.loop[0])))
         start = f"the loop of folds {shown} nearly closes, off by {self.off:.1e}: "
         if self.snap is not None:
@@ -90,16 +96,16 @@ class NearMiss:
                 "the size)"
             )
         if self.tried:
-            return start + "no snap that was tried closes it"
-        return start + "the drawing may be rounded (try --snap auto)"
+            return start + "none of the snaps that were tried closes it"
+        return start + "the coordinates of the drawing may be rounded (try --snap auto)"
 
 
 def near_miss(
     chosen: Iterable[LocalMode], mode: LocalMode, start: Edge, end: Edge, quotient: Density
 ) -> NearMiss:
-    """The loop that a local mode would close: from its fold `end` back to its fold `start`.
+    """The loop that a local mode would close, from its fold `end` back to its fold `start`.
 
-    `chosen` are the local modes so far, joined by active folds.
+    `chosen` are the local modes so far; active folds join them.
     """
     known = {other.vertex: other for other in chosen}
     graph = nx.Graph()
@@ -123,9 +129,9 @@ def snapped_misses(
 ) -> tuple[NearMiss, ...]:
     """The near misses, each with the first snap of `SNAPS` that closes it, if one does.
 
-    `reopened` reads the sheet again. Denominators are tried for sheets of up to 400 vertices, and
-    count if nothing moves by more than 1e-4 of the size; a snap that gives a sheet with other edges
-    closes nothing. Of more than 16 near misses the others are left as they are.
+    `reopened` reads the sheet again. Denominators are tried for sheets with up to 400 vertices, and
+    accepted if no coordinate moves by more than 1e-4 of the size. A snap that changes the edges of
+    the sheet closes nothing. Only the first 16 near misses are tried.
     """
     open_ones = dict(enumerate(misses[:_MOST_MISSES]))
     found = list(misses)
@@ -152,7 +158,7 @@ def snapped_misses(
 def closes(sheet: PanelPattern, miss: NearMiss) -> bool:
     """Whether the product round the loop is exactly 1 on a sheet with the same edges.
 
-    At each vertex that local mode is taken which has the same active folds and the nearest gain.
+    At each vertex, the local mode with the same active folds and the nearest gain is used.
     """
     moving = stars(sheet)
     roots = Roots(sheet.field)

@@ -1,4 +1,4 @@
-"""Where the motions of a large part may lie: a search in floating point, which proves nothing."""
+"""A floating-point search for the motions of a large part; it proves nothing."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ Step: TypeAlias = tuple[int | Edge, Mapping[Edge, float] | None]
 
 @dataclass(frozen=True)
 class Proposal:
-    """A motion that seems to be a regular point of a component, and how it was reached.
+    """A motion that seems to be a regular point of a component, and the steps that led to it.
 
-    `densities` gives each fold's density; `steps` are the vertices whose forms were made zero, and
-    the folds that were held flat, in order, with the densities of a motion of the space that
-    it led to where a form split the space; `vertices` those whose forms do not vanish on the space
-    that is left, of dimension `size`.
+    `densities` gives the density of each fold. `steps` are, in order, the vertices whose forms were
+    made zero and the folds that were held flat. Where a form split the space, a step also has the
+    densities of a motion in the resulting space. `vertices` are those whose forms do not vanish on
+    the remaining space, which has dimension `size`.
     """
 
     densities: Mapping[Edge, float]
@@ -46,7 +46,9 @@ _Step: TypeAlias = tuple[int | Edge, FloatArray | None]
 
 @dataclass(frozen=True)
 class _Kinds:
-    """The forms on a space: those that leave their kernel, those that split, and the others."""
+    """The forms on a space: those that leave their kernel, those that split the space, and the
+    others.
+    """
 
     kernels: list[tuple[int, FloatArray]]
     splits: dict[int, tuple[FloatArray, FloatArray]]
@@ -56,11 +58,13 @@ class _Kinds:
 class Proposals:
     """A depth-first search for motions, with a fixed number of steps.
 
-    On each space of motions a semidefinite form leaves its kernel, a form of inertia (1, 1) splits
-    the space, others stay; where nothing splits any more Newton's method looks for a motion in the
-    space. `complete` says, after the search, whether it came to its end. Without `regular` motions
-    of linear spaces are proposed whether or not they seem to be regular points, and no others:
-    where a form neither splits the space nor leaves its kernel, folds of the vertex are held flat.
+    On each space of motions, a semidefinite form leaves its kernel, a form of inertia (1, 1) splits
+    the space, and other forms remain. Where no form splits the space any more, Newton's method
+    looks for a motion in it. After the search, `complete` says whether it reached its end.
+
+    If `regular` is false, only motions of linear spaces are proposed, whether or not they seem to
+    be regular points. Then, where a form neither splits the space nor leaves its kernel, folds of
+    its vertex are held flat.
     """
 
     def __init__(
@@ -103,7 +107,7 @@ class Proposals:
         self._rng = np.random.default_rng(1)
 
     def __iter__(self) -> Iterator[Proposal]:
-        """Proposals, each in no space of another before it."""
+        """Yield proposals; none lies in the space of an earlier one."""
         known: list[tuple[FloatArray, FloatArray]] = []
         most = min(_MOST_NODES, _MOST_WORK // (len(self._edges) * self._size**2))
         waiting: list[tuple[FloatArray, tuple[_Step, ...]]] = [(self._whole, ())]
@@ -142,7 +146,9 @@ class Proposals:
         kinds: _Kinds,
         known: list[tuple[FloatArray, FloatArray]],
     ) -> Proposal | None:
-        """A regular motion in the space, if it seems to belong to a component that is not known."""
+        """A regular motion in the space, if it seems to belong to a component that is not known
+        yet.
+        """
         left = sorted([*kinds.left, *kinds.splits])
         dimension = basis.shape[1] - len(left)
         if dimension < 1 or (left and not self._regular):
@@ -176,7 +182,7 @@ class Proposals:
         for vertices, folds, forms in self._batches:
             rows = basis[folds]
             lengths, axes = np.linalg.eigh(rows @ rows.transpose(0, 2, 1))
-            axes = axes * (lengths > 100 * _TINY**2)[:, None, :]  # of the local motions
+            axes = axes * (lengths > 100 * _TINY**2)[:, None, :]  # axes of the local motions
             turned = axes.transpose(0, 2, 1)
             values, vectors = np.linalg.eigh(turned @ forms @ axes)
             kept = np.abs(values) > 1e-10
@@ -193,12 +199,14 @@ class Proposals:
         return found
 
     def _nearest(self, vertices: Iterable[int], steps: Sequence[_Step]) -> int:
-        """The vertex to go on with: one with most neighbours done, so that loops close early."""
+        """The vertex to continue with: one with the most neighbours done, so that loops close
+        early.
+        """
         done = {v for v, _ in steps}
         return max(vertices, key=lambda v: (sum(u in done for u in self._near[v]), -v))
 
     def _point(self, basis: FloatArray, left: Sequence[int]) -> FloatArray | None:
-        """A motion in the space, by Newton's method where forms are left."""
+        """A motion in the space; if forms remain, Newton's method finds it. None if it fails."""
         for _ in range(_STARTS):
             w = basis @ self._rng.standard_normal(basis.shape[1])
             w /= np.linalg.norm(w)
@@ -231,7 +239,7 @@ class Proposals:
 
 
 def _without(basis: FloatArray, functionals: FloatArray) -> FloatArray:
-    """A basis of the subspace where functionals of the parameters vanish."""
+    """A basis of the subspace on which functionals of the parameters vanish."""
     _, values, right = np.linalg.svd(functionals, full_matrices=True)
     kept: FloatArray = right[int((values > _TINY).sum()) :]
     return basis @ kept.T

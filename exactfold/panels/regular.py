@@ -1,4 +1,4 @@
-"""Regular points of the motions to second order: what they prove of components."""
+"""Regular points of the motions to second order, and what they prove of components."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ BITS: Final = 128
 _RADIUS: Final = Fraction(1, 10**9)
 
 Balls: TypeAlias = Mapping[Edge, Any]
-"""An enclosure of the density of each fold that is not flat."""
+"""Enclosures of the densities of the folds that are not flat."""
 
 BallRows: TypeAlias = Mapping[Edge, Sequence[tuple[int, Any]]]
-"""The entries of the rows of a space that are not zero, enclosed, by parameter."""
+"""The nonzero entries of the rows of a space, as (parameter, enclosure)."""
 
 
 class Forms:
-    """The forms of the vertices and their derivatives, in balls of 128 bits."""
+    """The forms of the vertices and their derivatives, in balls with 128 bits."""
 
     def __init__(self, stars: Mapping[int, Star]) -> None:
         self.stars = stars
@@ -45,11 +45,11 @@ class Forms:
         return self._brackets[v]
 
     def value(self, v: int, w: Balls) -> Any:
-        """The form at w."""
+        """The value of the form of vertex v at w."""
         return sum((w[e] * w[f] * c for e, f, c in self._terms(v) if e in w and f in w), arb(0))
 
     def gradient(self, v: int, w: Balls) -> dict[Edge, Any]:
-        """The derivative of the form at w, by folds."""
+        """The derivative of the form of vertex v at w, by fold."""
         found: dict[Edge, Any] = {}
         for e, f, c in self._terms(v):
             if f in w:
@@ -61,7 +61,9 @@ class Forms:
     def derivatives(
         self, vertices: Iterable[int], w: Balls, rows: BallRows, size: int
     ) -> list[list[Any]]:
-        """The derivatives at w of the forms of these vertices, on a space given by rows."""
+        """The derivatives at w of the forms of these vertices with respect to a space's
+        parameters.
+        """
         found = []
         for v in vertices:
             total = [arb(0)] * size
@@ -73,14 +75,14 @@ class Forms:
 
 
 def in_balls(rows: Mapping[Edge, Sequence[Any]]) -> BallRows:
-    """The rows of a space, enclosed."""
+    """The rows of a space, enclosed in balls."""
     return {
         edge: [(k, ball(x, BITS)) for k, x in enumerate(row) if x] for edge, row in rows.items()
     }
 
 
 def point(rows: Mapping[Edge, Sequence[Any]], size: int) -> Balls:
-    """A motion of a space, enclosed: the one with the parameters 1, 2, 3, ..."""
+    """An enclosure of the motion of a space with the parameters 1, 2, 3, ..."""
     before = ctx.prec
     ctx.prec = BITS
     try:
@@ -90,7 +92,7 @@ def point(rows: Mapping[Edge, Sequence[Any]], size: int) -> Balls:
 
 
 def parameter_folds(rows: Mapping[Edge, Sequence[Any]], size: int) -> list[Edge]:
-    """For each parameter of a space a fold whose density it is."""
+    """For each parameter of a space, a fold whose density equals it."""
     found: dict[int, Edge] = {}
     for edge, row in rows.items():
         entries = [k for k, x in enumerate(row) if x]
@@ -100,12 +102,13 @@ def parameter_folds(rows: Mapping[Edge, Sequence[Any]], size: int) -> list[Edge]
 
 
 def regular_point(forms: Forms, leaf: Leaf, near: Mapping[Edge, float]) -> Balls | None:
-    """An enclosure of a motion in a leaf, near the one given, at which its forms are regular.
+    """An enclosure of a motion in a leaf at which the leaf's forms are regular, or None.
 
-    The forms of `leaf.vertices` vanish there and have independent derivatives on the space: shown
-    by Krawczyk's operator K(X) = c - Y F(c) + (1 - Y F'(X)) (X - c), which maps a box X of as many
-    parameters as there are forms into its inside; the other parameters are those of `near`. A leaf
-    with no forms left consists of such points. None if this is not shown.
+    The motion is near the given one. The forms of `leaf.vertices` vanish there and have independent
+    derivatives on the space. Krawczyk's operator K(X) = c - Y F(c) + (1 - Y F'(X)) (X - c) shows
+    this: it maps a box X into its interior. The box has as many parameters as there are forms; the
+    other parameters are those of `near`. All points of a leaf without forms are regular. None means
+    that the operator does not show it.
     """
     before = ctx.prec
     ctx.prec = BITS
@@ -150,7 +153,7 @@ def _motion(rows: BallRows, parameters: Sequence[Any]) -> Balls:
 
 
 def rank_at_least(matrix: Sequence[Sequence[Any]], wanted: int) -> bool:
-    """Whether balls show that a matrix has this rank: a minor that is not zero."""
+    """Whether balls show that a matrix has at least this rank, by a minor that is not zero."""
     if wanted == 0:
         return True
     approximate = np.array([[float(x.mid()) for x in row] for row in matrix])
@@ -164,7 +167,7 @@ def rank_at_least(matrix: Sequence[Sequence[Any]], wanted: int) -> bool:
     before = ctx.prec
     ctx.prec = BITS
     try:
-        # |1 - Y M| < 1 in the norm of row sums shows that M is not singular
+        # |1 - Y M| < 1 in the norm of row sums shows that M is invertible
         minor = arb_mat([[matrix[int(i)][int(j)] for j in columns] for i in rows])
         product = arb_mat(np.linalg.inv(square).tolist()) * minor
         sums = [
@@ -177,9 +180,9 @@ def rank_at_least(matrix: Sequence[Sequence[Any]], wanted: int) -> bool:
 
 
 def is_component(forms: Forms, rows: BallRows, size: int, w: Balls, dimension: int) -> bool:
-    """Whether the motions near w have this dimension at most, in the space of these rows.
+    """Whether the motions near w have at most this dimension in the space of these rows.
 
-    That is so if the derivatives at w of all forms have the rank `size - dimension` on the space
+    They do if the derivatives at w of all forms have rank `size - dimension` on the space
     (docs/panels.md, Regular points).
     """
     before = ctx.prec
@@ -192,12 +195,12 @@ def is_component(forms: Forms, rows: BallRows, size: int, w: Balls, dimension: i
 
 
 def truly_folds(stars: Mapping[int, Star], w: Balls) -> bool:
-    """Whether a motion is tangent to true ones by the implicit function theorem.
+    """Whether the implicit function theorem shows that a motion is tangent to true motions.
 
-    Folds that are not in w are held flat. True if then the conditions of first order are
-    independent, two for each vertex and one for a straight pair, and the derivatives of all forms
-    at w are independent on the first-order motions (docs/panels.md, Regular points). False decides
-    nothing.
+    Folds that are not in w are held flat. The answer is True under two conditions (docs/panels.md,
+    Regular points). The first-order conditions are independent: two for each vertex, one for a
+    straight pair. The derivatives at w of all forms are independent on the first-order motions.
+    False decides nothing.
     """
     active = {v: star.only(w) for v, star in stars.items() if set(star.folds) & set(w)}
     full = [v for v, star in active.items() if len(star.folds) != 2]
@@ -216,7 +219,7 @@ def truly_folds(stars: Mapping[int, Star], w: Balls) -> bool:
 
 
 def outside(w: Balls, leaf: Leaf) -> bool:
-    """Whether balls show that a motion is not in the space of a leaf."""
+    """Whether balls show that a motion does not lie in the space of a leaf."""
     if any(edge not in leaf.rows and not x.contains(0) for edge, x in w.items()):
         return True
     before = ctx.prec

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Annotated, Literal, TypeAlias, TypedDict
+from typing import Annotated, Literal, TypeAlias, TypedDict, overload
 
 from exactfold._support.documents import (
     Empty,
@@ -136,8 +136,8 @@ PanelCountDocument: TypeAlias = ProvedPanels | UndecidedPanels
 class Mode:
     """One elementary mode: a one-parameter motion, and whether it truly folds.
 
-    `assignment` holds M or V for each active fold, on one side of the sheet; on the other all
-    letters are exchanged. `choice` are the local modes it is made of.
+    `assignment` gives M or V for each active fold, seen from one side of the sheet; from the other
+    side all letters are exchanged. `choice` are the local modes that form the mode.
     """
 
     active: tuple[int, ...]
@@ -146,7 +146,7 @@ class Mode:
     choice: tuple[LocalMode, ...] = field(default=(), repr=False)
 
     def to_dict(self) -> ModeDocument:
-        """The mode as it stands in JSON."""
+        """The object of this mode in the JSON output."""
         return {
             "active": list(self.active),
             "assignment": {f"{i}-{j}": letter for (i, j), letter in self.assignment.items()},
@@ -159,17 +159,20 @@ class Mode:
 class Decomposition(Page):
     """The ways in which a sheet of rigid panels starts to fold, and which of them truly fold.
 
-    `true` is {dimension: number} of the components of the true configurations near the flat state,
-    None if it is not known. `second_order` is the same for all motions to second order, of which
-    some may not fold; `status` is PROVED if it is known. `rigid` says whether the sheet cannot move
-    at all. `flat` are folds that stay flat in every real motion, `free` those with both ends on the
-    border; `held` are those that were not to fold. `theory` is "modes" if all vertices have at most
-    four folds, else "subspaces". Where `second_order` is None, `found` is {dimension: number} of
-    components that were found and proved, so that there are at least so many. `found_true` is the
-    same for those that are known to fold truly, where `true` is None. `modes` are then modes that
-    truly fold, if no such component is known; there may be others. `still` are folds that are
-    flat in every motion to second order, beside those in `flat`. `near_misses` are loops that
-    nearly close.
+    `second_order` is {dimension: number} of the components of all motions to second order; some of
+    these may not fold. It is None if it is not known, and `status` is PROVED if it is known. `true`
+    is the same for the true configurations near the flat state. `rigid` says whether the sheet
+    cannot move at all. `theory` is "modes" if all vertices have at most four folds, and "subspaces"
+    otherwise.
+
+    `flat` are the folds that stay flat in every real motion. `still` are further folds that are
+    flat in every motion to second order. `free` are the folds whose two ends lie on the border.
+    `held` are the folds that the caller held flat.
+
+    If `second_order` is None, `found` is {dimension: number} of the components that were found and
+    proved; there are at least this many. If `true` is None, `found_true` is the same for the
+    components that are known to fold truly. If no such component is known, `modes` are modes that
+    truly fold; there may be others. `near_misses` are loops that nearly close.
     """
 
     pattern: PanelPattern
@@ -192,12 +195,28 @@ class Decomposition(Page):
     still: tuple[Edge, ...] = ()
     seconds: float = field(default=0.0, compare=False)
 
+    def __len__(self) -> int:
+        return len(self.modes)
+
+    def __iter__(self) -> Iterator[Mode]:
+        return iter(self.modes)
+
+    def __bool__(self) -> bool:
+        return True  # a result, also where no mode is listed
+
+    @overload
+    def __getitem__(self, which: int) -> Mode: ...
+    @overload
+    def __getitem__(self, which: slice) -> tuple[Mode, ...]: ...
+    def __getitem__(self, which: int | slice) -> Mode | tuple[Mode, ...]:
+        return self.modes[which]
+
     def to_dict(
         self, certificate: str | None = None, name: str | None = None
     ) -> PanelCountDocument:
         """The object printed by `exactfold count --json`: `schema("count")`.
 
-        What belongs to branches of triangulated sheets is null.
+        Fields that only branches of triangulated sheets have are null.
         """
         keys: PanelCountKeys = {
             "format": "exactfold count result",
@@ -251,18 +270,18 @@ class Decomposition(Page):
 
     @property
     def ways(self) -> int | None:
-        """The number of components that truly fold, 0 for a rigid sheet; None if not known."""
+        """The number of components that truly fold; 0 for a rigid sheet, None if not known."""
         if self.true is None:
             return None
         return sum(number for dimension, number in self.true.items() if dimension)
 
     @property
     def warning(self) -> str | None:
-        """What to know of the drawing before the result is read: a loop that nearly closes."""
+        """A warning about the drawing to read before the result: a loop that nearly closes."""
         if not self.near_misses:
             return None
         more = len(self.near_misses) - 1
-        return self.near_misses[0].text + (f"; {more} more with --json" if more else "")
+        return self.near_misses[0].text + (f"; --json lists {more} more" if more else "")
 
     def __repr__(self) -> str:
         counts = "" if self.second_order is None else f", {dict(self.second_order)}"
@@ -273,10 +292,11 @@ class Decomposition(Page):
 class Part:
     """A part of the sheet that moves independently: vertices joined by folds that may fold.
 
-    `spaces` are the leaves where vertices have more than four folds, `spaces_fold` says of each
-    whether it is shown to fold; `dimension` is the number of first-order motions, None where it was
-    not needed. `found` are components that were found where not all are known, or not all are known
-    to fold; `still` are the folds that are flat in every motion to second order.
+    If some vertices have more than four folds, `spaces` are the leaves, and `spaces_fold` says of
+    each whether it is shown to fold. `dimension` is the dimension of the first-order motions, or
+    None where it was not needed. `found` are the components that were found, if not all are known
+    or not all are known to fold. `still` are the folds that are flat in every motion to second
+    order.
     """
 
     vertices: tuple[int, ...]
@@ -295,14 +315,16 @@ class Part:
 
     @property
     def at_least(self) -> Counts | None:
-        """{dimension: number} of components that are known, all of them if they are; or None."""
+        """{dimension: number} of the components that are known; None if none is."""
         if self.second_order is not None:
             return self.second_order
         return _by_dimension(self.found) or None
 
     @property
     def folding(self) -> Counts | None:
-        """The same of components to second order that are known to fold truly."""
+        """{dimension: number} of the components to second order that are known to fold truly, or
+        None.
+        """
         if self.true is not None:
             return self.true
         shown = zip(self.spaces, self.spaces_fold, strict=True)
@@ -312,7 +334,7 @@ class Part:
 
     @property
     def folds(self) -> bool:
-        """Whether something in it is known to fold truly."""
+        """Whether some motion of the part is known to fold truly."""
         return bool(self.folding and set(self.folding) != {0})
 
 
@@ -329,7 +351,10 @@ def _counted(dimensions: Iterable[int]) -> dict[int, int]:
 
 
 def product(counts: Iterable[Counts | None], free: int) -> Counts | None:
-    """The components of independent parts: dimensions add, numbers multiply; None if one is."""
+    """The components of independent parts together; None if those of some part are not known.
+
+    Dimensions add, and numbers multiply.
+    """
     total: dict[int, int] = {free: 1}
     for part in counts:
         if part is None:

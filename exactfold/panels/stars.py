@@ -1,4 +1,4 @@
-"""The folds at each vertex that can fold at all: the flat closure."""
+"""The folds at each vertex that are able to fold: the flat closure."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from exactfold.pattern.panel_pattern import Edge, PanelPattern, Point
 class Star:
     """The folds at an interior vertex that may fold, counter-clockwise, with their directions.
 
-    `directions[k]` points along `folds[k]` away from the vertex. The first-order motions are the
-    `w` with `sum_k w_k d_k = 0`, where w is fold angle / length, and the second-order condition is
-    `sum_{k<j} w_k w_j [d_k, d_j] = 0` (the signed area of the gradient polygon, doubled).
+    `directions[k]` points along `folds[k]` away from the vertex. Let w be fold angle / length. The
+    first-order motions are the w with sum_k w_k d_k = 0. The second-order condition is sum_{k<j}
+    w_k w_j [d_k, d_j] = 0; its left side is twice the signed area of the gradient polygon.
     """
 
     vertex: int
@@ -24,7 +24,7 @@ class Star:
     directions: tuple[Point, ...]
 
     def form(self, w: Sequence[Number]) -> Number:
-        """The second-order condition at w, twice the signed area of the gradient polygon.
+        """The left side of the second-order condition at w: twice the area of the gradient polygon.
 
         >>> right = Star(0, ((0, 1), (0, 2), (0, 3), (0, 4)), ((1, 0), (0, 1), (-1, 0), (0, -1)))
         >>> right.form((1, 0, 1, 0)), right.form((1, 1, 1, 1))
@@ -53,7 +53,7 @@ class Star:
         return found
 
     def only(self, folds: Iterable[Edge]) -> Star:
-        """The star with these folds, the others held flat."""
+        """The star of these folds alone; the other folds are held flat."""
         wanted = set(folds)
         kept = [k for k, edge in enumerate(self.folds) if edge in wanted]
         return Star(
@@ -63,12 +63,13 @@ class Star:
         )
 
     def foldable(self) -> tuple[int, ...]:
-        """Positions of the folds that can fold here; the others are flat in every real motion.
+        """The positions of the folds that can fold here; the others are flat in every real motion.
 
-        If not all folds lie on one line, the form on the N - 2 dimensional space of local motions
-        has inertia (1, N-3, 0) if all sectors are less than pi, (0, N-3, 1) if one is pi and
-        (0, N-2, 0) if one exceeds pi: then only the straight pair at that sector folds, or nothing.
-        Three folds with all sectors below pi have a definite form.
+        Consider the form on the space of local motions, of dimension N - 2, when the folds do not
+        all lie on one line. Its inertia is (1, N-3, 0) if all sectors are less than pi, (0, N-3, 1)
+        if one sector is pi, and (0, N-2, 0) if one sector exceeds pi. If one sector is pi, only the
+        straight pair at that sector can fold; if one exceeds pi, no fold can. Three folds whose
+        sectors are all less than pi have a definite form.
 
         >>> Star(0, ((0, 1), (0, 2), (0, 3)), ((1, 0), (0, 1), (-1, 0))).foldable()
         (0, 2)
@@ -88,7 +89,7 @@ class Star:
 
 
 def bracket(a: Point, b: Point) -> Number:
-    """a x b."""
+    """The cross product a x b."""
     return a[0] * b[1] - a[1] * b[0]
 
 
@@ -98,12 +99,12 @@ def dot(a: Point, b: Point) -> Number:
 
 
 def stars(pattern: PanelPattern, flat: Iterable[Edge] = ()) -> Mapping[int, Star]:
-    """The star of every interior vertex where something can fold, after the flat closure.
+    """The star of every interior vertex at which some fold can fold, after the flat closure.
 
-    Folds in `flat` are held flat. At each vertex, folds that cannot fold in any real motion are
-    taken away (`Star.foldable`), which may leave a fold flat at its other end, and so on until
-    nothing changes. What is left has at each vertex a straight pair, or four or more folds with all
-    sectors less than pi. A fold that is not in any star and ends at an interior vertex is flat in
+    Folds in `flat` are held flat. At each vertex the folds that cannot fold in any real motion are
+    removed (`Star.foldable`). This may make a fold flat at its other end, so the step is repeated
+    until nothing changes. Each remaining star is a straight pair, or has at least four folds with
+    all sectors less than pi. A fold that ends at an interior vertex but lies in no star is flat in
     every real motion.
 
     >>> from exactfold.pattern.panel_pattern import PanelPattern

@@ -1,4 +1,4 @@
-"""Motions of sheets with vertices of any degree: linear spaces, and cones where forms are left."""
+"""Motions of sheets with vertices of any degree: linear spaces, and cones where forms remain."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ MOST_ROOTS: Final = 5
 
 @dataclass(frozen=True)
 class Leaf:
-    """A part of the motions: a linear space, or its points where the remaining forms vanish.
+    """A part of the motions: a linear space, or its points at which the remaining forms vanish.
 
-    `rows` gives each active fold's density as a linear function of `size` parameters. `vertices`
-    are those whose form does not vanish on the space; all of these forms have one sign once and the
-    other at least twice. `dimension` is that of the real solutions, if they are one component: with
-    two forms or more that is to be shown (docs/panels.md, Double covers).
+    `rows` gives the density of each active fold as a linear function of `size` parameters.
+    `vertices` are those whose form does not vanish on the space; each of these forms has one sign
+    once and the other sign at least twice. `dimension` is that of the real solutions if they are
+    one component; with two or more forms this has to be shown (docs/panels.md, Double covers).
     """
 
     rows: Mapping[Edge, tuple[Number, ...]]
@@ -44,25 +44,25 @@ class Leaf:
 
     @property
     def dimension(self) -> int:
-        """One less than that of the space for each form."""
+        """The dimension of the space minus the number of remaining forms."""
         return self.size - len(self.vertices)
 
     @property
     def folds(self) -> tuple[Edge, ...]:
-        """The folds that are not flat on all of it."""
+        """The folds that are not flat on the whole leaf."""
         return tuple(sorted(self.rows))
 
 
 def leaves(stars: Mapping[int, Star], rows: Rows, size: int, most: int) -> list[Leaf]:
-    """The real motions to second order, as a union of leaves none of which lies in another.
+    """The real motions to second order as a union of leaves, none of which lies in another.
 
-    `rows` is the space of first-order motions. On a linear space a form that is semidefinite leaves
-    its kernel; a form of inertia (1, 1) is a product of two linear forms, over the field with the
-    root of its discriminant, and splits the space; other forms stay. Parts of the sheet that share
-    no active fold are independent, as every condition is one at a vertex.
+    `rows` is the space of first-order motions. On a linear space, a semidefinite form leaves its
+    kernel. A form of inertia (1, 1) is a product of two linear forms, over the field with the
+    square root of its discriminant, and splits the space. Other forms remain. Parts of the sheet
+    that share no active fold are independent, because every condition belongs to a single vertex.
 
-    Raises `TooManyModesError` if this takes more than `most` steps; one is a fold of a vertex times
-    a dimension, and times the square of the degree of the field.
+    Raises `TooManyModesError` if this takes more than `most` steps. A step is one fold of a vertex
+    times one dimension, times the square of the degree of the field.
     """
     search = _Search(stars, most)
     found = search.solved(dict(rows), size)
@@ -76,7 +76,7 @@ class _Search:
         self.work = 0
 
     def solved(self, rows: Rows, size: int) -> list[Leaf]:
-        """The leaves of one space; the product of those of its independent parts."""
+        """The leaves of one space: the product of the leaves of its independent parts."""
         total: list[Leaf] = [Leaf({}, 0, ())]
         for part, part_size in independent_parts(rows, size, self.stars):
             part_leaves = _maximal(self._split(part, part_size))
@@ -85,10 +85,14 @@ class _Search:
         return total
 
     def _count(self, steps: int) -> None:
-        """Add to the work done, so that a search ends the same way on every machine."""
+        """Add to the work done. A limit of work makes the search end in the same way on every
+        machine.
+        """
         self.work += steps
         if self.work > self.most:
-            raise TooManyModesError("its spaces of motions are too many to be split one by one")
+            raise TooManyModesError(
+                "splitting its spaces of motions one by one takes more work than is allowed"
+            )
 
     def _split(self, rows: Rows, size: int) -> list[Leaf]:
         rows, size, products, left = self.reduced(rows, size)
@@ -101,7 +105,9 @@ class _Search:
         return found
 
     def reduced(self, rows: Rows, size: int) -> tuple[Rows, int, list[Squares], list[int]]:
-        """The space after all semidefinite forms; forms that split; vertices with other forms."""
+        """The space after all semidefinite forms; the forms that split; the vertices with other
+        forms.
+        """
         while True:
             products: list[Squares] = []
             left: list[int] = []
@@ -121,14 +127,14 @@ class _Search:
 
 
 def reduced(stars: Mapping[int, Star], rows: Rows, size: int, most: int) -> tuple[Rows, int]:
-    """The space without what semidefinite forms forbid; as it is if that takes `most` steps."""
+    """The space after all semidefinite forms; unchanged if that takes more than `most` steps."""
     with suppress(TooManyModesError):
         rows, size, _, _ = _Search(stars, most).reduced(rows, size)
     return rows, size
 
 
 def is_semidefinite(squares: Squares) -> bool:
-    """Whether a form that is not zero has one sign only."""
+    """Whether a nonzero form takes only one sign."""
     signs = {sign(d) for d, _ in squares}
     return len(signs) == 1
 
@@ -136,10 +142,11 @@ def is_semidefinite(squares: Squares) -> bool:
 def factors(
     products: Sequence[Squares], rows: Rows, most_roots: int = MOST_ROOTS
 ) -> tuple[Vector, Vector]:
-    """d1 l1^2 + d2 l2^2, signs apart, is d1 (l1 - r l2)(l1 + r l2) with r^2 = -d2 / d1.
+    """The two linear factors of a form d1 l1^2 + d2 l2^2, where d1 and d2 have opposite signs.
 
-    Of several forms one that needs no new root is taken. Raises `TooManyModesError` if there are
-    `most_roots` roots already.
+    The form is d1 (l1 - r l2)(l1 + r l2) with r^2 = -d2 / d1. If several forms are given, one that
+    needs no new square root is preferred. Raises `TooManyModesError` if a new root is needed and
+    there are `most_roots` roots already.
     """
     field = common_field(x for row in rows.values() for x in row)
     for squares in products:
@@ -149,7 +156,7 @@ def factors(
     else:
         if len(field.radicands) >= most_roots:
             raise TooManyModesError(
-                f"the spaces of motions need more than {most_roots} square roots"
+                f"the spaces of motions need more than {most_roots} independent square roots"
             )
     root = entry(real_root(square, field))
     pairs = list(zip(squares[0][1], squares[1][1], strict=True))
@@ -157,13 +164,13 @@ def factors(
 
 
 def made_leaf(rows: Rows, size: int, left: Iterable[int]) -> Leaf:
-    """A leaf of these rows, with the vertices whose forms are left."""
+    """A leaf of these rows; `left` are the vertices whose forms remain."""
     numbers = {edge: tuple(number(x) for x in row) for edge, row in rows.items()}
     return Leaf(numbers, size, tuple(left))
 
 
 def squares_of(star: Star, rows: Rows, size: int) -> Squares:
-    """The form of a vertex on the space as sum d_i l_i^2, with independent l_i."""
+    """The form of a vertex on the space, as sum d_i l_i^2 with independent l_i."""
     local = [(d, rows[e]) for e, d in zip(star.folds, star.directions, strict=True) if e in rows]
     directions = [(entry(x), entry(y)) for (x, y), _ in local]
     basis, coordinates = _row_space([row for _, row in local], size)
@@ -187,7 +194,7 @@ def squares_of(star: Star, rows: Rows, size: int) -> Squares:
 
 
 def _row_space(rows: Sequence[Sequence[Entry]], size: int) -> tuple[list[Vector], list[Vector]]:
-    """A basis of the span of the rows taken from them, and every row in that basis."""
+    """A basis of the span of the rows, chosen among the rows, and every row in that basis."""
     basis: list[Vector] = []
     reduced: list[tuple[int, Vector, Vector]] = []  # pivot, reduced row, in terms of the basis
     coordinates: list[Vector] = []
@@ -213,7 +220,7 @@ def _row_space(rows: Sequence[Sequence[Entry]], size: int) -> tuple[list[Vector]
 
 
 def _diagonalised(form: Sequence[Sequence[Entry]]) -> list[tuple[Entry, Vector]]:
-    """sum d_i l_i^2 of a symmetric matrix, d_i not 0, by completing squares."""
+    """A symmetric matrix as sum d_i l_i^2 with d_i not 0, by completing squares."""
     size = len(form)
     work = [list(row) for row in form]
     found: list[tuple[Entry, Vector]] = []
@@ -246,7 +253,7 @@ def _combined(weights: Sequence[Entry], vectors: Sequence[Vector], size: int) ->
 
 
 def independent_parts(rows: Rows, size: int, stars: Mapping[int, Star]) -> list[tuple[Rows, int]]:
-    """The space as a direct sum over the parts of the sheet that are connected by active folds."""
+    """The space as a direct sum over the parts of the sheet that active folds connect."""
     graph = nx.Graph()
     for edge, row in rows.items():
         if any(row):
@@ -267,7 +274,7 @@ def independent_parts(rows: Rows, size: int, stars: Mapping[int, Star]) -> list[
 
 
 def _sum(a: Leaf, b: Leaf) -> Leaf:
-    """The direct sum of leaves on different parts of the sheet."""
+    """The direct sum of two leaves on different parts of the sheet."""
     zeros_a, zeros_b = (Fraction(0),) * a.size, (Fraction(0),) * b.size
     rows = {edge: row + zeros_b for edge, row in a.rows.items()}
     rows.update({edge: zeros_a + row for edge, row in b.rows.items()})
@@ -275,7 +282,7 @@ def _sum(a: Leaf, b: Leaf) -> Leaf:
 
 
 def _maximal(found: Iterable[Leaf]) -> list[Leaf]:
-    """The leaves that lie in no other; of equal ones the first."""
+    """The leaves that lie in no other leaf; among equal leaves, the first."""
     kept: list[Leaf] = []
     for leaf in sorted(found, key=lambda leaf: (-leaf.size, len(leaf.vertices))):
         if not any(_inside(leaf, other) for other in kept):
@@ -284,9 +291,10 @@ def _maximal(found: Iterable[Leaf]) -> list[Leaf]:
 
 
 def _inside(leaf: Leaf, other: Leaf) -> bool:
-    """Whether the motions of one leaf lie in the space of another, and with it in the other leaf.
+    """Whether the motions of one leaf lie in the space of another, and so in the other leaf.
 
-    A leaf holds all motions in its space: on a motion, the forms that are left vanish as well.
+    A leaf contains all motions in its space, because the remaining forms vanish at every motion,
+    too.
     """
     if not set(leaf.rows) <= set(other.rows):
         return False

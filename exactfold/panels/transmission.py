@@ -1,4 +1,4 @@
-"""How the fold angles of a vertex with four folds depend on each other, at all angles."""
+"""How the fold angles of a vertex with four folds depend on each other, for angles of any size."""
 
 from __future__ import annotations
 
@@ -11,23 +11,24 @@ from exactfold.panels.stars import Star, bracket, dot
 from exactfold.pattern.panel_pattern import Edge
 
 Series: TypeAlias = list[Any]
-"""Coefficients of a power series in s, of exact numbers or of balls."""
+"""The coefficients of a power series in s, as exact numbers or as balls."""
 
 
 class Transmission:
-    """tau_end = tau_start * u(tau_start^2) along one mode, with tau = tan(angle / 2) / length.
+    """The function u with tau_end = tau_start * u(tau_start^2) along one mode of a vertex.
 
-    For four folds with directions d_1, ..., d_4, x = tau_1, y = tau_2, z = tau_3 and
-    c_ij = [d_i, d_j], s_ij = d_i . d_j (docs/panels.md, All fold angles):
+    Here tau = tan(angle / 2) / length. Let four folds have directions d_1, ..., d_4, let x = tau_1,
+    y = tau_2, z = tau_3, c_ij = [d_i, d_j] and s_ij = d_i . d_j. Then (docs/panels.md, All fold
+    angles)
 
         c_41 c_13 x^2 + 2 c_23 c_41 x y - c_23 c_24 y^2 = Q x^2 y^2,
         Q = c_12 (c_34 s_12 + c_12 s_34);
         c_12 c_41 x^2 (1 + |d_3|^2 z^2) = c_23 c_34 z^2 (1 + |d_1|^2 x^2).
 
-    So u is a root of (c_23 c_24 + Q s) u^2 - 2 c_23 c_41 u - c_41 c_13 = 0 for neighbours, and of
-    c_12 c_41 = u^2 (c_23 c_34 + (c_23 c_34 |d_1|^2 - c_12 c_41 |d_3|^2) s) for opposite folds; both
-    are a quadratic `(a0 + a1 s) u^2 + b u + c = 0`. A straight crease that folds alone has u
-    constant. `gain` is u(0).
+    So for neighbouring folds u is a root of (c_23 c_24 + Q s) u^2 - 2 c_23 c_41 u - c_41 c_13 = 0.
+    For opposite folds u is a root of c_12 c_41 = u^2 (c_23 c_34 + (c_23 c_34 |d_1|^2 - c_12 c_41
+    |d_3|^2) s). Both equations have the form `(a0 + a1 s) u^2 + b u + c = 0`. If a straight crease
+    folds alone, u is constant. `gain` is u(0).
     """
 
     def __init__(self, star: Star, mode: LocalMode, start: Edge, end: Edge) -> None:
@@ -36,7 +37,7 @@ class Transmission:
         if len(mode.folds) == 2:
             return
         i, j = star.folds.index(start), star.folds.index(end)
-        turn = -1 if (j - i) % 4 == 3 else 1  # seen in a mirror, the fold before is the next one
+        turn = -1 if (j - i) % 4 == 3 else 1  # a reflection makes the previous fold the next one
         d = [star.directions[(i + turn * k) % 4] for k in range(4)]
 
         def c(p: int, q: int) -> Number:
@@ -51,7 +52,7 @@ class Transmission:
 
     @property
     def key(self) -> tuple[object, ...]:
-        """What tells transmissions apart; equal keys mean equal transmissions."""
+        """A value that is equal for two transmissions only if the transmissions are equal."""
         numbers = (self.gain, *(self.quadratic or ()))
         return tuple(
             (x.field.radicands, x.coefficients) if isinstance(x, Surd) else x for x in numbers
@@ -63,10 +64,10 @@ class Transmission:
         return self.quadratic is None or self.quadratic[1] == 0
 
     def series(self, terms: int, number: Callable[[Number], Any]) -> Series:
-        """The first coefficients of u, in the numbers that `number` makes of exact ones.
+        """The first coefficients of u; `number` converts exact numbers to the number type to use.
 
-        The coefficient of s^n in the quadratic is linear in u_n: its factor 2 a0 u_0 + b is not 0,
-        as the two modes of the vertex differ.
+        The coefficient of s^n in the quadratic equation is linear in u_n. Its factor 2 a0 u_0 + b
+        is not 0, because the two modes of the vertex differ.
         """
         u: Series = [number(self.gain)]
         if self.is_linear or self.quadratic is None:
@@ -81,7 +82,7 @@ class Transmission:
 
 
 def composed(steps: Sequence[Series], number: Callable[[Number], Any]) -> Series:
-    """The product of transmissions: tau = t f(t^2) after all of them, the coefficients of f."""
+    """The coefficients of f, where tau = t f(t^2) after all these transmissions in turn."""
     terms = len(steps[0])
     f: Series = [number(1)] + [number(0)] * (terms - 1)
     for u in steps:

@@ -1,4 +1,4 @@
-"""Crease patterns: the validated type, where patterns come from, and their files."""
+"""Crease patterns: the validated type, the builders of patterns, and the files of patterns."""
 
 from exactfold._support.lazy import attached as _attached
 

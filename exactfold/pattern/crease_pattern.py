@@ -29,11 +29,12 @@ Triangle = tuple[int, int, int]
 class CreasePattern(Picture):
     """A flat sheet cut into triangles: the crease pattern of a triangulated origami.
 
-    `vertices` are points with rational coordinates (anything `as_rational` accepts), `triangles`
-    index triples in counter-clockwise order (a pattern given clockwise throughout is reversed).
-    The sheet must be one disk without overlap, every vertex in some triangle, no two vertices at
-    one point. Boundary angles of 180 degrees and edges that join two boundary vertices (`chords`)
-    are allowed. Raises a subclass of `PatternError` that names the vertex, edge or face to blame.
+    `vertices` are points with rational coordinates (anything that `as_rational` accepts).
+    `triangles` are index triples in counter-clockwise order; if all of them are clockwise, all are
+    reversed. The sheet must be one disk without overlap. Every vertex must belong to a triangle,
+    and no two vertices may be at one point. Boundary angles of 180 degrees and edges that join two
+    boundary vertices (`chords`) are allowed. Raises a subclass of `PatternError` that names the
+    vertex, edge or face to blame.
 
     >>> square = CreasePattern(
     ...     [(0, 0), (1, 0), (1, 1), (0, 1), ("1/2", "1/3")],
@@ -74,7 +75,7 @@ class CreasePattern(Picture):
 
     @cached_property
     def boundary(self) -> tuple[int, ...]:
-        """Boundary vertices in counter-clockwise order, the smallest index first."""
+        """The boundary vertices in counter-clockwise order, starting with the smallest index."""
         follow = {a: b for a in self._next for b in self._next[a] if a not in self._next[b]}
         cycle = [min(follow)]
         while (after := follow[cycle[-1]]) != cycle[0]:
@@ -83,7 +84,7 @@ class CreasePattern(Picture):
 
     @cached_property
     def interior(self) -> tuple[int, ...]:
-        """Interior vertices in increasing order."""
+        """The interior vertices in increasing order."""
         outside = set(self.boundary)
         return tuple(v for v in range(len(self.vertices)) if v not in outside)
 
@@ -95,28 +96,28 @@ class CreasePattern(Picture):
 
     @cached_property
     def boundary_edges(self) -> tuple[Edge, ...]:
-        """The edges of the boundary (i, j) with i < j, sorted."""
+        """The boundary edges (i, j) with i < j, sorted."""
         cycle = self.boundary
         pairs = zip(cycle, cycle[1:] + cycle[:1], strict=True)
         return tuple(sorted((min(e), max(e)) for e in pairs))
 
     @cached_property
     def folds(self) -> tuple[Edge, ...]:
-        """Interior edges (i, j) with i < j, sorted."""
+        """The folds, that is, the interior edges (i, j) with i < j, sorted."""
         outside = set(self.boundary_edges)
         return tuple(e for e in self.edges if e not in outside)
 
     @cached_property
     def chords(self) -> tuple[Edge, ...]:
-        """Folds that join two boundary vertices and so split the sheet in two."""
+        """The folds that join two boundary vertices; each of them splits the sheet in two."""
         outside = set(self.boundary)
         return tuple((i, j) for i, j in self.folds if i in outside and j in outside)
 
     def star(self, vertex: int) -> tuple[int, ...]:
-        """Neighbours of `vertex` in counter-clockwise order.
+        """The neighbours of `vertex` in counter-clockwise order.
 
-        At an interior vertex the cycle starts at the smallest index; at a boundary vertex it runs
-        from the next to the previous boundary vertex.
+        At an interior vertex they start with the smallest index. At a boundary vertex they run from
+        the next boundary vertex to the previous one.
         """
         rotation = self._next[vertex]
         start = min(rotation) if vertex in self.interior_set else self._first_spoke(vertex)
@@ -135,7 +136,7 @@ class CreasePattern(Picture):
         return frozenset(self.interior)
 
     def degree(self, vertex: int) -> int:
-        """Number of edges at `vertex`."""
+        """The number of edges at `vertex`."""
         return len(self.star(vertex))
 
     @property
@@ -154,7 +155,7 @@ class CreasePattern(Picture):
         return self._next[i][j]
 
     def opposite(self, fold: Edge) -> Edge:
-        """For fold (i, j): the third vertices (left, right) of the triangles ijk and jil."""
+        """The third vertices (left, right) of the triangles ijk and jil at the fold (i, j)."""
         i, j = fold
         return self._next[i][j], self._next[j][i]
 
@@ -162,12 +163,12 @@ class CreasePattern(Picture):
 
     @property
     def Ve(self) -> int:
-        """Number of boundary (external) vertices."""
+        """The number of boundary (external) vertices."""
         return len(self.boundary)
 
     @property
     def Vi(self) -> int:
-        """Number of interior vertices."""
+        """The number of interior vertices."""
         return len(self.interior)
 
     @property
@@ -179,15 +180,16 @@ class CreasePattern(Picture):
 
     @property
     def Vt(self) -> int:
-        """Number of vertices inside triangulated triangles."""
+        """The number of vertices inside triangulated triangles."""
         return len(self.rigid_vertices)
 
     @cached_property
     def triangulated_triangles(self) -> tuple[tuple[Triangle, tuple[int, ...]], ...]:
-        """The maximal 3-cycles with vertices inside, each with those vertices.
+        """The maximal 3-cycles with vertices inside, each with the vertices inside it.
 
-        The 3-cycle is counter-clockwise from its smallest index. The pattern inside stays flat on
-        every branch. A sheet with three boundary vertices is itself the only maximal one.
+        A 3-cycle runs counter-clockwise from its smallest index. On every branch the pattern inside
+        it stays flat. If the sheet has three boundary vertices, these form the only maximal
+        3-cycle.
         """
         points, _ = self.integer_vertices
         return find_triangulated_triangles(points, self.edges, self.triangles, self._next)
@@ -199,16 +201,16 @@ class CreasePattern(Picture):
 
     @property
     def foldable_vertices(self) -> tuple[int, ...]:
-        """Interior vertices outside every triangulated triangle."""
+        """The interior vertices outside all triangulated triangles."""
         return tuple(v for v in self.interior if v not in self.rigid_vertices)
 
     def without_rigid_parts(
         self, curved: Collection[int] = ()
     ) -> tuple[CreasePattern, tuple[int, ...]]:
-        """The pattern with every triangulated triangle made a single face, and its labels.
+        """The pattern in which each triangulated triangle is one face, and the labels of vertices.
 
-        `labels[k]` is the index in this pattern of vertex k of the other; order is kept. Triangles
-        that hold one of the vertices `curved` are left as they are.
+        Vertex k of the returned pattern is vertex `labels[k]` of this pattern; the order is kept.
+        Triangulated triangles that contain one of the vertices `curved` are not changed.
 
         >>> wheel = CreasePattern(
         ...     [(0, 0), (3, 0), (0, 3), (1, 1)], [(0, 1, 3), (1, 2, 3), (2, 0, 3)])
@@ -237,14 +239,14 @@ class CreasePattern(Picture):
 
     @cached_property
     def area(self) -> Fraction:
-        """Area of the sheet, in squared length units."""
+        """The area of the sheet, in squared length units."""
         points, denominator = self.integer_vertices
         twice = sum(validate.orientation(*(points[v] for v in t)) for t in self.triangles)
         return Fraction(twice, 2 * denominator**2)
 
     @cached_property
     def boundary_turns(self) -> tuple[int, ...]:
-        """Turn at each boundary vertex: 1 convex, 0 straight (angle pi), -1 reflex."""
+        """The turn at each boundary vertex: 1 convex, 0 straight (angle pi), -1 reflex."""
         points, _ = self.integer_vertices
         cycle = self.boundary
         turns = []
@@ -261,15 +263,15 @@ class CreasePattern(Picture):
 
     @property
     def reflex_corner(self) -> int | None:
-        """The first boundary vertex with an angle beyond pi, or None for a convex boundary."""
+        """The first boundary vertex with an angle above pi; None if the boundary is convex."""
         turns = zip(self.boundary, self.boundary_turns, strict=True)
         return next((v for v, turn in turns if turn < 0), None)
 
     def with_notch_closed(self) -> CreasePattern:
         """The pattern with a triangle attached at its reflex corner, which becomes interior.
 
-        The pattern itself if its boundary is convex. Raises an `OverlapError` if the triangle does
-        not fit, which cannot happen for four boundary vertices.
+        If the boundary is convex, the pattern itself is returned. Raises an `OverlapError` if the
+        triangle does not fit, which cannot happen for four boundary vertices.
 
         >>> dart = CreasePattern([(0, 0), (4, -4), (1, 0), (4, 4)], [(0, 1, 2), (0, 2, 3)])
         >>> dart.with_notch_closed().boundary
@@ -283,9 +285,9 @@ class CreasePattern(Picture):
         return CreasePattern(self.vertices, [*self.triangles, (before, after, corner)])
 
     def snapped(self, denominator: int) -> tuple[CreasePattern, Fraction]:
-        """The pattern on the grid of multiples of 1/denominator, and the largest coordinate move.
+        """The pattern rounded to multiples of 1/denominator, and the largest coordinate change.
 
-        Raises a `PatternError` that mentions the rounding if this leaves no valid pattern.
+        Raises a `PatternError` that mentions the rounding if the rounded pattern is not valid.
 
         >>> pattern = CreasePattern([(0, 0), ("0.99999999", 0), (0, 1)], [(0, 1, 2)])
         >>> pattern.snapped(8)[1]
@@ -301,10 +303,11 @@ class CreasePattern(Picture):
 
     @cached_property
     def sha256(self) -> str:
-        """Digest of the exact pattern: vertices in order, triangles as a set.
+        """The digest of the exact pattern, with vertices in order and triangles as a set.
 
-        The SHA-256 of the lines `exactfold pattern 1`, `v X Y` for each vertex and `t I J K` for
-        each triangle (counter-clockwise from the smallest index, sorted), each ended by a newline.
+        It is the SHA-256 of the lines `exactfold pattern 1`, `v X Y` for each vertex and `t I J K`
+        for each triangle (counter-clockwise from the smallest index, sorted). A newline ends each
+        line.
         """
         lines = ["exactfold pattern 1"]
         lines += [f"v {format_rational(x)} {format_rational(y)}" for x, y in self.vertices]
@@ -315,17 +318,17 @@ class CreasePattern(Picture):
         return hash(self.sha256)
 
     def __reduce__(self) -> tuple[object, ...]:
-        return _restored, (self.vertices, self.triangles)  # what is cached stays behind
+        return _restored, (self.vertices, self.triangles)  # without the cached properties
 
     def __repr__(self) -> str:
         return f"<CreasePattern: {self.Vi} interior and {self.Ve} boundary vertices>"
 
 
 def _restored(vertices: tuple[Point, ...], triangles: tuple[Triangle, ...]) -> CreasePattern:
-    """The copy of a pattern, which was validated when it was made.
+    """A copy of a pattern, which was validated when it was first made.
 
-    It is not validated again: who can forge a pickle can make it run any program, so that nothing
-    would be gained for the cost, a second for 10,000 vertices.
+    The copy is not validated again: that would take a second for 10,000 vertices, and it would
+    protect nobody, as whoever can forge a pickle can make it run any program.
     """
     pattern = object.__new__(CreasePattern)
     object.__setattr__(pattern, "vertices", vertices)

@@ -1,8 +1,8 @@
-"""Patterns that are not generic, one builder for each way of not being so; all rational.
+"""Patterns that are not generic, with one builder for each kind of degeneracy; all are rational.
 
-Triangulated triangles, straight crease paths, crosses, symmetry and chords: where branches fall
-together, vertices stay flat, or a part of the sheet is rigid (docs/mathematics.md, Definite stress
-to Multiple solutions). All have four boundary vertices.
+They contain triangulated triangles, straight crease paths, crosses, symmetries or chords. There,
+branches coincide, vertices stay flat, or a part of the sheet is rigid (docs/mathematics.md,
+Definite stress to Multiple solutions). All have four boundary vertices.
 """
 
 from __future__ import annotations
@@ -25,17 +25,20 @@ _CORNERS: Final = ((0, 0), (1, 0), (1, 1), (0, 1))
 def with_vertex(
     pattern: CreasePattern, face: int, weights: Sequence[int] = (1, 1, 1)
 ) -> CreasePattern:
-    """The pattern with a new vertex of degree 3, the last, inside a face.
+    """The pattern with one more vertex, of degree 3, inside a face; it becomes the last vertex.
 
-    `weights` are the positive barycentric weights of its place. The face is replaced by three,
-    which come last; the new vertex is rigid in it (docs/mathematics.md, Triangulated triangles).
-    Raises `UsageError` for a face that does not exist or weights that are not positive.
+    `weights` are the positive barycentric weights of the new vertex in the face. Three faces
+    replace this face and come last. Together they stay rigid (docs/mathematics.md, Triangulated
+    triangles). Raises `UsageError` for a face that does not exist and for weights that are not
+    positive.
 
     >>> with_vertex(cross_square(), 0).Vt
     1
     """
     if not 0 <= face < len(pattern.triangles):
-        raise UsageError(f"there is no face {face}: there are {len(pattern.triangles)}")
+        raise UsageError(
+            f"there is no face {face}: the number of faces is {len(pattern.triangles)}"
+        )
     if len(weights) != 3 or min(weights) <= 0:
         raise UsageError(f"a vertex inside a face needs three positive weights, not {weights}")
     a, b, c = pattern.triangles[face]
@@ -51,9 +54,10 @@ def with_vertex(
 
 
 def nested_triangles(levels: int = 2) -> CreasePattern:
-    """A square around a triangle with vertices of degree 3 inside each other, `levels` deep.
+    """A square around a triangle that contains `levels` vertices of degree 3.
 
-    Vi = 3 + levels and Vt = levels. Raises `UsageError` for levels < 1.
+    Each of these vertices lies in a face at the vertex before it. Vi = 3 + levels and Vt = levels.
+    Raises `UsageError` for levels < 1.
 
     >>> nested_triangles(2).triangulated_triangles
     (((4, 5, 6), (7, 8)),)
@@ -70,7 +74,7 @@ def nested_triangles(levels: int = 2) -> CreasePattern:
 
 
 def several_triangles() -> CreasePattern:
-    """A square with two vertices of degree 4 and two triangulated triangles, apart.
+    """A square with two vertices of degree 4 and two separate triangulated triangles.
 
     >>> [inside for _, inside in several_triangles().triangulated_triangles]
     [(6,), (7,)]
@@ -111,10 +115,10 @@ def cross_square() -> CreasePattern:
 
 
 def straight_path(inside: int = 2) -> CreasePattern:
-    """A square with `inside` vertices on the diagonal 0-2, each joined to the corners 1 and 3.
+    """A square with `inside` vertices on its diagonal 0-2, each joined to the corners 1 and 3.
 
-    The diagonal is a straight crease from corner to corner, and every vertex on it has degree 4.
-    Raises `UsageError` for inside < 1.
+    The diagonal is a straight crease path from corner to corner, and every vertex on it has degree
+    4. Raises `UsageError` for inside < 1.
 
     >>> from exactfold.pattern.families import collinear_folds
     >>> collinear_folds(straight_path(2))
@@ -130,10 +134,10 @@ def straight_path(inside: int = 2) -> CreasePattern:
 
 
 def bent_off_path() -> CreasePattern:
-    """A straight crease path from corner to corner with a generic vertex on either side.
+    """A straight crease path from corner to corner, with one generic vertex on each side.
 
-    The diagonal 0-4-2 is straight; 5 and 6 lie below and above it. On the branch that folds along
-    the diagonal alone both are flat.
+    The diagonal 0-4-2 is straight. Vertex 5 lies below it and vertex 6 above. Both are flat on the
+    branch that folds along the diagonal alone.
 
     >>> from exactfold.pattern.families import collinear_folds
     >>> collinear_folds(bent_off_path())
@@ -146,12 +150,12 @@ def bent_off_path() -> CreasePattern:
 
 
 def ringed_square(sides: int = 4, *, hub: bool = True) -> CreasePattern:
-    """A square around a nearly regular polygon, with or without its centre, Delaunay-triangulated.
+    """A square around a nearly regular polygon, with or without a hub, Delaunay-triangulated.
 
-    The corners of the polygon lie on the circle of radius 1/2 about the centre of the square of
-    side 2; for four sides it is regular, and the pattern has all symmetries but those that the
-    triangulation of cocircular points breaks. Vi = sides, one more with a hub. Raises
-    `UsageError` for fewer than three sides.
+    The square has side 2. The corners of the polygon lie on the circle of radius 1/2 about its
+    centre, where the hub is. With four sides the polygon is regular; the pattern then has all
+    symmetries of the square except those that the triangulation of cocircular points breaks. Vi =
+    sides, plus 1 with a hub. Raises `UsageError` for fewer than three sides.
 
     >>> ringed_square(4).Vi, ringed_square(5, hub=False).Vi
     (5, 5)
@@ -173,8 +177,8 @@ def ringed_square(sides: int = 4, *, hub: bool = True) -> CreasePattern:
 def gridded_square(rows: int = 2, columns: int = 2) -> CreasePattern:
     """A square around a grid of points with diagonals, Delaunay-triangulated.
 
-    The points are equally spaced and the cells of the grid are cut by a diagonal each. Vi = rows
-    columns. Raises `UsageError` if there is no point.
+    The points are equally spaced. One diagonal cuts each cell of the grid. Vi = rows * columns.
+    Raises `UsageError` for a grid without points.
 
     >>> gridded_square(2, 2).Vi, gridded_square(2, 2).Ve
     (4, 4)
@@ -190,10 +194,11 @@ def gridded_square(rows: int = 2, columns: int = 2) -> CreasePattern:
 
 
 def waterbomb_pair() -> CreasePattern:
-    """Two cells of the waterbomb tiling on top of each other, with four boundary vertices.
+    """Two cells of the waterbomb tiling, one above the other, with four boundary vertices.
 
-    Corners 0 to 3; 4 and 5 at the ends and 6 in the middle of the common side; the centres 7 and 8
-    are joined to the corners of their cells and to 6, where two straight creases cross.
+    Vertices 0 to 3 are the corners. Vertices 4 and 5 are the ends of the common side, and 6 is its
+    middle. The centres 7 and 8 are joined to the corners of their cells and to 6, where two
+    straight creases cross.
 
     >>> [waterbomb_pair().degree(v) for v in waterbomb_pair().interior]
     [5, 5, 4, 5, 5]
@@ -208,8 +213,8 @@ def waterbomb_pair() -> CreasePattern:
 def notched(inside: int = 1) -> CreasePattern:
     """A non-convex quadrilateral, reflex at vertex 1, with `inside` vertices on its axis.
 
-    All vertices lie on the axis 3-1 and are joined to the corners 0 and 2: mirror symmetric.
-    Raises `UsageError` for inside < 1.
+    All interior vertices lie on the axis 3-1 and are joined to the corners 0 and 2, so that the
+    pattern is mirror symmetric. Raises `UsageError` for inside < 1.
 
     >>> notched().reflex_corner, notched(3).Vi
     (1, 3)

@@ -15,10 +15,10 @@ from exactfold.pattern.validate import IntPoint, Triangle, orientation
 def delaunay(points: Iterable[Sequence[RationalLike]]) -> CreasePattern:
     """The Delaunay triangulation of rational points, as a crease pattern on their convex hull.
 
-    Every decision is the sign of an integer determinant. Where four or more points lie on an empty
-    circle, their polygon is cut into the fan of diagonals at its lexicographically smallest vertex
-    (smallest x, then smallest y), so the result does not depend on the order of the points, only
-    its labels do. Points on the sides of the hull are boundary vertices with an angle of pi.
+    Every decision is the sign of an integer determinant. If four or more points lie on an empty
+    circle, diagonals from the lexicographically smallest of them (smallest x, then smallest y) cut
+    their polygon. So the order of the points changes only the labels of the result. Points on the
+    sides of the hull are boundary vertices with an angle of pi.
 
     Raises `MalformedPatternError` if all points are collinear, and this or a `NumberError` if they
     are not distinct pairs of exact numbers.
@@ -38,9 +38,9 @@ def delaunay(points: Iterable[Sequence[RationalLike]]) -> CreasePattern:
 def delaunay_triangles(points: Sequence[IntPoint]) -> list[Triangle]:
     """The triangles of `delaunay` for distinct integer points, sorted, counter-clockwise.
 
-    A sweep from left to right gives a first triangulation; Lawson's flips make it Delaunay. A tie
-    in the in-circle test is broken as if the lexicographically smallest of the four points were
-    lifted slightly below the paraboloid, which pulls the fan of diagonals to it.
+    A sweep from left to right makes a first triangulation, and Lawson's flips make it Delaunay. If
+    the in-circle test is a tie, the lexicographically smallest of the four points counts as lifted
+    slightly below the paraboloid. This makes all diagonals of the polygon start at that point.
     """
     apex = _sweep(points)
     stack = [(a, b) for a, b in apex if a < b]
@@ -60,10 +60,10 @@ def delaunay_triangles(points: Sequence[IntPoint]) -> list[Triangle]:
 
 
 def in_circle(a: IntPoint, b: IntPoint, c: IntPoint, d: IntPoint) -> int:
-    """A determinant that is positive, zero or negative as d is inside, on or outside circle abc.
+    """A determinant that is positive, zero or negative if d is inside, on or outside circle abc.
 
-    For a counter-clockwise triangle abc; it is the 3x3 determinant of the rows (x, y, x^2 + y^2)
-    of a - d, b - d and c - d, exact on integers.
+    The triangle abc must be counter-clockwise. The 3x3 determinant has the rows (x, y, x^2 + y^2)
+    of a - d, b - d and c - d, and it is exact on integers.
 
     >>> in_circle((0, 0), (2, 0), (0, 2), (2, 2)), in_circle((0, 0), (2, 0), (0, 2), (1, 1)) > 0
     (0, True)
@@ -92,7 +92,7 @@ def _is_illegal(points: Sequence[IntPoint], a: int, b: int, c: int, d: int) -> b
 
 
 def _sweep(points: Sequence[IntPoint]) -> dict[tuple[int, int], int]:
-    """Some triangulation of the hull: apex[a, b] = c for each counter-clockwise triangle abc."""
+    """A triangulation of the hull: apex[a, b] = c for each counter-clockwise triangle abc."""
     order = sorted(range(len(points)), key=lambda v: points[v])
     first, second = (points[v] for v in order[:2])
     start = next(

@@ -1,4 +1,4 @@
-"""The pattern as it stands in every result, so that a result can be read without its file."""
+"""Describes the pattern inside every result, so that a result can be read without the file."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from exactfold._support.documents import (
 from exactfold.exact.numbers import format_rational
 from exactfold.pattern.crease_pattern import CreasePattern
 
-if TYPE_CHECKING:  # sheets of triangles do without
+if TYPE_CHECKING:  # triangulated sheets do not need these modules
     from exactfold.exact.surds import Number
     from exactfold.pattern.panel_pattern import PanelPattern
 
@@ -61,7 +61,7 @@ class PanelsDocument(_SheetDocument):
 def described(
     pattern: CreasePattern, name: str | None = None, snapped: Fraction | None = None
 ) -> PatternDocument:
-    """Name, counts, digest, and the exact vertices and faces of a pattern, as JSON.
+    """The name, counts, digest, exact vertices and faces of a pattern, as JSON.
 
     >>> pattern = CreasePattern([(0, 0), (1, 0), ("1/2", 1)], [(0, 1, 2)])
     >>> data = described(pattern, "mine")
@@ -84,9 +84,9 @@ def described(
 
 
 def described_panels(pattern: PanelPattern, name: str | None = None) -> PanelsDocument:
-    """Name, counts, digest, exact vertices and panels of a sheet of rigid panels, as JSON.
+    """The name, counts, digest, exact vertices and panels of a sheet of rigid panels, as JSON.
 
-    `field` holds the numbers under the square roots r1, r2, ... that coordinates use.
+    `field` lists the numbers under the square roots r1, r2, ... that the coordinates use.
 
     >>> from exactfold.pattern.panel_pattern import PanelPattern
     >>> square = PanelPattern([(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1), (1, 2), (2, 3), (0, 3)])

@@ -18,7 +18,7 @@ _CORNERS: Final = ((0, 0), (1, 0), (1, 1), (0, 1))
 
 
 def collinear_folds(pattern: CreasePattern) -> tuple[tuple[int, int, int], ...]:
-    """The crease paths (i, v, j) that run straight through an interior vertex v, i < j.
+    """The crease paths (i, v, j), i < j, that run straight through an interior vertex v.
 
     Straight paths are the usual cause of branches with flat vertices (docs/mathematics.md, Multiple
     solutions).
@@ -43,10 +43,11 @@ def collinear_folds(pattern: CreasePattern) -> tuple[tuple[int, int, int], ...]:
 
 
 def single_vertex(folds: int = 4) -> CreasePattern:
-    """One interior vertex with `folds` spokes, on rational points of the unit circle.
+    """One interior vertex with `folds` spokes that end on rational points of the unit circle.
 
-    Boundary vertices 0 .. folds - 1 counter-clockwise, the hub last at the origin. The spokes are
-    nearly evenly spread, and no two of them are collinear. Raises `UsageError` below three folds.
+    The boundary vertices 0 .. folds - 1 run counter-clockwise, and the last vertex is the hub at
+    the origin. The spokes are nearly evenly spread, and no two of them are collinear. Raises
+    `UsageError` for fewer than three folds.
 
     >>> single_vertex(6).degrees_of_freedom
     3
@@ -54,7 +55,7 @@ def single_vertex(folds: int = 4) -> CreasePattern:
     if folds < 3:
         raise UsageError(f"a flat interior vertex needs at least three folds, not {folds}")
     turns = [Fraction(k, folds) for k in range(folds)]
-    if folds % 2 == 0:  # turn the second half a little, or opposite spokes would be collinear
+    if folds % 2 == 0:  # turn the second half a little: opposite spokes must not be collinear
         turns = [t + Fraction(1, 4 * folds) if 2 * t >= 1 else t for t in turns]
     triangles = [(k, (k + 1) % folds, folds) for k in range(folds)]
     return CreasePattern([*(_circle_point(t) for t in turns), (0, 0)], triangles)
@@ -73,8 +74,8 @@ def _circle_point(turn: Fraction) -> Point:
 def waterbomb() -> CreasePattern:
     """The waterbomb base: a square with both diagonals and one horizontal crease.
 
-    Corners 0 to 3, the midpoints 4 (right) and 5 (left) of two sides, the centre 6 with six folds;
-    six boundary vertices, so three degrees of freedom.
+    Vertices 0 to 3 are the corners, 4 (right) and 5 (left) the midpoints of two sides, and 6 is the
+    centre with six folds. There are six boundary vertices, so three degrees of freedom.
 
     >>> waterbomb().interior, waterbomb().degrees_of_freedom
     ((6,), 3)
@@ -90,8 +91,8 @@ def waterbomb() -> CreasePattern:
 def two_vertex() -> CreasePattern:
     """A unit square with two interior vertices of degree four, as in the paper's first figure.
 
-    Corners 0 to 3, interior vertices 4 and 5 in general position: no collinear folds. The paper
-    gives no coordinates; these are ours.
+    Vertices 0 to 3 are the corners. The interior vertices 4 and 5 are in general position, so that
+    no folds are collinear. The paper gives no coordinates; those used here are exactfold's own.
 
     >>> [two_vertex().degree(v) for v in two_vertex().interior]
     [4, 4]
@@ -103,10 +104,10 @@ def two_vertex() -> CreasePattern:
 
 
 def flat_vertex_square() -> CreasePattern:
-    """A square in which a vertex star is flat on a branch, without any triangulated triangle.
+    """A square with a branch on which a vertex star is flat, but without triangulated triangles.
 
-    An example with multiplicities 1, 1, 2: the diagonal is a straight crease path
-    through vertex 4; there are three distinct branches, of multiplicities 2, 1 and 1.
+    The diagonal is a straight crease path through vertex 4. There are three distinct branches, of
+    multiplicities 2, 1 and 1.
 
     >>> collinear_folds(flat_vertex_square()), flat_vertex_square().Vt
     (((0, 4, 2),), 0)
@@ -123,8 +124,8 @@ def flat_vertex_square() -> CreasePattern:
 def flat_octahedron_in_square() -> CreasePattern:
     """A square around a triangulated triangle that is a flat octahedron.
 
-    Corners 0 to 3; the triangle 4, 5, 6; inside it 7, 8, 9, each with four folds and all rigid
-    (paper, Fig. "triangle"): Vi = 6 and Vt = 3.
+    Vertices 0 to 3 are the corners, and 4, 5, 6 form the triangle. Inside it lie 7, 8 and 9, each
+    with four folds and all rigid (paper, Fig. "triangle"): Vi = 6 and Vt = 3.
 
     >>> pattern = flat_octahedron_in_square()
     >>> pattern.triangulated_triangles, [pattern.degree(v) for v in (7, 8, 9)]
@@ -141,15 +142,16 @@ def flat_octahedron_in_square() -> CreasePattern:
 def hypar(rings: int = 1, twist: RationalLike | None = None) -> CreasePattern:
     """Concentric squares, triangulated: the pleated hyperbolic paraboloid of folklore.
 
-    Square k = 0 .. rings has its corners 4k + j, j = 0 .. 3; square 0 is the boundary, and the
+    Square k = 0 .. rings has the corners 4k + j, j = 0 .. 3. Square 0 is the boundary, and the
     squares shrink in equal steps. Corner j of square k is joined to corners j and j + 1 (modulo 4)
-    of square k + 1, and the innermost square is cut by its diagonal from corner 0 to 2 if `rings`
-    is even, else from 1 to 3. Vi = 4 rings.
+    of square k + 1. A diagonal cuts the innermost square, from corner 0 to 2 if `rings` is even,
+    else from 1 to 3. Vi = 4 rings.
 
-    `twist` = t turns square k by the rational rotation ((1 - t^2) / (1 + t^2), 2t / (1 + t^2)) if k
-    is odd; the default 1 / (6 rings + 6) moves a corner by at most about half a step. With
-    twist 0, the hypar proper, the creases along one diagonal form a straight path from corner to
-    corner; on the branch that folds along it alone, every vertex off the path is flat.
+    If k is odd, `twist` = t turns square k by the rational rotation
+    ((1 - t^2) / (1 + t^2), 2t / (1 + t^2)). The default 1 / (6 rings + 6) moves a corner by at most
+    about half a step. With twist 0 the sheet is the proper hypar: the creases along one diagonal
+    form a straight path from corner to corner. On the branch that folds along this path alone,
+    every vertex off the path is flat.
 
     Raises `UsageError` for rings < 1 and `OverlapError` for a twist too large for the rings.
 
@@ -184,7 +186,7 @@ def hypar(rings: int = 1, twist: RationalLike | None = None) -> CreasePattern:
 
 @dataclass(frozen=True)
 class H1Triangulation:
-    """A pattern built from a butterfly by H1 moves, with the moves (v1, v2, v3, w) and the seed."""
+    """A pattern made from a butterfly by H1 moves; also the moves (v1, v2, v3, w) and the seed."""
 
     pattern: CreasePattern
     moves: tuple[tuple[int, int, int, int], ...]
@@ -204,16 +206,16 @@ def h1_sequence(steps: int = 4, seed: int = 0) -> CreasePattern:
 
 
 def sample_h1_sequence(steps: int, seed: int = 0, *, max_attempts: int = 10_000) -> H1Triangulation:
-    """Add boundary vertices of degree 3 to a butterfly (paper section on H1 triangulations).
+    """Adds boundary vertices of degree 3 to a butterfly (paper section on H1 triangulations).
 
-    The butterfly is the square 0, 1, 2, 3 cut from 0 to 2. Each move takes consecutive boundary
-    vertices v1, v2, v3 with v2 of degree at least 3 and joins a new vertex w outside to them, so
-    that v2 becomes an interior vertex of degree at least 4. The boundary stays a strictly convex
-    quadrilateral and no two folds at a vertex are collinear. Points are multiples of 1/64, drawn by
-    integers of `random.Random(seed)`.
+    The butterfly is the square 0, 1, 2, 3, cut from 0 to 2. Each move takes consecutive boundary
+    vertices v1, v2, v3, where v2 has at least degree 3, and joins them to a new vertex w outside.
+    So v2 becomes an interior vertex of at least degree 4. The boundary stays a strictly convex
+    quadrilateral, and no two folds at a vertex are collinear. The coordinates are multiples of
+    1/64, which `random.Random(seed)` draws.
 
-    Raises `UsageError` for a negative number of steps or seed, `NotApplicableError` if no place
-    for w was found in `max_attempts` draws.
+    Raises `UsageError` for a negative number of steps or a negative seed, and `NotApplicableError`
+    if `max_attempts` draws find no place for w.
 
     >>> sample_h1_sequence(2, seed=0).moves[0][3]
     4
@@ -235,7 +237,7 @@ def sample_h1_sequence(steps: int, seed: int = 0, *, max_attempts: int = 10_000)
                 break
         else:
             raise NotApplicableError(
-                f"no place for an H1 move {len(moves) + 1} in {max_attempts} draws: "
+                f"{max_attempts} draws found no place for H1 move {len(moves) + 1}: "
                 "take another seed or more attempts"
             )
         new = len(points)
@@ -253,7 +255,7 @@ _IntPoint = tuple[int, int]
 def _beyond(
     source: random.Random, p1: _IntPoint, p2: _IntPoint, p3: _IntPoint, p4: _IntPoint
 ) -> _IntPoint:
-    """A grid point near p2 + (1/8 .. 1/2)(p2 - p4) + (-1/8 .. 1/8)(p3 - p1)."""
+    """A grid point near p2 + s (p2 - p4) + t (p3 - p1), 1/8 <= s <= 1/2, -1/8 <= t <= 1/8."""
     along, across = source.randrange(8, 33), source.randrange(-8, 9)
     x, y = (p2[i] + (along * (p2[i] - p4[i]) + across * (p3[i] - p1[i])) // 64 for i in (0, 1))
     return x, y

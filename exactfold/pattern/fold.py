@@ -1,4 +1,4 @@
-"""Reading FOLD 1.2 files, every number exactly; `fold_writing` writes them."""
+"""Reads triangulated sheets in FOLD 1.2 files, every number exactly; `fold_writing` writes them."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ OTHER_FORMATS: Final = {
     ".orh": "an ORH file (of Orihime)",
     ".svg": "an SVG drawing",
 }
-"""Formats of crease patterns that are not read, by the ends of their names."""
+"""Other formats of crease patterns, which this module does not read, by file name ending."""
 
 ASSIGNMENTS: Final = "MVFUBCJ"
 _ONLY_TOP: Final = "; only the top-level frame is read, and `file_frames` is ignored"
@@ -47,11 +47,11 @@ _ONLY_TOP: Final = "; only the top-level frame is read, and `file_frames` is ign
 
 @dataclass(frozen=True)
 class FoldFile(Picture):
-    """What a FOLD file says: the pattern, and how it was read.
+    """The pattern in a FOLD file, and how it was read.
 
-    `snapped` is the largest move of a coordinate by snapping (0 if none was asked for), `exact`
-    whether the coordinates came from `vertices_exactfold:coords`, `assignment` the letters of
-    `edges_assignment` by edge (i, j) with i < j (empty if the file has none).
+    `snapped` is the largest change of a coordinate by snapping (0 without snapping). `exact` says
+    whether the coordinates came from `vertices_exactfold:coords`. `assignment` holds the letters of
+    `edges_assignment` by edge (i, j) with i < j; it is empty if the file has none.
     """
 
     pattern: CreasePattern
@@ -73,16 +73,16 @@ class FoldFile(Picture):
 
 
 def read_fold(path: str | PathLike[str], snap: int | None = None) -> CreasePattern:
-    """The crease pattern in a FOLD file; `load_fold` also tells how far snapping moved anything."""
+    """The crease pattern in a FOLD file; `load_fold` also says how far snapping moved a vertex."""
     return load_fold(path, snap).pattern
 
 
 def load_fold(
     path: str | PathLike[str], snap: int | None = None, *, name: str | None = None
 ) -> FoldFile:
-    """Read a FOLD file as `parse_fold` reads its text; also raises `UnreadableFileError`.
+    """Reads a FOLD file as `parse_fold` reads its text; also raises `UnreadableFileError`.
 
-    Messages begin with the `name` of the file, by default its path.
+    Messages begin with `name`, which is the path of the file by default.
 
     >>> from exactfold.pattern.data import example_path
     >>> load_fold(example_path("two-vertex")).pattern
@@ -97,9 +97,10 @@ def load_fold(
 
 
 def parse_bytes(raw: bytes, name: str, snap: int | None = None) -> FoldFile:
-    """As `parse_fold`, from the bytes of a file; raises `NotFoldError` if they are not UTF-8.
+    """Reads the bytes of a file as `parse_fold` does; raises `NotFoldError` if they are not UTF-8.
 
-    A file of another format of crease patterns, to go by its `name`, is called by that.
+    If the ending of `name` belongs to another format of crease patterns, the message names this
+    format.
     """
     try:
         return parse_fold(_decoded(raw), snap)
@@ -107,7 +108,7 @@ def parse_bytes(raw: bytes, name: str, snap: int | None = None) -> FoldFile:
         format_ = OTHER_FORMATS.get(Path(name).suffix.lower())
         if format_ is None:
             raise
-        raise type(error)(f"this is {format_}; only FOLD files are read") from None
+        raise type(error)(f"this is {format_}, but only FOLD files are read here") from None
 
 
 def _decoded(raw: bytes) -> str:
@@ -120,15 +121,15 @@ def _decoded(raw: bytes) -> str:
 def parse_fold(text: str, snap: int | None = None) -> FoldFile:
     """The crease pattern in the text of a FOLD 1.2 file (its top-level frame).
 
-    Numbers are read through their text, so that 0.1 is 1/10. Where `vertices_exactfold:coords`
-    holds "p/q" pairs these are used; they must agree with `vertices_coords` to within 1e-9 of the
-    largest coordinate. Coordinates have two components, or three with one z for all vertices. With
+    Numbers are read from their text, so that 0.1 is 1/10. If `vertices_exactfold:coords` holds
+    "p/q" pairs, these are used; they must agree with `vertices_coords` up to 1e-9 of the largest
+    coordinate. Coordinates have two components, or three with the same z for all vertices. With
     `snap`, every coordinate is rounded to a multiple of 1/snap before anything is checked.
 
-    The faces are those of `faces_vertices`, or are traced in the planar graph `edges_vertices` if
-    that key is absent or empty. Where both are present each edge must be a side of a face; sides
-    that are not listed as edges are folds like any other. Assignments do not change the pattern,
-    but an edge between two faces may not be a cut "C" or a boundary "B".
+    The faces come from `faces_vertices`. If this key is absent or empty, they are traced in the
+    planar graph `edges_vertices`. If both keys are present, each edge must be a side of a face;
+    sides that are not listed as edges are folds like any other. Assignments do not change the
+    pattern, but an edge between two faces must not be a cut "C" or a boundary "B".
 
     Raises `NotFoldError`, `NumberError`, a subclass of `FoldError`, `TooLargeError`, or one of
     the `PatternError`s of `CreasePattern`; the message names the vertex, edge or face.
@@ -144,7 +145,7 @@ def parse_fold(text: str, snap: int | None = None) -> FoldFile:
     edges = index_lists(document, "edges_vertices", "edge", len(points))
     faces = index_lists(document, "faces_vertices", "face", len(points))
     if not edges and not faces:
-        raise NotFoldError(f"neither `faces_vertices` nor `edges_vertices` is given{frames}")
+        raise NotFoldError(f"the file has no `faces_vertices` and no `edges_vertices`{frames}")
     for k, edge in enumerate(edges):
         if len(edge) != 2:
             raise NotFoldError(f"edge {k} has {len(edge)} ends: {shown(edge)}")
@@ -158,10 +159,10 @@ def parse_fold(text: str, snap: int | None = None) -> FoldFile:
 def _pattern(
     points: Sequence[Point], edges: Sequence[Edge], faces: Sequence[tuple[int, ...]]
 ) -> CreasePattern:
-    """The pattern with the faces given, or, if there are none, traced in the planar graph."""
+    """The pattern with the given faces; if there are none, the planar graph is traced."""
     rebuilt = not faces
     if rebuilt:
-        from exactfold.pattern.planar import trace_faces  # here, as most files have faces
+        from exactfold.pattern.planar import trace_faces  # here: most files list their faces
 
         flat, _ = over_common_denominator(x for point in points for x in point)
         faces = trace_faces(list(zip(flat[::2], flat[1::2], strict=True)), edges)
@@ -261,6 +262,6 @@ def _assignment(
             )
         if assignment.setdefault(edge, letter) != letter:
             raise NotFoldError(
-                f"edge {k} ({i}-{j}) is assigned {letter}, and {assignment[edge]} before"
+                f"edge {k} ({i}-{j}) is assigned {letter}, but {assignment[edge]} before"
             )
     return assignment

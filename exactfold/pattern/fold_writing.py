@@ -1,4 +1,4 @@
-"""Writing FOLD 1.2 files that keep the exact coordinates, and writing files whole or not at all."""
+"""Writes FOLD 1.2 files that keep exact coordinates, and writes files whole or not at all."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from exactfold.pattern.loading import PatternLike
 
 ANGLES: Final = {"M": -180, "V": 180, "F": 0, "U": 0, "B": 0, "J": 0}
-"""Degrees by letter; FOLD wants 0 where nothing is assigned."""
+"""The angle in degrees for each letter; FOLD wants 0 if nothing is assigned."""
 _RANGES: Final = {"M": (-180, 0), "V": (0, 180), "F": (0, 0), "U": (0, 0), "B": (0, 0)}
 
 
@@ -32,30 +32,30 @@ def fold_document(
 ) -> dict[str, Any]:
     """The pattern as a FOLD 1.2 object, ready for `json.dumps`.
 
-    `assignment` gives "M", "V", "F" or "U" by fold (i, j), i < j; folds without a letter get "U".
-    Vertex indices are kept. `vertices_coords` has two components, the nearest doubles,
-    `vertices_exactfold:coords` the exact "p/q" pairs. `edges_foldAngle` has the sign of the letter
-    (valley positive), and is 0 for F, U and B: with `angles` the degrees given there by fold,
-    without it 180 for V and -180 for M. A simulator that is told 180 everywhere need not stay on
-    the branch that has these letters: `exactfold.export_branch` writes the angles of a branch.
+    `assignment` maps a fold (i, j), i < j, to "M", "V", "F" or "U"; folds without a letter get "U".
+    Vertex indices are kept. `vertices_coords` has two components, which are the nearest doubles.
+    `vertices_exactfold:coords` has the exact "p/q" pairs. `edges_foldAngle` has the sign of the
+    letter (valley positive), and is 0 for F, U and B. `angles` maps folds to degrees; without it V
+    gets 180 and M gets -180. A simulator that is told 180 everywhere need not stay on the branch
+    with these letters; `exactfold.branches.export_branch` writes the angles of a branch.
 
-    Raises `UsageError` for a letter or an angle that is not of a fold of the pattern, or an angle
-    that contradicts its letter, and `NotApplicableError` if a coordinate is beyond the range of
-    doubles.
+    Raises `UsageError` if a letter or an angle is given for an edge that is not a fold of the
+    pattern, and if an angle contradicts its letter. Raises `NotApplicableError` if a coordinate is
+    beyond the range of doubles.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> document = fold_document(single_vertex(3), {(0, 3): "M"})
     >>> document["edges_vertices"], document["edges_assignment"]
     ([[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]], ['B', 'B', 'M', 'B', 'U', 'U'])
     """
-    from exactfold.pattern.loading import as_pattern  # here, as it reads what is written here
+    from exactfold.pattern.loading import as_pattern  # here: `loading` reads what this writes
 
     pattern = as_pattern(pattern)
     letters = dict.fromkeys(pattern.edges, "B")
     letters.update(dict.fromkeys(pattern.folds, "U"))
     for edge, letter in (assignment or {}).items():
         if edge not in letters:
-            raise UsageError(f"{edge} is not an edge (i, j), i < j, of the pattern")
+            raise UsageError(f"the pattern has no edge {edge}; write edges as (i, j) with i < j")
         if letter not in (("B",) if letters[edge] == "B" else ("M", "V", "F", "U")):
             raise UsageError(f"edge {edge} cannot be assigned {letter!r}")
         letters[edge] = letter
@@ -70,7 +70,7 @@ def fold_document(
 
 
 def headed_document(title: str | None = None) -> dict[str, Any]:
-    """The keys that every file of ours begins with."""
+    """The keys with which every FOLD file of exactfold begins."""
     titled = {} if title is None else {"file_title": title}
     return {
         "file_spec": 1.2,
@@ -83,9 +83,9 @@ def headed_document(title: str | None = None) -> dict[str, Any]:
 
 
 def coordinate_keys(points: Sequence[Point]) -> dict[str, Any]:
-    """Rational points as doubles and exactly; raises `NotApplicableError` beyond doubles."""
+    """The keys of rational points, as doubles and exactly; `NotApplicableError` beyond doubles."""
     return {
-        # Two components: of three, Origami Simulator's pattern view draws x and z only.
+        # Two components, as Origami Simulator's pattern view draws only x and z of three.
         "vertices_coords": [[double(v, x), double(v, y)] for v, (x, y) in enumerate(points)],
         EXACT_KEY: [[format_rational(x), format_rational(y)] for x, y in points],
     }
@@ -97,14 +97,14 @@ def write_fold(
     assignment: Mapping[Edge, str] | None = None,
     title: str | None = None,
 ) -> None:
-    """Write `fold_text(pattern, assignment, title)`, whole or not at all.
+    """Writes `fold_text(pattern, assignment, title)`, whole or not at all.
 
-    Raises what `fold_document` raises, `UnwritableFileError`, and `UsageError` for a path that is
-    none, as where the arguments are swapped.
+    Raises the errors of `fold_document`, `UnwritableFileError`, and `UsageError` if `path` is not a
+    path, as when the arguments are swapped.
     """
     if not isinstance(path, str | PathLike):
         raise UsageError(
-            f"write_fold(pattern, path): {shown(path)} is not a path; the pattern comes first"
+            f"write_fold(pattern, path): {shown(path)} is not a path; give the pattern first"
         )
     write_text(path, fold_text(pattern, assignment, title))
 
@@ -114,24 +114,25 @@ def fold_text(
     assignment: Mapping[Edge, str] | None = None,
     title: str | None = None,
 ) -> str:
-    """`fold_document(pattern, assignment, title)` as `document_text` writes it."""
+    """The text that `document_text` makes of `fold_document(pattern, assignment, title)`."""
     return document_text(fold_document(pattern, assignment, title))
 
 
 def document_text(document: Mapping[str, Any]) -> str:
-    """A FOLD object as JSON text, one vertex, edge or face a line, frames indented."""
+    """A FOLD object as JSON text, with each vertex, edge or face on its own line."""
     return _object(document, "") + "\n"
 
 
 def write_text(path: str | PathLike[str], text: str) -> None:
-    """Write a UTF-8 text file as `write_bytes` does; raises `UnwritableFileError`."""
+    """Writes a UTF-8 text file like `write_bytes`; raises `UnwritableFileError`."""
     write_bytes(path, text.encode("utf-8"))
 
 
 def require_folder(path: str | PathLike[str]) -> None:
-    """Raise `UnwritableFileError` for a folder, and for a file whose folder is not there.
+    """Raises `UnwritableFileError` if `path` is a folder, or if its own folder does not exist.
 
-    That is known before the work whose result it is to hold; `write_bytes` says the rest.
+    This is checked before the work whose result the file is to hold. `write_bytes` reports all
+    other causes.
     """
     if os.path.isdir(path):
         raise UnwritableFileError(f"cannot write {path}: it is a folder")
@@ -141,10 +142,10 @@ def require_folder(path: str | PathLike[str]) -> None:
 
 
 def write_bytes(path: str | PathLike[str], content: bytes) -> None:
-    """Write a file whole or not at all, by renaming a temporary file beside it.
+    """Writes a file whole or not at all: it renames a temporary file beside it.
 
-    An existing symbolic link is followed; a device or pipe is written to directly. Raises
-    `UnwritableFileError`, and then leaves no partial file.
+    An existing symbolic link is followed; a device or a pipe is written to directly. Raises
+    `UnwritableFileError`, and then no partial file is left.
     """
     temporary: Path | None = None
     try:
@@ -152,7 +153,7 @@ def write_bytes(path: str | PathLike[str], content: bytes) -> None:
         if target.exists() and not target.is_file() and not target.is_dir():
             target.write_bytes(content)
             return
-        target = Path(os.path.realpath(path))  # not of a pipe, which has no real path
+        target = Path(os.path.realpath(path))  # only here: a pipe has no real path
         if target.is_dir():
             raise IsADirectoryError(21, "it is a folder")
         temporary = target.with_name(f".exactfold-{secrets.token_hex(8)}.tmp")
@@ -168,17 +169,17 @@ def write_bytes(path: str | PathLike[str], content: bytes) -> None:
 
 
 def checked_target(path: Path, endings: Sequence[str], what: str) -> str:
-    """The ending of a file to be written, in small letters, before the work that fills it.
+    """The ending of a file to be written, in small letters, checked before the long work.
 
-    Raises `UsageError` if it is none of `endings`, and `UnwritableFileError` if the folder does not
-    exist; `what` is written there.
+    Raises `UsageError` if the ending is not among `endings`, and `UnwritableFileError` if the
+    folder does not exist. `what` says in the message what the file is to hold.
 
     >>> checked_target(Path("Sheet.SVG"), (".svg", ".png"), "a picture")
     '.svg'
     """
     ending = path.suffix.lower()
     if ending not in endings:
-        raise UsageError(f"{path}: {what} is written as {', '.join(endings)}; name one of these")
+        raise UsageError(f"{path}: {what} is written as {', '.join(endings)}; use such an ending")
     require_folder(path)
     return ending
 
@@ -186,12 +187,12 @@ def checked_target(path: Path, endings: Sequence[str], what: str) -> str:
 def _targets(
     letters: Mapping[Edge, str], angles: Mapping[Edge, float] | None
 ) -> list[int] | list[float]:
-    """`edges_foldAngle`, in the order of the letters."""
+    """The values of `edges_foldAngle`, in the order of the letters."""
     if angles is None:
         return [ANGLES[letter] for letter in letters.values()]
     for edge, angle in angles.items():
         if edge not in letters:
-            raise UsageError(f"{edge} is not an edge (i, j), i < j, of the pattern")
+            raise UsageError(f"the pattern has no edge {edge}; write edges as (i, j) with i < j")
         least, most = _RANGES[letters[edge]]
         if not least <= angle <= most:
             raise UsageError(f"edge {edge} is {letters[edge]!r}: its angle cannot be {angle}")
@@ -204,7 +205,7 @@ def _object(value: Mapping[str, Any], indent: str) -> str:
 
 
 def _value(value: object, indent: str) -> str:
-    """JSON text: lists of lists with one entry a line, objects with one key a line."""
+    """JSON text in which lists of lists have one entry a line, and objects one key a line."""
     if isinstance(value, dict) and value:
         return _object(value, f"{indent}  ")
     if isinstance(value, list) and value and isinstance(value[0], list | dict):
@@ -215,7 +216,7 @@ def _value(value: object, indent: str) -> str:
 
 
 def double(vertex: int, value: SupportsFloat) -> float:
-    """The nearest double; raises `NotApplicableError` beyond their range."""
+    """The nearest double; raises `NotApplicableError` if it is infinite."""
     try:
         return float(value)
     except OverflowError:

@@ -1,34 +1,103 @@
-"""One way in for patterns: a pattern, what was read from a file, a path, or a shipped example."""
+"""The one way in for sheets: a pattern, what was read, FOLD, a path, or the name of an example."""
 
 from __future__ import annotations
 
+import json
 import os
+import sys
+from collections.abc import Mapping
 from os import PathLike
-from typing import TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeGuard
 
-from exactfold.errors import UnreadableFileError, UsageError
+from exactfold.errors import InputError, SeveralSheetsError, UnreadableFileError, UsageError
 from exactfold.exact.numbers import shown
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.data import DRAWINGS, SHEETS, example_path
+from exactfold.pattern.data import EXAMPLES, example_path
+from exactfold.pattern.drawing.drawing import Drawing, Snap
 from exactfold.pattern.fold import FoldFile
-from exactfold.pattern.opening import open_pattern, triangles
+from exactfold.pattern.opening import (
+    Opened,
+    Steps,
+    from_drawing,
+    open_pattern,
+    opened,
+    triangles,
+)
 
-PatternLike: TypeAlias = "CreasePattern | FoldFile | str | PathLike[str]"
-"""What every public function accepts where it asks for a pattern."""
+if TYPE_CHECKING:
+    from fractions import Fraction
+
+    from exactfold.pattern.panel_pattern import PanelPattern
+
+PatternLike: TypeAlias = (
+    "CreasePattern | PanelPattern | FoldFile | Opened | Drawing | Mapping[str, Any] | str | "
+    "PathLike[str]"
+)
+"""What every public function accepts where it asks for a sheet."""
+
+_TEXT = "FOLD text"
 
 
-def load(what: PatternLike, snap: int | None = None) -> CreasePattern:
-    """The pattern that is meant: a shipped example by name, a path, a pattern, or a `FoldFile`.
+def open_sheet(
+    sheet: PatternLike,
+    snap: Snap | None = None,
+    number: int | None = None,
+    *,
+    steps: Steps = "all",
+    merge: Fraction | None = None,
+) -> Opened:
+    """The sheet that `sheet` stands for, read if it is in a file or in FOLD.
 
-    Text that is a name in `SHEETS` is that example, whatever files there are ("./two-vertex" is
-    a file of this name); all other text and every `Path` is the path of a file of any format, read
-    by `open_pattern`, which also tells what was repaired. The sheet must have triangles and
-    rational coordinates; `count_ways` takes the others. With `snap`, all coordinates are rounded to
-    multiples of 1/snap.
+    A text that is a name in `EXAMPLES` stands for this shipped pattern, even if there is a file of
+    the same name (write "./two-vertex" for that). A text that begins with "{" is the text of a FOLD
+    file, and a mapping is its JSON object. Every other text and every `Path` is the path of a file
+    of any format. `number`, from 1, chooses among the sheets of a drawing with several; the rest is
+    as for `open_pattern`.
 
-    Raises `UnreadableFileError`, which lists the names, for text that is neither a name nor a file;
-    what `open_pattern` raises; `NotCountedError` for a sheet with larger panels or square
-    roots; `UsageError` for the name of a drawing, and for anything else than the four kinds.
+    Raises the errors of `open_pattern`; `UnreadableFileError`, which lists the names, if a text is
+    neither a name nor a file; `SeveralSheetsError` if a pattern is given and `number` is not 1;
+    `UsageError` if a pattern is given and `snap` is "auto", and for objects of other types.
+
+    >>> open_sheet("miura").sheet
+    <PanelPattern: 9 interior vertices, 24 folds, 16 panels>
+    >>> text = '{"vertices_coords": [[0, 0], [2, 0], [0, 2]], "faces_vertices": [[0, 1, 2]]}'
+    >>> open_sheet(text).sheet
+    <CreasePattern: 0 interior and 3 boundary vertices>
+    """
+    if isinstance(sheet, Drawing):
+        return from_drawing(sheet, snap, number=number, steps=steps, merge=merge)
+    if isinstance(sheet, Mapping):
+        return _of_text(_dumped(sheet), snap, number, steps, merge)
+    if isinstance(sheet, str | PathLike):
+        if isinstance(sheet, str) and sheet.lstrip().startswith("{"):
+            return _of_text(sheet, snap, number, steps, merge)
+        path = _located(sheet)
+        name = os.fspath(sheet)
+        return open_pattern(path, snap, name=name, number=number, steps=steps, merge=merge)
+    if number not in (None, 1):
+        raise SeveralSheetsError(f"there is no sheet {number}: a pattern is one sheet")
+    if isinstance(sheet, Opened):
+        return sheet
+    if isinstance(sheet, FoldFile):
+        return Opened(sheet.pattern, sheet.assignment, snapped=sheet.snapped)
+    if isinstance(sheet, CreasePattern):
+        return _snapped(sheet, snap)
+    if _is_panels(sheet):
+        return Opened(sheet)
+    raise UsageError(
+        f"{shown(sheet)} is not a pattern: give a pattern, a drawing, FOLD as text or as a "
+        "dictionary, the path of a file, or the name of an example"
+    )
+
+
+def load(what: PatternLike, snap: Snap | None = None) -> CreasePattern:
+    """The triangulated sheet that `what` stands for, as for `open_sheet`.
+
+    The sheet must have triangles and rational coordinates. With `snap`, all coordinates are rounded
+    to multiples of 1/snap.
+
+    Raises the errors of `open_sheet`, and `NotCountedError` for a sheet with larger panels or
+    square roots.
 
     >>> load("two-vertex")
     <CreasePattern: 2 interior and 4 boundary vertices>
@@ -36,34 +105,61 @@ def load(what: PatternLike, snap: int | None = None) -> CreasePattern:
     True
     >>> load(3)
     Traceback (most recent call last):
-    exactfold.errors.UsageError: 3 is not a pattern: give a CreasePattern, a FoldFile, the path of
-    a file, or the name of an example
+    exactfold.errors.UsageError: 3 is not a pattern: give a pattern, a drawing, FOLD as text or as
+    a dictionary, the path of a file, or the name of an example
     """
     if isinstance(what, FoldFile):
         what = what.pattern
-    if isinstance(what, CreasePattern):
-        return what if snap is None else what.snapped(snap)[0]
-    if not isinstance(what, str | PathLike):
-        raise UsageError(
-            f"{shown(what)} is not a pattern: give a CreasePattern, a FoldFile, the path of a "
-            "file, or the name of an example"
-        )
-    if isinstance(what, str):
-        if what in DRAWINGS:
-            raise UsageError(
-                f"{what} is a drawing with panels of any number of sides, not a sheet of "
-                "triangles: `count_ways` takes it"
-            )
-        if what in SHEETS:
-            return triangles(open_pattern(example_path(what), snap), "load")
-        if not os.path.exists(what):
-            raise UnreadableFileError(
-                f"{shown(what)} is neither a file nor an example; the examples are: "
-                f"{', '.join(SHEETS)}"
-            )
-    return triangles(open_pattern(what, snap), "load")
+    return triangles(open_sheet(what, snap), "load")
 
 
 def as_pattern(what: PatternLike) -> CreasePattern:
-    """`load(what)`, for functions that take a pattern: a pattern passes through untouched."""
+    """`load(what)` for functions that take a pattern; a `CreasePattern` is returned unchanged."""
     return what if isinstance(what, CreasePattern) else load(what)
+
+
+def _located(sheet: str | PathLike[str]) -> str | PathLike[str]:
+    """The path of the file that is meant."""
+    if not isinstance(sheet, str):
+        return sheet
+    if sheet in EXAMPLES:
+        return example_path(sheet)
+    if not os.path.exists(sheet):
+        raise UnreadableFileError(
+            f"{shown(sheet)} is neither a file nor the name of an example; the examples are: "
+            f"{', '.join(EXAMPLES)}"
+        )
+    return sheet
+
+
+def _dumped(document: Mapping[str, Any]) -> str:
+    try:
+        return json.dumps(document, default=dict)
+    except (TypeError, ValueError) as error:
+        raise UsageError(f"the dictionary is no FOLD document: {error}") from None
+
+
+def _of_text(
+    text: str, snap: Snap | None, number: int | None, steps: Steps, merge: Fraction | None
+) -> Opened:
+    """The sheet in the text of a FOLD file."""
+    try:
+        return opened(text.encode(), _TEXT, snap, number=number, steps=steps, merge=merge)
+    except InputError as error:
+        error.args = (f"{_TEXT}: {error}",)
+        raise
+
+
+def _snapped(pattern: CreasePattern, snap: Snap | None) -> Opened:
+    if snap is None or snap == "exact":
+        return Opened(pattern)
+    if isinstance(snap, int):
+        moved, largest = pattern.snapped(snap)
+        return Opened(moved, snapped=largest)
+    raise UsageError("--snap auto is for drawings: give a denominator")
+
+
+def _is_panels(sheet: object) -> TypeGuard[PanelPattern]:
+    """Asked of the module, as a pattern that is there has loaded it."""
+    module = sys.modules.get("exactfold.pattern.panel_pattern")
+    return module is not None and isinstance(sheet, module.PanelPattern)

@@ -1,7 +1,8 @@
-"""Numbers that are almost, but not, those of a simpler pattern: a warning, never a proof.
+"""Warns of numbers that are almost, but not exactly, those of a simpler pattern.
 
-A straight crease path, a flat vertex, a corner of 180 degrees are lost if a coordinate is rounded:
-the count of the rounded pattern is right, and says nothing of the pattern that was meant.
+If a coordinate is rounded, a straight crease path, a flat vertex or a corner of 180 degrees is
+lost. The count of the rounded pattern is right, but says nothing about the pattern that was meant.
+The warning is never part of a proof.
 """
 
 from __future__ import annotations
@@ -24,9 +25,9 @@ Triple = tuple[int, int, int]
 
 _NEAR = Fraction(1, 10**9)
 _CHANCE = 10**5
-"""A fraction p/q nearer to a number than 1 / (10^5 q^2) is hardly there by chance."""
+"""A fraction p/q that differs from a number by less than 1/(10^5 q^2) is hardly there by chance."""
 _LARGEST = 10**9
-"""Denominators above this are not called simple."""
+"""Fractions with larger denominators do not count as simple."""
 
 
 class WarningDocument(TypedDict):
@@ -42,13 +43,14 @@ class WarningDocument(TypedDict):
 
 @dataclass(frozen=True)
 class NearDegeneracy:
-    """What almost holds of a pattern.
+    """Which simpler pattern a pattern almost is, and what in it is almost straight.
 
-    `simple` gives, by vertex, the point with far smaller denominators that lies within 1e-9 of the
-    size of the pattern; `nearest` is the pattern with all these points in place, None if that is
-    none; `move` the largest change of a coordinate. Rounding to multiples of 1/`denominator`
-    (`--snap`) gives `nearest`; None if no rounding does. `straight` holds the paths (i, v, j)
-    through v, folds or sides of the boundary, which turn by less than 1e-9, but do turn.
+    `simple` maps a vertex to a nearby point with far smaller denominators, at most 1e-9 of the size
+    of the pattern away. `nearest` is the pattern with all these points in place, or None if they
+    form no valid pattern. `move` is the largest change of a coordinate. Rounding to multiples of
+    1/`denominator` (`--snap`) gives `nearest`; `denominator` is None if no rounding does.
+    `straight` holds paths (i, v, j) of folds or boundary edges that turn at v, but by less than
+    1e-9.
     """
 
     simple: dict[int, Point]
@@ -59,14 +61,14 @@ class NearDegeneracy:
 
     @property
     def sentences(self) -> tuple[str, ...]:
-        """The first vertex and the first path, in words."""
+        """The first of the nearly simple vertices and of the nearly straight paths, in words."""
         found = []
         if self.simple:
             vertex, (x, y) = min(self.simple.items())
             more = f", and {len(self.simple) - 1} more like it" if len(self.simple) > 1 else ""
             found.append(
                 f"vertex {vertex} is within {decimal_above(self.move, 2)} of "
-                f"({format_rational(x)}, {format_rational(y)}), but not there{more}"
+                f"({format_rational(x)}, {format_rational(y)}), but not at it{more}"
             )
         if self.straight:
             i, v, j = self.straight[0]
@@ -76,14 +78,14 @@ class NearDegeneracy:
 
     @property
     def text(self) -> str:
-        """The sentences, what they mean for a count, and what to do."""
-        advice = "what follows is true of these numbers, and may be of no use for what was meant"
+        """The sentences, their meaning for a count, and what to do."""
+        advice = "the answer is right for these numbers, but perhaps not for the intended pattern"
         if self.denominator is not None:
-            advice += f"; --snap {self.denominator} rounds to the simpler pattern"
+            advice += f"; --snap {self.denominator} rounds the coordinates to the simpler pattern"
         return f"{'; '.join(self.sentences)}: {advice}"
 
     def to_dict(self) -> WarningDocument:
-        """A warning as JSON: the vertices concerned, the denominator that rounds, the text."""
+        """The warning as JSON: the vertices, the denominator to round with, and the text."""
         return {
             "vertices": sorted({*self.simple, *(v for _, v, _ in self.straight)}),
             "snap": self.denominator,
@@ -98,12 +100,13 @@ class NearDegeneracy:
 
 
 def near_degenerate(pattern: PatternLike) -> NearDegeneracy | None:
-    """What is almost simple or almost straight in a pattern, or None if nothing is.
+    """What is almost simple or almost straight in a pattern; None if nothing is.
 
-    A vertex is almost simple if a coordinate is within 1e-9 of the larger side of the pattern of a
-    convergent p/q of its continued fraction, and nearer than 1/(10^5 q^2), which happens to one
-    random number in some ten thousand. None does not mean that the pattern is generic, nor does
-    anything else mean that it was meant to be degenerate.
+    A vertex is almost simple if one of its coordinates has a convergent p/q of its continued
+    fraction at a distance of at most 1e-9 times the larger side of the pattern and of at most
+    1/(10^5 q^2). This happens to about one random number in ten thousand. The result None does not
+    mean that the pattern is generic, and a result does not mean that the pattern was meant to be
+    degenerate.
 
     >>> rounded = CreasePattern(
     ...     [(0, 0), (1, 0), (1, 1), (0, 1), ("0.3333333333333", "0.3333333333333001")],
@@ -118,7 +121,7 @@ def near_degenerate(pattern: PatternLike) -> NearDegeneracy | None:
 
 
 def warnings(pattern: CreasePattern) -> list[WarningDocument]:
-    """What a designer should know of a pattern before its count is read, as JSON; often nothing.
+    """Warnings, as JSON, that a designer should read before the count; often there is none.
 
     >>> from exactfold.pattern.families import two_vertex
     >>> warnings(two_vertex())
@@ -151,7 +154,7 @@ def _found(pattern: CreasePattern) -> NearDegeneracy | None:
 
 
 def _simple(value: Fraction, tolerance: Fraction) -> Fraction | None:
-    """The first convergent that is near by more than chance, but not the value itself."""
+    """The first convergent that is nearer than chance explains, but is not the value itself."""
     n, d = value.numerator, value.denominator
     if d < _CHANCE:
         return None
@@ -175,7 +178,7 @@ def _pattern(points: list[Point], like: CreasePattern) -> CreasePattern | None:
 
 
 def _denominator(pattern: CreasePattern, points: list[Point]) -> int | None:
-    """The denominator that rounds the vertices of a pattern to the points, if there is one."""
+    """The denominator that rounds the vertices of a pattern to the points; None if none does."""
     denominator = lcm(*(x.denominator for point in points for x in point))
     for point, aim in zip(pattern.vertices, points, strict=True):
         if any(snap(x, denominator) != y for x, y in zip(point, aim, strict=True)):
@@ -184,7 +187,7 @@ def _denominator(pattern: CreasePattern, points: list[Point]) -> int | None:
 
 
 def _nearly_straight(pattern: CreasePattern) -> Iterator[Triple]:
-    """Paths through a vertex that turn by less than 1e-9, but do: exact, on integer points."""
+    """Yields the paths that turn at a vertex, but by less than 1e-9; exact, on integer points."""
     points, _ = pattern.integer_vertices
     boundary = pattern.boundary
     sides = {

@@ -1,4 +1,4 @@
-"""Crease patterns from any file: triangulated sheets as they are, drawings by way of repair."""
+"""Opens crease patterns of any format: triangulated sheets unchanged, drawings with repairs."""
 
 from __future__ import annotations
 
@@ -38,14 +38,14 @@ if TYPE_CHECKING:
     from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
 Steps: TypeAlias = "Literal['all', 'least'] | Collection[str]"
-"""Steps of repair: all of them, as few as it takes to read the drawing, or those named."""
+"""Steps of repair: "all", "least" (as few as reading the drawing takes), or a set of names."""
 
-# What the strict reader says of these is right, whatever the file: repair does not help.
+# These errors of the strict reader are final: reading the file as a drawing cannot mend them.
 _FINAL = (NumberError, StaleExactCoordinatesError)
 _OF_EDGES = (MalformedPatternError, DisconnectedError)
 """What can be wrong with a triangulated sheet and not with a drawing, or is said better of that."""
 _LEAST = ("merge", "duplicates", "split", "dangling")
-"""Steps without which some drawings have no panels; the others only change what they are."""
+"""Some drawings have no panels without these steps; the other steps only change the panels."""
 
 
 class ReadDocument(TypedDict):
@@ -63,10 +63,10 @@ class Opened(Picture):
     """A sheet from a file, and what was done to read it.
 
     `sheet` is a `CreasePattern` if all faces are triangles with rational corners, else a
-    `PanelPattern`. `assignment` holds the letters of the file by edge. `lines` says what was read,
-    how coordinates were made exact, and each repair, one sentence each; it is empty for a file
-    that needed nothing. `snapped` is the largest move of a coordinate that `snap` asked for.
-    `again` reads the sheet with another `snap`; None for a sheet that was not read.
+    `PanelPattern`. `assignment` holds the letters of the file by edge. `lines` has one sentence
+    each for what was read, how coordinates were made exact, and each repair; it is empty if the
+    file needed nothing. `snapped` is the largest change of a coordinate by `snap`. `again` reads
+    the sheet once more with another `snap`; it is None for a sheet that was not read from a file.
     """
 
     sheet: CreasePattern | PanelPattern
@@ -82,10 +82,10 @@ class Opened(Picture):
 
     @property
     def letters(self) -> dict[Edge, str]:
-        """M, V, F or U for every fold, as the file has it; empty where none is M or V.
+        """The letter M, V, F or U of each fold in the file; empty if no fold has M or V.
 
-        J, which joins the triangles of a panel that may bend, and a fold without a letter are U.
-        Where no fold has a direction, F says no more than U.
+        Folds without a letter get U, and so do folds with J, which joins the triangles of a panel
+        that may bend. If no fold has a direction, F says no more than U.
         """
         known = {fold: self.assignment.get(fold, "U") for fold in self.sheet.folds}
         letters = {fold: x if x in tuple("MVF") else "U" for fold, x in known.items()}
@@ -93,7 +93,7 @@ class Opened(Picture):
 
     @property
     def read(self) -> ReadDocument | None:
-        """What was read, repaired and snapped, as JSON; None if nothing was to be done."""
+        """What was read, repaired and snapped, as JSON; None if the file needed nothing."""
         lines = list(self.lines)
         if self.snapped:
             lines.append(f"coordinates moved by up to {float(self.snapped):.1g} by rounding")
@@ -117,16 +117,18 @@ def open_pattern(
 ) -> Opened:
     """The sheet in a file of any format that `read_drawing` knows.
 
-    A FOLD file of triangles is read as it stands (`load_fold`); `snap` is a denominator there.
-    Anything else, also a FOLD file with panels, crossings, near-duplicate vertices or a frame in
-    another plane, is read as a drawing: repaired, its coordinates made exact (`exact_sheets`). A
-    file with several sheets needs `number`, from 1. `steps` and `merge` are those of `repaired`;
-    with "least" a drawing that is a sheet as it stands is not repaired, and of others points are
-    merged, lines cut where they meet, and loose ends dropped. With `merge` or steps that are named
-    also a file of triangles is read as a drawing.
+    A FOLD file of triangles is read unchanged (`load_fold`); `snap` is a denominator there. All
+    other files are read as drawings: they are repaired, and their coordinates are made exact
+    (`exact_sheets`). This includes FOLD files with panels, crossings, near-duplicate vertices or a
+    frame in another plane. If a file has several sheets, `number` chooses one, counted from 1.
 
-    Raises the errors of `read_drawing`, `exact_sheets` and `PanelPattern`, with the name of the
-    file before the message, and `SeveralSheetsError` if there is more than one sheet and none is
+    `steps` and `merge` are those of `repaired`. With steps "least", a drawing that already is a
+    sheet is not repaired; in other drawings only points are merged, lines cut where they meet, and
+    loose ends dropped. If `merge` or a set of steps is given, a file of triangles is read as a
+    drawing, too.
+
+    Raises the errors of `read_drawing`, `exact_sheets` and `PanelPattern`; the name of the file
+    stands before the message. Raises `SeveralSheetsError` if there are several sheets and none is
     chosen.
     """
     raw = read_bytes(path)
@@ -134,7 +136,7 @@ def open_pattern(
     try:
         return opened(raw, known, snap, number=number, steps=steps, merge=merge)
     except UnknownFormatError:
-        raise  # it begins with the name
+        raise  # its message begins with the name already
     except InputError as error:
         error.args = (f"{known}: {error}",)
         raise
@@ -149,7 +151,7 @@ def opened(
     steps: Steps = "all",
     merge: Fraction | None = None,
 ) -> Opened:
-    """As `open_pattern`, from the bytes of a file; messages do not begin with its name."""
+    """Reads the bytes of a file like `open_pattern`; messages do not begin with its name."""
     strict: InputError | None = None
     plain = merge is None and isinstance(steps, str) and number in (None, 1)
     if plain and snap != "auto":
@@ -183,9 +185,10 @@ def opened(
 
 
 def _meant(file: FoldFile, name: str) -> tuple[str, ...]:
-    """What is said where F and J in a sheet of triangles could mean panels of several triangles.
+    """The remark on letters F and J in a sheet of triangles that may mean panels of triangles.
 
-    J says so by itself, F only beside M and V: where no fold has a direction, F is no more than U.
+    J has this meaning by itself. F has it only beside M and V: if no fold has a direction, F says
+    no more than U.
     """
     letters = [file.assignment.get(fold, "U") for fold in file.pattern.folds]
     flat = sum(letter in "FJ" for letter in letters)
@@ -206,10 +209,10 @@ def from_drawing(
     steps: Steps = "all",
     merge: Fraction | None = None,
 ) -> Opened:
-    """The sheet of a drawing: repaired, with exact coordinates, its panels traced.
+    """The sheet of a drawing, after repair, with exact coordinates and traced panels.
 
-    A drawing with exact coordinates of its own keeps them, and is repaired only where it is no
-    sheet without that; lines F and J join panels all the same.
+    A drawing with exact coordinates of its own keeps them, and is repaired only if it is not a
+    sheet otherwise. Its lines F and J join panels in any case.
 
     >>> from exactfold.pattern.drawing.drawing import Line
     >>> crossed = Drawing(((0, 0), (2, 0), (2, 2), (0, 2), (1, 0), (1, 2)),
@@ -231,11 +234,11 @@ def from_drawing(
         except (FoldError, PatternError):
             if k == len(attempts):
                 raise
-    raise UsageError("no steps of repair were given")
+    raise UsageError("no steps of repair were given: name at least one, or give 'all'")
 
 
 def _attempts(drawing: Drawing, steps: Steps, merge: Fraction | None) -> list[Collection[str]]:
-    """The sets of steps to try in turn."""
+    """The sets of repair steps, in the order in which they are tried."""
     from exactfold.pattern.drawing.repair import STEPS
 
     if steps == "least":
@@ -246,7 +249,7 @@ def _attempts(drawing: Drawing, steps: Steps, merge: Fraction | None) -> list[Co
 
 
 def _chosen(drawing: Drawing, found: Sheets, number: int | None) -> Opened:
-    """One sheet of a drawing, as a pattern."""
+    """The chosen sheet of a drawing, as a pattern."""
     from exactfold.pattern.panel_pattern import PanelPattern
 
     if number is None and len(found.sheets) > 1:
@@ -275,32 +278,34 @@ def _chosen(drawing: Drawing, found: Sheets, number: int | None) -> Opened:
 
 
 def triangles(opened: Opened, needs: str) -> CreasePattern:
-    """The triangulated sheet that was opened, for something that `needs` one.
+    """The triangulated sheet in `opened`; `needs` names the caller that needs one.
 
-    Raises `NotCountedError` for larger panels or square roots; it says what takes them.
+    Raises `NotCountedError` for larger panels or square roots; the message says which commands
+    take such sheets.
     """
     sheet = opened.sheet
     if isinstance(sheet, CreasePattern):
         return sheet
     if sheet.field.radicands:
         raise NotCountedError(
-            f"{needs} takes triangulated sheets with rational coordinates, and those of this "
-            f"one lie in {opened.field_name}: `exactfold count` (`count_ways`) takes them as they "
-            "are, and `exactfold convert --triangulate --snap DEN` rounds those of a drawing"
+            f"{needs} takes triangulated sheets with rational coordinates, and the coordinates of "
+            f"this one lie in {opened.field_name}: `exactfold count` (`count` in Python) takes "
+            "them unchanged, and `exactfold convert --triangulate --snap DEN` rounds those of a "
+            "drawing"
         )
     large = sum(len(face) > 3 for face in sheet.faces)
     raise NotCountedError(
         f"{needs} takes triangulated sheets, and this one has {counted(large, 'panel')} with "
-        "more than three sides: `exactfold count` (`count_ways`) says how its panels fold while "
-        "they stay rigid, and `exactfold convert --triangulate` cuts them into triangles that may "
-        "bend"
+        "more than three sides: `exactfold count` (`count` in Python) says how its panels "
+        "fold while they stay rigid, and `exactfold convert --triangulate` cuts them into "
+        "triangles that may bend"
     )
 
 
 def triangulated(pattern: PanelPattern) -> CreasePattern | None:
-    """The sheet as a `CreasePattern`, None if it has larger panels or irrational coordinates.
+    """The sheet as a `CreasePattern`; None if it has larger panels or irrational coordinates.
 
-    Raises `TooLargeError` if its coordinates are too long over one denominator.
+    Raises `TooLargeError` if the common denominator of its coordinates is too long.
     """
     from exactfold.exact.surds import rational
 
@@ -315,7 +320,11 @@ def triangulated(pattern: PanelPattern) -> CreasePattern | None:
 
 
 def has_branches(pattern: CreasePattern) -> bool:
-    """Whether `count_branches` counts the sheet: D <= 1, or one vertex inside and no chord."""
+    """Whether `count_branches` can count the branches of the sheet.
+
+    The sheet must have an interior vertex. Besides, either D <= 1, or there are no chords and
+    exactly one interior vertex outside the triangulated triangles.
+    """
     if not pattern.interior:
         return False
     return pattern.Ve <= 4 or (pattern.Vi - pattern.Vt == 1 and not pattern.chords)

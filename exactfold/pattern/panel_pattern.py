@@ -1,4 +1,4 @@
-"""A flat sheet of rigid panels: faces of any number of sides, creases that end anywhere."""
+"""A flat sheet of rigid panels: faces with any number of sides, creases that end anywhere."""
 
 from __future__ import annotations
 
@@ -21,20 +21,21 @@ from exactfold.pattern.planar import counter_clockwise, trace_faces
 Edge: TypeAlias = tuple[int, int]
 Point: TypeAlias = tuple[Number, Number]
 _LONGEST: Final = 256
-"""Bits of a common denominator up to which whole numbers are shorter than fractions."""
+"""The longest common denominator, in bits, with which integers are shorter than fractions."""
 
 
 @dataclass(frozen=True)
 class PanelPattern(Picture):
     """A planar drawing of creases on one sheet of paper; every bounded face is a rigid panel.
 
-    `vertices` are points with coordinates in Q or in a field of square roots (`SurdField`),
-    `edges` index pairs (i, j), i < j, sorted: the border of the sheet and all creases. The edges
-    meet in common ends only, every edge has a face on at least one side, and the border passes
-    each of its vertices once. Faces need not be convex, and creases may end anywhere on the border.
+    `vertices` are points with coordinates in Q or in a field of square roots (`SurdField`).
+    `edges` are sorted index pairs (i, j), i < j: the boundary of the sheet and all creases. Two
+    edges meet in a common end only, every edge has a face on at least one side, and the boundary
+    passes each of its vertices once. Faces need not be convex, and creases may end anywhere on the
+    boundary.
 
     Raises the errors of `trace_faces`, `MalformedPatternError` if there is no face, and
-    `NotADiskError` where the sheet hangs together by a vertex.
+    `NotADiskError` if a part of the sheet hangs by one vertex.
 
     >>> cross = PanelPattern([(-1, -1), (1, -1), (1, 1), (-1, 1), (0, 0), (0, -1), (1, 0),
     ...                       (0, 1), (-1, 0)],
@@ -53,19 +54,22 @@ class PanelPattern(Picture):
         if field.radicands:
             points = tuple((field.number(x), field.number(y)) for x, y in points)
         pairs = tuple(sorted({(min(i, j), max(i, j)) for i, j in edges}))
-        if any(not 0 <= v < len(points) for pair in pairs for v in pair):
-            raise MalformedPatternError("an edge uses a vertex that is not there")
+        for i, j in pairs:
+            if i < 0 or j >= len(points):
+                raise MalformedPatternError(f"edge {i}-{j} uses a vertex that does not exist")
         object.__setattr__(self, "vertices", points)
         object.__setattr__(self, "edges", pairs)
         if not pairs or not self.faces:
-            raise MalformedPatternError("the drawing encloses no face")
+            raise MalformedPatternError(
+                "the edges of the drawing enclose no face: draw the boundary of the sheet"
+            )
         self._check_border()
 
     # --- combinatorics ---------------------------------------------------------------------------
 
     @property
     def field(self) -> SurdField:
-        """The field of the coordinates."""
+        """The field that contains all coordinates."""
         return common_field(c for point in self.vertices for c in point)
 
     @property
@@ -80,12 +84,12 @@ class PanelPattern(Picture):
 
     @cached_property
     def faces(self) -> tuple[tuple[int, ...], ...]:
-        """The panels, each counter-clockwise from its smallest vertex, sorted."""
+        """The panels, sorted; each runs counter-clockwise from its smallest vertex."""
         return tuple(trace_faces(self.scaled_vertices, self.edges))
 
     @cached_property
     def sides(self) -> Mapping[tuple[int, int], int]:
-        """The face to the left of each directed edge that has one."""
+        """The face on the left of each directed edge, for the edges that have one."""
         found: dict[tuple[int, int], int] = {}
         for k, face in enumerate(self.faces):
             for i, j in zip(face, (*face[1:], face[0]), strict=True):
@@ -107,7 +111,7 @@ class PanelPattern(Picture):
 
     @cached_property
     def border(self) -> frozenset[int]:
-        """The vertices on the border of the sheet."""
+        """The vertices on the boundary of the sheet."""
         return frozenset(v for edge in self.border_edges for v in edge)
 
     @cached_property
@@ -131,17 +135,21 @@ class PanelPattern(Picture):
 
     @property
     def D(self) -> int:
-        """folds - 3 Vi: the dimension of every component is at least this, if not negative."""
+        """The number of folds minus 3 Vi; if not negative, a lower bound of all dimensions.
+
+        Every component of the configuration space has at least this dimension.
+        """
         return len(self.folds) - 3 * len(self.interior)
 
     # --- geometry --------------------------------------------------------------------------------
 
     @cached_property
     def scaled_vertices(self) -> tuple[Point, ...]:
-        """The vertices times a whole number that clears all denominators, if there is a short one.
+        """The vertices times an integer that clears all denominators, if there is a short one.
 
-        Many crossings of lines have long denominators without a common factor: then the vertices
-        as they are, since their multiples would be longer than all of them together.
+        If many lines cross, their crossings have long denominators without a common factor. Then
+        the vertices are returned unchanged, since their integer multiples would be longer than all
+        fractions together.
         """
 
         def parts(value: Number) -> Sequence[Fraction]:
@@ -157,7 +165,7 @@ class PanelPattern(Picture):
         return tuple((_whole(x * scale), _whole(y * scale)) for x, y in self.vertices)
 
     def direction(self, start: int, end: int) -> Point:
-        """The vector between two vertices, in units of `scaled_vertices`."""
+        """The vector from one vertex to another, in units of `scaled_vertices`."""
         (ax, ay), (bx, by) = self.scaled_vertices[start], self.scaled_vertices[end]
         return bx - ax, by - ay
 
@@ -169,7 +177,8 @@ class PanelPattern(Picture):
         pinched = sorted(v for v, count in ends.items() if count != 2)
         if pinched:
             raise NotADiskError(
-                f"the sheet hangs together by vertex {pinched[0]} only: the border passes it twice",
+                f"the sheet hangs together only by vertex {pinched[0]}: its boundary passes this "
+                "vertex twice",
                 vertices=pinched,
             )
 
@@ -177,11 +186,11 @@ class PanelPattern(Picture):
 
     @cached_property
     def sha256(self) -> str:
-        """Digest of the exact pattern: the field, the vertices in order, and the edges.
+        """The digest of the exact pattern: the field, the vertices in order, and the edges.
 
-        The SHA-256 of the lines `exactfold panels 1`, `r C...` for each root that was adjoined,
-        `v X... Y...` for each vertex (all coefficients) and `e I J` for each edge, each ended by a
-        newline.
+        It is the SHA-256 of the lines `exactfold panels 1`, `r C...` for each adjoined root,
+        `v X... Y...` for each vertex (all coefficients) and `e I J` for each edge. A newline ends
+        each line.
         """
 
         def text(value: Number) -> str:
@@ -198,7 +207,7 @@ class PanelPattern(Picture):
         return hash((len(self.vertices), self.edges))
 
     def __reduce__(self) -> tuple[object, ...]:
-        return PanelPattern, (self.vertices, self.edges)  # what is cached stays behind
+        return PanelPattern, (self.vertices, self.edges)  # without the cached properties
 
     def __repr__(self) -> str:
         return (

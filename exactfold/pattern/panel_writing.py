@@ -1,4 +1,4 @@
-"""FOLD files of sheets with any panels, from which the identical sheet is read."""
+"""Writes FOLD files of sheets with any panels; reading them gives the identical sheet."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _FOLDS = frozenset("MVFUJ")
 
 @dataclass(frozen=True)
 class Converted:
-    """A sheet as it is written: panels in their order, a letter for each edge, edges added as J."""
+    """A sheet ready to be written: panels in order, letters of all edges, added edges (as J)."""
 
     pattern: PanelPattern
     letters: Mapping[Edge, str]
@@ -34,8 +34,8 @@ class Converted:
     def document(self, title: str | None = None) -> dict[str, Any]:
         """The sheet as a FOLD 1.2 object, ready for `json.dumps`.
 
-        `vertices_coords` are the nearest doubles. The exact numbers stand in
-        `vertices_exactfold:coords` if they are rational, else in `vertices_exactfold:surds` with
+        `vertices_coords` has the nearest doubles. Exact rational numbers stand in
+        `vertices_exactfold:coords`, others in `vertices_exactfold:surds` with
         `frame_exactfold:field` (see `surd_keys`). Raises `NotApplicableError` if a coordinate is
         beyond the range of doubles.
         """
@@ -60,12 +60,12 @@ class Converted:
 
 
 def converted(opened: Opened, *, triangulate: bool = False) -> Converted:
-    """A sheet that was opened, ready to be written; with `triangulate`, in triangles.
+    """Prepares an opened sheet for writing; with `triangulate`, panels are cut into triangles.
 
-    The border has the letter B, folds the letters of the file, U if it gave none. The edges that
-    cut panels into triangles have the letter J: read as a drawing they join panels, so that the
-    sheet is the one before; a file of triangles with rational corners is read as it stands, and
-    then they may bend.
+    Boundary edges get the letter B. Folds get the letters of the file, or U if it gives none. The
+    edges that cut panels into triangles get the letter J. When the file is read as a drawing, J
+    edges join the triangles, so that the sheet is the same as before. But a file of triangles with
+    rational corners is read unchanged, and then its J edges may bend.
 
     >>> square = PanelPattern([(0, 0), (2, 0), (2, 2), (0, 2)], [(0, 1), (1, 2), (2, 3), (3, 0)])
     >>> made = converted(Opened(square), triangulate=True)

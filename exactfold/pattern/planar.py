@@ -1,4 +1,4 @@
-"""Faces of a straight-line planar graph, by exact angular order."""
+"""Traces the faces of a straight-line planar graph, by exact angular order."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ Bounds = tuple[float, float]
 def trace_faces(points: Sequence[AnyPoint], edges: Iterable[Edge]) -> list[tuple[int, ...]]:
     """The bounded faces of a planar straight-line graph, sorted.
 
-    `points` are integer points (scale rational ones by a common denominator), `edges` index pairs;
-    an edge given twice counts once. Each face is a cycle of vertices, counter-clockwise from its
-    smallest index. At each vertex the edges are sorted by direction with integer cross products;
-    a face follows each edge by the next edge clockwise at its head (the rotation system of the
-    embedding), and the one cycle that is not counter-clockwise bounds the outer face.
+    `points` are integer points (scale rational ones by a common denominator). `edges` are index
+    pairs; an edge that is given twice counts once. Each face is a cycle of vertices,
+    counter-clockwise from its smallest index. At each vertex integer cross products sort the edges
+    by direction. A face continues each edge with the next edge clockwise at its head (the rotation
+    system of the embedding). The one cycle that is not counter-clockwise bounds the outer face.
 
     Raises `MalformedPatternError` for two vertices at one point or one on no edge, `FoldError` for
     edges that cross, a vertex inside an edge and an edge with one face on both its sides, and
@@ -55,10 +55,11 @@ def trace_faces(points: Sequence[AnyPoint], edges: Iterable[Edge]) -> list[tuple
 
 
 def check_no_crossing(points: Sequence[AnyPoint], edges: Sequence[Edge]) -> None:
-    """Raise `FoldError` if two edges meet anywhere but in a common end.
+    """Raises `FoldError` if two edges meet anywhere but in a common end.
 
-    A sweep over the x-ranges, which are rounded outwards to floats, so that no pair that meets is
-    left out; every decision about a pair is the sign of an exact determinant.
+    A sweep over the x-ranges of the edges proposes pairs. The ranges are rounded outwards to
+    floats, so that no pair that meets is left out. Every decision about a pair is the sign of an
+    exact determinant, unless floats with an error bound determine the sign.
     """
     spots = [(float_bounds(x), float_bounds(y)) for x, y in points]
     boxes = []
@@ -79,14 +80,15 @@ def check_no_crossing(points: Sequence[AnyPoint], edges: Sequence[Edge]) -> None
 
 
 def _clear_turns(spots: Sequence[tuple[Bounds, Bounds]]) -> Callable[[int, int, int], int]:
-    """The sign of an orientation where floats are sure of it, 0 where they are not.
+    """A function for the sign of an orientation, which returns 0 if floats cannot decide it.
 
-    With coordinates of size at most M, off by at most d, the float determinant is off by less than
-    16 M (d + 2^-48 M): two products of differences of at most 2 M, each off by 2 d + 2^-51 M.
+    Let the coordinates have size at most M and errors at most d. Then the float determinant has an
+    error below 16 M (d + 2^-48 M): it has two products of differences of size at most 2 M, and each
+    difference has an error of at most 2 d + 2^-51 M.
     """
     size = max((abs(c) for spot in spots for bounds in spot for c in bounds), default=0.0)
     off = max((high - low for spot in spots for low, high in spot), default=0.0)
-    slack = 16 * size * (off + 2.0**-48 * size) + 2.0**-1000  # the last against underflow
+    slack = 16 * size * (off + 2.0**-48 * size) + 2.0**-1000  # 2^-1000 covers underflow
     places = [(x[0], y[0]) for x, y in spots]
 
     def clear(a: int, b: int, c: int) -> int:
@@ -98,7 +100,7 @@ def _clear_turns(spots: Sequence[tuple[Bounds, Bounds]]) -> Callable[[int, int, 
 
 
 def _apart(clear: Callable[[int, int, int], int], first: Edge, second: Edge) -> bool:
-    """Whether floats are sure that two edges meet in no point but a common end."""
+    """Whether floats prove that two edges have no common point but a common end."""
     for one, other in ((first, second), (second, first)):
         turns = [clear(*one, v) for v in other if v not in one]
         if len(turns) == 2 and turns[0] * turns[1] > 0:
@@ -163,7 +165,7 @@ def _check_connected(neighbours: Sequence[Sequence[int]]) -> None:
 
 
 def counter_clockwise(points: Sequence[AnyPoint], v: int, around: Sequence[int]) -> list[int]:
-    """The neighbours of a vertex in counter-clockwise order, from the direction of +x."""
+    """The neighbours of a vertex in counter-clockwise order, starting from the direction of +x."""
     x, y = points[v]
 
     def half(u: int) -> int:

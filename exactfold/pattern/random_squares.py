@@ -16,7 +16,7 @@ CORNERS: Final = ((0, 0), (1, 0), (1, 1), (0, 1))
 
 @dataclass(frozen=True)
 class RandomSquare:
-    """A sampled pattern with what reproduces it; `attempts` counts the sample that was kept."""
+    """A sampled pattern with the numbers that reproduce it; `attempts` is the accepted sample."""
 
     pattern: CreasePattern
     seed: int
@@ -25,7 +25,7 @@ class RandomSquare:
 
 
 def random_square(interior: int, seed: int, denominator: int = 1024) -> CreasePattern:
-    """A random triangulated unit square; the pattern of `sample_random_square`.
+    """A random triangulated unit square: the pattern of `sample_random_square`.
 
     >>> random_square(8, seed=1)
     <CreasePattern: 8 interior and 4 boundary vertices>
@@ -41,22 +41,23 @@ def sample_random_square(
     max_attempts: int = 10_000,
     redraw: bool = False,
 ) -> RandomSquare:
-    """Sample the ensemble of the paper (section "Numerical computations") on a rational grid.
+    """Samples the ensemble of the paper (section "Numerical computations") on a rational grid.
 
-    `interior` distinct points, uniform on the multiples of 1/denominator strictly inside the unit
-    square, together with the corners, are Delaunay-triangulated. A sample with an interior vertex
-    of degree 3 or an edge between opposite corners is rejected as a whole and drawn anew. (The
-    second never happens: a disk through two opposite corners holds a third or the whole square.)
-    Vertices 0 to 3 are the corners (0,0), (1,0), (1,1), (0,1), the points follow in the order
-    drawn. The result depends on the arguments only: integers from `random.Random(seed)`.
+    `interior` distinct points are drawn uniformly from the multiples of 1/denominator strictly
+    inside the unit square. Together with the corners they are Delaunay-triangulated. A sample with
+    an interior vertex of degree 3 or an edge between opposite corners is rejected as a whole, and
+    a new one is drawn. (The edge never happens: a disk through two opposite corners contains a
+    third corner or the whole square.) Vertices 0 to 3 are the corners (0,0), (1,0), (1,1), (0,1);
+    the points follow in the order in which they are drawn. The result depends only on the
+    arguments, as `random.Random(seed)` draws all integers.
 
-    About one vertex in ninety has degree 3, so that of a few hundred points hardly a sample passes.
-    With `redraw`, the points of degree 3 are drawn anew, not the sample, until there are none. The
+    About one vertex in ninety has degree 3, so that hardly any sample of a few hundred points
+    passes. With `redraw`, only the points of degree 3 are drawn anew, until there are none. The
     points are then no longer independent: this is not the ensemble of the paper, but close to it,
-    and the only way to large patterns with exactly `interior` vertices.
+    and it is the only way to large patterns with exactly `interior` vertices.
 
-    Raises `UsageError` for arguments that allow no sample, `NotApplicableError` if `max_attempts`
-    samples were rejected.
+    Raises `UsageError` for arguments that allow no sample, and `NotApplicableError` if
+    `max_attempts` samples were rejected.
 
     >>> sample = sample_random_square(3, seed=0)
     >>> sample.pattern.Ve, sample.seed, sample.denominator, sample.attempts
@@ -90,7 +91,7 @@ def sample_random_square(
 
 
 def _points(source: random.Random, count: int, denominator: int, kept: list[Point]) -> list[Point]:
-    drawn: dict[Point, None] = dict.fromkeys(kept)  # a point drawn again is skipped
+    drawn: dict[Point, None] = dict.fromkeys(kept)  # a point that is drawn again counts once
     while len(drawn) < count:
         x, y = source.randrange(1, denominator), source.randrange(1, denominator)
         drawn[Fraction(x, denominator), Fraction(y, denominator)] = None

@@ -1,4 +1,4 @@
-"""What was computed of a pattern, kept with the pattern itself."""
+"""Keeps values that were computed from a pattern in the pattern itself."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ def remembered(
 ) -> Callable[Concatenate[CreasePattern, P], R]:
     """A function of a pattern that computes each value once for each pattern object.
 
-    Solvers, certifiers and signs ask for the same forms. As patterns do not change, what follows
-    from one is kept in the object, as its cached properties are, and goes with it; it is not
-    pickled. Values are shared, so they must not be changed.
+    Solvers, certifiers and signs need the same forms. A pattern does not change, so the values are
+    stored in the pattern object like its cached properties, and disappear with it. They are not
+    pickled. Values are shared, so callers must not change them.
 
     >>> from exactfold.pattern.families import two_vertex
     >>> corners = remembered(lambda pattern, k: [object()] * k)

@@ -19,9 +19,9 @@ def find_triangulated_triangles(
     are counter-clockwise from their smallest index, and `following[v][a]` is b for every triangle
     (v, a, b).
 
-    Every 3-cycle of the graph is tested, for each edge through the common neighbours of its ends.
-    The vertices inside are those of the faces reached from its sides without crossing them: work
-    proportional to what is inside, not to the pattern.
+    For each edge, the common neighbours of its ends give every 3-cycle of the graph through it. The
+    vertices inside a 3-cycle are found by walking from its sides over the faces inside. So the work
+    is proportional to the inside of the cycles, not to the pattern.
     """
     neighbours: dict[int, set[int]] = {v: set() for v in range(len(points))}
     for i, j in edges:
@@ -51,8 +51,9 @@ def find_triangulated_triangles(
 def _inside(following: Mapping[int, Mapping[int, int]], cycle: Triangle) -> frozenset[int]:
     """The vertices within a counter-clockwise 3-cycle of edges that is not a face.
 
-    The sheet is a disk, so that all of the cycle's inside is covered by faces; the first lies left
-    of a side, and no edge has a vertex in its middle.
+    The sheet is a disk, so faces cover all of the inside of the cycle. The walk starts with the
+    faces to the left of the three sides. It reaches all faces inside, as no edge has a vertex in
+    its middle.
     """
     a, b, c = cycle
     seen = {(a, b), (b, c), (c, a)}  # half-edges whose left face has been or will be visited
@@ -62,7 +63,7 @@ def _inside(following: Mapping[int, Mapping[int, int]], cycle: Triangle) -> froz
         i, j = stack.pop()
         k = following[i][j]
         vertices.add(k)
-        for half in ((k, j), (i, k)):  # the same sides seen from the faces beyond them
+        for half in ((k, j), (i, k)):  # these two sides as directed edges of the next faces
             if half not in seen and half[::-1] not in seen:
                 seen.add(half)
                 stack.append(half)

@@ -1,4 +1,4 @@
-"""Panels cut into triangles, by ears, exactly."""
+"""Cuts panels into triangles, exactly, by cutting off ears."""
 
 from __future__ import annotations
 
@@ -13,10 +13,11 @@ from exactfold.pattern.panel_pattern import Edge, PanelPattern, Point
 def triangulating_edges(pattern: PanelPattern) -> tuple[Edge, ...]:
     """Diagonals (i, j), i < j, that cut every panel into triangles, sorted; no vertex is added.
 
-    A polygon with more than three corners, straight ones included, has an ear: a corner of less
-    than pi whose diagonal leaves no other corner in the closed triangle (G. H. Meisters,
-    "Polygons have ears", 1975, for the triangulation with all corners). The ear with the shortest
-    diagonal is cut off. All tests are signs of exact determinants; floats only choose among ears.
+    A polygon with more than three corners, straight corners included, has an ear. This is a corner
+    of less than pi whose triangle (with the diagonal as third side) contains no other corner (G. H.
+    Meisters, "Polygons have ears", 1975, for the triangulation with all corners). The ear with the
+    shortest diagonal is cut off first. All tests are signs of exact determinants; floats only
+    choose among ears.
 
     >>> square = PanelPattern([(0, 0), (2, 0), (2, 2), (0, 2)], [(0, 1), (1, 2), (2, 3), (3, 0)])
     >>> triangulating_edges(square)
@@ -28,7 +29,7 @@ def triangulating_edges(pattern: PanelPattern) -> tuple[Edge, ...]:
 
 
 def triangles_of(pattern: CreasePattern | PanelPattern) -> tuple[tuple[int, ...], ...]:
-    """The triangles of a sheet, panels cut along `triangulating_edges`, counter-clockwise.
+    """The counter-clockwise triangles of a sheet, with panels cut along `triangulating_edges`.
 
     >>> square = PanelPattern([(0, 0), (2, 0), (2, 2), (0, 2)], [(0, 1), (1, 2), (2, 3), (3, 0)])
     >>> triangles_of(square)
@@ -40,7 +41,7 @@ def triangles_of(pattern: CreasePattern | PanelPattern) -> tuple[tuple[int, ...]
 def triangles_by_face(
     pattern: CreasePattern | PanelPattern,
 ) -> tuple[tuple[tuple[int, ...], ...], ...]:
-    """The same, those of each face together."""
+    """The triangles of `triangles_of`, grouped by face."""
     if isinstance(pattern, CreasePattern):
         return tuple((triangle,) for triangle in pattern.triangles)
     points = pattern.scaled_vertices
@@ -54,7 +55,10 @@ def cut_panels(pattern: PanelPattern) -> PanelPattern:
 
 
 def _triangles(points: Sequence[Point], face: Sequence[int]) -> list[tuple[int, ...]]:
-    """Ears cut off one after the other, each with the corner in the middle, and what is left."""
+    """The ears in the order in which they are cut off, each with its tip in the middle; the rest.
+
+    The last triangle is what remains after the last ear.
+    """
     ring = list(face)
     found: list[tuple[int, ...]] = []
     while len(ring) > 3:
@@ -83,5 +87,5 @@ def _length(a: Point, b: Point) -> float:
     x, y = float(a[0]) - float(b[0]), float(a[1]) - float(b[1])
     try:
         return x**2 + y**2
-    except OverflowError:  # then all that matter are as large
+    except OverflowError:  # then all lengths that matter are as large
         return inf

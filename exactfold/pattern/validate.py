@@ -1,4 +1,4 @@
-"""Exact checks that vertices and triangles form one flat disk; each failure names its culprit."""
+"""Checks exactly that vertices and triangles form one flat disk; each error names its culprit."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ Rotation = Mapping[int, Mapping[int, int]]
 
 @contextmanager
 def rounded_to(denominator: int) -> Iterator[None]:
-    """Within this block, errors of the input say that coordinates were rounded before."""
+    """Within this block, errors of the input say that the coordinates were rounded before."""
     try:
         yield
     except InputError as error:
@@ -50,7 +50,7 @@ def orientation(a: Sequence[Any], b: Sequence[Any], c: Sequence[Any]) -> Any:
 def points(
     vertices: Iterable[Sequence[object]], convert: Callable[[object], Fraction]
 ) -> tuple[Point, ...]:
-    """Exact distinct points, or an error that names the vertex."""
+    """Distinct exact points; an error names the vertex that is not one."""
     result: list[Point] = []
     seen: dict[Point, int] = {}
     for index, vertex in enumerate(vertices):
@@ -77,7 +77,7 @@ def points(
 
 
 def _entries(value: object) -> tuple[Any, ...] | None:
-    """The entries of any iterable but text."""
+    """The entries of an iterable that is not text; None for all other objects."""
     if isinstance(value, str) or not isinstance(value, Iterable):
         return None
     return tuple(value)
@@ -89,7 +89,7 @@ def _coordinate(value: Fraction) -> str:
 
 
 def triples(triangles: Iterable[Sequence[int]], count: int) -> list[Triangle]:
-    """Index triples within range, no vertex twice."""
+    """Index triples in range, each with three different vertices; an error names the face."""
     result: list[Triangle] = []
     for face, given in enumerate(triangles):
         triangle = _entries(given)
@@ -122,7 +122,7 @@ def triples(triangles: Iterable[Sequence[int]], count: int) -> list[Triangle]:
 def oriented_triangles(
     vertices: Sequence[IntPoint], triangles: Sequence[Triangle]
 ) -> tuple[Triangle, ...]:
-    """All triangles counter-clockwise, each rotated to start at its smallest index."""
+    """All triangles, counter-clockwise, each starting with its smallest index."""
     clockwise: list[int] = []
     counter: list[int] = []
     for face, (a, b, c) in enumerate(triangles):
@@ -147,7 +147,7 @@ def oriented_triangles(
 
 
 def incidence(count: int, triangles: Sequence[Triangle]) -> None:
-    """No isolated vertex, no edge on three faces, no two faces on one side of an edge."""
+    """Checks that no vertex is isolated, no edge has three faces, and no side of one has two."""
     sides: dict[tuple[int, int], list[int]] = {}
     directed: dict[tuple[int, int], int] = {}
     doubled: tuple[int, int, int, int] | None = None
@@ -184,7 +184,10 @@ def _more(items: Sequence[object]) -> str:
 
 
 def disk(rotation: Rotation, triangles: Sequence[Triangle]) -> None:
-    """One disk: connected, no pinch, exactly one boundary cycle, Euler characteristic one."""
+    """Checks that the sheet is connected, without a pinch, and has exactly one boundary cycle.
+
+    If this boundary is a simple polygon (see `embedding`), the sheet is a disk.
+    """
     reached, stack = {triangles[0][0]}, [triangles[0][0]]
     while stack:
         for a, b in rotation[stack.pop()].items():
@@ -231,10 +234,10 @@ def _steps(fan: Mapping[int, int], start: int) -> int:
 
 
 def embedding(vertices: Sequence[IntPoint], boundary: Sequence[int], rotation: Rotation) -> None:
-    """No overlap: the boundary is a simple polygon.
+    """Checks that no faces overlap, by checking that the boundary is a simple polygon.
 
-    A disk whose triangles are all positively oriented covers each point off the boundary as often
-    as the boundary winds around it (degree of a map), so a simple boundary suffices.
+    This suffices. All triangles of the disk are positively oriented, so each point off the boundary
+    is covered as often as the boundary winds around it (degree of a map).
     """
     sides = list(zip(boundary, [*boundary[1:], boundary[0]], strict=True))
     boxes = []

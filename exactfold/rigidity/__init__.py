@@ -1,4 +1,4 @@
-"""What statics and kinematics say of the flat sheet."""
+"""Statics and kinematics of the flat sheet."""
 
 from exactfold._support.lazy import attached as _attached
 

@@ -1,4 +1,4 @@
-"""What the theorem "all branches are real" gives for a pattern."""
+"""Decides whether the theorem "all branches are real" applies to a pattern, and what it gives."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from exactfold.rigidity.definite_stresses import definite_stress
 class Reality:
     """Whether all solutions of the branch system are known to be real, and how many there are.
 
-    `solutions` counts with multiplicity: branches as lines for D = 1, solutions for any given
-    boundary heights for D > 1, 0 for a rigid sheet; None if undecided. `multipliers` is the
-    definite stress that proves it, by interior vertex of the sheet (its notch closed if it has
-    one). The theorem is docs/theorem.md, Theorem 2.
+    `solutions` counts with multiplicity. For D = 1 it counts branches as lines, for D > 1 solutions
+    for any given boundary heights; for a rigid sheet it is 0, and if undecided None. `multipliers`
+    is the definite stress that proves the result, by interior vertex of the sheet (with its notch
+    closed if it has one). The theorem is docs/theorem.md, Theorem 2.
     """
 
     verdict: Verdict
@@ -32,11 +32,11 @@ class Reality:
 
 
 def decide_all_branches_real(pattern: PatternLike) -> Reality:
-    """What docs/theorem.md says of a pattern, its hypotheses checked exactly.
+    """Applies docs/theorem.md, Theorem 2 to a pattern; its hypotheses are checked exactly.
 
-    The theorem covers every triangulated convex polygon (boundary angles of pi, chords, vertices of
-    degree three and separating triangles included) and every quadrilateral. UNDECIDED for other
-    sheets does not mean that non-real solutions exist.
+    The theorem covers every triangulated convex polygon, also with boundary angles of pi, chords,
+    vertices of degree three and separating triangles, and every quadrilateral. For other sheets the
+    answer is UNDECIDED, which does not mean that non-real solutions exist.
 
     >>> from exactfold.pattern.families import flat_vertex_square
     >>> reality = decide_all_branches_real(flat_vertex_square())
@@ -60,12 +60,12 @@ def decide_all_branches_real(pattern: PatternLike) -> Reality:
         shape = "convex" if pattern.is_convex else "reflex, its notch closed by a triangle"
         text = (
             f"boundary quadrilateral ({shape}): {counted(count, 'branch')} with multiplicity, all "
-            "real; a branch with f flat vertices counts 2^f times, and if none has any there are "
-            "exactly two for each pair of opposite vertex sign vectors"
+            "real; a branch with f flat vertices counts 2^f times; if no vertex is flat on any "
+            "branch, there are exactly two branches for each pair of opposite vertex sign vectors"
         )
         return Reality(PROVED, text, count, stress)
     text = (
         f"convex boundary: {counted(count, 'solution')} with multiplicity for any given boundary "
-        "heights, all real; one with f flat vertices counts 2^f times"
+        "heights, all real; a solution with f flat vertices counts 2^f times"
     )
     return Reality(PROVED, text, count, stress)

@@ -18,7 +18,7 @@ from exactfold.pattern.remembered import remembered
 def spokes(
     pattern: CreasePattern, vertex: int
 ) -> tuple[tuple[int, ...], list[tuple[Fraction, Fraction]]]:
-    """Neighbours of an interior vertex counter-clockwise, and the vectors U_j - U_v to them."""
+    """The neighbours of an interior vertex v, counter-clockwise, and the vectors U_j - U_v."""
     ring = _ring(pattern, vertex)
     x, y = pattern.vertices[vertex]
     return ring, [(pattern.vertices[j][0] - x, pattern.vertices[j][1] - y) for j in ring]
@@ -27,9 +27,10 @@ def spokes(
 def integer_spokes(
     pattern: CreasePattern, vertex: int
 ) -> tuple[tuple[int, ...], list[tuple[int, int]], int]:
-    """Neighbours, spokes in integers, and the unit: `spokes` has them divided by the unit.
+    """The neighbours of an interior vertex, its spokes as integer vectors, and the unit.
 
-    The unit is the least positive integer that makes the coordinates of all points integers.
+    `spokes` gives the same vectors divided by the unit. The unit is the least positive integer that
+    makes the coordinates of all points integers.
     """
     ring = _ring(pattern, vertex)
     points, unit = pattern.integer_vertices
@@ -44,15 +45,15 @@ def _ring(pattern: CreasePattern, vertex: int) -> tuple[int, ...]:
 
 
 def wheel_stress(pattern: PatternLike, vertex: int) -> dict[Edge, Fraction]:
-    r"""Stress densities w_e of the wheel around an interior vertex, by edge (i, j) with i < j.
+    r"""The stress densities w_e of the wheel around an interior vertex, by edge (i, j), i < j.
 
     With spokes d_j, c_j = d_j x d_{j+1}, s_j = d_j . d_{j+1}, L_j^2 = d_j . d_j:
 
         rim   w_{j,j+1} = -1 / c_j
         spoke w_j = 1/c_j + 1/c_{j-1} - (s_j/c_j + s_{j-1}/c_{j-1}) / L_j^2
 
-    (the paper's Eq. wheelstress divided by the edge lengths, so that everything is rational;
-    docs/mathematics.md, Wheel stress).
+    This is the paper's Eq. wheelstress divided by the edge lengths, so that everything is rational
+    (docs/mathematics.md, Wheel stress).
     Unit: 1 / length^2. Raises `UsageError` unless `vertex` is interior.
     """
     pattern = as_pattern(pattern)
@@ -70,13 +71,13 @@ def wheel_stress(pattern: PatternLike, vertex: int) -> dict[Edge, Fraction]:
 
 
 def curvature_form(pattern: PatternLike, vertex: int) -> QuadraticForm:
-    r"""Second-order Gaussian curvature K_v at an interior vertex, as a form in the heights.
+    r"""The second-order Gaussian curvature K_v at an interior vertex, as a form in the heights.
 
         K_v(h) = sum_j x_j x_{j+1} / c_j - (s_j / 2 c_j) (x_j^2 / L_j^2 + x_{j+1}^2 / L_{j+1}^2)
 
-    with x_j = h_j - h_v (docs/mathematics.md, Curvature form). Labels: the hub first, then the ring
-    counter-clockwise. Unit: curvature in radians when heights and lengths share a unit.
-    Inertia (1, N - 3, 3) for degree N. Raises `UsageError` unless `vertex` is interior.
+    with x_j = h_j - h_v (docs/mathematics.md, Curvature form). The labels are the hub, then the
+    ring counter-clockwise. The value is in radians if heights and lengths have the same unit. The
+    inertia is (1, N - 3, 3) for degree N. Raises `UsageError` unless `vertex` is interior.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> curvature_form(single_vertex(5), 5).inertia
@@ -87,7 +88,7 @@ def curvature_form(pattern: PatternLike, vertex: int) -> QuadraticForm:
 
 @remembered
 def _curvature_form(pattern: CreasePattern, vertex: int) -> QuadraticForm:
-    if not isinstance(pattern.vertices[vertex][0], Fraction):  # of another field, in a proof
+    if not isinstance(pattern.vertices[vertex][0], Fraction):  # another field, as in some proofs
         ring, vectors = spokes(pattern, vertex)
         return QuadraticForm((vertex, *ring), star_matrix(vectors, truediv))
     ring, d, unit = integer_spokes(pattern, vertex)
@@ -99,7 +100,7 @@ def _curvature_form(pattern: CreasePattern, vertex: int) -> QuadraticForm:
 
 
 def star_denominators(d: Sequence[tuple[Any, Any]]) -> list[Any]:
-    """2 L_j^2 c_{j-1} c_j for all spokes d_j: denominators of the entries of `star_matrix`."""
+    """The numbers 2 L_j^2 c_{j-1} c_j of all spokes d_j: denominators for `star_matrix`."""
     c = [_cross(a, b) for a, b in zip(d, _turned(d), strict=True)]
     return [2 * _dot(a, a) * c[j - 1] * c[j] for j, a in enumerate(d)]
 
@@ -107,10 +108,10 @@ def star_denominators(d: Sequence[tuple[Any, Any]]) -> list[Any]:
 def star_matrix(
     d: Sequence[tuple[Any, Any]], quotient: Callable[[Any, Any], Any]
 ) -> list[list[Any]]:
-    """The matrix of K_v from the spokes d_j, the hub's row first.
+    """The matrix of K_v, computed from the spokes d_j; the first row belongs to the hub.
 
-    `quotient(a, b)` makes a / b; nothing else is divided. So one piece of code computes in integers
-    over a common denominator (`star_denominators`) and, in the proofs, in rational functions.
+    `quotient(a, b)` computes a / b; nothing else is divided. So the same code works with integers
+    over a common denominator (`star_denominators`) and, in the proofs, with rational functions.
 
     >>> star_matrix([(1, 0), (0, 1), (-1, 0), (0, -1)], lambda a, b: Fraction(a, b))[1][2]
     Fraction(1, 2)
@@ -125,7 +126,7 @@ def star_matrix(
         cots = s[j] * c[j - 1] + s[j - 1] * c[j]  # (cot + cot) c_{j-1} c_j
         matrix[1 + j][1 + j] = quotient(-cots, below[j])
         matrix[1 + j][1 + k] = matrix[1 + k][1 + j] = quotient(1, 2 * c[j])
-    for j in range(1, n + 1):  # invariance under h -> h + constant fixes the hub's row
+    for j in range(1, n + 1):  # as K_v is invariant under h -> h + constant, rows sum to 0
         row = matrix[j]
         row[0] = matrix[0][j] = -(row[j] + row[j % n + 1] + row[(j - 2) % n + 1])
     matrix[0][0] = -sum(matrix[0][1:])
@@ -145,7 +146,10 @@ def _dot(a: tuple[Any, Any], b: tuple[Any, Any]) -> Any:
 
 
 def stress_form(pattern: PatternLike, stress: Mapping[Edge, Fraction]) -> QuadraticForm:
-    """(1/2) sum_e w_e (h_i - h_j)^2 for stress densities w, on all vertices (paper Eq. compat)."""
+    """The form (1/2) sum_e w_e (h_i - h_j)^2 of stress densities w, on all vertices (Eq. compat).
+
+    The equation is the paper's.
+    """
     pattern = as_pattern(pattern)
     size = len(pattern.vertices)
     matrix = [[Fraction(0)] * size for _ in range(size)]

@@ -1,13 +1,13 @@
-"""A positive definite combination of the curvature forms: why a sheet with given rim cannot fold.
+"""Positive definite combinations of curvature forms: with a fixed boundary the sheet is flat.
 
-If sum_v m_v K_v, all m_v > 0, is positive definite on the heights w that vanish on the boundary,
-then the forms K_v have no common complex zero among these w but w = 0. Indeed for a zero
-w = a + i b, K_v(a) = K_v(b) and B_v(a, b) = 0 for all v. If b is not 0, some K_v(b) > 0, so
-K_v(a) > 0 too, while K_v has only one positive direction and a is orthogonal to b: contradiction.
-So b = 0, and then all K_v(a) = 0 gives a = 0.
+Suppose that sum_v m_v K_v with all m_v > 0 is positive definite on the heights w that vanish on the
+boundary. Then w = 0 is the only common complex zero of the forms K_v among these w. For let w = a +
+i b be a zero. Then K_v(a) = K_v(b) and B_v(a, b) = 0 for all v. If b is not 0, some K_v(b) > 0 and
+so K_v(a) > 0. But K_v has only one positive direction, and a is orthogonal to b: a contradiction.
+So b = 0, then all K_v(a) = 0, and a = 0.
 
-For a convex boundary the multipliers m_v = R^2 - |U_v - c|^2 of any disk (c, R) around the sheet
-will do: with the gradient of w on each face and the curvature A_b <= 0 at each boundary vertex,
+For a convex boundary such multipliers are m_v = R^2 - |U_v - c|^2 for any disk (c, R) around the
+sheet: with the gradient of w on each face and the curvature A_b <= 0 at each boundary vertex,
 
     sum_v m_v K_v(w) = integral |grad w|^2 - sum_b m_b A_b(w)
 
@@ -29,9 +29,10 @@ from exactfold.rigidity.curvature import curvature_form
 def definite_stress(pattern: PatternLike) -> dict[int, Fraction] | None:
     """Positive multipliers, by interior vertex, of a definite combination of curvature forms.
 
-    R^2 - |U_v - c|^2 for a disk about the centroid c of the boundary vertices (docs/theorem.md, Key
-    lemma), verified exactly. Unit: squared length. None if the combination is not definite, which
-    can happen for a boundary with reflex corners only, and decides nothing. What it proves:
+    They are R^2 - |U_v - c|^2 for a disk about the centroid c of the boundary vertices
+    (docs/theorem.md, Key lemma), and the result is verified exactly. Unit: squared length. The
+    result is None if the combination is not definite; this can happen only for a boundary with
+    reflex corners, and decides nothing. For what a definite combination proves see
     docs/mathematics.md, Definite stress.
 
     >>> from exactfold.pattern.crease_pattern import CreasePattern
@@ -49,9 +50,10 @@ def definite_stress(pattern: PatternLike) -> dict[int, Fraction] | None:
 
 
 def disk_multipliers(pattern: CreasePattern) -> dict[int, Fraction]:
-    """R^2 - |U_v - c|^2 for every vertex: c the centroid of the boundary, R its largest distance.
+    """R^2 - |U_v - c|^2 for every vertex: c is the centroid of the boundary vertices.
 
-    Zero at the boundary vertex farthest from c; positive at interior vertices of a convex sheet.
+    R is the largest distance of a boundary vertex from c. So the multiplier is zero at the boundary
+    vertex farthest from c; it is positive at the interior vertices of a convex sheet.
     """
     count = len(pattern.boundary)
     cx, cy = (
@@ -83,7 +85,10 @@ def combined_form(
 
 
 def inside(pattern: CreasePattern, cycle: Triangle, vertices: tuple[int, ...]) -> CreasePattern:
-    """The pattern inside a triangulated triangle; its corners are 0, 1, 2, then `vertices`."""
+    """The pattern inside a triangulated triangle; vertices 0, 1, 2 are its corners.
+
+    `vertices` follow in their order.
+    """
     labels = (*cycle, *vertices)
     position = {v: k for k, v in enumerate(labels)}
     within = set(labels)

@@ -1,4 +1,4 @@
-"""Everything exact that is known of a pattern without solving its branch system."""
+"""Everything exact that is known about a pattern without solving its branch system."""
 
 from __future__ import annotations
 
@@ -62,10 +62,10 @@ class PatternFactsDocument(TypedDict):
 
 @dataclass(frozen=True)
 class PatternFacts:
-    """Exact facts of a pattern: counts, rank of the rigidity matrix, inertia of each vertex.
+    """Exact facts about a pattern: counts, rank of the rigidity matrix, inertia of each vertex.
 
-    `rank_by` says what proves the rank: "elimination", or for large sheets a "theorem", see
-    `exactfold.rigidity.self_stress.rigidity_rank`.
+    `rank_by` says what proves the rank: "elimination", or for large sheets a "theorem" (see
+    `exactfold.rigidity.self_stress.rigidity_rank`).
     """
 
     pattern: CreasePattern
@@ -81,7 +81,7 @@ class PatternFacts:
         )
 
     def to_dict(self, name: str | None = None) -> PatternFactsDocument:
-        """The object printed by `exactfold info --json`, without what to expect of a count."""
+        """The object that `exactfold info --json` prints, without its forecast of a count."""
         pattern = self.pattern
         return {
             "format": "exactfold info result",
@@ -110,12 +110,12 @@ class PatternFacts:
 
     @property
     def degree_counts(self) -> dict[int, int]:
-        """How many interior vertices have each degree."""
+        """The number of interior vertices of each degree."""
         return dict(sorted(Counter(self.pattern.degree(v) for v in self.pattern.interior).items()))
 
 
 def pattern_facts(pattern: PatternLike, progress: Progress | None = None) -> PatternFacts:
-    """The exact facts that `exactfold info` reports; every inertia is computed, none assumed.
+    """The exact facts that `exactfold info` reports; every inertia is computed.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> facts = pattern_facts(single_vertex(5))

@@ -1,10 +1,11 @@
-"""Folds that are exactly flat on a branch, deduced vertex by vertex.
+"""Deduces, vertex by vertex, which folds are exactly flat on a branch.
 
-At a vertex with some folds known to be flat, the bends of the others span a space of dimension d.
-If the curvature form is definite there (always for d = 1 unless it vanishes), all are flat. If
-d = 2 and the form vanishes on one or two rational lines, the branch lies on one of them; folds
-that do not bend on any line that agrees with the known signs are flat. This settles the crosses
-(collinear folds at a vertex of degree 4) and what follows from them.
+Take a vertex at which some folds are known to be flat. The bends of its other folds span a space of
+dimension d. If the curvature form is definite on this space (always so for d = 1, unless the form
+vanishes), all its folds are flat. If d = 2 and the form vanishes on one or two rational lines, the
+branch lies on one of these lines. Then a fold is flat if it does not bend on any line that agrees
+with the known signs. This settles crosses (collinear folds at a vertex of degree 4) and all that
+follows from them.
 """
 
 from __future__ import annotations
@@ -23,10 +24,10 @@ from exactfold.rigidity.functionals import fold_functional
 def flat_folds(
     pattern: CreasePattern, signs: Mapping[Edge, int | None], curved: Collection[int] = ()
 ) -> frozenset[Edge]:
-    """The folds proved flat on a branch with the given fold signs (None where undecided).
+    """The folds that are proved flat on a branch with the given fold signs (None if undecided).
 
-    `signs` must be right on the branch; a fold not returned may still be flat. `curved` are
-    interior vertices at which the curvature form does not vanish, which prove nothing.
+    `signs` must be right on the branch. A fold that is not returned may still be flat. `curved` are
+    interior vertices whose curvature form does not vanish, so that they prove nothing.
 
     >>> cross = CreasePattern(
     ...     [(2, 0), (0, 3), (-2, 0), (0, -1), (0, 0)],
@@ -50,12 +51,12 @@ def flat_folds(
 def _at_vertex(
     pattern: CreasePattern, vertex: int, folds: tuple[Edge, ...], signs: tuple[int | None, ...]
 ) -> list[Edge]:
-    """The open folds around a vertex that are flat; many branches ask with the same signs."""
+    """The undecided folds around a vertex that are flat; cached, as many branches ask the same."""
     ring = pattern.star(vertex)
-    # Heights of the star modulo planes: hub and two neighbouring rim vertices at 0.
+    # Heights of the star modulo planes: the hub and two neighbouring vertices have height 0.
     free = ring[2:]
     if len(free) - signs.count(0) > 2:
-        return []  # three dimensions or more are left
+        return []  # at least three dimensions remain
     bends = [fold_functional(pattern, fold) for fold in folds]
     rows = [[Fraction(bend.get(j, 0)) for j in free] for bend in bends]
     flat = [row for row, sign in zip(rows, signs, strict=True) if sign == 0]
@@ -92,7 +93,7 @@ def _identity(size: int) -> list[list[Fraction]]:
 
 
 def _null_lines(a: Fraction, b: Fraction, c: Fraction) -> list[tuple[Fraction, Fraction]] | None:
-    """Rational directions (s, t) with a s^2 + 2 b s t + c t^2 = 0; None if there may be others."""
+    """All directions (s, t) with a s^2 + 2 b s t + c t^2 = 0; None if they are not all rational."""
     if a == b == c == 0:
         return None
     discriminant = b * b - a * c
@@ -113,7 +114,7 @@ def _rational_sqrt(value: Fraction) -> Fraction | None:
 
 
 def _agrees(vector: list[Fraction], signs: Sequence[int | None]) -> bool:
-    """Whether some multiple of `vector` has the known signs (None is unknown)."""
+    """Whether a multiple of `vector` has the known signs (None means unknown)."""
     pairs = [((x > 0) - (x < 0), s) for x, s in zip(vector, signs, strict=True) if s is not None]
     return any(all(x * side == s for x, s in pairs) for side in (1, -1)) or all(
         s == 0 for _, s in pairs

@@ -1,4 +1,4 @@
-"""The linear functionals of the heights that read vertex signs, folds and the boundary saddle."""
+"""Linear functionals of the heights: signs of vertices, bends of folds, boundary saddle."""
 
 from __future__ import annotations
 
@@ -11,21 +11,20 @@ from exactfold.rigidity.timelike import round_cone
 
 
 def vertex_sign_functional(pattern: CreasePattern, vertex: int) -> dict[int, int]:
-    """Integer coefficients of h -> K_v(t, h), t timelike and pointing up, by vertex.
+    """The integer coefficients, by vertex, of h -> K_v(t, h) with t timelike and pointing up.
 
-    On the null cone of K_v its sign is +1 where the vertex is popped up, -1 where it is popped
-    down, and 0 exactly where the star of the vertex is flat (docs/conventions.md, Signs of
-    vertices).
+    On the null cone of K_v the sign of this functional is +1 if the vertex pops up, -1 if it pops
+    down, and 0 exactly if the star of the vertex is flat (docs/conventions.md, Signs of vertices).
     """
     return curvature_form(pattern, vertex).integer_functional(round_cone(pattern, vertex))
 
 
 def fold_functional(pattern: CreasePattern, fold: Edge) -> dict[int, int]:
-    """Integer coefficients of the bend across a fold: positive for a valley, negative for a
-    mountain, seen from +z.
+    """The integer coefficients of the bend across a fold, by vertex.
 
-    The affine dependency of the four corners, positive at the two corners off the fold: a valley
-    is where the sheet is locally convex, so that these lie above the plane of the other face.
+    The bend is positive for a valley and negative for a mountain, seen from +z. The coefficients
+    are the affine dependency of the four corners, positive at the two corners off the fold. At a
+    valley the sheet is locally convex, so that these two lie above the plane of the other face.
     """
     i, j = fold
     left, right = pattern.opposite(fold)
@@ -43,8 +42,8 @@ def fold_functional(pattern: CreasePattern, fold: Edge) -> dict[int, int]:
 def saddle_functional(pattern: CreasePattern) -> dict[int, Fraction]:
     """For Ve = 4: the functional of the boundary heights that vanishes on planes.
 
-    Normalised to 1 at its first non-zero coefficient, boundary vertices taken in cyclic order from
-    the smallest index. A branch is represented by the ray on which it is positive.
+    Its first nonzero coefficient is 1, with the boundary vertices in cyclic order from the smallest
+    index. A branch is represented by the ray on which this functional is positive.
     """
     b = pattern.boundary
     points, _ = pattern.integer_vertices

@@ -16,10 +16,11 @@ Vector = tuple[Fraction, Fraction]
 
 @dataclass(frozen=True)
 class TrackCount:
-    """Forward-tracks, back-tracks and winding of a flat vertex, and the inertia of its form.
+    """The forward-tracks, back-tracks and winding of a flat vertex, and its vertex form.
 
-    `form` is the vertex form of Appendix C of the paper, -2 times the curvature form, on the hub
-    (label 0) and the spoke ends (labels 1 to N). `inertia` is computed from it, not from the count.
+    `form` is the vertex form of Appendix C of the paper, which is -2 times the curvature form. Its
+    labels are 0 for the hub and 1 to N for the spoke ends. `inertia` is computed from the form, not
+    from the count.
     """
 
     forward: int
@@ -34,22 +35,22 @@ class TrackCount:
 
     @property
     def predicted(self) -> Inertia:
-        """(f - 2w - 1, b + 2w - 1, 3): what Kapovich and Millson's theorem says of the form."""
+        """The inertia (f - 2w - 1, b + 2w - 1, 3) that Kapovich and Millson's theorem predicts."""
         f, b, w = self.forward, self.back, self.winding
         return f - 2 * w - 1, b + 2 * w - 1, 3
 
 
 def kapovich_millson(spokes: Iterable[Sequence[RationalLike]]) -> TrackCount:
-    """Tracks, winding and form of a flat vertex that may fold back on itself or wind repeatedly.
+    """The tracks, winding and form of a flat vertex that may fold back or wind repeatedly.
 
-    `spokes` are the rational vectors from the hub to its neighbours in cyclic order; the angle
-    from each to the next (and from the last to the first) is taken in (-pi, pi) and must not be a
-    multiple of pi. Angles are positive at forward-tracks, negative at back-tracks, and add up to
-    2 pi times the winding, which is counted by crossings of the positive x-axis.
+    `spokes` are the rational vectors from the hub to its neighbours in cyclic order. The angle from
+    each spoke to the next (and from the last to the first) is taken in (-pi, pi) and must not be a
+    multiple of pi. It is positive at forward-tracks and negative at back-tracks. The angles add up
+    to 2 pi times the winding, which is counted by crossings of the positive x-axis.
 
     Raises `MalformedPatternError` for fewer than two spokes or a spoke that is not a pair,
-    `DegenerateFaceError` where two consecutive spokes are parallel (a zero spoke is parallel to
-    everything), and a `NumberError` for a coordinate that is not rational.
+    `DegenerateFaceError` if two consecutive spokes are parallel (a zero spoke is parallel to every
+    other), and a `NumberError` for a coordinate that is not rational.
 
     >>> star = kapovich_millson([(1, 0), (0, 1), (-1, 0), (0, -1)])
     >>> (star.forward, star.back, star.winding), star.inertia
@@ -94,9 +95,9 @@ def _lower(v: Vector) -> bool:
 
 
 def _form(vectors: Sequence[Vector], crosses: Sequence[Fraction]) -> QuadraticForm:
-    """sum_n 2 g_n x_n x_{n+1} + f_n x_n^2 with x_n = h_n - h_0 and g_n = -1 / c_n.
+    """The form sum_n 2 g_n x_n x_{n+1} + f_n x_n^2, where x_n = h_n - h_0 and g_n = -1 / c_n.
 
-    f_n = (d_{n-1} x d_{n+1}) / (c_{n-1} c_n), which is the paper's (cot + cot) / L_n^2.
+    f_n = (d_{n-1} x d_{n+1}) / (c_{n-1} c_n) is the paper's (cot + cot) / L_n^2.
     """
     size = len(vectors)
     matrix = [[Fraction(0)] * (size + 1) for _ in range(size + 1)]
@@ -107,7 +108,7 @@ def _form(vectors: Sequence[Vector], crosses: Sequence[Fraction]) -> QuadraticFo
         k = 1 + (n + 1) % size
         matrix[1 + n][k] -= 1 / crosses[n]
         matrix[k][1 + n] -= 1 / crosses[n]
-    for n in range(1, size + 1):  # invariance under h -> h + constant
+    for n in range(1, size + 1):  # the form is invariant under h -> h + constant
         matrix[n][0] = matrix[0][n] = -sum(matrix[n][1:], Fraction(0))
     matrix[0][0] = -sum(matrix[0][1:], Fraction(0))
     return QuadraticForm(tuple(range(size + 1)), tuple(tuple(row) for row in matrix))

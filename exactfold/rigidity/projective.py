@@ -1,4 +1,4 @@
-"""Projective maps carry sheets, their curvature forms and so their branches to other sheets."""
+"""Projective maps of sheets: they also map curvature forms, and so branches."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from exactfold.pattern.loading import PatternLike, as_pattern
 class ProjectiveImage:
     """A sheet and its image under a projective map of the plane (docs/generic.md, Theorem 10).
 
-    `factors` are the numbers mu_v > 0 of (1, U_v) L = mu_v (1, U'_v), by vertex, and `determinant`
-    is |det L| > 0. Heights h of `source` go to h_v / mu_v on `pattern`; then the curvature forms
-    obey K'_v(h') = mu_v K_v(h) / determinant. All numbers are rational.
+    `factors` are the numbers mu_v > 0 with (1, U_v) L = mu_v (1, U'_v), by vertex, and
+    `determinant` is |det L| > 0. Heights h of `source` become heights h_v / mu_v of `pattern`. The
+    curvature forms then satisfy K'_v(h') = mu_v K_v(h) / determinant. All numbers are rational.
     """
 
     source: CreasePattern
@@ -40,26 +40,26 @@ class ProjectiveImage:
 
 
 def project(pattern: PatternLike, matrix: Sequence[Sequence[RationalLike]]) -> ProjectiveImage:
-    """The image of a sheet under the projective map with a rational matrix L of three rows.
+    """The image of a sheet under the projective map of a rational matrix L with three rows.
 
         (1, x, y) L = mu (1, x', y')
 
     (docs/generic.md, Theorem 10). The image has the same triangles and the same branches, with
     equal vertex signs, letters and multiplicities. Raises `UsageError` unless the matrix is an
-    invertible 3 x 3 one, `NotApplicableError` if the line that goes to infinity meets the sheet:
-    the image would not be a sheet.
+    invertible 3 x 3 matrix, and `NotApplicableError` if the line that the map sends to infinity
+    meets the sheet, as then the image is not a sheet.
 
     >>> image = project("flat-vertex", [(1, 0, 0), ("1/8", 1, 0), (0, 0, 1)])
     >>> image.determinant, [str(mu) for mu in image.factors]
     (Fraction(1, 1), ['1', '9/8', '9/8', '1', '17/16', '87/80'])
-    >>> from exactfold import count_branches
+    >>> from exactfold.branches import count_branches
     >>> [branch.multiplicity for branch in count_branches(image.pattern)]
     [1, 1, 2]
     """
     pattern = as_pattern(pattern)
     rows = [[as_rational(entry) for entry in row] for row in matrix]
     if [len(row) for row in rows] != [3, 3, 3]:
-        raise UsageError("the matrix of a projective map has three rows of three numbers")
+        raise UsageError("the matrix of a projective map must have three rows of three numbers")
     determinant = sum(
         rows[0][i] * (rows[1][i - 2] * rows[2][i - 1] - rows[1][i - 1] * rows[2][i - 2])
         for i in range(3)

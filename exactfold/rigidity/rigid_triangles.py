@@ -1,4 +1,4 @@
-"""Proof that triangulated triangles stay flat and multiply every root by a power of two."""
+"""Proves that triangulated triangles stay flat and multiply each root by a power of two."""
 
 from __future__ import annotations
 
@@ -14,11 +14,12 @@ class RigidTriangle:
     """A triangulated triangle with a definite stress of its inside.
 
     Let w be the heights inside minus the plane through the corners. The curvature forms of the m
-    vertices inside depend on w alone, and by the definite stress have no common complex zero but
-    w = 0 (see `exactfold.rigidity.definite_stress`): they are a regular sequence of m quadrics with
-    local multiplicity 2^m. The remaining forms at w = 0 are those without its vertices, so every
-    isolated root of multiplicity k there has multiplicity 2^m k in the full system (the quotient by
-    the inner forms has length 2^m, and the outer ones are a complete intersection over it).
+    vertices inside depend on w alone. Because of the definite stress, w = 0 is their only common
+    complex zero (see `exactfold.rigidity.definite_stress`). So they are a regular sequence of m
+    quadrics with local multiplicity 2^m. At w = 0 the remaining forms are those of the sheet
+    without these vertices. So an isolated root of multiplicity k of that sheet has multiplicity
+    2^m k in the full system: the quotient by the inner forms has length 2^m, and the outer forms
+    are a complete intersection over it.
     """
 
     corners: Triangle
@@ -27,7 +28,7 @@ class RigidTriangle:
 
 
 def certify_rigid_triangles(pattern: CreasePattern) -> tuple[RigidTriangle, ...] | None:
-    """A `RigidTriangle` for each triangulated triangle, or None if a stress was not found.
+    """A `RigidTriangle` for each triangulated triangle; None if a stress was not found.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> certify_rigid_triangles(single_vertex(3))[0].inside

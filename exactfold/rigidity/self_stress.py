@@ -11,15 +11,15 @@ from exactfold.pattern.loading import PatternLike, as_pattern
 
 _PRIMES = ((1 << 61) - 1, (1 << 31) - 1)
 _ELIMINATED = 300
-"""Vertices of the largest sheet whose matrix is eliminated: a tenth of a second."""
+"""Matrices of sheets with at most this many vertices are eliminated; it takes 0.1 seconds."""
 
 
 def rigidity_matrix(pattern: PatternLike) -> list[list[Fraction]]:
-    """Rows by `pattern.edges`, columns (x_0, y_0, x_1, y_1, ...): entries +-(U_i - U_j).
+    """The rigidity matrix: one row for each of `pattern.edges`, with entries +-(U_i - U_j).
 
-    The paper's compatibility matrix C with row (i, j) multiplied by the length of the edge; its
-    left kernel therefore consists of stress densities (docs/mathematics.md, Self stress). Rank
-    2V - 3 for every triangulated disk.
+    The columns are (x_0, y_0, x_1, y_1, ...). This is the paper's compatibility matrix C with row
+    (i, j) multiplied by the length of the edge, so that its left kernel consists of stress
+    densities (docs/mathematics.md, Self stress). For every triangulated disk its rank is 2V - 3.
     """
     pattern = as_pattern(pattern)
     rows = []
@@ -33,16 +33,16 @@ def rigidity_matrix(pattern: PatternLike) -> list[list[Fraction]]:
 
 
 def rigidity_rank(pattern: PatternLike, primes: Sequence[int] = _PRIMES) -> tuple[int, str]:
-    """Rank over Q of the rigidity matrix, and whether "elimination" or a "theorem" proves it.
+    """The rank over Q of the rigidity matrix, and whether "elimination" or a "theorem" proves it.
 
-    Up to 300 vertices by elimination modulo a prime: that rank is at most the one over Q, which is
-    at most 2V - 3, as there are three rigid motions; so where it is 2V - 3, the rank is proved. If
-    none of the `primes` gives as much, elimination is over Q.
+    Up to 300 vertices, the matrix is eliminated modulo a prime. This rank is at most the rank over
+    Q, which is at most 2V - 3, as there are three rigid motions. So if it is 2V - 3, the rank over
+    Q is proved. If none of the `primes` gives 2V - 3, the matrix is eliminated over Q.
 
-    For more vertices, where elimination costs seconds, by the theorem that the rank of a
-    triangulated disk is 2V - 3: a face is infinitesimally rigid in the plane, its vertices not
-    being collinear, two such bodies with two points in common are one, and the faces of a disk are
-    connected through their sides; so nothing but the rigid motions is in the kernel.
+    For more vertices elimination takes seconds, so the theorem is used that the rank of a
+    triangulated disk is 2V - 3. A face is infinitesimally rigid in the plane, as its vertices are
+    not collinear. Two such bodies with two common points move as one body. Sides connect all faces
+    of a disk. So the kernel contains only the rigid motions.
 
     >>> rigidity_rank("two-vertex")
     (9, 'elimination')
@@ -62,11 +62,11 @@ def rigidity_rank(pattern: PatternLike, primes: Sequence[int] = _PRIMES) -> tupl
 
 
 def self_stresses(pattern: PatternLike) -> list[dict[Edge, Fraction]]:
-    """A basis of the self stresses as stress densities by edge (left kernel of the matrix).
+    """A basis of the self stresses, as stress densities by edge (left kernel of the matrix).
 
-    docs/mathematics.md, Self stress, has the definition. Found by elimination, without the wheel
-    stresses, of which it is an independent check; there are exactly Vi of them for every
-    triangulated disk.
+    docs/mathematics.md, Self stress, has the definition. The basis is found by elimination, without
+    the wheel stresses, so that it is an independent check of these. For every triangulated disk it
+    has exactly Vi elements.
     """
     pattern = as_pattern(pattern)
     matrix = rigidity_matrix(pattern)

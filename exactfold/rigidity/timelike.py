@@ -1,4 +1,4 @@
-"""Rational timelike vectors of the curvature forms, near the round cones."""
+"""Rational timelike vectors of the curvature forms, close to round cones."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from exactfold.rigidity.curvature import curvature_form, integer_spokes
 
 
 def sqrt_approximation(value: Fraction, bits: int) -> Fraction:
-    """A rational p / q <= sqrt(value) with relative error below 2^-bits, for value > 0."""
+    """A rational p / q <= sqrt(value) with a relative error below 2^-bits, for value > 0."""
     product = value.numerator * value.denominator
     shift = max(0, bits + 2 - product.bit_length() // 2)
     return Fraction(isqrt(product << (2 * shift)), value.denominator << shift)
 
 
 def round_cone(pattern: CreasePattern, vertex: int, bits: int = 16) -> dict[int, Fraction]:
-    """A rational vector near the round cone t_v = 0, t_j = -L_j, with K_v(t) > 0 exactly.
+    """A rational vector close to the round cone t_v = 0, t_j = -L_j; K_v(t) > 0 holds exactly.
 
-    The round cone has K_v(t) = sum_j tan(a_j / 2) > 0 and points up (docs/conventions.md); the
-    precision of the lengths is doubled until the rational vector passes the exact test.
+    The round cone points up and has K_v(t) = sum_j tan(a_j / 2) > 0 (docs/conventions.md). The
+    precision of the lengths L_j is doubled until the rational vector passes the exact test.
     """
     return dict(_round_cone(pattern, vertex, bits))
 

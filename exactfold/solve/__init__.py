@@ -1,4 +1,4 @@
-"""From candidates to proofs: numerical solvers, exact engines, and certifiers."""
+"""Finds candidates numerically or exactly, and proves that they are roots."""
 
 from exactfold._support.lazy import attached as _attached
 

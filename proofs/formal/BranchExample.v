@@ -24,7 +24,7 @@ Definition this_sheet : sheet := sheet_of sheet_drawing sheet_checked.
 Lemma size : length (inner this_sheet) = 3.
 Proof. reflexivity. Qed.
 
-(** With heights of the rim and curvatures > 0: 2^3 shapes. *)
+(** For given boundary heights and curvatures > 0: 2^3 shapes. *)
 Theorem shapes (k : nat -> R) (r : vec) : (forall v, In v (inside sheet_drawing) -> (0 < k v)%R) ->
   exists l : list vec, length l = 2 ^ 3 /\ NoDup l /\
     forall h, In h l <-> has_rim this_sheet r h /\ solves this_sheet k h.
@@ -64,7 +64,8 @@ Definition branch_certificate : certificate := {|
 Lemma branch_checked : check_branch sheet_drawing branch_certificate = true.
 Proof. vm_compute. reflexivity. Qed.
 
-(** Exactly one solution with this rim has these signs; it is near, and has these letters. *)
+(** Exactly one solution with these boundary heights has these signs.
+    It is near the heights of the certificate, and has these letters. *)
 Theorem the_branch :
   let near_by := real_heights (height branch_certificate) in
   let up := pops_up branch_certificate in

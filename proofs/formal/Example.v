@@ -20,7 +20,7 @@ Definition this_sheet : sheet := sheet_of sheet_drawing sheet_checked.
 Lemma size : length (inner this_sheet) = 2.
 Proof. reflexivity. Qed.
 
-(** With heights of the rim and curvatures > 0: 2^2 shapes. *)
+(** For given boundary heights and curvatures > 0: 2^2 shapes. *)
 Theorem shapes (k : nat -> R) (r : vec) : (forall v, In v (inside sheet_drawing) -> (0 < k v)%R) ->
   exists l : list vec, length l = 2 ^ 2 /\ NoDup l /\
     forall h, In h l <-> has_rim this_sheet r h /\ solves this_sheet k h.
@@ -35,8 +35,8 @@ Lemma corners : cross (sub (at_R sheet_drawing 2) (at_R sheet_drawing 1))
   (sub (at_R sheet_drawing 3) (at_R sheet_drawing 1)) <> 0%R.
 Proof. rewrite cross_IZR. now apply (IZR_neq _ 0). Qed.
 
-(** At most 2^2 branches, all real.  That they are as many is in the file with all certificates
-    (`--all`), which show that no star is flat on any of them. *)
+(** At most 2^2 branches, all real.  The file with all certificates (`--all`) proves that they are
+    exactly so many, as its certificates show that no star is flat on any branch. *)
 Theorem at_most : exists l : list vec, length l = 2 ^ 2 /\
   (forall h, In h l <-> representative this_sheet 0 h) /\
   forall z, complex_solution this_sheet z ->

@@ -27,7 +27,8 @@ import numpy as np
 from loops import Loop, LostError, Tracker
 from matching_rule import is_h1
 
-from exactfold import CreasePattern, count_branches, random_square
+from exactfold import CreasePattern, random_square
+from exactfold.branches import count_branches
 from exactfold.pattern.families import h1_sequence
 from exactfold.studies.fans import fan
 

@@ -21,10 +21,11 @@ import numpy as np
 import numpy.typing as npt
 from peer_programs import PEERS, decimals, macaulay2_input, phcpack_input
 
-from exactfold import certificate, count_branches, find_branch
+from exactfold.branches import certificate, count_branches, find_branch
 from exactfold.branches.certificates.check import check_compact
 from exactfold.branches.counting.stream import stream_branches
 from exactfold.branches.values.roots import BoxRoot
+from exactfold.certificates import write_certificate
 from exactfold.interop.export import to_msolve
 from exactfold.pattern.fold import read_fold
 from exactfold.pattern.fold_writing import write_fold
@@ -83,9 +84,9 @@ def count(size: int, seed: int) -> Found:
             solved = time.process_time()
 
     result = count_branches(pattern, progress=progress)
-    text = json.dumps(certificate(result))
+    made = certificate(result)
     ended = time.process_time()
-    Path("certificate.json").write_text(text, encoding="ascii")
+    write_certificate(made, "certificate.txt")
     roots = [branch.root for branch in result.branches]
     boxes = [root.box for root in roots if isinstance(root, BoxRoot)]
     np.save("proved.npy", [[x / (1 << box.bits) for x in box.real] for box in boxes])

@@ -97,7 +97,7 @@ class Bench:
             for program, task in OWN.items():
                 self.own(program, task, folder, size, seed, expected)
             for program, task, file in (
-                ("check, standard library", "checker", "certificate.json"),
+                ("check, standard library", "checker", "certificate.txt"),
                 ("check, compact, floats", "", "compact.txt"),
             ):
                 if not (folder / file).exists():

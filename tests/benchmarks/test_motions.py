@@ -6,7 +6,9 @@ import itertools
 
 import pytest
 
-from exactfold import find_branch, find_branches, follow, random_square
+from exactfold import random_square
+from exactfold.branches import find_branch, find_branches
+from exactfold.motion import follow
 from exactfold.pattern.random_squares import sample_random_square
 
 

@@ -14,7 +14,8 @@ from peer_report import main_table
 from peer_tasks import TASKS, backward_errors, judged
 from plain_splu import plain_branch
 
-from exactfold import find_branch, random_square
+from exactfold import random_square
+from exactfold.branches import find_branch
 from exactfold.rigidity.equations.branch_system import BranchSystem
 from exactfold.solve.numeric.popping import popping
 

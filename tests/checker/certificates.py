@@ -8,9 +8,10 @@ from collections.abc import Iterator
 from functools import cache
 from typing import Any
 
+from old_listing import old_listing
 from sheets import SQUARE, TRIANGLE, dart, scrambled, straight_side, with_point
 
-from exactfold import certificate, count_branches
+from exactfold.branches import count_branches
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import flat_vertex_square, single_vertex, two_vertex
 
@@ -37,7 +38,7 @@ KINDS = {
 
 @cache
 def _text(name: str) -> str:
-    return json.dumps(certificate(count_branches(SHEETS[name])))
+    return json.dumps(old_listing(count_branches(SHEETS[name])))
 
 
 def document(name: str) -> dict[str, Any]:

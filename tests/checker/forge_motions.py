@@ -12,8 +12,11 @@ from typing import Any
 import pytest
 
 from exactfold.checker.motion import certificate as motion
+from exactfold.checker.motion import chain as motion_chain
 from exactfold.checker.motion import contacts as motion_contacts
+from exactfold.checker.motion import nodes as motion_nodes
 from exactfold.checker.motion.branch_points import NodeTube
+from exactfold.checker.motion.half_branch import HalfBranch
 from exactfold.checker.motion.stretches import stretches_of
 from exactfold.checker.motion.tubes import Piece
 
@@ -22,9 +25,14 @@ from exactfold.checker.motion.tubes import Piece
 def pieces_once() -> Iterator[None]:
     """Pieces of one description are proved once, wherever they are entered and left."""
     with pytest.MonkeyPatch.context() as patch:
-        for name in ("read_sheet", "framework", "first_piece", "tube_of", "arc_of"):
+        for name in ("read_sheet", "emptied_sheet", "equations_of"):
             patch.setattr(motion, name, _once(getattr(motion, name)))
-        patch.setattr(motion, "_check_names", lambda *given_: None)  # no name is forged here
+        for name in ("first_piece", "tube_of"):
+            patch.setattr(motion_chain, name, _once(getattr(motion_chain, name)))
+        arc_of = _once(motion_nodes.arc_of)
+        for module in (motion_chain, motion_nodes):
+            patch.setattr(module, "arc_of", arc_of)
+        patch.setattr(HalfBranch, "begin", lambda *given_: None)  # no name is forged here
         patch.setattr(motion_contacts, "stretches_of", _once(stretches_of))
         for method in ("enclosure", "velocity"):
             patch.setattr(Piece, method, cache(getattr(Piece, method)))
@@ -50,5 +58,5 @@ def _key(value: Any) -> Any:
         return tuple(map(_key, value))
     if isinstance(value, dict):
         within = {k: x for k, x in value.items() if k not in ("entry", "exit")}
-        return json.dumps(within)
+        return json.dumps(within, default=str)
     return value if isinstance(value, (int, str, Fraction, type(None))) else id(value)

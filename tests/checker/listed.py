@@ -3,6 +3,7 @@
 import json
 
 import pytest
+from old_listing import old_listing
 from sheets import (
     SQUARE,
     TRIANGLE,
@@ -18,7 +19,8 @@ from sheets import (
     with_point,
 )
 
-from exactfold import PROVED, certificate, count_branches, random_square
+from exactfold import PROVED, random_square
+from exactfold.branches import count_branches
 from exactfold.checker.sheets.sheet import Sheet
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import FAMILIES, hypar, two_vertex
@@ -51,7 +53,7 @@ sheets = pytest.mark.parametrize("name", SHEETS)
 def proof(name):
     result = count_branches(SHEETS[name])
     assert result.status is PROVED
-    return json.loads(json.dumps(certificate(result)))
+    return json.loads(json.dumps(old_listing(result)))
 
 
 def checked_sheet(pattern):

@@ -10,7 +10,8 @@ from sheets import (
     scrambled,
 )
 
-from exactfold import certificate, checker, count_branches
+from exactfold import checker
+from exactfold.branches import certificate, count_branches
 from exactfold.checker.core import linear, polynomials, reading
 from exactfold.checker.sheets import stress
 from exactfold.errors import NotApplicableError

@@ -29,11 +29,13 @@ from sheets import (
 )
 from typer.testing import CliRunner
 
-from exactfold import PROVED, checker, families, find_branch, random_square, read_fold
+from exactfold import PROVED, checker, random_square
 from exactfold.app.cli.main import app
+from exactfold.branches import find_branch
 from exactfold.branches.certificates.single import branch_certificate
 from exactfold.checker import CertificateError, FormatError
 from exactfold.errors import UsageError
+from exactfold.pattern import families, read_fold
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.data import example_path
 from exactfold.pattern.degenerate import gridded_square, ringed_square

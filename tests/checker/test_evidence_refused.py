@@ -5,15 +5,16 @@ from fractions import Fraction
 
 import pytest
 from listed import checked_sheet, proof
+from old_listing import assembled, old_listing
 from sheets import (
     dart,
 )
 
-from exactfold import certificate, checker, count_branches
+from exactfold import checker
+from exactfold.branches import count_branches
 from exactfold.branches.values.classify import classify
 from exactfold.branches.values.roots import AlgebraicRoot
 from exactfold.certificates.entries import algebraic_evidence, class_entry
-from exactfold.certificates.entries import document as assemble
 from exactfold.checker.sheets import stress
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.rigidity.equations.branch_system import BranchSystem
@@ -163,11 +164,12 @@ def test_algebraic_evidence_for_simple_roots_is_accepted():
         "kind": "algebraic",
         "triangles": [],
         "chart": None,
-        **algebraic_evidence(proved, entries, range(5)),
+        **algebraic_evidence(proved, range(5)),
+        "roots": entries,
     }
     claims = proof("dart")["claims"]
     rest = {k: v for k, v in claims.items() if k not in ("interior", "boundary", "folds")}
-    made = assemble(pattern, rest, evidence, {})
+    made = assembled(pattern, rest, evidence, {})
     assert checker.check(json.loads(json.dumps(made))) == claims
 
 
@@ -175,7 +177,7 @@ def test_chart_with_collinear_pins_is_refused() -> None:
     """Three pinned corners on a line would leave a rigid rotation, which is no branch."""
     sheet = [("0", "2"), ("-2", "0"), ("0", "0"), ("2", "0"), ("1/2", "1")]
     pattern = CreasePattern(sheet, [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)])
-    forged = certificate(count_branches(pattern))
+    forged = old_listing(count_branches(pattern))
     forged["evidence"] = {**forged["evidence"], "chart": {"0": "1"}}
     with pytest.raises(checker.CertificateError, match="reflex"):
         checker.check(forged)
@@ -186,7 +188,7 @@ ZERO_SADDLE = [(2, -2), ("2/3", 0), (2, 2), (-2, 0), (0, 0)]
 
 def test_branch_of_zero_saddle_may_be_shown_from_either_side() -> None:
     pattern = CreasePattern(ZERO_SADDLE, [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)])
-    made = certificate(count_branches(pattern))
+    made = old_listing(count_branches(pattern))
     shown = [branch["representative"] for branch in made["claims"]["branches"]]
     assert sorted(shown) == ["either", "saddle"]
     assert checker.check(made)["distinct"] == 2

@@ -21,9 +21,10 @@ from forge import (
     verified,
     without,
 )
+from old_listing import old_listing
 from sheets import relabelled
 
-from exactfold import certificate, count_branches
+from exactfold.branches import count_branches
 from exactfold.checker.branches.flat_sheets import FlatSheets
 from exactfold.checker.core.reading import CertificateError
 from exactfold.checker.sheets.equations import BranchSystem
@@ -219,7 +220,7 @@ def test_flat_vertices_made_up(flat: list[Any], message: str) -> None:
 def test_a_flat_vertex_is_a_number() -> None:
     """Python takes True for 1."""
     sheet = relabelled(flat_vertex_square(), (0, 5, 2, 3, 4, 1))
-    forged = json.loads(json.dumps(certificate(count_branches(sheet))))
+    forged = json.loads(json.dumps(old_listing(count_branches(sheet))))
     verified(forged)
     [entry] = forged["evidence"]["classes"]
     assert entry["flat"] == [1]

@@ -140,7 +140,7 @@ def test_objects_of_lines() -> None:
             {"format": "exactfold certificate"},
             'the object has no "format": "exactfold compact certificate"',
         ),
-        ({"version": 2}, "version 2 is not known to this checker"),
+        ({"version": 3}, "version 3 is not known to this checker"),
         ({"more": 1}, f"the object: expected an object with the keys {keys}"),
     ):
         forged = [{**parts[0], **change}, *parts[1:]]

@@ -60,7 +60,7 @@ def pieces(name: str) -> tuple[Any, ...]:
     """The verified pieces of a certificate, which forged contacts leave as they are."""
     found: list[tuple[Any, ...]] = []
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(motion, "check_contacts", lambda *all_: found.append(all_))
+        patch.setattr(motion_contacts, "check_contacts", lambda *all_: found.append(all_))
         verified(given(name))
     return found[0][:3]
 

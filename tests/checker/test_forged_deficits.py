@@ -7,8 +7,10 @@ from fractions import Fraction
 import pytest
 from forge import Document, given, refused, verified, without
 
-from exactfold import checker, find_branch, load
+from exactfold import checker
+from exactfold.branches import find_branch
 from exactfold.branches.certificates.single import branch_certificate
+from exactfold.pattern import load
 
 SHAPE, TRIANGLES, SQUARE = "branch-deficits", "branch-deficits-triangles", "two-vertex"
 

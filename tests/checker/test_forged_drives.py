@@ -14,10 +14,10 @@ from forge import FIXTURES, Document, refused, verified, with_one_key_more, with
 from exactfold.checker.core.reading import CertificateError
 from exactfold.checker.motion import certificate as motion
 from exactfold.checker.motion.certificate import MOTION
-from exactfold.checker.motion.drive import Drive
+from exactfold.checker.motion.drive import Drive, check_reached
 from exactfold.checker.motion.equations import LengthEquations
+from exactfold.checker.motion.half_branch import shortened
 from exactfold.checker.motion.pieces import arc_of
-from exactfold.checker.motion.reached import check_reached
 from exactfold.checker.motion.tubes import Ball
 from exactfold.checker.sheets.sheet import read_sheet
 from exactfold.motion import find_driven, follow, follow_proved, prove
@@ -156,7 +156,10 @@ def test_with_four_corners_nothing_is_driven() -> None:
 def test_with_a_rim_and_a_drive() -> None:
     document = given()
     document["claims"]["rim"] = ["0", "0", "1", "0", "1"]
-    refused(document, "claims: expected an object with the keys vertex_signs side length rim")
+    message = "a motion keeps the ratio of its border or that of driven folds, not both"
+    with without(message):
+        verified(document)
+    refused(document, message)
 
 
 def test_the_side_of_a_driven_motion_is_that_of_its_folds() -> None:
@@ -170,7 +173,7 @@ def test_folds_that_end_on_the_other_side() -> None:
     sheet = read_sheet(given()["pattern"])[0]
     square = str(Fraction(math.sin(0.1) ** 2))
     claim = {"folds": [[0, 5], [1, 5]], "squares": [square, f"-{square}"], "reached": True}
-    equations = LengthEquations(sheet, [0, 1, 5], 64, drive=Drive(sheet, claim))
+    equations = LengthEquations(sheet, [0, 1, 5], 64, Drive(sheet, claim))
     scale = float((1 << 64) / equations.unit)
     centre = [0] * equations.size
     for v, fold, turn in ((4, (0, 5), 0.3), (2, (1, 5), -0.3)):
@@ -241,7 +244,7 @@ def test_a_driven_motion_has_no_node() -> None:
     document = given()
     sheet = read_sheet(document["pattern"])[0]
     drive = Drive(sheet, document["claims"]["drive"])
-    equations = LengthEquations(sheet, document["evidence"]["pinned"], 64, drive=drive)
+    equations = LengthEquations(sheet, document["evidence"]["pinned"], 64, drive)
     with pytest.raises(CertificateError) as caught:
         arc_of(equations, [5], {})
     assert str(caught.value) == "a driven motion has a node"
@@ -280,7 +283,7 @@ def back() -> Document:
 def test_a_motion_that_comes_back() -> None:
     claims = verified(back())
     assert ", and back to the flat state along" in motion.summary(claims)
-    signs = motion.shortened("+" * 80)
+    signs = shortened("+" * 80)
     assert signs == "+" * 60 + "..."
 
 

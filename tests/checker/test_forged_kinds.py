@@ -9,8 +9,10 @@ from functools import cache
 from typing import Any
 
 import pytest
+from old_listing import old_listing
 
-from exactfold import certificate, checker, count_branches
+from exactfold import checker
+from exactfold.branches import count_branches
 from exactfold.branches.counting import multiple_roots
 from exactfold.checker.branches import listing
 from exactfold.checker.sheets.equations import BranchSystem
@@ -20,7 +22,7 @@ from exactfold.pattern.degenerate import DEGENERATE
 
 @cache
 def _text(name: str, method: str) -> str:
-    return json.dumps(certificate(count_branches(DEGENERATE[name](), method=method)))
+    return json.dumps(old_listing(count_branches(DEGENERATE[name](), method=method)))
 
 
 def document(name: str, method: str = "auto") -> dict[str, Any]:
@@ -106,7 +108,7 @@ def test_zero_in_a_class_and_on_flat_sheets_is_counted_once(monkeypatch):
     """Simple zeros are left out in favour of a second listing of a multiple one."""
     given = document("grid")
     monkeypatch.setattr(multiple_roots, "GROEBNER_LIMIT", 0)
-    other = json.loads(json.dumps(certificate(count_branches(DEGENERATE["grid"]()))))
+    other = json.loads(json.dumps(old_listing(count_branches(DEGENERATE["grid"]()))))
     assert checker.check(other) == checker.check(given)
     listed = other["evidence"]["roots"]
     places = [k for k, root in enumerate(listed) if "flat" in root]
@@ -148,7 +150,7 @@ def test_finiteness_needs_positive_multipliers_for_every_vertex():
 def test_zeros_listed_in_two_ways_are_not_told_apart_by_an_open_fold(monkeypatch):
     """A zero in a class, with a fold that is flat, and once more in a box that leaves it open."""
     monkeypatch.setattr(listing, "close_flat", lambda sheet, signs: None)
-    sheet, _ = read_sheet(certificate(count_branches(DEGENERATE["cross"]()))["pattern"])
+    sheet, _ = read_sheet(old_listing(count_branches(DEGENERATE["cross"]()))["pattern"])
     system = BranchSystem(sheet, None)
     rows = [system.row(sheet.bend(f)) for f in sheet.folds]
 

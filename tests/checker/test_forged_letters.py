@@ -8,7 +8,8 @@ from typing import Any
 import pytest
 from forge import Document, given, refused, verified, with_one_key_more, without
 
-from exactfold import CreasePattern, checker, find_branch
+from exactfold import CreasePattern, checker
+from exactfold.branches import find_branch
 from exactfold.branches.certificates.single import heights_evidence
 from exactfold.checker.branches.branch import Place
 from exactfold.checker.letters import letters

@@ -20,6 +20,7 @@ from exactfold.checker.motion import bounds as motion_bounds
 from exactfold.checker.motion import certificate as motion
 from exactfold.checker.motion.bounds import Bounds
 from exactfold.checker.motion.equations import LengthEquations
+from exactfold.checker.motion.half_branch import check_half_branch
 from exactfold.checker.motion.paths import Path, chord
 from exactfold.checker.motion.tubes import Ball, Start, Tube
 from exactfold.checker.sheets.sheet import read_sheet
@@ -127,17 +128,14 @@ def test_signs_that_are_not_certain_are_refused() -> None:
             return SimpleNamespace(equations=equations, enclosure=lambda s: box)
 
         claims = {"vertex_signs": signs, "side": 1}
-        motion._check_names(sheet, set(), start([1] * equations.size), claims)
+        sheets = SimpleNamespace(given=sheet, removed=set())
+        check_half_branch(sheets, start([1] * equations.size), claims)
         wide = [1 << 70] * equations.size
         with pytest.raises(CertificateError, match=f"^vertex {sheet.interior[0]} may be flat$"):
-            motion._check_names(sheet, set(), start(wide), claims)
+            check_half_branch(sheets, start(wide), claims)
+        sheets.given = SimpleNamespace(interior=[])
         with pytest.raises(CertificateError, match=r"^the side of the branch is not certain$"):
-            motion._check_names(
-                SimpleNamespace(interior=[]),  # type: ignore[arg-type]
-                set(),
-                start(wide),
-                {"vertex_signs": [], "side": 1},
-            )
+            check_half_branch(sheets, start(wide), {"vertex_signs": [], "side": 1})
 
 
 def test_only_sheets_whose_branches_have_names() -> None:

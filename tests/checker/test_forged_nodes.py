@@ -92,12 +92,12 @@ def test_keys() -> None:
     for place, message in (
         (
             ("claims",),
-            "claims: expected an object with the keys vertex_signs side length clear node",
+            "claims: expected an object with the keys vertex_signs side length node clear",
         ),
         (
             ("evidence",),
-            "evidence: expected an object with the keys emptied pinned bits start tubes contacts "
-            "node",
+            "evidence: expected an object with the keys emptied pinned bits start tubes node "
+            "contacts",
         ),
         (("claims", "node"), "node: expected an object with the keys flat clear"),
         (
@@ -113,11 +113,11 @@ def test_keys() -> None:
 def test_a_node_is_claimed_with_its_evidence() -> None:
     forged = given()
     del forged["claims"]["node"]
-    names = "emptied pinned bits start tubes contacts"
-    refused(forged, f"evidence: expected an object with the keys {names}")
+    names = "evidence: expected an object with the keys emptied pinned bits start tubes"
+    refused(forged, f"{names} contacts")
     forged = given()
     del forged["evidence"]["node"]
-    refused(forged, f"evidence: expected an object with the keys {names} node")
+    refused(forged, f"{names} node contacts")
 
 
 @pytest.mark.slow
@@ -256,15 +256,16 @@ def test_the_time_that_is_clear_is_at_most_that_of_the_node() -> None:
 
 @pytest.mark.slow
 def test_there_is_nothing_beyond_the_node() -> None:
-    for parameter in (1, 1 << 30):
+    for parameter in (1, 1 << 30, given()["evidence"]["node"]["entry"] - 1):
         forged = given()
         forged["evidence"]["contacts"]["clear"] = parameter
+        refused(forged, "the motion is not shown to be clear up to its node")
+        forged["claims"]["node"]["clear"] = False
         refused(forged, 'the parameter "clear" is out of range')
     forged = given()
-    forged["evidence"]["contacts"]["clear"] = forged["evidence"]["node"]["entry"] - 1
-    refused(forged, 'the parameter "clear" is out of range')
-    forged = given()
     forged["evidence"]["contacts"]["tube"] += 1
+    refused(forged, "the motion is not shown to be clear up to its node")
+    forged["claims"]["node"]["clear"] = False
     refused(forged, "there is no such tube")
 
 
@@ -272,7 +273,7 @@ def pieces() -> tuple[Any, ...]:
     """What `check_contacts` is given: start, tau, steps, claims, evidence."""
     found: list[tuple[Any, ...]] = []
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(motion, "check_contacts", lambda *all_: found.append(all_))
+        patch.setattr(motion_contacts, "check_contacts", lambda *all_: found.append(all_))
         verified(given())
     return found[0]
 

@@ -16,8 +16,8 @@ from forge_panel_motions import MOTIONS, at_rest, forged, given, stopped, whole
 from exactfold import checker
 from exactfold.checker.core.intervals import Interval
 from exactfold.checker.motion.lengths import GRID, ONE
-from exactfold.checker.motion.panels import certificate as panel_motion
 from exactfold.checker.motion.panels import drive as panel_drive
+from exactfold.checker.motion.panels import folding as panel_folding
 from exactfold.checker.motion.panels import times as panel_times
 from exactfold.checker.motion.panels.cut import cut
 from exactfold.checker.motion.panels.drive import Drive
@@ -315,7 +315,7 @@ def test_keys() -> None:
 
 
 def test_the_work_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(panel_motion, "MOST_TESTS", 100)
+    monkeypatch.setattr(panel_folding, "MOST_TESTS", 100)
     stopped(given("vertex"), "the contacts take too much work")
 
 

@@ -15,7 +15,6 @@ from forge_motions import pieces_once
 from exactfold import checker
 from exactfold.branches.counting.find import find_branch
 from exactfold.checker.core.reading import CertificateError
-from exactfold.checker.motion import certificate as motion
 from exactfold.checker.motion import contacts as motion_contacts
 from exactfold.checker.motion.contacts import check_contacts
 from exactfold.checker.motion.stretches import Arc, stretches_of
@@ -58,7 +57,7 @@ def pieces() -> tuple[Any, ...]:
     """What `check_contacts` is given: start, tau, steps, claims, evidence."""
     found: list[tuple[Any, ...]] = []
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(motion, "check_contacts", lambda *all_: found.append(all_))
+        patch.setattr(motion_contacts, "check_contacts", lambda *all_: found.append(all_))
         verified(given())
     return found[0]
 

@@ -131,7 +131,7 @@ def test_a_pattern_by_name() -> None:
 def test_bounds_are_said_as_such() -> None:
     claims = {"vertices": [5, 6], "at_least": 1, "at_most": 3, "joints": [], "sha256": "0"}
     said = "VALID: the solutions are 4 graphs in 1 to 3 pieces, with 0 joints shown; sha256 0"
-    assert checker.summary(claims) == said
+    assert pieces.summary(claims) == said
 
 
 def test_no_certificate_without_vertices_or_of_too_many() -> None:

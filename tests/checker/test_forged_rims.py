@@ -16,7 +16,8 @@ from exactfold.checker.core.reading import CertificateError
 from exactfold.checker.motion import certificate as motion
 from exactfold.checker.motion.boundary import Rim
 from exactfold.checker.motion.equations import LengthEquations
-from exactfold.checker.motion.names import saddle_of
+from exactfold.checker.motion.half_branch import check_half_branch
+from exactfold.checker.motion.restriction import saddle_of
 from exactfold.checker.motion.tubes import Ball
 from exactfold.checker.sheets.sheet import read_sheet
 from exactfold.motion.certificate import motion_certificate
@@ -143,7 +144,7 @@ def test_a_side_that_is_not_certain() -> None:
     start = SimpleNamespace(equations=equations, enclosure=lambda s: box)
     claims = {"vertex_signs": [1], "side": 1}
     with pytest.raises(CertificateError, match="the side of the branch is not certain"):
-        motion._check_names(sheet, {5}, start, claims, rim)
+        check_half_branch(SimpleNamespace(given=sheet, removed={5}), start, claims)
 
 
 def test_a_border_that_is_not_convex() -> None:

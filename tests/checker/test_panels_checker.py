@@ -73,7 +73,7 @@ def test_folds_held_flat() -> None:
 
 def test_no_certificate_of_what_is_not_decided() -> None:
     """Three vertices with five folds round a panel: their forms are left."""
-    with pytest.raises(NotApplicableError, match="the decomposition is undecided"):
+    with pytest.raises(NotApplicableError, match="this one is undecided"):
         certificate_of_panels(decompose(ring_of_fives()))
 
 

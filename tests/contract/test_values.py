@@ -28,44 +28,45 @@ from exactfold.solve.algebraic.quotient import QuotientAlgebra
 from exactfold.solve.certify.box import Uncertified
 from exactfold.solve.numeric.candidates import Candidates
 
-PATTERN = exactfold.read_fold(exactfold.pattern.data.example_path("two-vertex"))
-FLAT = exactfold.read_fold(exactfold.pattern.data.example_path("flat-octahedron"))
+PATTERN = exactfold.pattern.read_fold(exactfold.pattern.data.example_path("two-vertex"))
+FLAT = exactfold.pattern.read_fold(exactfold.pattern.data.example_path("flat-octahedron"))
 SYSTEM = exactfold.rigidity.BranchSystem(PATTERN)
 ENDS = exactfold.solve.newton(SYSTEM.chart)
-COUNT = exactfold.count_branches(PATTERN)
-EXACT = exactfold.count_branches(
-    exactfold.read_fold(exactfold.pattern.data.example_path("flat-vertex")), method="groebner"
+COUNT = exactfold.branches.count_branches(PATTERN)
+EXACT = exactfold.branches.count_branches(
+    exactfold.pattern.read_fold(exactfold.pattern.data.example_path("flat-vertex")),
+    method="groebner",
 )
 SOLUTION = exactfold.solve.groebner(SYSTEM.chart.system)
 
 
 def _streamed(folder):
-    return exactfold.stream_branches(PATTERN, folder / "branches.txt")
+    return exactfold.branches.stream_branches(PATTERN, folder / "branches.txt")
 
 
-DRAWING = exactfold.read_drawing(exactfold.pattern.data.example_path("zigzags"))
+DRAWING = exactfold.pattern.read_drawing(exactfold.pattern.data.example_path("zigzags"))
 SHEETS = exactfold.pattern.exact_sheets(DRAWING)
-OPENED = exactfold.open_pattern(exactfold.pattern.data.example_path("zigzags"))
+OPENED = exactfold.pattern.open_pattern(exactfold.pattern.data.example_path("zigzags"))
 PIECES = exactfold.branches.find_pieces(
     exactfold.CreasePattern(
         [(0, 0), (4, 0), (5, 3), (2, 5), (-1, 3), (1, 2), (3, 2)],
         [(0, 1, 5), (1, 6, 5), (1, 2, 6), (2, 3, 6), (3, 5, 6), (3, 4, 5), (4, 0, 5)],
     )
 )
-MOTIONS = exactfold.decompose(OPENED.sheet)
-SPACES = exactfold.decompose(panels(single_vertex(5)))
-MOTION = exactfold.follow(exactfold.find_branch(PATTERN, "+-"), frames=4)
+MOTIONS = exactfold.panels.decompose(OPENED.sheet)
+SPACES = exactfold.panels.decompose(panels(single_vertex(5)))
+MOTION = exactfold.motion.follow(exactfold.branches.find_branch(PATTERN, "+-"), frames=4)
 BY_FOLDS = exactfold.motion.find_driven(single_vertex(5), {(0, 5): 9, (2, 5): 6})
 DRIVEN = exactfold.design.actuate(exactfold.pattern.data.example_path("single-vertex-4"), "+")
 ALL = exactfold.design.all_assignments(single_vertex(5))
-MATCH = exactfold.design.match(PATTERN, exactfold.find_branch(PATTERN, "+-").assignment)
+MATCH = exactfold.design.match(PATTERN, exactfold.branches.find_branch(PATTERN, "+-").assignment)
 OVER_A_RIM = exactfold.design.match_rim(single_vertex(5), "MMVMV")
 TWIST = exactfold.design.match_panels("square-twist")
 ONE = exactfold.random_square(1, seed=0)
-LEAVING = exactfold.find_branch(ONE, "+")
+LEAVING = exactfold.branches.find_branch(ONE, "+")
 TRACK = exactfold.motion.follow_proved(LEAVING, until=0.3)
-LOOPS = exactfold.find_loops(ONE)
-FLAT_FOLDABLE = exactfold.decompose(panels(single_vertex(4)))
+LOOPS = exactfold.motion.find_loops(ONE)
+FLAT_FOLDABLE = exactfold.panels.decompose(panels(single_vertex(4)))
 PROVING = {
     "motion of panels": exactfold.motion.follow_panels(FLAT_FOLDABLE, frames=3),
     "clearance of panels": exactfold.motion.prove_contacts(
@@ -82,7 +83,9 @@ PROVING = {
     "tube": TRACK.links[0].tube,
     "start tube": TRACK.start,
     "ball": TRACK.frame(0.2).ball,
-    "proof of a motion": exactfold.motion.prove(exactfold.follow(LEAVING, until="30deg", frames=2)),
+    "proof of a motion": exactfold.motion.prove(
+        exactfold.motion.follow(LEAVING, until="30deg", frames=2)
+    ),
     "first contact": exactfold.motion.first_contact(LEAVING)[1],
     "loops": LOOPS,
     "loop": LOOPS.loops[0],
@@ -118,7 +121,7 @@ VALUES = {
     "family": sample_h1_sequence(40, seed=0),
     "sample": sample_random_square(4, seed=3),
     "form": exactfold.rigidity.curvature_form(PATTERN, 4),
-    "facts": exactfold.pattern_facts(FLAT),
+    "facts": exactfold.rigidity.pattern_facts(FLAT),
     "reality": exactfold.rigidity.decide_all_branches_real(PATTERN),
     "projective image": exactfold.rigidity.project(PATTERN, [(9, 0, 0), (1, 9, 0), (0, 0, 9)]),
     "tracks": kapovich_millson([(1, 0), (0, 1), (-1, 0), (0, -1)]),
@@ -166,14 +169,14 @@ VALUES = {
     "leaf": SPACES.parts[0].spaces[0],
     "count": COUNT,
     "exact count": EXACT,
-    "count with flat vertices": exactfold.count_branches(FLAT),
+    "count with flat vertices": exactfold.branches.count_branches(FLAT),
     "branch": COUNT.branches[0],
     "exact branch": EXACT.branches[0],
     "angles": COUNT.branches[0].fold_angles,
     "export": exactfold.branches.exported(COUNT.branches[0]),
-    "solver": exactfold.solvers()["newton"],
+    "solver": exactfold.branches.solvers()["newton"],
     "finder": exactfold.branches.BranchFinder(PATTERN),
-    "signed branch": exactfold.find_branch(PATTERN, "+-"),
+    "signed branch": exactfold.branches.find_branch(PATTERN, "+-"),
     "motion": MOTION,
     "event": MOTION.events[-1],
     "driven": BY_FOLDS,
@@ -183,6 +186,7 @@ VALUES = {
         MOTION.curve.framework, np.array([0.0, 0.0, 0.0, 1.0, 0.3, -0.1])
     ),
     "actuation": DRIVEN,
+    "checked certificate": exactfold.check(exactfold.branches.certificate(COUNT)),
     "match": MATCH,
     "half of a branch": MATCH.matches[0],
     "nearest branches": exactfold.design.nearest_branches(MATCH),

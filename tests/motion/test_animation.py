@@ -5,8 +5,9 @@ from xml.etree import ElementTree
 
 import pytest
 
-from exactfold import find_branch, follow
 from exactfold.app.report import motion_animation, motion_stills
+from exactfold.branches import find_branch
+from exactfold.motion import follow
 
 
 @pytest.fixture(scope="module")

@@ -8,8 +8,9 @@ from importlib.util import find_spec
 import numpy as np
 import pytest
 
-from exactfold import find_branch, follow, random_square
-from exactfold.motion import write_motion
+from exactfold import random_square
+from exactfold.branches import find_branch
+from exactfold.motion import follow, write_motion
 
 SHOWN = """
 import json, sys

@@ -6,8 +6,9 @@ from functools import cache
 
 import pytest
 
-from exactfold import CreasePattern, checker, find_branch
+from exactfold import CreasePattern, checker
 from exactfold._support.verdict import PROVED
+from exactfold.branches import find_branch
 from exactfold.motion import first_contact, follow_proved
 from exactfold.motion.contacts.claims import certificate_with_contact
 from exactfold.motion.contacts.contacts import ContactWatch

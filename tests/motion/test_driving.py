@@ -12,14 +12,16 @@ import numpy as np
 import pytest
 from sixty_digits import driven_newton, holds
 
-from exactfold import CreasePattern, delaunay, families, find_branch
+from exactfold import CreasePattern, delaunay
 from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.branches import find_branch
 from exactfold.checker import check, summary
 from exactfold.errors import BadDriveError, NotFollowedError
 from exactfold.motion import Motion, find_driven, follow, prove
 from exactfold.motion.curves.drive import Drive
 from exactfold.motion.tubes.driven import Driven, off_the_ratio
 from exactfold.motion.tubes.tracks import follow_proved
+from exactfold.pattern import families
 
 PENTAGON = delaunay([(0, 0), (10, -3), (16, 5), (9, 14), (-2, 9), (5, 4), (8, 7)])
 ANGLES = {(1, 5): 60.0, (2, 6): -45.0}
@@ -144,16 +146,18 @@ def test_what_cannot_be_driven() -> None:
 
     refused({(0, 6): 90, (1, 5): 90}, "there is no fold 0-6 to drive")
     refused({(0, 1): 90, (1, 5): 90}, "0-1 is an edge of the border, not a fold to drive")
-    refused({(1, 5): 0, (2, 6): 90}, "fold 1-5: the angle 0: a fold that stays flat")
-    refused({(1, 5): 181, (2, 6): 90}, "fold 1-5: the angle 181: it is beyond 180")
-    refused({(1, 5): 9, (2, 6): 9, (3, 6): 9}, "3 folds to drive: .* 2 folds can be driven at once")
+    refused({(1, 5): 0, (2, 6): 90}, "fold 1-5 cannot be driven to 0 degrees: at 0 it stays")
+    refused({(1, 5): 181, (2, 6): 90}, "fold 1-5 cannot be driven to 181 degrees: the limit is")
+    refused(
+        {(1, 5): 9, (2, 6): 9, (3, 6): 9}, "3 folds cannot be driven at once: .* at most 2 folds"
+    )
     # Both are at vertex 5, which has four folds: the angle of one gives that of the other.
-    refused({(1, 5): 9, (4, 5): 9}, "fold 4-5 cannot be driven with 1-5")
+    refused({(1, 5): 9, (4, 5): 9}, "fold 4-5 cannot be driven together with 1-5")
     inside = CreasePattern(
         [*STAR.vertices, (Fraction(1, 2), Fraction(1, 5))],
         [t for t in STAR.triangles if set(t) != {0, 1, 7}] + [(0, 1, 8), (1, 7, 8), (7, 0, 8)],
     )
-    with pytest.raises(BadDriveError, match="fold 0-8 lies in a triangulated triangle"):
+    with pytest.raises(BadDriveError, match="fold 0-8 lies inside a triangulated triangle"):
         find_driven(inside, {(0, 8): 90, **FOUR})
 
 
@@ -178,10 +182,10 @@ def test_folds_that_are_missing_are_named_and_can_be_driven() -> None:
 
 def test_a_ratio_that_is_not_met() -> None:
     """At a vertex with four folds the signs of all depend on its own: here 1-5 is no valley."""
-    with pytest.raises(NotFollowedError, match="the nearest that was met is") as caught:
+    with pytest.raises(NotFollowedError, match="the nearest ratio that was found is") as caught:
         find_driven(PENTAGON, {(1, 5): 90, (2, 6): -45}, "+-")
     assert caught.value.folds == ((1, 5), (2, 6))
-    with pytest.raises(BadDriveError, match="do not start in the ratio"):
+    with pytest.raises(BadDriveError, match="have to start in the ratio"):
         follow(find_branch(PENTAGON, "+-"), drive=Drive.of(ANGLES))
     with pytest.raises(BadDriveError, match="there is no fold 0-6"):
         follow(find_branch(PENTAGON, "+-"), drive=Drive.of({(0, 6): 3, (2, 6): 3}))
@@ -241,16 +245,16 @@ def test_folds_pass_their_goals_only_if_that_is_certain() -> None:
 @pytest.mark.parametrize(
     ("angle", "why"),
     [
-        (float("nan"), "it is no number"),
-        (float("inf"), "it is beyond 180"),
-        (0.0, "a fold that stays flat is not driven"),
-        (1e-5, "a fold is driven to 0.0001 degrees or more"),
+        (float("nan"), "that is not a number"),
+        (float("inf"), "the limit is 180 degrees"),
+        (0.0, "at 0 it stays flat; give another angle, or leave the fold out"),
+        (1e-5, "give at least 0.0001 degrees"),
     ],
 )
 def test_an_angle_that_is_no_goal(angle: float, why: str) -> None:
     with pytest.raises(BadDriveError) as caught:
         Drive.of({(1, 5): angle})
-    assert str(caught.value) == f"fold 1-5: the angle {angle:g}: {why}"
+    assert str(caught.value) == f"fold 1-5 cannot be driven to {angle:g} degrees: {why}"
 
 
 @pytest.mark.slow

@@ -12,15 +12,17 @@ import pytest
 from sheets import nested_triangles
 from sixty_digits import newton
 
-from exactfold import checker, find_branch, follow, load, random_square
+from exactfold import checker, random_square
 from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.branches import find_branch
 from exactfold.errors import UsageError
-from exactfold.motion import prove, write_motion
+from exactfold.motion import follow, prove, write_motion
 from exactfold.motion.loops.frames import frame_of
 from exactfold.motion.loops.loops import Landing
 from exactfold.motion.tubes.passages import Passage
 from exactfold.motion.tubes.piece import PARAMETER_BITS
 from exactfold.motion.tubes.tube import ROW_BITS
+from exactfold.pattern import load
 from exactfold.pattern.data import example_path
 from exactfold.rigidity.equations.problem import Problem
 

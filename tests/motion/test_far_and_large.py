@@ -8,11 +8,19 @@ import pytest
 from panel_sheets import regular_twist
 from sheets import mapped
 
-from exactfold import checker, decompose, find_branch, follow, load
+from exactfold import checker
 from exactfold._support.verdict import PROVED
-from exactfold.motion import certificate_with_contact, first_contact, follow_panels, prove_contacts
+from exactfold.branches import find_branch
+from exactfold.motion import (
+    certificate_with_contact,
+    first_contact,
+    follow,
+    follow_panels,
+    prove_contacts,
+)
 from exactfold.motion.proving import prove
-from exactfold.pattern import PanelPattern
+from exactfold.panels import decompose
+from exactfold.pattern import PanelPattern, load
 
 PLAIN = load("two-vertex")
 MOVED = {

@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 from sheets import random_wheel, reflex_corners, scrambled
 
-from exactfold import CreasePattern, count_branches, find_branch, follow, random_square
+from exactfold import CreasePattern, random_square
+from exactfold.branches import count_branches, find_branch
 from exactfold.errors import NotApplicableError, UndecidedBranchError, UsageError
+from exactfold.motion import follow
 from exactfold.motion.curves.crossings import Crossings
 from exactfold.motion.curves.framework import Framework
 from exactfold.motion.curves.motion import Motion

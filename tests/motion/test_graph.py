@@ -12,9 +12,11 @@ import numpy as np
 import pytest
 from loops import Tracker
 
-from exactfold import find_branch, find_loops, random_square
+from exactfold import random_square
 from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.branches import find_branch
 from exactfold.branches.counting.pools import process_pool
+from exactfold.motion import find_loops
 from exactfold.motion.contacts.fold_ranges import SLACK, Stretch, angles_in, box_angles, fold_ranges
 from exactfold.motion.curves.framework import Framework
 from exactfold.motion.following import follow
@@ -200,7 +202,7 @@ def test_an_arc_that_is_not_followed_is_open(monkeypatch):
     left = [arc for arc in found.arcs if arc.end is None]
     assert len(left) == 4
     assert all(arc.reason == "lost" and arc.length[0] > 0 for arc in left)
-    assert found.reason == "4 arcs are not proved to an end"
+    assert found.reason == "4 arcs are not proved from end to end"
 
 
 def test_loops_that_contradict_each_other_are_a_defect():

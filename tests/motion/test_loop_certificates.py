@@ -11,15 +11,17 @@ import pytest
 from sheets import flipped, nested_triangles, reflex_corners, star_in, with_point
 from typer.testing import CliRunner
 
-from exactfold import checker, find_branch, load, random_square, write_fold
+from exactfold import checker, random_square
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.app.cli.main import app
+from exactfold.branches import find_branch
 from exactfold.certificates.journal import Journal
 from exactfold.errors import ForeignJournalError, NotCountedError, UsageError
 from exactfold.motion import find_loops
 from exactfold.motion.loops.file import LoopFile
 from exactfold.motion.loops.loops import LoopFinder
 from exactfold.motion.loops.rays import HalfBranch
+from exactfold.pattern import load, write_fold
 from exactfold.pattern.data import example_path
 from exactfold.rigidity.equations.problem import Problem
 

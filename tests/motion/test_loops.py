@@ -8,8 +8,9 @@ import pytest
 from height_signs import HeightSigns
 from sixty_digits import assert_holds_the_node
 
-from exactfold import CreasePattern, find_branch, random_square
+from exactfold import CreasePattern, random_square
 from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.branches import find_branch
 from exactfold.motion import find_loops
 from exactfold.motion.curves.crossing_curves import crossing_ahead, flat_vertices
 from exactfold.motion.curves.framework import Framework

@@ -11,7 +11,8 @@ from loops import Loop, Tracker
 from matching_rule import FourBar, is_h1, last_functional, sectors, without
 from sheets import random_wheel, wheel
 
-from exactfold import CreasePattern, count_branches, random_square
+from exactfold import CreasePattern, random_square
+from exactfold.branches import count_branches
 from exactfold.exact.linalg import to_flint
 from exactfold.pattern.families import h1_sequence, two_vertex
 from exactfold.rigidity.curvature import curvature_form

@@ -12,8 +12,9 @@ import pytest
 from flint import arb, ctx, fmpq
 from panel_sheets import grid, mesh, miura, tiling
 
-from exactfold import checker, count_ways
+from exactfold import checker
 from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.branches import count_ways
 from exactfold.errors import NotApplicableError
 from exactfold.exact.surds import ball
 from exactfold.motion import follow_panels, prove_contacts, prove_panels

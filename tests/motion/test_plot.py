@@ -9,9 +9,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from exactfold import find_branch, follow, random_square
+from exactfold import random_square
 from exactfold.app.pictures import svg
 from exactfold.app.report import angles_plot
+from exactfold.branches import find_branch
+from exactfold.motion import follow
 
 NAME = "{http://www.w3.org/2000/svg}"
 

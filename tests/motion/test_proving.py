@@ -6,9 +6,10 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from exactfold import checker, find_branch, follow, random_square
+from exactfold import checker, random_square
 from exactfold._support.verdict import PROVED, UNDECIDED
-from exactfold.motion import persistence, prove
+from exactfold.branches import find_branch
+from exactfold.motion import follow, persistence, prove
 from exactfold.motion.proving import MotionProof
 
 SHEET = random_square(3, seed=1)

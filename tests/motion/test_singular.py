@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from sheets import reflex_corners, star_in, wheel
 
-from exactfold import count_branches, find_branch, load
 from exactfold._support.verdict import UNDECIDED
+from exactfold.branches import count_branches, find_branch
 from exactfold.errors import FlatVertexError
 from exactfold.exact.linalg import rank
 from exactfold.motion import find_loops, follow_proved
@@ -19,6 +19,7 @@ from exactfold.motion.curves.framework import Framework
 from exactfold.motion.curves.straight_folds import straight_fold
 from exactfold.motion.loops.loops import LoopFinder
 from exactfold.motion.tubes.singular import folds_flat, half_turn
+from exactfold.pattern import load
 from exactfold.rigidity import Problem
 
 BRANCHING = "motions may branch there"
@@ -137,11 +138,11 @@ def test_edges_that_depend_are_named():
 def test_a_fold_along_a_straight_line_is_named():
     found = find_loops("flat-vertex")
     assert found.skipped == {
-        "+0": "a vertex is flat on it: the sheet turns about the straight line 0-4-2, exactly, and "
-        f"at 180 degrees, folded flat, {BRANCHING.removesuffix(' there')}"
+        "+0": "a vertex is flat on it: the sheet turns exactly about the straight line 0-4-2, and "
+        f"at 180 degrees, where it is folded flat, {BRANCHING.removesuffix(' there')}"
     }
     assert found.reason == "1 branch is not simple"
-    with pytest.raises(FlatVertexError, match="turns about the straight line 0-4-2, which is not"):
+    with pytest.raises(FlatVertexError, match="a rotation about the straight line 0-4-2, and"):
         follow_proved(find_branch("flat-vertex", "+0"))
 
 

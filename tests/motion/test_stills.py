@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 from panel_sheets import miura
 
-from exactfold import find_branch, follow, random_square
+from exactfold import random_square
 from exactfold.app.pictures.painting import back_to_front
 from exactfold.app.pictures.stills import motion_stills, seen_from_above, stills
-from exactfold.motion import follow_panels
+from exactfold.branches import find_branch
+from exactfold.motion import follow, follow_panels
 from exactfold.pattern.panel_pattern import PanelPattern
 
 NAME = "{http://www.w3.org/2000/svg}"

@@ -14,12 +14,13 @@ import pytest
 from rich.console import Console
 from sixty_digits import assert_holds_the_node
 
-from exactfold import checker, find_branch, follow, random_square, schema
+from exactfold import checker, random_square, schema
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.app.report import motion_report
 from exactfold.app.viewer import ways
+from exactfold.branches import find_branch
 from exactfold.exact.surds import float_bounds
-from exactfold.motion import certificate_with_contact, follow_proved, prove, proving
+from exactfold.motion import certificate_with_contact, follow, follow_proved, prove, proving
 from exactfold.motion.contacts import contacts
 from exactfold.motion.contacts.contacts import first_contact
 from exactfold.motion.contacts.separation import Open

@@ -14,10 +14,11 @@ import pytest
 import trimesh
 from panel_sheets import regular_twist
 
-from exactfold import find_branch, follow, random_square
+from exactfold import random_square
+from exactfold.branches import find_branch
 from exactfold.errors import PackageMissingError, UnwritableFileError, UsageError
 from exactfold.interop import meshes
-from exactfold.motion import follow_panels, write_motion
+from exactfold.motion import follow, follow_panels, write_motion
 from exactfold.pattern import PanelPattern, load_fold, open_pattern
 from exactfold.pattern.triangulating import triangles_by_face, triangles_of
 

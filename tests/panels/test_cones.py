@@ -84,7 +84,7 @@ def test_a_ring_is_not_decided() -> None:
     result = decompose(pattern)
     assert result.status is UNDECIDED
     assert result.reason.endswith(
-        "the conditions of vertices 0, 1, 2 are left, and are not solved yet"
+        "conditions of vertices 0, 1, 2 remain, and exactfold could not solve them together"
     )
     assert result.found == {3: 1}
 

@@ -87,7 +87,7 @@ def test_no_snap_closes_what_is_no_small_number(monkeypatch: pytest.MonkeyPatch)
     assert {miss.tried for miss in result.near_misses} == {SNAPS[1:]}
     assert result.warning is not None
     assert "nearly closes" in result.warning
-    assert "no snap that was tried closes it" in result.warning
+    assert "none of the snaps that were tried closes it" in result.warning
 
 
 def test_what_is_not_tried() -> None:

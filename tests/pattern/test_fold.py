@@ -170,10 +170,10 @@ def test_stated_coordinates_must_be_numbers_even_beside_exact_ones():
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", "it ends too early"),
+        ("", "the text ends too early"),
         ("vertices", "not JSON at line 1, column 1"),
-        ('{"vertices_coords": [[0, 0],', "it ends too early"),
-        (json.dumps(SQUARE)[:-1], "it ends too early"),
+        ('{"vertices_coords": [[0, 0],', "the text ends too early"),
+        (json.dumps(SQUARE)[:-1], "the text ends too early"),
         (json.dumps(SQUARE) + "}", "Extra data"),
         ('{"file_spec": 1, "file_spec": 2}', "the key 'file_spec' is given twice"),
         ("[" * 200_000, "nested too deeply"),
@@ -194,7 +194,7 @@ def test_not_fold_error(text):
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"faces_vertices": None, "edges_vertices": None}, "neither"),
+        ({"faces_vertices": None, "edges_vertices": None}, "no `faces_vertices` and no"),
         ({"faces_vertices": [], "edges_vertices": [], "file_frames": [{}]}, "top-level frame"),
         ({"faces_vertices": {"0": [0, 1, 4]}}, "`faces_vertices` is .* not a list"),
         ({"faces_vertices": [[0, 1, 4], 7]}, "face 1 in `faces_vertices` is 7"),
@@ -302,7 +302,7 @@ def test_duplicate_edges_are_tolerated():
 
 
 def test_duplicate_edges_that_disagree():
-    with pytest.raises(NotFoldError, match=r"edge 8 \(4-0\) is assigned V, and M before"):
+    with pytest.raises(NotFoldError, match=r"edge 8 \(4-0\) is assigned V, but M before"):
         parse(
             edges_vertices=[*SQUARE["edges_vertices"], [4, 0]],
             edges_assignment=[*SQUARE["edges_assignment"], "V"],

@@ -140,7 +140,7 @@ def test_an_example_or_a_file_is_written_like_a_pattern(tmp_path):
 @pytest.mark.parametrize("path", [two_vertex(), None, 3, b"out.fold", {(0, 4): "M"}])
 def test_a_path_that_is_none_is_named(path, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(UsageError, match=r"write_fold\(pattern, path\): .* is not a path; the pat"):
+    with pytest.raises(UsageError, match=r"write_fold\(pattern, path\): .* is not a path; give"):
         write_fold("out.fold", path)
     with pytest.raises(UsageError, match=r"is not a path"):
         write_fold(two_vertex(), path)

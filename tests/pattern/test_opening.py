@@ -163,7 +163,12 @@ def spoiled(key: str, value: object) -> bytes:
     [
         ("frame_exactfold:field", [], NumberError, "vertex 0: .* is not a list of 1 text"),
         ("frame_exactfold:field", [["-2"]], NumberError, "under r1 .* is not positive"),
-        ("frame_exactfold:field", [["4"]], NumberError, "under r1 .* is a square already"),
+        (
+            "frame_exactfold:field",
+            [["4"]],
+            NumberError,
+            "under r1 .* is a square of the field already",
+        ),
         ("frame_exactfold:field", [[2]], NumberError, "under r1 .* not a list of 1 text"),
         ("frame_exactfold:field", [["3"]], StaleExactCoordinatesError, "vertex 1: .* disagree"),
         ("vertices_exactfold:surds", [[["0", "0"]] * 2], StaleExactCoordinatesError, "1 vert"),
@@ -188,7 +193,7 @@ def test_messages_begin_with_the_name(tmp_path: Path) -> None:
         open_pattern(tmp_path / "none.cp")
     path = tmp_path / "s.pdf"
     path.write_text("%PDF")
-    with pytest.raises(UnknownFormatError, match=f"^{path} is no drawing"):
+    with pytest.raises(UnknownFormatError, match=f"^{path} is not a drawing"):
         open_pattern(path)
 
 

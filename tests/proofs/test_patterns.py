@@ -4,7 +4,8 @@ from fractions import Fraction
 
 import pytest
 
-from exactfold import PROVED, count_branches
+from exactfold import PROVED
+from exactfold.branches import count_branches
 from exactfold.errors import NotApplicableError
 from exactfold.pattern.delaunay_sheets import delaunay
 from exactfold.rigidity import curvature_form

@@ -22,8 +22,9 @@ from sheets import (
     turn,
 )
 
-from exactfold import BranchCount, count_branches, random_square
+from exactfold import BranchCount, random_square
 from exactfold._support.verdict import PROVED
+from exactfold.branches import count_branches
 from exactfold.branches.values.roots import BoxRoot
 from exactfold.errors import UsageError
 from exactfold.pattern.crease_pattern import CreasePattern

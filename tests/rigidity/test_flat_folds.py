@@ -6,7 +6,8 @@ from itertools import product
 import pytest
 from sheets import dart, random_wheel, wheel, with_point
 
-from exactfold import count_branches, random_square
+from exactfold import random_square
+from exactfold.branches import count_branches
 from exactfold.checker.sheets.flat_folds import close_flat
 from exactfold.checker.sheets.sheet import Sheet
 from exactfold.pattern.crease_pattern import CreasePattern

@@ -9,7 +9,8 @@ import mpmath
 import numpy as np
 import pytest
 
-from exactfold import PROVED, count_branches, random_square
+from exactfold import PROVED, random_square
+from exactfold.branches import count_branches
 from exactfold.studies.angles import pairs as counting
 from exactfold.studies.angles import statistics as angle_statistics
 from exactfold.studies.angles import study as angles

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 from rivals.hermite import hermite_counts
 
-from exactfold import count_branches, random_square
+from exactfold import random_square
+from exactfold.branches import count_branches
 from exactfold.design import actuate
 from exactfold.rigidity import BranchSystem, perturbed
 from exactfold.rigidity.functionals import saddle_functional

@@ -7,7 +7,8 @@ from fractions import Fraction
 
 import pytest
 
-from exactfold import CreasePattern, count_branches, random_square
+from exactfold import CreasePattern, random_square
+from exactfold.branches import count_branches
 from exactfold.pattern.families import flat_vertex_square
 from exactfold.studies import flat, run_study
 from exactfold.studies.nearest import nearest_exception, proved_between, quadrilaterals, saddle

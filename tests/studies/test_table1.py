@@ -7,7 +7,8 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from exactfold import PROVED, count_branches, random_square
+from exactfold import PROVED, random_square
+from exactfold.branches import count_branches
 from exactfold.branches.values.letters import UPSIDE_DOWN
 from exactfold.pattern.data import example_path
 from exactfold.pattern.loading import as_pattern

@@ -16,21 +16,11 @@ from exactfold.app.cli.branches import COMMANDS as BRANCHES
 from exactfold.app.cli.motions import COMMANDS as MOTIONS
 from exactfold.app.cli.pictures import COMMANDS as PICTURES
 from exactfold.app.cli.studies import COMMANDS as STUDIES
+from exactfold.app.options.patterns import ConvertOptions, CountOptions, InfoOptions
 from exactfold.app.shell.parameters import (
-    Curvature,
     Json,
-    Pattern,
-    Patterns,
-    Resume,
-    Rim,
-    Sheet,
-    Snap,
-    complete_method,
-    distance,
     flag,
-    method_name,
     number,
-    written,
 )
 from exactfold.app.shell.shell import (
     OUTPUT_FAILED,
@@ -40,9 +30,7 @@ from exactfold.app.shell.shell import (
     standard_input,
     standard_streams,
 )
-from exactfold.app.shell.usage import Command, Group
-from exactfold.branches.counting.registry import METHODS
-from exactfold.errors import UsageError
+from exactfold.app.shell.usage import Command, Group, taking
 
 # Each command imports what it needs: loading everything takes longer than most of the work.
 
@@ -59,110 +47,20 @@ app = typer.Typer(
 
 
 @app.command(cls=Command)
-@reported
-def count(
-    patterns: Patterns,
-    method: Annotated[
-        str,
-        typer.Option(
-            parser=method_name,
-            autocompletion=complete_method,
-            metavar="METHOD",
-            help=f"{', '.join(METHODS)}: how solutions are found. The proof does not depend on it.",
-        ),
-    ] = "auto",
-    certificate: Annotated[
-        Path | None,
-        written(
-            "Write a certificate if proved. With --stream, only where other methods had to "
-            "prove what it left open.",
-            "OUT.json",
-        ),
-    ] = None,
-    stream: Annotated[
-        Path | None,
-        written(
-            "Prove block by block and write each branch to FILE, a compact certificate: the "
-            "way for 14 foldable vertices and more. Memory: 100 MB for each worker and 100 MB "
-            "more, whatever the size; disk: 200 bytes a branch."
-        ),
-    ] = None,
-    resume: Resume = False,
-    workers: Annotated[
-        int | None,
-        number("Processes of --stream. Default: all cores."),
-    ] = None,
-    jsonl: Annotated[
-        Path | None,
-        written(
-            "Write a line of JSON for each pattern as it is ready; files that were "
-            "counted there already are skipped, so the same command goes on after an interruption; "
-            "files that failed are tried again.",
-            "OUT.jsonl",
-        ),
-    ] = None,
-    jobs: Annotated[
-        int | None,
-        number("Processes for several patterns. Default: all cores."),
-    ] = None,
-    dask: Annotated[
-        str | None,
-        typer.Option(
-            metavar="ADDRESS",
-            help="Run --stream, or several patterns, on the dask.distributed cluster with this "
-            "scheduler; `local` starts one here.",
-        ),
-    ] = None,
-    curvature: Curvature = None,
-    rim: Rim = None,
-    as_json: Json = False,
-    snap: Snap = None,
-    sheet: Sheet = None,
-    seed: Annotated[int, number("Seed of the complex homotopy.", "S", least=0)] = 0,
-    everything: Annotated[bool, flag("--all", text="List every way.")] = False,
-    verbose: Annotated[
-        bool, flag("--verbose", text="Also say how it was found and proved.")
-    ] = False,
-) -> None:
+@taking(CountOptions)
+def count(**options: Any) -> int:
     """Count the ways in which a pattern starts to fold (its branches), with proof.
 
     With --stream, Ctrl-C loses one block at most and prints how to go on. Several
     patterns are counted side by side; the exit code is the worst of theirs.
     """
-    if len(patterns) > 1 or jsonl is not None:
+    if len(options["patterns"]) > 1 or options["jsonl"] is not None:
         from exactfold.app.commands.batch import Batch
 
-        alone = {certificate, stream, workers, curvature, rim} != {None} or resume
-        if alone:
-            raise UsageError(
-                "--certificate, --stream, --resume, --workers, --curvature and --rim go with one "
-                "pattern and without --jsonl"
-            )
-        batch = Batch(patterns, jsonl, jobs, dask, method, seed, snap, sheet, as_json, everything)
-        raise typer.Exit(batch.run())
-    if jobs is not None:
-        raise UsageError("--jobs goes with several patterns or --jsonl")
-    [pattern] = patterns
+        return Batch(**options).run()
     from exactfold.app.commands.count import Asked
-    from exactfold.app.shell.given import Given
 
-    asked = Asked(
-        pattern,
-        method,
-        certificate,
-        stream,
-        resume,
-        workers,
-        dask,
-        as_json,
-        snap,
-        sheet,
-        seed,
-        everything,
-        verbose,
-        Given(rim, curvature),
-    )
-    raise typer.Exit(asked.run())
+    return Asked(**options).run()
 
 
 @app.command(cls=Command)
@@ -180,15 +78,26 @@ def check(
     workers: Annotated[
         int | None,
         number(
-            "Processes for a compact certificate (`count --stream`) or one of `motions`. "
+            "Processes for a certificate of all branches (`count`) or of loops (`motions`). "
             "Default: all cores."
         ),
     ] = None,
+    listed: Annotated[
+        bool,
+        flag(
+            "--list", text="Also list the branches, as `count` does; for certificates of `count`."
+        ),
+    ] = False,
+    heights: Annotated[
+        bool,
+        flag("--heights", text="List them with heights of the vertices and angles of the folds."),
+    ] = False,
 ) -> None:
     """Verify every claim of a certificate with code that trusts nothing."""
     from exactfold.app.commands.check import valid
 
-    raise typer.Exit(0 if valid(certificate, workers, as_json) else 1)
+    done = valid(certificate, workers, as_json, listed=listed, heights=heights)
+    raise typer.Exit(0 if done else 1)
 
 
 for command in (*PICTURES, *BRANCHES, *MOTIONS, *STUDIES):
@@ -232,63 +141,18 @@ def random_(
 
 
 @app.command(cls=Command)
-@reported
-def info(
-    pattern: Pattern,
-    exact: Annotated[
-        bool,
-        flag(
-            "--exact",
-            text="Also ranks, self stresses, curvature forms, the digest, the area as a fraction.",
-        ),
-    ] = False,
-    as_json: Json = False,
-    snap: Snap = None,
-    sheet: Sheet = None,
-) -> None:
+@taking(InfoOptions)
+def info(**options: Any) -> int:
     """Report what is exactly known of a pattern without solving for the ways to fold it."""
     from exactfold.app.commands.info import show_info
 
-    show_info(pattern, snap, sheet, exact, as_json)
+    show_info(InfoOptions(**options))
+    return 0
 
 
 @app.command(cls=Command)
-@reported
-def convert(
-    pattern: Pattern,
-    output: Annotated[
-        Path, typer.Argument(metavar="OUT.fold", help="The FOLD file to write; - for stdout.")
-    ],
-    snap: Snap = None,
-    merge: Annotated[
-        Any,
-        typer.Option(
-            parser=distance,
-            metavar="EPS",
-            help="Merge points that are this close, in units of the size of the drawing.",
-        ),
-    ] = None,
-    repair: Annotated[
-        bool | None,
-        typer.Option(
-            "--repair/--no-repair",
-            metavar="",
-            help="Do every step of repair, or none. Default: only what it takes to find panels.",
-        ),
-    ] = None,
-    steps: Annotated[
-        str | None,
-        typer.Option(
-            metavar="NAMES",
-            help="Instead: these steps, such as merge,split; docs/files.md explains them.",
-        ),
-    ] = None,
-    triangulate: Annotated[
-        bool, flag("--triangulate", text="Cut panels into triangles by edges with the letter J.")
-    ] = False,
-    sheet: Sheet = None,
-    as_json: Json = False,
-) -> None:
+@taking(ConvertOptions)
+def convert(**options: Any) -> int:
     """Write a drawing of any format as a FOLD file with exact coordinates.
 
     Says what was read, each repair with its places, and how coordinates became
@@ -296,7 +160,8 @@ def convert(
     """
     from exactfold.app.commands.convert import Conversion
 
-    Conversion(pattern, output, snap, merge, repair, steps, triangulate, sheet, as_json).run()
+    Conversion(**options).run()
+    return 0
 
 
 class Example(TypedDict):

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 
 from exactfold.app.commands.branch import given_signs
+from exactfold.app.options.motions import ActuateOptions
 from exactfold.app.shell.json_numbers import numbers_by_name
 from exactfold.app.shell.patterns import read
 from exactfold.app.shell.shell import EXIT, Bar, name_of, one_at_least
@@ -16,22 +16,10 @@ from exactfold.design.actuation.actuate import actuate
 from exactfold.errors import InputError, NumberError
 from exactfold.exact.numbers import as_rational
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
-from exactfold.pattern.drawing.drawing import Snap
 
 
-@dataclass(frozen=True)
-class Driven:
-    """What was asked for on the command line; at most one of `signs` and `up` is given."""
-
-    file: Path
-    snap: Snap | None
-    sheet: int | None
-    signs: str | None
-    up: str | None
-    creases: int | None
-    torques: Path | None
-    as_json: bool
-    everything: bool
+class Driven(ActuateOptions):
+    """What was asked for on the command line."""
 
     def answer(self) -> int:
         """Find or judge the torques and print; the exit code.

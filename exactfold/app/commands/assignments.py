@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
-from pathlib import Path
 
+from exactfold.app.options.branches import AssignmentsOptions
 from exactfold.app.shell.patterns import read
 from exactfold.app.shell.shell import EXIT, Bar, name_of, say
 from exactfold.certificates.entries import write_certificate
@@ -13,19 +12,10 @@ from exactfold.design.circles.assignment_list import AllAssignments
 from exactfold.design.circles.certificate import assignments_certificate
 from exactfold.design.circles.circles import all_assignments
 from exactfold.errors import NotApplicableError
-from exactfold.pattern.drawing.drawing import Snap
 
 
-@dataclass(frozen=True)
-class Listed:
+class Listed(AssignmentsOptions):
     """What was asked for on the command line."""
-
-    file: Path
-    snap: Snap | None
-    sheet: int | None
-    everything: bool
-    as_json: bool
-    certificate: Path | None
 
     def answer(self) -> int:
         """List the assignments and print; the exit code.

@@ -15,6 +15,7 @@ from exactfold._support.memory import is_shortage, shortage
 from exactfold._support.processes import available_cores
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.app.commands.jsonl import Lines
+from exactfold.app.options.patterns import CountOptions
 from exactfold.app.shell.guard import NO_MEMORY
 from exactfold.app.shell.patterns import located
 from exactfold.app.shell.shell import (
@@ -39,7 +40,6 @@ from exactfold.errors import (
     UsageError,
     WorkerDiedError,
 )
-from exactfold.pattern.drawing.drawing import Snap
 
 if TYPE_CHECKING:
     from exactfold.app.commands.batch_document import (
@@ -97,20 +97,8 @@ class Tally:
         return "".join(f", {n} {s}" for s in STATUSES[1:] if (n := self.statuses[s]))
 
 
-@dataclass(frozen=True)
-class Batch:
-    """What was asked for."""
-
-    patterns: list[Path]
-    out: Path | None
-    jobs: int | None
-    dask: str | None
-    method: str
-    seed: int
-    snap: Snap | None
-    sheet: int | None
-    as_json: bool
-    everything: bool
+class Batch(CountOptions):
+    """What was asked for of several patterns."""
 
     def run(self) -> int:
         """Count all and print what became of them; the worst exit code.
@@ -123,12 +111,12 @@ class Batch:
             raise UsageError("a pattern from standard input is counted by itself")
         if self.jobs is not None and self.dask not in (None, LOCAL):
             raise UsageError("the cluster has its workers: --jobs goes with --dask local")
-        apart(self.out, *self.patterns)
+        apart(self.jsonl, *self.patterns)
         tally, shown = Tally(), []
         with ExitStack() as stack:
             lines = None
-            if self.out is not None:
-                lines = Lines(self.out, LINE)
+            if self.jsonl is not None:
+                lines = Lines(self.jsonl, LINE)
                 stack.callback(lines.close)
             stack.enter_context(self._resumable())
             for line in stack.enter_context(closing(self._lines(lines, tally))):
@@ -140,7 +128,7 @@ class Batch:
                     shown.append((line.name, line.status, line.distinct, line.message))
         place = {str(path): k for k, path in enumerate(self.patterns)}
         shown.sort(key=lambda row: place[row[0]])
-        numbers, jsonl = self._numbers(tally), None if self.out is None else str(self.out)
+        numbers, jsonl = self._numbers(tally), None if self.jsonl is None else str(self.jsonl)
         if not self.as_json:
             report.show(report.batch_report(shown, numbers, jsonl, self.everything))
         elif jsonl is not None:
@@ -190,7 +178,7 @@ class Batch:
     @contextmanager
     def _resumable(self) -> Iterator[None]:
         """Say how to go on when the batch stops early."""
-        again = "the same command goes on" if self.out is not None else ""
+        again = "the same command goes on" if self.jsonl is not None else ""
         try:
             with interruptible():
                 yield

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 from exactfold._support.plurals import counted
 from exactfold._support.verdict import PROVED
 from exactfold.app.commands.driving import Angles, driven_angles
-from exactfold.app.shell.given import NOTHING, Given
+from exactfold.app.options.branches import BranchOptions
+from exactfold.app.shell.given import Given
 from exactfold.app.shell.patterns import read
 from exactfold.app.shell.shell import Bar, name_of, one_at_least, say
 from exactfold.branches.counting.find import BranchFinder
@@ -19,24 +19,15 @@ from exactfold.errors import NotCountedError, NumberError, UsageError
 from exactfold.exact.numbers import parse_whole
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.drawing.bounds import read_text
-from exactfold.pattern.drawing.drawing import Snap
 
 
-@dataclass(frozen=True)
-class Asked:
+class Asked(BranchOptions):
     """What was asked for, as text from the command line."""
 
-    pattern: Path
-    snap: Snap | None
-    sheet: int | None
-    signs: str | None
-    up: str | None
-    batch: Path | None
-    pops: str | None
-    certificate: Path | None
-    as_json: bool
-    given: Given = NOTHING
-    drive: str | None = None
+    @property
+    def given(self) -> Given:
+        """Heights of the border and angle deficits, in files."""
+        return Given(self.rim, self.curvature)
 
     @property
     def name(self) -> str:

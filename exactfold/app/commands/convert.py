@@ -4,37 +4,23 @@ from __future__ import annotations
 
 import json
 import sys
-from dataclasses import dataclass
-from fractions import Fraction
-from pathlib import Path
 from typing import Literal, TypedDict
 
 from exactfold._support.documents import FieldName, FoldText
 from exactfold._support.plurals import agreeing, counted
+from exactfold.app.options.patterns import ConvertOptions
 from exactfold.app.shell.patterns import located
 from exactfold.app.shell.shell import Bar, apart, name_of, said, say, tell
 from exactfold.errors import FoldError, NotFoldError, PatternError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import PanelsDocument, PatternDocument, described, described_panels
-from exactfold.pattern.drawing.drawing import Snap
 from exactfold.pattern.fold_writing import document_text, write_text
 from exactfold.pattern.opening import Opened, ReadDocument, Steps, open_pattern
 from exactfold.pattern.panel_writing import Converted, converted
 
 
-@dataclass(frozen=True)
-class Conversion:
+class Conversion(ConvertOptions):
     """What was asked for on the command line."""
-
-    file: Path
-    output: Path
-    snap: Snap | None
-    merge: Fraction | None
-    repair: bool | None
-    steps: str | None
-    triangulate: bool
-    sheet: int | None
-    as_json: bool
 
     def run(self) -> None:
         """Read, write and say what was done; to standard output the FOLD file itself can go.

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from exactfold._support.verdict import PROVED
 from exactfold.app import report
 from exactfold.app.commands.stream import Streaming, advice
-from exactfold.app.shell.given import NOTHING, Given
+from exactfold.app.options.patterns import CountOptions
+from exactfold.app.shell.given import Given
 from exactfold.app.shell.patterns import read, read_any
 from exactfold.app.shell.shell import EXIT, Bar, apart, name_of, say
 from exactfold.branches.certificates.listing import certificate as certificate_of
@@ -20,30 +20,23 @@ from exactfold.branches.values.result import BranchCount
 from exactfold.certificates.entries import write_certificate
 from exactfold.errors import NotApplicableError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.drawing.drawing import Snap
 
 if TYPE_CHECKING:  # branches are counted without what panels need
     from exactfold.panels.result import Decomposition
 
 
-@dataclass(frozen=True)
-class Asked:
+class Asked(CountOptions):
     """What was asked for."""
 
-    pattern: Path
-    method: str
-    certificate: Path | None
-    stream: Path | None
-    resume: bool
-    workers: int | None
-    dask: str | None
-    as_json: bool
-    snap: Snap | None
-    sheet: int | None
-    seed: int
-    everything: bool
-    verbose: bool
-    given: Given = NOTHING
+    @property
+    def pattern(self) -> Path:
+        """The one pattern."""
+        return self.patterns[0]
+
+    @property
+    def given(self) -> Given:
+        """Heights of the border and angle deficits, in files."""
+        return Given(self.rim, self.curvature)
 
     def run(self) -> int:
         """Count, write what was asked for and print the answer; the exit code.
@@ -104,17 +97,7 @@ class Asked:
     def _streamed(self, file: Path) -> StreamedCount:
         if self.method != "auto":
             raise UsageError("--stream has a method of its own: leave --method away")
-        return Streaming(
-            self.pattern,
-            file,
-            self.resume,
-            self.workers,
-            self.dask,
-            self.snap,
-            self.sheet,
-            self.seed,
-            self.certificate,
-        ).run()
+        return Streaming(self, file).run()
 
     def _counted(self) -> BranchCount | Decomposition:
         if self.resume or self.workers is not None or self.dask is not None:

@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from exactfold._support.plurals import counted
 from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.app.commands.branch import chosen
+from exactfold.app.options.pictures import DrawOptions
 from exactfold.app.pictures.crease_drawing import pattern_picture
 from exactfold.app.pictures.drawn_ways import branch_way, mode_way
 from exactfold.app.pictures.folded import Amount, Folded, folded
+from exactfold.app.pictures.multiples import MOST
 from exactfold.app.pictures.picture_files import checked_picture, write_picture
 from exactfold.app.pictures.way_sheets import number_listed, sheet_of_ways, why_no_way
-from exactfold.app.shell.given import NOTHING, Given
+from exactfold.app.shell.given import Given
 from exactfold.app.shell.patterns import located, read_any
 from exactfold.app.shell.shell import EXIT, STDIN, Bar, apart, name_of, say, tell
 from exactfold.branches.counting.ways import count_opened, decompose_opened
@@ -30,7 +32,7 @@ from exactfold.errors import (
     UsageError,
 )
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.drawing.drawing import Drawing, Snap
+from exactfold.pattern.drawing.drawing import Drawing
 from exactfold.pattern.opening import Opened, has_branches
 
 if TYPE_CHECKING:
@@ -39,25 +41,22 @@ if TYPE_CHECKING:
     from exactfold.panels.result import Decomposition
 
 
-@dataclass(frozen=True)
-class Wanted:
-    """What was asked for on the command line; at most one of `way`, `up` and `everything`.
+class Wanted(DrawOptions):
+    """What was asked for on the command line."""
 
-    `way` is a number as `exactfold count` lists it, or vertex signs. `side` is None where none was
-    given.
-    """
+    @property
+    def given(self) -> Given:
+        """Heights of the border, in files."""
+        return Given(self.rim)
 
-    file: Path
-    snap: Snap | None
-    sheet: int | None
-    way: str | None
-    up: str | None
-    everything: bool
-    most: int
-    amount: Amount | None
-    side: int | None
-    output: Path | None
-    given: Given = NOTHING
+    @cached_property
+    def amount(self) -> Amount | None:
+        """How far the sheet is drawn folded; None where it is drawn flat."""
+        return None if self.folded is None else Amount.of(self.folded)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self.amount  # noqa: B018 - a wrong one is refused before the work
 
     def answer(self) -> int:
         """Draw, write and say where; the exit code: 4 where a way that is drawn is not proved.
@@ -97,6 +96,11 @@ class Wanted:
     @property
     def _title(self) -> str:
         return "" if self.file == STDIN else self.file.stem
+
+    @property
+    def _first(self) -> int:
+        """How many ways are drawn on one sheet."""
+        return MOST if self.most is None else self.most
 
     @property
     def _is_plain(self) -> bool:
@@ -217,9 +221,9 @@ class Wanted:
         number = number_listed(result)
         if not number:
             raise NotCountedError(f"{why_no_way(result)}: draw the pattern without --all")
-        if number > self.most:
-            say(f"the first {self.most} of {number} are drawn: --most N draws more")
-        return sheet_of_ways(result, self._title, self.most), result.status
+        if number > self._first:
+            say(f"the first {self._first} of {number} are drawn: --most N draws more")
+        return sheet_of_ways(result, self._title, self._first), result.status
 
 
 def on_a_terminal() -> bool:

@@ -9,7 +9,6 @@ import json
 import re
 import shlex
 import sys
-from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
 from typing import Literal, TypedDict
@@ -24,7 +23,8 @@ from exactfold._support.documents import (
 )
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.app.commands.branch import chosen
-from exactfold.app.shell.given import NOTHING, Given
+from exactfold.app.options.branches import ExportOptions
+from exactfold.app.shell.given import Given
 from exactfold.app.shell.patterns import read
 from exactfold.app.shell.shell import EXIT, Bar, name_of, one_at_least, one_at_most, say, tell
 from exactfold.branches.counting.find import find_branches
@@ -33,26 +33,17 @@ from exactfold.branches.values.export import AMOUNT, BranchExport, exported
 from exactfold.errors import NotApplicableError, UndecidedBranchError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import PatternDocument, described
-from exactfold.pattern.drawing.drawing import Snap
 from exactfold.pattern.fold_writing import write_text
 from exactfold.pattern.near_degeneracy import WarningDocument, warnings
 
 
-@dataclass(frozen=True)
-class Wanted:
+class Wanted(ExportOptions):
     """What was asked for on the command line."""
 
-    file: Path
-    snap: Snap | None
-    sheet: int | None
-    signs: str | None
-    up: str | None
-    place: int | None
-    output: Path | None
-    amount: float | None
-    force: bool
-    as_json: bool
-    given: Given = NOTHING
+    @property
+    def given(self) -> Given:
+        """Heights of the border, in files."""
+        return Given(self.rim)
 
     def answer(self) -> int:
         """Find the branch, write it and say so; the exit code.
@@ -105,13 +96,13 @@ class Wanted:
         return None if str(self.file) == "/dev/stdin" else self.file.stem
 
 
-def write_coq(asked: Wanted, everything: bool) -> int:
+def write_coq(asked: Wanted) -> int:
     """Write the sheet as a file for the formal proof, with the branches asked for; the exit code.
 
-    They are the one that is named, if any, or with `everything` all: more than `FEW` are written
-    with `asked.force` alone. Raises the errors of `read`, `chosen`, `find_branches`, `to_coq`,
-    `branch_to_coq` and `branches_to_coq`, and `UsageError` for too many branches, a file that Coq
-    could not compile by its name, and options that do not go with this.
+    They are the one that is named, if any, or with `asked.everything` all: more than `FEW` are
+    written with `asked.force` alone. Raises the errors of `read`, `chosen`, `find_branches`,
+    `to_coq`, `branch_to_coq` and `branches_to_coq`, and `UsageError` for too many branches, a file
+    that Coq could not compile by its name, and options that do not go with this.
     """
     from exactfold.branches import branch_certificate
     from exactfold.interop import branch_to_coq, branches_to_coq, to_coq
@@ -119,14 +110,14 @@ def write_coq(asked: Wanted, everything: bool) -> int:
     for name, given in (
         ("--branch", asked.place is not None),
         ("--amount", asked.amount is not None),
-        ("--force", asked.force and not everything),
+        ("--force", asked.force and not asked.everything),
         ("--json", asked.as_json),
     ):
         if given:
             raise UsageError(f"{name} does not go with --coq")
     one_at_most("one of --signs and --up", asked.signs, asked.up)
     named = asked.signs is not None or asked.up is not None
-    if named and everything:
+    if named and asked.everything:
         raise UsageError("--all names all branches: leave --signs and --up away")
     if asked.given.rim is not None and not named:
         raise UsageError("--rim goes with --signs or --up")
@@ -142,7 +133,7 @@ def write_coq(asked: Wanted, everything: bool) -> int:
         branches = []
         if named:
             branches = [chosen(pattern, asked.signs, asked.up, None, bar, asked.given)]
-        elif everything:
+        elif asked.everything:
             _refuse_uncounted(pattern, asked.force)
             every = map("".join, product("+-", repeat=pattern.Vi))
             branches = list(find_branches(pattern, every, progress=bar))
@@ -151,7 +142,7 @@ def write_coq(asked: Wanted, everything: bool) -> int:
                 say(f"not written: the branch is not proved; {branch.reason}".rstrip("; "))
                 return EXIT[UNDECIDED]
         certificates = [branch_certificate(branch) for branch in branches]
-        if everything:
+        if asked.everything:
             text = branches_to_coq(certificates)
         elif named:
             text = branch_to_coq(certificates[0])

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from exactfold._support.plurals import counted
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.app.commands.branch import also_found, chosen, given_signs
 from exactfold.app.commands.driving import driven_angles
+from exactfold.app.options.motions import FoldOptions
 from exactfold.app.pictures.picture_files import checked_picture, write_picture
-from exactfold.app.shell.given import NOTHING, Given
+from exactfold.app.shell.given import Given
 from exactfold.app.shell.patterns import read_any
 from exactfold.app.shell.shell import EXIT, Bar, name_of, say
 from exactfold.branches.values.branch import Branch
@@ -22,8 +22,7 @@ from exactfold.motion.curves.drive import Drive
 from exactfold.motion.curves.motion import Motion
 from exactfold.motion.following import Goal, follow
 from exactfold.motion.writing import checked_ending, write_motion
-from exactfold.pattern.crease_pattern import CreasePattern, Edge, Triangle
-from exactfold.pattern.drawing.drawing import Snap
+from exactfold.pattern.crease_pattern import CreasePattern, Triangle
 from exactfold.pattern.fold_writing import require_folder
 from exactfold.pattern.opening import Opened, has_branches
 
@@ -43,33 +42,13 @@ class _Begin:
     drive: Drive | None = None
 
 
-@dataclass(frozen=True)
-class Wanted:
-    """What was asked for on the command line; `side` is None where it was not.
+class Wanted(FoldOptions):
+    """What was asked for on the command line."""
 
-    At most one of `signs`, `up`, `place` is given, and one of `component` and `modes`.
-    """
-
-    file: Path
-    snap: Snap | None
-    sheet: int | None
-    signs: str | None
-    up: str | None
-    place: int | None
-    side: int | None
-    through_nodes: bool
-    component: int | None
-    modes: Sequence[int] | None
-    until: str
-    frames: int
-    by: Edge | None
-    output: Path | None
-    plot: Path | None
-    picture: Path | None
-    certificate: Path | None
-    as_json: bool
-    given: Given = NOTHING
-    drive: str | None = None
+    @property
+    def given(self) -> Given:
+        """Heights of the border, in files."""
+        return Given(self.rim)
 
     def answer(self) -> int:
         """Follow the sheet, write what was asked for and print; the exit code.

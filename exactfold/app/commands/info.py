@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from exactfold.app import report
+from exactfold.app.options.patterns import InfoOptions
 from exactfold.app.shell.patterns import read_any, warn
 from exactfold.app.shell.shell import Bar, name_of
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.drawing.drawing import Snap
 from exactfold.pattern.opening import has_branches, panels
 from exactfold.rigidity.facts import PatternFacts, PatternFactsDocument, pattern_facts
 
@@ -34,16 +33,14 @@ class BranchesFactsDocument(PatternFactsDocument):
     expected: str
 
 
-def show_info(
-    path: Path, snap: Snap | None, number: int | None, exact: bool, as_json: bool
-) -> None:
+def show_info(asked: InfoOptions) -> None:
     """Print the facts of a sheet; raises the errors of `read_any`.
 
     A triangulated sheet whose motions `count` decomposes has the facts of both kinds.
     """
-    name = name_of(path)
+    name, exact = name_of(asked.file), asked.exact
     with Bar("reading") as bar:
-        sheet = read_any(path, snap, number).sheet
+        sheet = read_any(asked.file, asked.snap, asked.sheet).sheet
         data: BranchesFactsDocument | DecomposedFactsDocument | PanelFactsDocument
         if not isinstance(sheet, CreasePattern):
             motions = _motions(sheet)
@@ -60,7 +57,7 @@ def show_info(
                 expected = report.expectation(facts, both)
                 data = {**facts.to_dict(name), **both.keys(), "expected": expected}
             table = report.info_report(facts, both, exact=exact)
-    if as_json:
+    if asked.as_json:
         print(json.dumps(data))
     else:
         report.show(table)

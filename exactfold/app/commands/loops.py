@@ -6,9 +6,8 @@ import json
 import os
 import shlex
 from contextlib import ExitStack
-from dataclasses import dataclass
-from pathlib import Path
 
+from exactfold.app.options.motions import MotionsOptions
 from exactfold.app.shell.patterns import read
 from exactfold.app.shell.resuming import require_file, resumable
 from exactfold.app.shell.shell import EXIT, Bar, apart, interruptible, name_of
@@ -16,24 +15,13 @@ from exactfold.branches.counting.on_dask import LOCAL
 from exactfold.branches.counting.pools import dask_pool
 from exactfold.errors import UsageError
 from exactfold.motion.loops.matching import find_loops
-from exactfold.pattern.drawing.drawing import Snap
 
 _FEW = 4
 """With at most so many foldable vertices the loops are followed before other processes start."""
 
 
-@dataclass(frozen=True)
-class Wanted:
+class Wanted(MotionsOptions):
     """What was asked for on the command line."""
-
-    file: Path
-    snap: Snap | None
-    sheet: int | None
-    workers: int | None
-    dask: str | None
-    certificate: Path | None
-    resume: bool
-    as_json: bool
 
     @property
     def again(self) -> str:

@@ -5,11 +5,10 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass
-from pathlib import Path
 
 from exactfold._support.plurals import counted
 from exactfold._support.verdict import PROVED, REFUTED
+from exactfold.app.options.branches import MatchOptions
 from exactfold.app.shell.patterns import read_any, warn
 from exactfold.app.shell.shell import EXIT, Bar, name_of, say
 from exactfold.certificates.entries import write_certificate
@@ -27,7 +26,6 @@ from exactfold.errors import (
 )
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.drawing.bounds import read_text
-from exactfold.pattern.drawing.drawing import Snap
 from exactfold.pattern.opening import Opened, has_branches, triangles
 from exactfold.pattern.panel_pattern import PanelPattern
 
@@ -36,19 +34,8 @@ _RIMS = 16
 """How many sign vectors are compared, and for how many a rim is looked for, unless it is said."""
 
 
-@dataclass(frozen=True)
-class Asked:
+class Asked(MatchOptions):
     """What was asked for on the command line."""
-
-    file: Path
-    snap: Snap | None
-    sheet: int | None
-    letters: str | None
-    most: int | None
-    tries: int | None
-    as_json: bool
-    everything: bool
-    certificate: Path | None
 
     def answer(self) -> int:
         """Find the branches, or why there are none and the nearest, and print; the exit code.

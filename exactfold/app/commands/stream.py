@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from exactfold._support.processes import available_cores
+from exactfold.app.options.patterns import CountOptions
 from exactfold.app.shell.patterns import read
 from exactfold.app.shell.resuming import require_file, resumable
 from exactfold.app.shell.shell import Bar, apart, interruptible
@@ -21,7 +22,6 @@ from exactfold.errors import (
     UsageError,
 )
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.drawing.drawing import Snap
 
 ADVISED = 16
 """Foldable vertices from which plain `count` takes ten times as long, and doubles with each."""
@@ -29,24 +29,22 @@ ADVISED = 16
 
 @dataclass(frozen=True)
 class Streaming:
-    """What was asked for."""
+    """What was asked for, and the file to write."""
 
-    pattern: Path
+    asked: CountOptions
     file: Path
-    resume: bool
-    workers: int | None
-    dask: str | None
-    snap: Snap | None
-    sheet: int | None
-    seed: int
-    certificate: Path | None
+
+    @property
+    def pattern(self) -> Path:
+        """The one pattern."""
+        return self.asked.patterns[0]
 
     @property
     def again(self) -> str:
         """The command that continues."""
         words = ["exactfold", "count", str(self.pattern), "--stream", str(self.file), "--resume"]
         for name in ("workers", "dask", "snap", "sheet", "seed", "certificate"):
-            if value := getattr(self, name):  # the seed is 0 by default, the others None
+            if value := getattr(self.asked, name):  # the seed is 0 by default, the others None
                 words += [f"--{name}", str(value)]
         return shlex.join(words)
 
@@ -56,28 +54,29 @@ class Streaming:
         Raises the errors of `stream_branches` and `dask_engine`, and `UsageError` for a file that
         is there already.
         """
-        if self.workers is not None and self.dask not in (None, LOCAL):
+        if self.asked.workers is not None and self.asked.dask not in (None, LOCAL):
             raise UsageError("the cluster has its workers: --workers goes with --dask local")
         apart(self.file, self.pattern)
         require_file(self.file, resume=True)
         with Bar("reading") as bar:
-            file = read(self.pattern, self.snap, self.sheet, "--stream")
+            file = read(self.pattern, self.asked.snap, self.asked.sheet, "--stream")
             _require_streamable(file.pattern)
-            require_file(self.file, self.resume)
+            require_file(self.file, self.asked.resume)
             with resumable(self.file, self.again), interruptible():
                 result = self._streamed(file.pattern, bar)
                 return replace(result, snapped=file.opened.snapped, read=file.opened.read)
 
     def _streamed(self, pattern: CreasePattern, bar: Bar) -> StreamedCount:
-        cluster = nullcontext() if self.dask is None else dask_engine(self.dask, self.workers)
+        dask, workers = self.asked.dask, self.asked.workers
+        cluster = nullcontext() if dask is None else dask_engine(dask, workers)
         with cluster as engine:
             return stream_branches(
                 pattern,
                 self.file,
-                workers=self.workers or available_cores(),
-                resume=self.resume,
+                workers=workers or available_cores(),
+                resume=self.asked.resume,
                 replace=False,
-                seed=self.seed,
+                seed=self.asked.seed,
                 progress=bar,
                 engine=engine,
             )

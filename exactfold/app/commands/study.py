@@ -7,7 +7,6 @@ import shlex
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypedDict
 
@@ -17,6 +16,7 @@ from exactfold._support.processes import available_cores
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED
 from exactfold.app import report
+from exactfold.app.options.studies import StudyOptions
 from exactfold.app.shell.row_numbers import read_numbers, written_numbers, written_sizes
 from exactfold.app.shell.shell import EXIT, Bar, apart, interruptible, stopped
 from exactfold.branches.counting.on_dask import LOCAL
@@ -99,24 +99,8 @@ class StudyDocument(TypedDict):
     """What was written besides the journal."""
 
 
-@dataclass(frozen=True)
-class Wanted:
+class Wanted(StudyOptions):
     """What was asked for on the command line."""
-
-    name: str | None
-    seed: int
-    sizes: tuple[int, ...] | None
-    number: str | None
-    extend: bool
-    workers: int | None
-    dask: str | None
-    journal: Path | None
-    csv: Path | None
-    parquet: Path | None
-    html: Path | None
-    figures: Path | None
-    row: str | None
-    as_json: bool
 
     def answer(self) -> int:
         """Run what was asked for and print; the exit code.

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -12,41 +11,24 @@ from rich.text import Text
 from exactfold._support.plurals import counted, visible
 from exactfold._support.processes import available_cores
 from exactfold._support.verdict import PROVED
+from exactfold.app.options.pictures import ViewOptions
 from exactfold.app.report.terminal import show
 from exactfold.app.shell.patterns import read_any
 from exactfold.app.shell.shell import Bar, apart, interruptible, name_of, say, tell
 from exactfold.app.viewer.page import checked_page, write_view
 from exactfold.app.viewer.server import view_server
 from exactfold.errors import UsageError
-from exactfold.pattern.drawing.drawing import Snap
 from exactfold.pattern.opening import Opened
 
 
-@dataclass(frozen=True)
-class Wanted:
+class Wanted(ViewOptions):
     """What was asked for on the command line."""
-
-    file: Path
-    snap: Snap | None
-    sheet: int | None
-    output: Path | None
-    branches: Sequence[str] | None
-    frames: int
-    proving: bool
-    workers: int | None
-    serve: bool
-    port: int | None
 
     def run(self) -> None:
         """Write the page and say where, or serve it until Ctrl-C.
 
         Raises the errors of `read_any`, `write_view` and `view_server`.
         """
-        if self.serve:
-            if self.output is not None or self.workers is not None:
-                raise UsageError("--serve writes no file and follows one branch at a time")
-        elif self.port is not None:
-            raise UsageError("--port goes with --serve")
         name = "sheet" if str(self.file) == "/dev/stdin" else self.file.stem
         output = self.output or Path(f"{name}.view.html")
         if not self.serve:

@@ -31,7 +31,8 @@ def motion_animation(
     They are moved by a style sheet, so that any browser shows them, also as an image of a page;
     where less motion is asked for (`prefers-reduced-motion`), the sheet stands half-way.
 
-    >>> from exactfold import find_branch, follow
+    >>> from exactfold.branches import find_branch
+    >>> from exactfold.motion import follow
     >>> text = motion_animation(follow(find_branch("two-vertex", "+-")), frames=12)
     >>> text.count('<g class="f'), text.count("@keyframes")
     (12, 12)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import dist
 from typing import TYPE_CHECKING, Final
 
@@ -51,6 +51,20 @@ class DrawnWay:
     def shared(self) -> str:
         """The same on both sides of the sheet: the smaller text of the two."""
         return min(self.text, self.text.translate(UPSIDE_DOWN))
+
+    def turned(self, side: int) -> DrawnWay:
+        """The way itself for side 1; for -1 its mirror image, with all signs and letters reversed.
+
+        >>> from exactfold.branches.counting.find import find_branch
+        >>> branch_way(find_branch("two-vertex", "+-")).turned(-1).text
+        'VMMMVMV'
+        """
+        if side > 0:
+            return self
+        letters = {fold: letter.translate(UPSIDE_DOWN) for fold, letter in self.letters.items()}
+        signs = {v: -sign for v, sign in self.signs.items()}
+        angles = {fold: -angle for fold, angle in self.angles.items()}
+        return replace(self, letters=letters, signs=signs, angles=angles)
 
     def drawing(self, size: float | None = None, *, small: bool = False) -> CreaseDrawing:
         """The drawing of the pattern with this way; `small`: without the numbers of vertices."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Group
@@ -24,6 +24,7 @@ from exactfold.exact.numbers import decimal_above
 
 if TYPE_CHECKING:
     from exactfold.branches.counting.stream import StreamedCount
+    from exactfold.branches.values.branch import Branch
     from exactfold.branches.values.result import BranchCount, Lettered
 
 METHODS = {
@@ -60,7 +61,7 @@ def count_report(
     if verbose:
         parts += ["", facts_table(_details(result, streamed))]
     if result.branches:
-        parts += ["", *_branch_table(result, everything)]
+        parts += ["", *branch_table(result.branches, None if everything else SHOWN)]
     if result.open_questions:
         limit = len(result.open_questions) if everything else SHOWN
         parts += ["", Text("Open", style="bold")]
@@ -285,10 +286,11 @@ def _stream_rows(streamed: StreamedCount) -> list[tuple[str, str]]:
     return rows
 
 
-def _branch_table(result: BranchCount, everything: bool) -> list[Any]:
-    limit = len(result.branches) if everything else SHOWN
-    vertices, wide = result.pattern.interior, result.pattern.Vi <= COLUMNS
-    counts = any(branch.multiplicity != 1 for branch in result.branches)
+def branch_table(branches: Sequence[Branch], most: int | None = None) -> list[Any]:
+    """A line for each branch, with its number; at most so many, and how many more there are."""
+    pattern, limit = branches[0].pattern, len(branches) if most is None else most
+    vertices, wide = pattern.interior, pattern.Vi <= COLUMNS
+    counts = any(branch.multiplicity != 1 for branch in branches)
     table = Table(box=None, pad_edge=False)
     table.add_column("way", justify="right")
     for v in vertices if wide else ():
@@ -298,7 +300,7 @@ def _branch_table(result: BranchCount, everything: bool) -> list[Any]:
     table.add_column("folds", overflow="fold")
     if counts:
         table.add_column("counts", justify="right")
-    for k, branch in enumerate(result.branches[:limit], 1):
+    for k, branch in enumerate(branches[:limit], 1):
         signs = branch.vertex_signs
         cells: list[Any] = [str(k)]
         if wide:
@@ -307,7 +309,7 @@ def _branch_table(result: BranchCount, everything: bool) -> list[Any]:
             cells.append(_up_list(signs))
         cells.append(letters_text(branch.assignment_text))
         table.add_row(*cells, *([str(branch.multiplicity)] if counts else []))
-    return [table, *more_text(len(result.branches) - limit), "", *_legend(result)]
+    return [table, *more_text(len(branches) - limit), "", *_legend(branches)]
 
 
 def _up_list(signs: Mapping[int, int]) -> str:
@@ -316,12 +318,12 @@ def _up_list(signs: Mapping[int, int]) -> str:
     return up + (f" (flat: {flat})" if flat else "")
 
 
-def _legend(result: BranchCount) -> list[Text]:
-    folds = result.pattern.folds
+def _legend(branches: Sequence[Branch]) -> list[Text]:
+    folds = branches[0].pattern.folds
     order = "of --json"
     if len(folds) <= NAMED:
         order = ", ".join(f"{i}-{j}" for i, j in folds)
-    letters = {letter for branch in result.branches for letter in branch.assignment.values()}
+    letters = {letter for branch in branches for letter in branch.assignment.values()}
     names = {"M": "M mountain", "V": "V valley", "F": "F flat", "U": "U undecided"}
     said = ", ".join(text for letter, text in names.items() if letter in letters)
     return [

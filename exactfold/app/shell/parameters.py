@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from fractions import Fraction
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import typer
 
@@ -166,7 +166,7 @@ Patterns = Annotated[
     ),
 ]
 Snap = Annotated[
-    Any,
+    int | Literal["auto", "exact"] | None,
     typer.Option(
         parser=snapping,
         metavar="DEN|auto|exact",
@@ -216,7 +216,7 @@ Curvature = Annotated[
 Place = Annotated[int | None, number("Instead: the N-th that `count` lists.", "N", "--branch")]
 Resume = Annotated[bool, flag("--resume", text="Continue the FILE that an interrupted run left.")]
 Side = Annotated[
-    Any,
+    int | None,
     typer.Option(
         parser=one_side,
         metavar="+|-",

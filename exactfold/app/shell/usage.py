@@ -1,16 +1,46 @@
-"""Commands whose help shows names and no Python types, and whose usage errors are one line."""
+"""Commands: their options from a dataclass, help without Python types, usage errors in one line."""
 
 from __future__ import annotations
 
 import re
-from typing import Any
+from collections.abc import Callable
+from inspect import Parameter, signature
+from typing import Annotated, Any
 
 import typer
 from typer.core import TyperCommand, TyperGroup
 
-from exactfold.app.shell.shell import say
+from exactfold.app.shell.shell import reported, say
 
 _WRONG_USAGE: type[Exception] = typer.BadParameter.__bases__[0]  # typer does not export it
+
+
+def taking(options: type[Any]) -> Callable[[Callable[..., int]], Callable[..., None]]:
+    """A command that takes the fields of a dataclass; what is decorated returns the exit code.
+
+    Each field is an option or argument of typer, in the order in which the help lists them.
+    """
+
+    def made(run: Callable[..., int]) -> Callable[..., None]:
+        def command(**given: Any) -> None:
+            raise typer.Exit(run(**given))
+
+        command.__name__, command.__doc__ = run.__name__, run.__doc__
+        fields = signature(options, eval_str=True)
+        found = reported(command)
+        taken = [_for_typer(field) for field in fields.parameters.values()]
+        found.__signature__ = fields.replace(parameters=taken)  # type: ignore[attr-defined]
+        return found
+
+    return made
+
+
+def _for_typer(field: Parameter) -> Parameter:
+    """The same parameter; of any type where it has a reader of its own: typer knows few types."""
+    option = field.annotation.__metadata__[0]
+    if option.parser is None:
+        return field
+    return field.replace(annotation=Annotated[Any, option])
 
 
 class Command(TyperCommand):

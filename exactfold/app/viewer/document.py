@@ -27,10 +27,11 @@ from exactfold.app.viewer.ways import (
 )
 from exactfold.branches.counting.find import BranchFinder
 from exactfold.branches.counting.pools import Pool, process_pool
-from exactfold.branches.counting.ways import Sheet, count_opened, decompose_opened, open_sheet
+from exactfold.branches.counting.ways import count_opened, decompose_opened
 from exactfold.errors import ExactfoldError, InputError, UsageError, WorkerDiedError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.fold_writing import fold_document
+from exactfold.pattern.loading import PatternLike, open_sheet
 from exactfold.pattern.opening import Opened, has_branches
 from exactfold.pattern.triangulating import triangles_of
 
@@ -96,7 +97,7 @@ class ViewDocument(Facts):
 
 
 def view_document(
-    sheet: Sheet,
+    sheet: PatternLike,
     *,
     name: str | None = None,
     branches: Sequence[str] | None = None,
@@ -148,7 +149,7 @@ class Known:
     @classmethod
     def of(
         cls,
-        sheet: Sheet,
+        sheet: PatternLike,
         *,
         name: str | None = None,
         branches: Sequence[str] | None = None,

@@ -16,8 +16,8 @@ from typing import Any, Final
 from exactfold._support.progress import Progress
 from exactfold.app.viewer.document import FRAMES, ViewDocument, view_document
 from exactfold.app.viewer.look import look_css, look_script
-from exactfold.branches.counting.ways import Sheet
 from exactfold.pattern.fold_writing import checked_target, write_text
+from exactfold.pattern.loading import PatternLike
 
 _ENDINGS: Final = (".html", ".htm")
 _ROOM: Final = Path(__file__).parent
@@ -54,7 +54,7 @@ def view_page(document: Mapping[str, Any]) -> str:
 
 
 def write_view(
-    sheet: Sheet,
+    sheet: PatternLike,
     path: str | PathLike[str],
     *,
     name: str | None = None,

@@ -16,10 +16,10 @@ from exactfold.app.viewer.document import FRAMES, Known
 from exactfold.app.viewer.page import view_page
 from exactfold.app.viewer.ways import Following, Way, branch_way
 from exactfold.branches.counting.find import BranchFinder
-from exactfold.branches.counting.ways import Sheet
 from exactfold.errors import ExactfoldError, NumberError, UsageError
 from exactfold.exact.numbers import parse_whole
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.loading import PatternLike
 
 HEADER: Final = "X-Exactfold"
 """Sent by the page with each request: no other page may send it without leave."""
@@ -28,7 +28,7 @@ _MOST_PORT: Final = 65535
 
 
 def view_server(
-    sheet: Sheet,
+    sheet: PatternLike,
     *,
     name: str | None = None,
     branches: Sequence[str] | None = None,

@@ -11,6 +11,7 @@ from exactfold._support.arrays import BoolArray
 from exactfold.certificates.sharing import shared
 from exactfold.checker.branches import compact
 from exactfold.checker.branches.compact_blocks import Block, CompactSheet
+from exactfold.checker.branches.listing import CountClaims
 from exactfold.checker.core.limits import MOST_UNITS
 from exactfold.checker.core.parts import Engine
 from exactfold.checker.core.reading import CertificateError, FormatError, plain, refusing
@@ -29,7 +30,7 @@ def check_compact(
     workers: int = 1,
     fast: bool = True,
     name: str | os.PathLike[str] | None = None,
-) -> dict[str, object]:
+) -> CountClaims:
     """Verify every claim of a compact certificate; returns the claims.
 
     The sheet and its system are rebuilt by the code of `exactfold.checker`. With `fast`, most roots

@@ -3,38 +3,51 @@
 from __future__ import annotations
 
 import platform
-from typing import Any
+from typing import Any, cast
 
 from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
+from exactfold.branches.certificates.blocks import claims_line, line_text
 from exactfold.branches.connected_components.certificate import pieces_certificate
 from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.result import BranchCount, Proof
 from exactfold.branches.values.roots import AlgebraicRoot, BoxRoot, FlatBoxRoot
 from exactfold.certificates.entries import (
+    CertificateLines,
     Document,
     algebraic_evidence,
     box_entry,
     chart_evidence,
     class_entry,
-    document,
     flat_box_entry,
+    pattern_document,
     triangle_evidence,
 )
+from exactfold.checker.branches.compact import COMPACT, ROOTS
+from exactfold.checker.branches.listing import Counts
+from exactfold.checker.core.limits import MOST_LINE
 from exactfold.errors import NotApplicableError, UsageError
 from exactfold.exact.numbers import shown
 
+MOST_ROOTS = 256
+"""Roots in a line, fewer where their numbers are so long that the line would be."""
 
-def certificate(result: BranchCount) -> Document:
-    """The certificate of a proved count, as a JSON object for `exactfold.checker`.
+_DIGEST = 66
+"""What the file adds to each line: a tab, the digest, and the end of the line."""
 
-    With more than four corners it is that of the pieces (`pieces_certificate`). Raises
-    `NotApplicableError` if the count is not proved, or was proved in a stream, whose file is the
-    certificate.
 
+def certificate(result: BranchCount) -> Document | CertificateLines:
+    """The certificate of a proved count: lines for `checker.check` and `write_certificate`.
+
+    With more than four corners it is that of the pieces, one JSON object (`pieces_certificate`).
+    Raises `NotApplicableError` if the count is not proved, or was proved in a stream, whose file is
+    the certificate.
+
+    >>> from exactfold import checker
     >>> from exactfold.branches.counting.collect import count_branches
     >>> from exactfold.pattern.families import two_vertex
-    >>> certificate(count_branches(two_vertex()))["claims"]["distinct"]
-    4
+    >>> made = certificate(count_branches(two_vertex()))
+    >>> made, checker.check(made)["distinct"]
+    (<CertificateLines: 3 lines>, 4)
     """
     if not isinstance(result, BranchCount):
         raise UsageError(f"{shown(result)} is not a count: give what `count_branches` returns")
@@ -42,28 +55,82 @@ def certificate(result: BranchCount) -> Document:
         return pieces_certificate(result.pattern, result.pieces)
     if result.status is not PROVED or result.proof is None:
         raise NotApplicableError(f"no certificate: the count is {result.status} ({result.reason})")
-    claims: dict[str, Any] = {
+    return CertificateLines(result.proof.lines or _root_lines(result, result.proof))
+
+
+def _root_lines(result: BranchCount, proof: Proof) -> list[str]:
+    """The lines of a count whose roots are not one simple root for each sign vector.
+
+    Raises `NotApplicableError` if one would be longer than what the checker reads.
+    """
+    evidence: Document = {"kind": proof.kind, "triangles": triangle_evidence(proof.triangles)}
+    blocks: list[str] = []
+    if proof.chart is not None:
+        evidence["chart"] = chart_evidence(proof.chart, proof.labels)
+        if proof.algebraic is not None:
+            evidence |= algebraic_evidence(proof.algebraic, proof.labels)
+        entries = [_entry(proof, branch) for branch in result.branches]
+        longest = max(len(line_text(entry)) for entry in entries)
+        block = max(1, min(MOST_ROOTS, MOST_LINE // (2 * longest)))
+        evidence |= {"roots": len(entries), "block": block}
+        blocks = [
+            line_text({"block": number, "roots": entries[start : start + block]})
+            for number, start in enumerate(range(0, len(entries), block))
+        ]
+    counts = {
         "distinct": result.distinct,
         "with_multiplicity": result.with_multiplicity,
         "real": result.real,
         "nonreal": result.nonreal,
         "true_branches": str(_true_branches(result)),
-        "branches": [
-            {
-                "vertex_signs": branch.sign_text,
-                "assignment": branch.assignment_text,
-                "multiplicity": branch.multiplicity,
-                "representative": branch.representative,
-            }
-            for branch in result.branches
-        ],
     }
-    provenance = {
-        "method": result.method,
-        "settings": dict(result.settings),
-        "python": platform.python_version(),
+    claims = claims_line(result.pattern, cast("Counts", counts))  # all are known, once proved
+    lines = [_header(result, evidence), *blocks, claims]
+    longest = max(map(len, lines))
+    if longest + _DIGEST > MOST_LINE:
+        raise NotApplicableError(
+            f"no certificate: a line of it would have {longest} characters, more than is read"
+        )
+    return lines
+
+
+def _header(result: BranchCount, evidence: Document) -> str:
+    """The first line."""
+    return line_text(
+        {
+            "format": COMPACT.format,
+            "version": ROOTS,
+            "pattern": pattern_document(result.pattern),
+            "evidence": evidence,
+            "provenance": {
+                "method": result.method,
+                "settings": dict(result.settings),
+                "python": platform.python_version(),
+            },
+        }
+    )
+
+
+def _entry(proof: Proof, branch: Branch) -> Document:
+    """A branch and its root, as the certificate shows them."""
+    return {
+        "root": _root(proof, branch),
+        "vertex_signs": branch.sign_text,
+        "assignment": branch.assignment_text,
+        "multiplicity": branch.multiplicity,
+        "representative": branch.representative,
     }
-    return document(result.pattern, claims, _evidence(result.proof, result.branches), provenance)
+
+
+def _root(proof: Proof, branch: Branch) -> dict[str, Any]:
+    root = branch.root
+    if isinstance(root, BoxRoot):
+        return box_entry(root.box)
+    if isinstance(root, FlatBoxRoot):
+        return flat_box_entry(root.sheets, root.box, proof.labels)
+    if isinstance(root, AlgebraicRoot) and proof.algebraic is not None:
+        return class_entry(proof.algebraic, root.root_class, root.index)
+    raise TypeError(f"no evidence for {type(root).__name__}")
 
 
 def _true_branches(result: BranchCount) -> Verdict:
@@ -74,27 +141,3 @@ def _true_branches(result: BranchCount) -> Verdict:
 
 def _all_simple(result: BranchCount) -> bool:
     return result.distinct == (result.with_multiplicity or 0) >> result.pattern.Vt
-
-
-def _evidence(proof: Proof, branches: tuple[Branch, ...]) -> Document:
-    """What the checker verifies the claims by."""
-    found: Document = {"kind": proof.kind, "triangles": triangle_evidence(proof.triangles)}
-    if proof.chart is None:
-        return found
-    roots = [_entry(proof, branch) for branch in branches]
-    found["chart"] = chart_evidence(proof.chart, proof.labels)
-    if proof.algebraic is None:
-        return {**found, "roots": roots}
-    return {**found, **algebraic_evidence(proof.algebraic, roots, proof.labels)}
-
-
-def _entry(proof: Proof, branch: Branch) -> Document:
-    """A root as the certificate shows it."""
-    root = branch.root
-    if isinstance(root, BoxRoot):
-        return box_entry(root.box)
-    if isinstance(root, FlatBoxRoot):
-        return flat_box_entry(root.sheets, root.box, proof.labels)
-    if isinstance(root, AlgebraicRoot) and proof.algebraic is not None:
-        return class_entry(proof.algebraic, root.root_class, root.index)
-    raise TypeError(f"no evidence for {type(root).__name__}")

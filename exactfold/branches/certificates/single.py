@@ -11,7 +11,7 @@ from exactfold._support.verdict import PROVED
 from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.roots import EnclosedRoot
 from exactfold.certificates.entries import Document, emptied_evidence, pattern_document
-from exactfold.checker.branches.branch import BRANCH, CURVED, FLAT
+from exactfold.checker.branches.branch import BRANCH, CURVED, FLAT, CurvedClaims
 from exactfold.errors import UsageError
 from exactfold.exact.numbers import format_integer, format_rational
 from exactfold.rigidity.equations.gauge import RIM, SADDLE
@@ -32,18 +32,20 @@ def branch_certificate(branch: Branch) -> dict[str, Any]:
     pattern, root, curvature = branch.pattern, _enclosed(branch), branch.curvature
     emptied = emptied_evidence(pattern, curvature)
     heights, denominator = heights_evidence(branch, emptied)
-    deficits = [format_rational(curvature.get(v, Fraction(0))) for v in pattern.interior]
+    claims: CurvedClaims = {
+        "gauge": RIM if branch.gauge == RIM else SADDLE,
+        "vertex_signs": [branch.vertex_signs[v] for v in pattern.interior],
+        "assignment": branch.assignment_text,
+        "squared_distance": format_rational(root.squared_distance),
+    }
+    if curvature:
+        deficits = (curvature.get(v, Fraction(0)) for v in pattern.interior)
+        claims["curvature"] = list(map(format_rational, deficits))
     return {
         "format": BRANCH.format,
         "version": CURVED if curvature else FLAT,
         "pattern": pattern_document(pattern),
-        "claims": {
-            "gauge": RIM if branch.gauge == RIM else SADDLE,
-            "vertex_signs": [branch.vertex_signs[v] for v in pattern.interior],
-            "assignment": branch.assignment_text,
-            "squared_distance": format_rational(root.squared_distance),
-            **({"curvature": deficits} if curvature else {}),
-        },
+        "claims": claims,
         "evidence": {
             "emptied": emptied,
             "heights": heights,

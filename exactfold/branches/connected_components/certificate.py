@@ -8,7 +8,7 @@ from typing import Final
 from exactfold import checker
 from exactfold.branches.connected_components.result import PartProof, Pieces, RegularPoint
 from exactfold.certificates.entries import Document, emptied_evidence, pattern_document
-from exactfold.checker.branches.connected_components import MOST_VERTICES, PIECES
+from exactfold.checker.branches.connected_components import MOST_VERTICES, PIECES, PiecesClaims
 from exactfold.checker.core.reading import CertificateError
 from exactfold.errors import NotApplicableError
 from exactfold.exact.numbers import format_integer, format_rational
@@ -40,17 +40,18 @@ def pieces_certificate(pattern: PatternLike, pieces: Pieces) -> Document:
             f"here are {number}"
         )
     complete = {v for proof in pieces.proofs for v in proof.complete}
+    claims: PiecesClaims = {
+        "vertices": list(pieces.vertices),
+        "at_least": pieces.low,
+        "at_most": pieces.high,
+        "joints": sorted({joint.sign_text for joint in pieces.joints}),
+        "complete": sorted(complete),
+    }
     document: Document = {
         "format": PIECES.format,
         "version": PIECES.version,
         "pattern": pattern_document(sheet),
-        "claims": {
-            "vertices": list(pieces.vertices),
-            "at_least": pieces.low,
-            "at_most": pieces.high,
-            "joints": sorted({joint.sign_text for joint in pieces.joints}),
-            "complete": sorted(complete),
-        },
+        "claims": claims,
         "evidence": {
             "emptied": emptied_evidence(sheet),
             "chord": None if pieces.chord is None else sorted(pieces.chord),

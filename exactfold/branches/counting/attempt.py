@@ -53,15 +53,20 @@ class Attempt:
             self.problem.pattern, UNDECIDED, choice.method, reason=reason, why=choice.why, **known
         )
 
-    def isolated(self, found: BranchCount, **counts: Any) -> BranchCount:
-        """The same count, proved: 2^n disjoint boxes are all zeros, by refined Bezout."""
+    def isolated(
+        self, found: BranchCount, *, lines: tuple[str, ...] = (), **counts: Any
+    ) -> BranchCount:
+        """The same count, proved: 2^n disjoint boxes are all zeros, by refined Bezout.
+
+        `lines` are those of the certificate, where the conveyor has written them.
+        """
         reason = (
             f"{counted(self.total, 'solution')} isolated; by refined Bezout there are no others"
         )
         distinct = counts["real"] + counts["nonreal"]
-        return self.proved(
-            found, reason, "isolated", None, distinct=distinct, true_branches=PROVED, **counts
-        )
+        kind = "chambers" if lines else "isolated"
+        counts |= {"distinct": distinct, "true_branches": PROVED}
+        return self.proved(found, reason, kind, None, lines=lines, **counts)
 
     def proved(
         self,
@@ -69,15 +74,17 @@ class Attempt:
         reason: str,
         kind: str,
         algebraic: AlgebraicProof | None,
+        *,
+        lines: tuple[str, ...] = (),
         **counts: Any,
     ) -> BranchCount:
         """The same count, proved."""
-        problem = self.problem
+        problem, triangles = self.problem, self.problem.triangles or ()
         return replace(
             found,
             status=PROVED,
             reason=reason,
             with_multiplicity=self.total << problem.pattern.Vt,
-            proof=Proof(kind, problem.triangles or (), problem.labels, self.chart, algebraic),
+            proof=Proof(kind, triangles, problem.labels, self.chart, algebraic, lines),
             **counts,
         )

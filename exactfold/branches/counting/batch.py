@@ -12,18 +12,19 @@ from exactfold._support.memory import is_shortage, shortage
 from exactfold._support.progress import Progress
 from exactfold.branches.counting.pools import Pool, process_pool
 from exactfold.branches.counting.registry import choose
-from exactfold.branches.counting.ways import Sheet, count_opened, open_sheet
+from exactfold.branches.counting.ways import count_opened
 from exactfold.branches.values.result import BranchCount
 from exactfold.errors import InputError, NotEnoughMemoryError, UnreadableFileError, UsageError
 from exactfold.pattern.data import EXAMPLES, example_path
 from exactfold.pattern.drawing.bounds import read_bytes
 from exactfold.pattern.drawing.drawing import Snap
+from exactfold.pattern.loading import PatternLike, open_sheet
 from exactfold.pattern.opening import Opened, opened
 
 if TYPE_CHECKING:
     from exactfold.panels.result import Decomposition
 
-Source: TypeAlias = "bytes | Sheet | InputError"
+Source: TypeAlias = "bytes | PatternLike | InputError"
 """What is sent to a worker: the bytes of a file, a sheet, or why there is neither."""
 
 
@@ -65,7 +66,7 @@ def count_job(job: Job) -> BranchCount | Decomposition | Exception:
 
 
 def count_many(
-    patterns: Iterable[Sheet],
+    patterns: Iterable[PatternLike],
     *,
     jobs: int = 1,
     engine: Pool | None = None,
@@ -98,13 +99,13 @@ def count_many(
     """
     choose(method)
     if isinstance(patterns, str | os.PathLike):
-        raise UsageError(f"{patterns} is one pattern: give a list of them, or use count_branches")
+        raise UsageError(f"{patterns} is one pattern: give a list of them")
     if seed < 0:
         raise UsageError(f"the seed must not be negative: {seed}")
     if jobs < 1:
         raise UsageError(f"at least one job is needed, not {jobs}")
 
-    def job(place: int, given: Sheet) -> Job:
+    def job(place: int, given: PatternLike) -> Job:
         if not isinstance(given, str | os.PathLike):
             return Job(str(place), given, method, seed, snap, number)
         path = example_path(given) if isinstance(given, str) and given in EXAMPLES else given

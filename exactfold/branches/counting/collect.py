@@ -8,9 +8,11 @@ from dataclasses import replace
 from exactfold._support.plurals import counted
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.branches.certificates.blocks import compact_lines
 from exactfold.branches.counting.attempt import Attempt
 from exactfold.branches.counting.by_theorem import IN_MEMORY, is_too_many, too_many
-from exactfold.branches.counting.conveyor import LISTED_BITS, Conveyor
+from exactfold.branches.counting.conveyor import Conveyor
+from exactfold.branches.counting.engines import in_this_process
 from exactfold.branches.counting.fallback import isolated, solved_exactly, with_flat_vertices
 from exactfold.branches.counting.registry import METHODS, NEWTON, Choice, choose, find_candidates
 from exactfold.branches.counting.true_bounds import with_true_bounds
@@ -185,7 +187,7 @@ def _lines(
     """
     ends: Candidates | None = None
     if choice.method == NEWTON and 0 < problem.size <= MOST_UNKNOWNS:
-        conveyor = Conveyor.of(problem, bits=LISTED_BITS)
+        conveyor = Conveyor.of(problem)
         attempt = Attempt(problem, problem.chart, choice, progress)
         ends = _ends(conveyor, attempt)
         if not (ends.lost or ends.agree_to(_MEET)):
@@ -214,17 +216,19 @@ def _collected(conveyor: Conveyor, attempt: Attempt, ends: Candidates) -> Branch
     """The branches of all blocks, None if a root or a letter stays open."""
     stage, count = attempt.stage("certifying"), conveyor.block_size
     branches: list[Branch] = []
-    for index in range(conveyor.blocks):
-        block = conveyor.prove(index)
-        if block.open or any("U" in root.assignment for root in block.exact.values()):
+    proved: list[str] = []
+    for block, line in in_this_process(conveyor, range(conveyor.blocks)):
+        if not block.is_decided:
             return None
         branches += conveyor.branches(block)
-        stage((index + 1) * count, attempt.total)
+        proved.append(line)
+        stage(len(proved) * count, attempt.total)
     branches.sort(key=Branch.sort_key)
     return attempt.isolated(
         attempt.undecided("", branches=tuple(branches), settings={**ends.settings, "lost": 0}),
         real=attempt.total,
         nonreal=0,
+        lines=compact_lines(conveyor.problem, count, proved),
     )
 
 

@@ -35,35 +35,22 @@ from exactfold.solve.numeric.dense_newton import Ends, NappeSystem, sign_vectors
 BLOCK = 1024
 """Sign vectors in a block, and the most that an interruption loses."""
 
-STREAMED_BITS = 40
-"""Bits of the centres in a streamed file: enough for every test, and few bytes."""
-
-LISTED_BITS = 44
-"""Bits of the centres of branches in memory, whose heights are read more often."""
+BITS = 44
+"""Bits of the centres: enough for every test and for nine digits of a height, and few bytes."""
 
 _WIDEST = 52
 
 
 @dataclass(frozen=True)
 class Conveyor:
-    """All 2^n branches of a problem with four boundary vertices, in blocks of `block_size`.
-
-    Centres of boxes have `bits` bits after the point.
-    """
+    """All 2^n branches of a problem with four boundary vertices, in blocks of `block_size`."""
 
     problem: Problem
     block_size: int
-    bits: int = STREAMED_BITS
     _solved: dict[int, tuple[Ends, float]] = field(default_factory=dict, repr=False, compare=False)
 
     @classmethod
-    def of(
-        cls,
-        pattern: CreasePattern | Problem,
-        block_size: int | None = None,
-        *,
-        bits: int = STREAMED_BITS,
-    ) -> Conveyor:
+    def of(cls, pattern: CreasePattern | Problem, block_size: int | None = None) -> Conveyor:
         """Blocks of `block_size` sign vectors, a power of two, 1024 by default.
 
         Raises `NotApplicableError` unless D = 1 and some vertex is foldable, 40 at most.
@@ -82,7 +69,7 @@ class Conveyor:
             raise NotApplicableError("no definite stress was found for a triangulated triangle")
         if problem.size > MOST_UNKNOWNS:
             raise NotApplicableError(f"2^{problem.size} branches are too many to list")
-        return cls(problem, min(block_size or BLOCK, 1 << problem.size), bits)
+        return cls(problem, min(block_size or BLOCK, 1 << problem.size))
 
     @property
     def size(self) -> int:
@@ -135,7 +122,7 @@ class Conveyor:
         self.ends(index)
         ends, solving = self._solved.pop(index)
         start = time.process_time()
-        boxes = self._test.isolate(ends.points, self.bits)
+        boxes = self._test.isolate(ends.points, BITS)
         signs = sign_vectors(index * count, count, self.size)
         vertices, folds = self._vertices.on(boxes), self._folds.on(boxes)
         good = boxes.proved & (vertices == signs).all(axis=1) & (folds != 0).all(axis=1)

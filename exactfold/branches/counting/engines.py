@@ -6,8 +6,8 @@ from collections.abc import Callable, Generator
 from dataclasses import dataclass
 from functools import cached_property
 
-from exactfold._support.shared_work import in_order
-from exactfold.branches.certificates.streamed import block_line
+from exactfold._support.processes import in_order
+from exactfold.branches.certificates.blocks import block_line
 from exactfold.branches.counting.conveyor import Conveyor
 from exactfold.branches.values.blocks import ProvedBlock
 from exactfold.errors import WorkerDiedError
@@ -28,12 +28,15 @@ def processes(workers: int) -> Engine:
 
     def engine(conveyor: Conveyor, left: range) -> Generator[tuple[ProvedBlock, str], None, None]:
         most = min(workers, len(left) // LEAST)
-        return _here(conveyor, left) if most < 2 else _pool(conveyor, left, most)
+        return in_this_process(conveyor, left) if most < 2 else _pool(conveyor, left, most)
 
     return engine
 
 
-def _here(conveyor: Conveyor, left: range) -> Generator[tuple[ProvedBlock, str], None, None]:
+def in_this_process(
+    conveyor: Conveyor, left: range
+) -> Generator[tuple[ProvedBlock, str], None, None]:
+    """The engine of this process alone."""
     for index in left:
         block = conveyor.prove(index)
         yield block, block_line(block)

@@ -14,7 +14,7 @@ from importlib.metadata import version
 from typing import Any
 
 from exactfold._support.processes import available_cores, held_interrupts, worker_environment
-from exactfold.branches.certificates.streamed import block_line
+from exactfold.branches.certificates.blocks import block_line
 from exactfold.branches.counting.conveyor import Conveyor
 from exactfold.branches.counting.engines import Engine
 from exactfold.branches.values.blocks import ProvedBlock

@@ -10,7 +10,7 @@ from importlib.metadata import version
 from itertools import islice
 from typing import Any, Protocol, TypeVar
 
-from exactfold._support.shared_work import as_they_end
+from exactfold._support.processes import as_they_end
 from exactfold.branches.counting.on_dask import cluster_client
 from exactfold.errors import ClusterError, WorkerDiedError
 

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, cast
 from exactfold._support.plurals import counted
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.branches.certificates.blocks import chamber_counts, claims_line, header_line
 from exactfold.branches.certificates.check import FastChecker
-from exactfold.branches.certificates.streamed import claims_line, header_line
 from exactfold.branches.counting.collect import check_countable, count_branches
 from exactfold.branches.counting.conveyor import Conveyor
 from exactfold.branches.counting.engines import Engine, processes
@@ -155,7 +155,7 @@ def stream_branches(
             if progress is not None:
                 progress("proving", journal.blocks * conveyor.block_size, total)
         if not tally.unproved:
-            journal.finish(claims_line(problem))
+            journal.finish(claims_line(pattern, chamber_counts(problem)))
         else:
             journal.sync()
     if journal.complete:

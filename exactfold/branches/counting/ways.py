@@ -2,24 +2,17 @@
 
 from __future__ import annotations
 
-import os
-import sys
 from dataclasses import replace
 from functools import partial
-from os import PathLike
-from typing import TYPE_CHECKING, TypeAlias, TypeGuard
+from typing import TYPE_CHECKING
 
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED
 from exactfold.branches.counting.collect import count_branches, not_convex
 from exactfold.branches.counting.registry import METHODS, choose
-from exactfold.errors import SeveralSheetsError, UnreadableFileError, UsageError
-from exactfold.exact.numbers import shown
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.data import EXAMPLES, example_path
-from exactfold.pattern.drawing.drawing import Drawing
-from exactfold.pattern.fold import FoldFile
-from exactfold.pattern.opening import Opened, from_drawing, has_branches, open_pattern, panels
+from exactfold.pattern.loading import PatternLike, open_sheet
+from exactfold.pattern.opening import Opened, has_branches, panels
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -29,16 +22,11 @@ if TYPE_CHECKING:
     from exactfold.pattern.drawing.drawing import Snap
     from exactfold.pattern.panel_pattern import PanelPattern
 
-Sheet: TypeAlias = (
-    "CreasePattern | PanelPattern | FoldFile | Opened | Drawing | str | PathLike[str]"
-)
-"""What `count_ways` takes: sheets of both kinds, drawings, and files of any format."""
-
-__all__ = ["METHODS", "count_opened", "count_ways", "decompose_opened", "open_sheet"]
+__all__ = ["METHODS", "count_opened", "count_ways", "decompose_opened"]
 
 
 def count_ways(
-    sheet: Sheet,
+    sheet: PatternLike,
     *,
     method: str = "auto",
     seed: int = 0,
@@ -112,44 +100,3 @@ def _reopened(again: Callable[[Snap], Opened], snap: Snap) -> tuple[PanelPattern
         return sheet, found.largest_move
     size = max(float(max(c) - min(c)) for c in zip(*sheet.vertices, strict=True))
     return sheet, float(found.snapped) / size
-
-
-def open_sheet(sheet: Sheet, snap: Snap | None = None, number: int | None = None) -> Opened:
-    """The sheet that is meant: any pattern, what was read, a drawing, a file, or an example."""
-    if not isinstance(sheet, str | PathLike | Drawing) and number not in (None, 1):
-        raise SeveralSheetsError(f"there is no sheet {number}: a pattern is one sheet")
-    if isinstance(sheet, Opened):
-        return sheet
-    if isinstance(sheet, Drawing):
-        return from_drawing(sheet, snap, number=number)
-    if isinstance(sheet, FoldFile):
-        return Opened(sheet.pattern, sheet.assignment, snapped=sheet.snapped)
-    if isinstance(sheet, CreasePattern):
-        if snap is None or snap == "exact":
-            return Opened(sheet)
-        if isinstance(snap, int):
-            moved, largest = sheet.snapped(snap)
-            return Opened(moved, snapped=largest)
-        raise UsageError("--snap auto is for drawings: give a denominator")
-    if _is_panels(sheet):
-        return Opened(sheet)
-    if not isinstance(sheet, str | PathLike):
-        raise UsageError(
-            f"{shown(sheet)} is not a pattern: give a sheet, a drawing, the path of a file, or the "
-            "name of an example"
-        )
-    name = os.fspath(sheet)
-    if isinstance(sheet, str) and sheet in EXAMPLES:
-        return open_pattern(example_path(sheet), snap, name=sheet, number=number)
-    if isinstance(sheet, str) and not os.path.exists(sheet):
-        raise UnreadableFileError(
-            f"{shown(sheet)} is neither a file nor an example; the examples are: "
-            f"{', '.join(EXAMPLES)}"
-        )
-    return open_pattern(sheet, snap, name=name, number=number)
-
-
-def _is_panels(sheet: object) -> TypeGuard[PanelPattern]:
-    """Asked of the module, as a pattern that is there has loaded it."""
-    module = sys.modules.get("exactfold.pattern.panel_pattern")
-    return module is not None and isinstance(sheet, module.PanelPattern)

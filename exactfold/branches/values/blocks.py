@@ -49,3 +49,8 @@ class ProvedBlock:
     open: Mapping[int, OpenEnd]
     steps: int = 0
     seconds: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def is_decided(self) -> bool:
+        """Whether each sign vector has a proved root, and each fold of it a letter."""
+        return not self.open and all("U" not in root.assignment for root in self.exact.values())

@@ -90,7 +90,7 @@ class BranchMaker:
         return Branch(
             pattern,
             self._rigid | dict(zip(self.problem.foldable, signs, strict=True)),
-            self._flat | dict(zip(self._folds, letters, strict=True)),
+            self._flat | dict(zip(self.folds, letters, strict=True)),
             root,
             multiplicity << pattern.Vt,
             "saddle" if saddle else "notch",
@@ -124,7 +124,8 @@ class BranchMaker:
         return dict.fromkeys(self.problem.pattern.folds, "F")
 
     @cached_property
-    def _folds(self) -> list[Edge]:
+    def folds(self) -> list[Edge]:
+        """The folds of the sheet without rigid parts, in the order of the letters."""
         labels = self.problem.labels
         return [(labels[i], labels[j]) for i, j in sorted(self.problem.sheet.folds)]
 

@@ -70,11 +70,11 @@ def export_branch(
     `UnwritableFileError`.
 
     >>> import os, tempfile, exactfold
-    >>> pattern = exactfold.families.two_vertex()
-    >>> branch = exactfold.find_branch(pattern, "-+")
+    >>> pattern = exactfold.pattern.families.two_vertex()
+    >>> branch = exactfold.branch(pattern, "-+")
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     written = export_branch(branch, os.path.join(folder, "branch.fold"))
-    ...     exactfold.read_fold(os.path.join(folder, "branch.fold")) == pattern
+    ...     exactfold.pattern.read_fold(os.path.join(folder, "branch.fold")) == pattern
     True
     >>> round(written.angles[1, 4], 1), round(written.angles[1, 5], 1), branch.assignment_text
     (30.0, -1.2, 'VVMMVVM')
@@ -94,7 +94,7 @@ def exported(
     """What `export_branch` writes, not yet written; raises the same errors but the last.
 
     >>> import exactfold
-    >>> export = exported(exactfold.find_branch("two-vertex", "++"), amount=10)
+    >>> export = exported(exactfold.branch("two-vertex", "++"), amount=10)
     >>> export.document["file_title"], export.document["frame_exactfold:branch"]["status"]
     ('branch ++', 'proved')
     """

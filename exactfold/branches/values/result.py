@@ -37,11 +37,12 @@ if TYPE_CHECKING:  # branches are counted without what panels need
 
 @dataclass(frozen=True)
 class Proof:
-    """What proves a count; `exactfold.certificates` writes it down (docs/certificate.md).
+    """What proves a count; `branches.certificates.listing` writes it down (docs/certificate.md).
 
-    `kind` is "isolated" (the roots of the branches, each in a box, are all there are), "algebraic"
-    (by multiplicities, see `AlgebraicProof`), "rigid" or "single vertex". The first two hold in
-    `chart`, whose vertex k is `labels[k]` of the pattern.
+    `kind` is "chambers" (one root for each sign vector), "isolated" (the roots of the branches,
+    each in a box, are all there are), "algebraic" (by multiplicities, see `AlgebraicProof`),
+    "rigid" or "single vertex". The first three hold in `chart`, whose vertex k is `labels[k]` of
+    the pattern. `lines` are the lines of the certificate where `kind` is "chambers".
     """
 
     kind: str
@@ -49,6 +50,7 @@ class Proof:
     labels: tuple[int, ...] = ()
     chart: Chart | None = None
     algebraic: AlgebraicProof | None = None
+    lines: tuple[str, ...] = field(default=(), repr=False)
 
 
 @dataclass(frozen=True)

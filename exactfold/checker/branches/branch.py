@@ -14,10 +14,10 @@ from __future__ import annotations
 
 from fractions import Fraction
 from math import lcm
-from typing import Any
+from typing import Any, TypedDict
 
 from ..core.kinds import DocumentKind
-from ..core.reading import items, keys, parse_integer, parse_rational, refusing, require
+from ..core.reading import items, keys, keys_of, parse_integer, parse_rational, refusing, require
 from ..sheets.reduced import check_convex, closed, emptied_sheet
 from ..sheets.sheet import Sheet, read_sheet, turn
 from .branch_proof import Heights, Proof
@@ -26,8 +26,30 @@ FLAT, CURVED = 1, 2
 """The versions: of a branch, and of one shape of a sheet with angle deficits."""
 
 
+class BranchClaims(TypedDict):
+    """What a file claims, with exact numbers in quotes (see `check`)."""
+
+    gauge: str
+    vertex_signs: list[int]
+    assignment: str
+    squared_distance: str
+
+
+class CurvedClaims(BranchClaims, total=False):
+    """The same, with the angle deficits that every file of version 2 has."""
+
+    curvature: list[str]
+
+
+class VerifiedBranch(CurvedClaims):
+    """What is verified, with the number of interior vertices and the digest of the pattern."""
+
+    interior: int
+    sha256: str
+
+
 @refusing()
-def check(data: dict[str, Any]) -> dict[str, Any]:
+def check(data: dict[str, Any]) -> VerifiedBranch:
     """Verify every claim of a loaded certificate; raises `CertificateError` at the first failure.
 
     Returns the claims and the SHA-256 of the pattern. The claims are: of all branches, or of all
@@ -38,9 +60,8 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
     """
     given, digest = read_sheet(data["pattern"])
     claims, evidence = data["claims"], data["evidence"]
-    names = "gauge vertex_signs assignment squared_distance"
     curved = data["version"] == CURVED
-    keys(claims, f"{names} curvature" if curved else names, "claims")
+    keys(claims, keys_of(CurvedClaims if curved else BranchClaims), "claims")
     keys(evidence, "emptied heights denominator", "evidence")
     place = Place(given, evidence["emptied"])
     targets = place.targets(claims["curvature"]) if curved else {}
@@ -56,7 +77,8 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
     )
     _check_signs(place, claims["vertex_signs"], proof)
     _check_letters(place, claims["assignment"], proof)
-    return {"sha256": digest, "interior": len(given.interior), **claims}
+    proved: CurvedClaims = claims
+    return {"sha256": digest, "interior": len(given.interior), **proved}
 
 
 # --- the sheet -----------------------------------------------------------------------------------
@@ -169,7 +191,7 @@ def _check_letters(place: Place, letters: Any, proof: Proof) -> None:
         require(letter == expected or letter == "U", f"fold {fold} is not known to be {letter!a}")
 
 
-def summary(claims: dict[str, Any]) -> str:
+def summary(claims: VerifiedBranch) -> str:
     """One line for verified claims."""
     signs = "".join("-0+"[s + 1] for s in claims["vertex_signs"])
     shown = signs if len(signs) <= 60 else signs[:60] + "..."
@@ -187,6 +209,7 @@ BRANCH = DocumentKind(
     format="exactfold branch",
     versions=(FLAT, CURVED),
     names="format version pattern claims evidence",
+    claims=VerifiedBranch,
     check=check,
     summary=summary,
 )

@@ -7,14 +7,25 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import closing
-from typing import Any
 
 from ..core.kinds import LineKind
 from ..core.lines import lines, read_object
 from ..core.parts import Engine, here, on_processes
-from ..core.reading import CertificateError, FormatError, UnfinishedError, keys, refusing, require
+from ..core.reading import (
+    CertificateError,
+    FormatError,
+    UnfinishedError,
+    keys,
+    keys_of,
+    refusing,
+    require,
+)
 from .compact_blocks import CompactSheet
-from .listing import summary
+from .compact_roots import check_roots
+from .listing import CountClaims, summary
+
+CHAMBERS, ROOTS = 1, 2
+"""The versions: one simple root for each sign vector; an entry for each root, of any kind."""
 
 
 class IntegerVerifier:
@@ -37,7 +48,7 @@ INTEGERS = Engine(IntegerVerifier, 1, on_processes)
 """All in integers, by the standard library alone."""
 
 
-def check(path: str, workers: int = 1, engine: Engine = INTEGERS) -> dict[str, Any]:
+def check(path: str, workers: int = 1, engine: Engine = INTEGERS) -> CountClaims:
     """Verify every claim of a compact certificate; returns the claims.
 
     Raises `CertificateError` if one is not supported, `FormatError` if the file is no compact
@@ -47,9 +58,7 @@ def check(path: str, workers: int = 1, engine: Engine = INTEGERS) -> dict[str, A
         return check_lines(lines(stream), workers, engine)
 
 
-def check_lines(
-    found: Iterator[str], workers: int = 1, engine: Engine = INTEGERS
-) -> dict[str, Any]:
+def check_lines(found: Iterator[str], workers: int = 1, engine: Engine = INTEGERS) -> CountClaims:
     """Verify every claim, given the lines of a file; returns the claims.
 
     With several workers, blocks are checked in that many processes.
@@ -58,21 +67,29 @@ def check_lines(
     if first is None:
         raise FormatError("the file is empty")
     header = COMPACT.header(first)
-    with refusing("in the first line"):
-        sheet = CompactSheet(header)
-    _check_blocks(found, first, sheet.blocks, workers, engine)
+    if header["version"] == ROOTS:
+        facts, blocks = check_roots(header, found)
+    else:
+        with refusing("in the first line"):
+            sheet = CompactSheet(header)
+        _check_blocks(found, first, sheet.blocks, workers, engine)
+        facts, blocks = sheet.claims(), sheet.blocks
+    _check_claims(found, facts, blocks)
+    return facts
+
+
+def _check_claims(found: Iterator[str], facts: CountClaims, blocks: int) -> None:
+    """The last line claims what was found, no more and no less."""
     last = next(found, None)
     if last is None:
-        raise UnfinishedError(f"all {sheet.blocks} blocks hold, but the claims are missing")
+        raise UnfinishedError(f"all {blocks} blocks hold, but the claims are missing")
     claims = read_object(last, "the last line")
     keys(claims, "claims", "the last line")
     require(next(found, None) is None, "something follows the claims")
-    facts = sheet.claims()
-    keys(claims["claims"], " ".join(facts), "claims")
+    keys(claims["claims"], keys_of(CountClaims), "claims")
     for key, fact in facts.items():
         claim = claims["claims"][key]
         require(type(claim) is type(fact) and claim == fact, f"{key} = {claim!a} is {fact!a}")
-    return facts
 
 
 def _check_blocks(
@@ -106,10 +123,11 @@ def _check_blocks(
 
 COMPACT = LineKind(
     format="exactfold compact certificate",
-    versions=(1,),
+    versions=(CHAMBERS, ROOTS),
     names="format version pattern evidence provenance",
+    claims=CountClaims,
     check=check_lines,
     summary=summary,
     engine=INTEGERS,
 )
-"""One root for each sign vector, line by line (docs/compact-certificate.md)."""
+"""All branches of a triangulated sheet, line by line (docs/compact-certificate.md)."""

@@ -22,7 +22,7 @@ from ..sheets.equations import BranchSystem, read_chart
 from ..sheets.flat_folds import close_flat
 from ..sheets.sheet import facts_of, read_sheet
 from ..sheets.stress import check_triangles
-from .listing import COUNTS, agrees, digit
+from .listing import CountClaims, agrees, counts_of, digit
 
 UNPROVED = 255
 """The radius byte of a root that is given under "exact"."""
@@ -78,11 +78,10 @@ class CompactSheet:
         self.fold_rows = [self.system.row(self.emptied.bend(f)) for f in self.emptied.folds]
         self.letter_bytes = (len(self.fold_rows) + 7) // 8
 
-    def claims(self) -> dict[str, Any]:
+    def claims(self) -> CountClaims:
         """What a complete file proves."""
-        counts = (1 << self.size, 1 << len(self.sheet.interior), 1 << self.size, 0, "proved")
-        facts = facts_of(self.sheet, self.sha256)
-        return facts | dict(zip(COUNTS.split(), counts, strict=True))
+        counts = counts_of(1 << self.size, 1 << len(self.sheet.interior))
+        return {**facts_of(self.sheet, self.sha256), **counts}
 
     def decode(self, text: str, number: int) -> Block:
         """The block of a line, which must be block `number`."""

@@ -12,11 +12,11 @@ all.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, TypedDict
 
 from ..core import limits
 from ..core.kinds import DocumentKind
-from ..core.reading import counted, items, keys, natural, refusing, require, same
+from ..core.reading import counted, items, keys, keys_of, natural, refusing, require, same
 from ..core.towers import Tower
 from ..panels.spaces import Spaces
 from ..sheets.panels import PanelSheet, pair
@@ -31,8 +31,29 @@ Cube = tuple[int, int]
 """All sign vectors that agree with the second number on the bits of the first."""
 
 
+class PiecesClaims(TypedDict):
+    """What a file claims (see `check`)."""
+
+    vertices: list[int]
+    at_least: int
+    at_most: int
+    joints: list[str]
+    complete: list[int]
+
+
+class _Chord(TypedDict, total=False):
+    chord: list[int]
+
+
+class VerifiedPieces(PiecesClaims, _Chord):
+    """What is verified, with the fold from border to border that joins all, if there is one."""
+
+    interior: int
+    sha256: str
+
+
 @refusing()
-def check(data: dict[str, Any]) -> dict[str, Any]:
+def check(data: dict[str, Any]) -> VerifiedPieces:
     """Verify every claim of a loaded certificate; raises `CertificateError` at the first failure.
 
     Returns the claims, the SHA-256 of the pattern, and the `chord` that joins all, if there is one.
@@ -43,7 +64,7 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
     """
     given, digest = read_sheet(data["pattern"])
     claims, evidence = data["claims"], data["evidence"]
-    keys(claims, "vertices at_least at_most joints complete", "claims")
+    keys(claims, keys_of(PiecesClaims), "claims")
     keys(evidence, "emptied chord flat", "evidence")
     place = Place(given, evidence["emptied"])
     require(len(place.sheet.boundary) > 4, "there are fewer than five boundary vertices")
@@ -65,8 +86,9 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
     require(complete, "other vertices are complete")
     shown = f"the evidence shows {low} to {high} pieces"
     require(same([claims["at_least"], claims["at_most"]], [low, high]), shown)
-    more = {} if chord is None else {"chord": chord}
-    return {"sha256": digest, "interior": len(given.interior), **more, **claims}
+    more: _Chord = {} if chord is None else {"chord": chord}
+    proved: PiecesClaims = claims
+    return {"sha256": digest, "interior": len(given.interior), **more, **proved}
 
 
 def _check_joints(listed: list[Any], search: _Search) -> None:
@@ -181,7 +203,7 @@ def components(size: int, cubes: set[Cube]) -> int:
     return number + alone
 
 
-def summary(claims: dict[str, Any]) -> str:
+def summary(claims: VerifiedPieces) -> str:
     """One line for verified claims."""
     low, high = claims["at_least"], claims["at_most"]
     graphs = 1 << len(claims["vertices"])
@@ -198,6 +220,7 @@ PIECES = DocumentKind(
     format="exactfold pieces",
     versions=(1,),
     names="format version pattern claims evidence",
+    claims=VerifiedPieces,
     check=check,
     summary=summary,
 )

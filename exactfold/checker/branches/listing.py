@@ -14,7 +14,7 @@ What each kind of evidence proves, in short:
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, TypedDict
 
 from ..core.kinds import DocumentKind
 from ..core.reading import (
@@ -22,6 +22,7 @@ from ..core.reading import (
     counted,
     items,
     keys,
+    keys_of,
     refusing,
     require,
     text_of,
@@ -29,28 +30,67 @@ from ..core.reading import (
 from ..sheets.boxes import Root, check_isolated
 from ..sheets.equations import BranchSystem, read_chart
 from ..sheets.flat_folds import close_flat
-from ..sheets.sheet import FACTS, Sheet, facts_of, read_sheet
+from ..sheets.sheet import Sheet, SheetFacts, facts_of, read_sheet
 from ..sheets.stress import check_lorentzian, check_triangles
 from .algebraic import check_algebraic
 
 UPSIDE_DOWN = str.maketrans("+-MV", "-+VM")
-COUNTS = "distinct with_multiplicity real nonreal true_branches"
-Counts = tuple[int, int, int, int, str]
+
+
+class Counts(TypedDict):
+    """How many branches there are, and whether all of them extend to a finite flex."""
+
+    distinct: int
+    with_multiplicity: int
+    real: int
+    nonreal: int
+    true_branches: str
+
+
+class ListedBranch(TypedDict):
+    """A branch by its signs and letters, as shown by its positive saddle or by either side."""
+
+    vertex_signs: str
+    assignment: str
+    multiplicity: int
+    representative: str
+
+
+class CountClaims(SheetFacts, Counts):
+    """What is claimed of the branches of a sheet together."""
+
+
+class ListingClaims(CountClaims):
+    """The same, with all of them."""
+
+    branches: list[ListedBranch]
 
 
 @refusing()
-def check(data: dict[str, Any]) -> dict[str, Any]:
+def check(data: dict[str, Any]) -> ListingClaims:
     """Verify every claim of a certificate; raises `CertificateError` at the first failure.
 
     Returns the verified claims. Passing means that the claims hold for the pattern in the file.
     """
-    claims, evidence = data["claims"], data["evidence"]
-    keys(claims, f"{FACTS} {COUNTS} branches", "claims")
-    require(isinstance(evidence, dict), "the evidence is not an object")
+    claims = data["claims"]
+    keys(claims, keys_of(ListingClaims), "claims")
     sheet, digest = read_sheet(data["pattern"])
+    branches = items(claims["branches"], "branches")
+    counts = proved(sheet, data["evidence"], branches)
+    facts: CountClaims = {**facts_of(sheet, digest), **counts}
+    for key, fact in facts.items():
+        require(
+            type(claims[key]) is type(fact) and claims[key] == fact,
+            f"claim {key} = {claims[key]!a}, but it is {fact!a}",
+        )
+    return {**facts, "branches": branches}
+
+
+def proved(sheet: Sheet, evidence: Any, branches: list[Any]) -> Counts:
+    """The counts that the evidence proves of a sheet, whose branches are those listed."""
+    require(isinstance(evidence, dict), "the evidence is not an object")
     emptied = check_triangles(sheet, evidence.get("triangles"))
     kind = evidence.get("kind")
-    branches = items(claims["branches"], "branches")
     if kind == "rigid":
         counts = _rigid(sheet, emptied, evidence, branches)
     elif kind == "single vertex":
@@ -59,13 +99,20 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
         counts = _lines(sheet, emptied, evidence, branches)
     else:
         raise CertificateError(f"unknown kind of evidence {kind!a}")
-    facts = facts_of(sheet, digest) | dict(zip(COUNTS.split(), counts, strict=True))
-    for key, fact in facts.items():
-        require(
-            type(claims[key]) is type(fact) and claims[key] == fact,
-            f"claim {key} = {claims[key]!a}, but it is {fact!a}",
-        )
-    return dict(claims)
+    return counts
+
+
+def counts_of(
+    real: int, with_multiplicity: int, nonreal: int = 0, *, simple: bool = True
+) -> Counts:
+    """Real and other branches; all extend to a finite flex if all are real and simple."""
+    return {
+        "distinct": real + nonreal,
+        "with_multiplicity": with_multiplicity,
+        "real": real,
+        "nonreal": nonreal,
+        "true_branches": "proved" if simple and not nonreal else "undecided",
+    }
 
 
 def _rigid(sheet: Sheet, emptied: Sheet, evidence: Any, branches: list[Any]) -> Counts:
@@ -75,7 +122,7 @@ def _rigid(sheet: Sheet, emptied: Sheet, evidence: Any, branches: list[Any]) -> 
         "the sheet is no triangulated triangle",
     )
     require(not branches, "a rigid sheet has no branches")
-    return 0, 0, 0, 0, "proved"
+    return counts_of(0, 0)
 
 
 def _single_vertex(sheet: Sheet, emptied: Sheet, evidence: Any, branches: list[Any]) -> Counts:
@@ -87,7 +134,7 @@ def _single_vertex(sheet: Sheet, emptied: Sheet, evidence: Any, branches: list[A
     )
     check_lorentzian(emptied, emptied.interior[0])
     require(not branches, "a branch of dimension two or more is not listed")
-    return 1, 1 << len(sheet.interior) - 1, 1, 0, "proved"
+    return counts_of(1, 1 << len(sheet.interior) - 1)
 
 
 def _lines(sheet: Sheet, emptied: Sheet, evidence: Any, branches: list[Any]) -> Counts:
@@ -101,9 +148,7 @@ def _lines(sheet: Sheet, emptied: Sheet, evidence: Any, branches: list[Any]) -> 
     require(len(branches) == len(roots), f"{len(branches)} branches for {len(roots)} roots")
     check_branches(sheet, system, roots, branches)
     simple = all(m == 1 for _, m in roots)
-    true_branches = "proved" if simple and not nonreal else "undecided"
-    real = len(roots)
-    return real + nonreal, 1 << len(sheet.interior), real, nonreal, true_branches
+    return counts_of(len(roots), 1 << len(sheet.interior), nonreal, simple=simple)
 
 
 def check_branches(
@@ -121,7 +166,7 @@ def check_branches(
     fold_rows = {f: system.row(emptied.bend(f)) for f in emptied.folds}
     saddle = system.row(system.saddle)
     for number, ((root, multiplicity), branch) in enumerate(zip(roots, branches, strict=True)):
-        keys(branch, "vertex_signs assignment multiplicity representative", f"branch {number}")
+        keys(branch, keys_of(ListedBranch), f"branch {number}")
         signs = {f: root.sign(row) for f, row in fold_rows.items()}
         close_flat(emptied, signs)
         at = {v: root.sign(row) for v, row in vertex_rows.items()}
@@ -166,7 +211,7 @@ def digit(sign: int | None) -> int:
     return 2 if sign is None else sign
 
 
-def summary(claims: dict[str, Any]) -> str:
+def summary(claims: CountClaims) -> str:
     """One line for verified claims."""
     branches = counted(claims["distinct"], "branch", "branches")
     return (
@@ -180,6 +225,7 @@ LISTING = DocumentKind(
     format="exactfold certificate",
     versions=(2,),
     names="format version pattern claims evidence provenance",
+    claims=ListingClaims,
     check=check,
     summary=summary,
 )

@@ -17,16 +17,17 @@ Claims = TypeVar("Claims", bound=Mapping[str, Any])
 
 @dataclass(frozen=True, kw_only=True)
 class Kind(Generic[Claims]):
-    """A kind of certificate, `Claims` being what a file of this kind proves.
+    """A kind of certificate.
 
-    The writer takes `format` and a version from here, and the types of the claims from the module
-    of the kind. `names` are the keys of the object, or of the first line of a file of lines.
-    `summary` is one line for verified claims.
+    The writer takes `format` and a version from here, and the types of what it writes from the
+    module of the kind. `names` are the keys of the object, or of the first line of a file of lines.
+    `claims` is the type of verified claims, and `summary` says them in one line.
     """
 
     format: str
     versions: tuple[int, ...]
     names: str
+    claims: type[Claims]
     summary: Callable[[Claims], str]
 
     @property

@@ -45,6 +45,7 @@ MOST_BLOCK = 1 << 16  # roots in a block
 MOST_UNKNOWNS = 40
 MOST_LINE = 1 << 25  # bytes of a line
 MOST_DIGITS = 4000  # of an exact root in a block, and its bits
+MOST_ENTRIES = 1 << 20  # roots that are listed one by one
 
 # --- motions -------------------------------------------------------------------------------------
 MOST_TUBES = 1 << 12  # of a motion

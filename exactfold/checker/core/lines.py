@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import IO, Any
 
 from .limits import MOST_LINE
@@ -13,6 +13,15 @@ from .reading import FormatError, read_json
 def digest(previous: str, body: str) -> str:
     """The digest of a line: SHA-256 of the digest before it and its JSON text."""
     return hashlib.sha256((previous + body).encode()).hexdigest()
+
+
+def chained(texts: Iterable[str]) -> str:
+    """The file with these JSON texts as its lines, each with its digest."""
+    previous, found = "", []
+    for text in texts:
+        previous = digest(previous, text)
+        found.append(f"{text}\t{previous}\n")
+    return "".join(found)
 
 
 def lines(stream: IO[bytes], first: bytes = b"") -> Iterator[str]:

@@ -138,6 +138,11 @@ def keys(value: Any, names: str, what: str, error: type[Exception] = Certificate
         raise error(f"{what}: expected an object with the keys {names}")
 
 
+def keys_of(form: type) -> str:
+    """The keys of a typed dictionary, as `keys` takes them."""
+    return " ".join(form.__annotations__)
+
+
 def items(value: Any, what: str, length: int | None = None) -> list[Any]:
     """`value` if it is a list (of the given length)."""
     require(isinstance(value, list), f"{what} is not a list")

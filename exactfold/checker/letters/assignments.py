@@ -12,12 +12,12 @@ a point for either side of its border is enough.
 from __future__ import annotations
 
 from itertools import product
-from typing import Any
+from typing import Any, TypedDict
 
 from ..branches.branch import Place
 from ..core import limits
 from ..core.kinds import DocumentKind
-from ..core.reading import counted, items, keys, parse_integer, refusing, require
+from ..core.reading import counted, items, keys, keys_of, parse_integer, refusing, require
 from ..sheets.reduced import check_convex
 from ..sheets.sheet import Edge, Sheet, read_sheet, turn
 from .arcs import Arcs, Word
@@ -26,8 +26,21 @@ MOST_VERTICES = limits.ASSIGNED_VERTICES
 """Most vertices that can pop."""
 
 
+class AssignmentsClaims(TypedDict):
+    """What a file claims (see `check`)."""
+
+    assignments: list[str]
+
+
+class VerifiedAssignments(AssignmentsClaims):
+    """What is verified, with the number of interior vertices and the digest of the pattern."""
+
+    interior: int
+    sha256: str
+
+
 @refusing()
-def check(data: dict[str, Any]) -> dict[str, Any]:
+def check(data: dict[str, Any]) -> VerifiedAssignments:
     """Verify every claim of a loaded certificate; raises `CertificateError` at the first failure.
 
     Returns the claims and the SHA-256 of the pattern. The claim is: `assignments` are the letters,
@@ -36,12 +49,12 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
     """
     given, digest = read_sheet(data["pattern"])
     claims, evidence = data["claims"], data["evidence"]
-    keys(claims, "assignments", "claims")
+    keys(claims, keys_of(AssignmentsClaims), "claims")
     keys(evidence, "emptied circles", "evidence")
     texts = _shown(given, evidence)
     listed = items(claims["assignments"], "assignments")
     require(listed == texts, f"the evidence shows {len(texts)} assignments, and not these")
-    return {"sha256": digest, "interior": len(given.interior), **claims}
+    return {"sha256": digest, "interior": len(given.interior), "assignments": texts}
 
 
 def _shown(given: Sheet, evidence: dict[str, Any]) -> list[str]:
@@ -129,7 +142,7 @@ class _Circles:
         return ["".join(letters) for letters in product(*either)]
 
 
-def summary(claims: dict[str, Any]) -> str:
+def summary(claims: VerifiedAssignments) -> str:
     """One line for verified claims."""
     number = len(claims["assignments"])
     which = counted(
@@ -142,6 +155,7 @@ ASSIGNMENTS = DocumentKind(
     format="exactfold assignments",
     versions=(1,),
     names="format version pattern claims evidence",
+    claims=VerifiedAssignments,
     check=check,
     summary=summary,
 )

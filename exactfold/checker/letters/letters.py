@@ -12,12 +12,12 @@ sign vector all the same, so that none has the letters if all ends of the tree a
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, TypedDict
 
 from ..branches.branch import Place
 from ..branches.branch_proof import Proof
 from ..core.kinds import DocumentKind
-from ..core.reading import counted, integer, items, keys, natural, refusing, require
+from ..core.reading import counted, integer, items, keys, keys_of, natural, refusing, require
 from ..sheets.sheet import Edge, read_sheet
 from .refuted import Signs, Stars
 
@@ -27,8 +27,29 @@ Half = tuple[tuple[int, ...], int]
 _TURNED = str.maketrans("MV", "VM")
 
 
+class HalfClaim(TypedDict):
+    """A half of a branch, by the signs of the interior vertices and its side of the flat state."""
+
+    vertex_signs: list[int]
+    side: int
+
+
+class LettersClaims(TypedDict):
+    """What a file claims (see `check`)."""
+
+    letters: str
+    halves: list[HalfClaim]
+
+
+class VerifiedLetters(LettersClaims):
+    """What is verified, with the number of interior vertices and the digest of the pattern."""
+
+    interior: int
+    sha256: str
+
+
 @refusing()
-def check(data: dict[str, Any]) -> dict[str, Any]:
+def check(data: dict[str, Any]) -> VerifiedLetters:
     """Verify every claim of a loaded certificate; raises `CertificateError` at the first failure.
 
     Returns the claims and the SHA-256 of the pattern. The claims are: the halves of branches with
@@ -36,7 +57,7 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
     """
     given, digest = read_sheet(data["pattern"])
     claims, evidence = data["claims"], data["evidence"]
-    keys(claims, "letters halves", "claims")
+    keys(claims, keys_of(LettersClaims), "claims")
     keys(evidence, "emptied refuted tree leaves", "evidence")
     place = Place(given, evidence["emptied"])
     if len(place.sheet.boundary) == 4:
@@ -56,11 +77,12 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
     for half in listed:
         require(half in found, "a half that is listed has not these letters")
     require(len(listed) == len(found), "a half with these letters is not listed")
-    return {"sha256": digest, "interior": len(given.interior), **claims}
+    proved: LettersClaims = claims
+    return {"sha256": digest, "interior": len(given.interior), **proved}
 
 
 def _half(entry: Any, size: int) -> Half:
-    keys(entry, "vertex_signs side", "half")
+    keys(entry, keys_of(HalfClaim), "half")
     signs = items(entry["vertex_signs"], "vertex_signs", size)
     return tuple(map(integer, signs)), integer(entry["side"])
 
@@ -138,7 +160,7 @@ class _Search:
         return list(letters if side > 0 else letters.translate(_TURNED))
 
 
-def summary(claims: dict[str, Any]) -> str:
+def summary(claims: VerifiedLetters) -> str:
     """One line for verified claims."""
     halves, text = len(claims["halves"]), claims["letters"]
     asked = counted(len(text) - text.count("U"), "letter", "letters")
@@ -151,6 +173,7 @@ LETTERS = DocumentKind(
     format="exactfold letters",
     versions=(1,),
     names="format version pattern claims evidence",
+    claims=VerifiedLetters,
     check=check,
     summary=summary,
 )

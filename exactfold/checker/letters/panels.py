@@ -7,10 +7,10 @@ That they do not is shown by case distinctions, each of which ends in a contradi
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, TypedDict
 
 from ..core.kinds import DocumentKind
-from ..core.reading import counted, items, keys, refusing, require
+from ..core.reading import counted, items, keys, keys_of, refusing, require
 from ..sheets.panels import read_panels
 from .panels_motion import check_motion
 from .panels_refuted import Cases
@@ -23,8 +23,25 @@ _TRULY = {
 }
 
 
+class PanelLettersClaims(TypedDict):
+    """What a file claims (see `check`)."""
+
+    letters: str
+    starts: str
+    truly: str
+    together: list[list[int]]
+    never: list[list[int]]
+
+
+class VerifiedPanelLetters(PanelLettersClaims):
+    """What is verified, with the number of interior vertices and the digest of the pattern."""
+
+    interior: int
+    sha256: str
+
+
 @refusing()
-def check(data: dict[str, Any]) -> dict[str, Any]:
+def check(data: dict[str, Any]) -> VerifiedPanelLetters:
     """Verify every claim of a loaded certificate; raises `CertificateError` at the first failure.
 
     Returns the claims and the SHA-256 of the pattern. The claims are: whether there is a motion to
@@ -34,7 +51,7 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
     its letter, and that they never do; nothing of these if both lists are empty.
     """
     claims, evidence = data["claims"], data["evidence"]
-    keys(claims, "letters starts truly together never", "claims")
+    keys(claims, keys_of(PanelLettersClaims), "claims")
     starts, truly, text = claims["starts"], claims["truly"], claims["letters"]
     require(starts in ("proved", "refuted"), f"starts is {starts!a}")
     require(truly in _TRULY, f"truly is {truly!a}")
@@ -62,10 +79,11 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
     require(
         whole or not listed, "not all folds that are shown to go together, or never, are listed"
     )
-    return {"sha256": digest, "interior": len(sheet.interior), **claims}
+    proved: PanelLettersClaims = claims
+    return {"sha256": digest, "interior": len(sheet.interior), **proved}
 
 
-def summary(claims: dict[str, Any]) -> str:
+def summary(claims: VerifiedPanelLetters) -> str:
     """One line for verified claims."""
     text = claims["letters"]
     asked = counted(len(text) - text.count("U"), "letter", "letters")
@@ -89,6 +107,7 @@ PANEL_LETTERS = DocumentKind(
     format="exactfold letters on panels",
     versions=(1,),
     names="format version pattern claims evidence",
+    claims=VerifiedPanelLetters,
     check=check,
     summary=summary,
 )

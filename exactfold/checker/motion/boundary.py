@@ -14,18 +14,44 @@ from typing import Any
 from ..core.reading import items, parse_rational, require
 from ..sheets.reduced import check_convex
 from ..sheets.sheet import Sheet, turn
+from .chain import Chain
+from .claims import BranchClaim, Document
+from .restriction import Restriction, Sign, Tie
 
 Row = dict[int, Fraction]
-Tie = dict[int, int]
-"""Integers c_v, without a common divisor, of an equation sum c_v z_v = 0."""
 
 _MOST_HEIGHTS = 8  # of a border in a summary or a message
 
 
-class Rim:
+class RimClaim(BranchClaim):
+    """The heights of the boundary vertices of a convex border stay in the ratio of those given.
+
+    They are given in the order of the vertices, and taken above the face `pinned` that is held,
+    which is returned. The side of the half-branch is the sign of the factor near the flat state.
+    """
+
+    names = ("rim",)
+
+    def restriction(self, given: Sheet, sheet: Sheet) -> Rim:
+        """The ties of the heights."""
+        return Rim(given, self.claims["rim"])
+
+    def check(self, chain: Chain) -> None:
+        """The ties hold all along; it remains to say above which face."""
+        chain.facts["pinned"] = chain.equations.pinned
+
+    @staticmethod
+    def said(claims: Document) -> str:
+        """The heights, and the face."""
+        face = "-".join(map(str, claims["pinned"]))
+        return f", with the border in the ratio of {_shown(claims['rim'])} above the face {face}"
+
+
+class Rim(Restriction):
     """The equations `ties` of given heights, and the factor l as a functional of the heights."""
 
     def __init__(self, sheet: Sheet, texts: Any) -> None:
+        super().__init__(sheet)
         check_convex(sheet)
         boundary = sorted(sheet.boundary)
         values = [parse_rational(text) for text in items(texts, "rim", len(boundary))]
@@ -40,10 +66,12 @@ class Rim:
             _whole(_less(row, self.factor, above[v])) for v, row in levels.items() if v != highest
         ]
 
-    @property
-    def bits(self) -> int:
-        """k so that all coefficients are less than 2^k."""
-        return max((abs(c).bit_length() for tie in self.ties for c in tie.values()), default=0)
+        sizes = (abs(c).bit_length() for tie in self.ties for c in tie.values())
+        self.tie_bits = max(sizes, default=0)
+
+    def side(self, sign: Sign) -> int:
+        """The sign of the factor."""
+        return sign(self.factor)
 
 
 def _base(sheet: Sheet, boundary: list[int]) -> tuple[int, int, int]:
@@ -78,14 +106,6 @@ def _whole(row: Row) -> Tie:
     whole = {v: int(c * common) for v, c in row.items() if c}
     divisor = gcd(*whole.values())
     return {v: c // divisor for v, c in whole.items()}
-
-
-def border_of(claims: dict[str, Any]) -> str:
-    """The heights that the border has on a rim path."""
-    if "rim" not in claims:
-        return ""
-    face = "-".join(map(str, claims["pinned"]))
-    return f", with the border in the ratio of {_shown(claims['rim'])} above the face {face}"
 
 
 def _shown(heights: list[str]) -> str:

@@ -15,6 +15,8 @@ from ..core.limits import MOST_TESTS
 from ..core.reading import integer, items, keys, natural, parse_rational, require, shown
 from ..sheets.sheet import Edge
 from .boxes import flat_of, nearer, volume_sign
+from .chain import Chain
+from .claims import BranchClaim, Document
 from .equations import LengthEquations
 from .faces import FacePairs, Hinge
 from .lengths import GRID, Path
@@ -23,6 +25,40 @@ from .tubes import Start
 
 _KINDS = "contact", "flat-fold"
 _PARAMETER_BITS = 40
+
+
+class Contacts(BranchClaim):
+    """No two faces touch beyond what they share before the length `clear` of the motion.
+
+    With `contact`, some do between two lengths, the first of which is that one.
+    """
+
+    names = ("clear", "contact")
+    needs = ("contacts",)
+
+    @classmethod
+    def keys_in(cls, claims: Document) -> tuple[str, ...]:
+        """A contact is claimed together with what is clear before."""
+        return cls.names if "contact" in claims else cls.names[:1] if "clear" in claims else ()
+
+    def check(self, chain: Chain) -> None:
+        """On the stretches of the pieces that the motion passes."""
+        check_contacts(chain.start, chain.tau, chain.steps, self.claims, self.evidence["contacts"])
+
+    @staticmethod
+    def said(claims: Document) -> str:
+        """How long no faces touch, and by when some do."""
+        text = f"; no two faces touch before {shown(claims['clear'])}"
+        if "node" in claims and claims["node"]["clear"]:
+            clear = shown(claims["clear"])
+            text = f"; no two faces touch before the node, which is at {clear} or later, nor at it"
+        if "contact" not in claims:
+            return text
+        contact = claims["contact"]
+        last = shown(contact["time"][1], up=True)
+        if contact["kind"] == "contact":
+            return f"{text}, {' and '.join(str(tuple(f)) for f in contact['faces'])} do by {last}"
+        return f"{text}, the fold {tuple(contact['folds'][0])} is closed by {last}"
 
 
 class Faces(FacePairs):
@@ -140,20 +176,3 @@ def _check_contact(faces: Faces, path: Path, begin: Fraction, end: Fraction, cla
     left, right = faces.folds[i, j][:2]
     require([set(one), set(two)] == [{i, j, left}, {i, j, right}], "the faces are not at the fold")
     require(faces.closes(path, begin, end, (i, j)), "the fold does not close")
-
-
-def said(claims: dict[str, Any]) -> str:
-    """What of contacts a line about verified claims says."""
-    if "clear" not in claims:
-        return ""
-    text = f"; no two faces touch before {shown(claims['clear'])}"
-    if "node" in claims and claims["node"]["clear"]:
-        clear = shown(claims["clear"])
-        text = f"; no two faces touch before the node, which is at {clear} or later, nor at it"
-    if "contact" not in claims:
-        return text
-    contact = claims["contact"]
-    last = shown(contact["time"][1], up=True)
-    if contact["kind"] == "contact":
-        return f"{text}, {' and '.join(str(tuple(f)) for f in contact['faces'])} do by {last}"
-    return f"{text}, the fold {tuple(contact['folds'][0])} is closed by {last}"

@@ -2,6 +2,7 @@
 
 Half the change g_k of the square of the distance between the two vertices opposite to fold k is
 -8 (A B / l^2) sin(a_k / 2)^2, with the areas A, B of its faces, its length l and its angle a_k.
+The angles reach given sizes if they are larger at the end.
 """
 
 from __future__ import annotations
@@ -13,63 +14,147 @@ from typing import Any
 from ..core.reading import items, keys, natural, parse_rational, require
 from ..sheets.sheet import Edge, Sheet, turn
 from .bounds import Vector
+from .boxes import Boxes, volume_sign
+from .chain import Chain
+from .claims import BranchClaim, Document
+from .equations import LengthEquations
+from .restriction import Restriction, Sign
+from .tubes import Ball
 
 
-class Drive:
+class DriveClaim(BranchClaim):
+    """The curve leaves the flat state along a simple solution on which its folds go as claimed.
+
+    They are valleys or mountains by the signs of the `squares` q, and all along sin(a / 2)^2 of
+    their angles a is in the ratio of |q|. If they are `reached`, these are |q| or more at the end.
+    The side of the half-branch is 1.
+    """
+
+    names = ("drive",)
+
+    def restriction(self, given: Sheet, sheet: Sheet) -> Drive:
+        """The equations of the ratio."""
+        self.drive = Drive(sheet, self.claims["drive"])
+        return self.drive
+
+    def check(self, chain: Chain) -> None:
+        """Whether they are reached, where that is claimed."""
+        if self.drive.reached:
+            back = "return" in self.claims
+            require(not back, "a motion that returns ends with its driven folds flat")
+            check_reached(chain.equations, self.drive, chain.end)
+
+    @staticmethod
+    def said(claims: Document) -> str:
+        """The folds, and their ratio."""
+        drive = claims["drive"]
+        names = ", ".join(f"{i}-{j}" for i, j in drive["folds"])
+        ratio = " : ".join(q.removeprefix("-") for q in drive["squares"])
+        ways = ", ".join("mountain" if q.startswith("-") else "valley" for q in drive["squares"])
+        reached = ", at least that at the end" if drive["reached"] else ""
+        return (
+            f", driven by the folds {names} ({ways}), sin^2 of half the angle as {ratio}{reached}"
+        )
+
+
+class Drive(Restriction):
     """The folds and the numbers q_k of a claim, and the equations w_m g_k = w_k g_m of their ratio.
 
     sin(a_k / 2)^2 is in the ratio of |q_k| iff they hold for w_k = |q_k| A B / l^2. `rows` are
-    integers on the `diagonals` k, over 2^bits.
+    integers on the `diagonals` k, over 2^row_bits.
     """
 
     def __init__(self, sheet: Sheet, claim: Any) -> None:
+        super().__init__(sheet)
         keys(claim, "folds squares reached", "drive")
         require(type(claim["reached"]) is bool, "reached is not true or false")
         self.reached: bool = claim["reached"]
         number = len(sheet.boundary) - 3
         require(number > 1, "one fold alone has no ratio that could be claimed")
-        self.folds: list[Edge] = []
-        for fold in items(claim["folds"], "driven folds", number):
-            i, j = (natural(v, "vertex") for v in items(fold, "fold", 2))
-            self.folds.append((i, j))
-        there = set(self.folds) <= set(sheet.folds) and len(set(self.folds)) == number
-        require(there, "what is driven is no fold, or one is driven twice")
+        self.folds = _folds(sheet, items(claim["folds"], "driven folds", number))
         texts = items(claim["squares"], "squares", number)
         self.squares = [parse_rational(text) for text in texts]
         require(all(0 < abs(q) <= 1 for q in self.squares), "a driven fold has no angle to go to")
-        self.diagonals: list[Edge] = []
-        weights: list[Fraction] = []
-        for (i, j), q in zip(self.folds, self.squares, strict=True):
-            left, right = sheet.next[i][j], sheet.next[j][i]
-            a, b, c, d = (sheet.points[v] for v in (i, j, left, right))
-            square = (b[0] - a[0]) ** 2 + (b[1] - a[1]) ** 2
-            self.diagonals.append((left, right))
-            weights.append(abs(q) * turn(a, b, c) * turn(b, a, d) / square)
+        self.diagonals = [(sheet.next[i][j], sheet.next[j][i]) for i, j in self.folds]
+        weights = [
+            abs(q) * _areas_over_length(sheet, fold)
+            for fold, q in zip(self.folds, self.squares, strict=True)
+        ]
         most = self.most = weights.index(max(weights))
         self.weight = weights[most]
-        rows = [self._row(weights, k, most) for k in range(number) if k != most]
-        self.bits = max(map(_length, rows), default=0)
-        self.rows = [[c << self.bits - _length(row) for c in row] for row in rows]
+        rows = [_row(weights, k, most) for k in range(number) if k != most]
+        self.row_bits = max(map(_length, rows), default=0)
+        self.rows = [[c << self.row_bits - _length(row) for c in row] for row in rows]
 
-    def _row(self, weights: list[Fraction], k: int, most: int) -> Vector:
-        common = lcm(weights[k].denominator, weights[most].denominator)
-        row = [0] * len(weights)
-        row[k], row[most] = int(weights[most] * common), -int(weights[k] * common)
-        divisor = gcd(*row)
-        return [c // divisor for c in row]
+    def side(self, sign: Sign) -> int:
+        """1, if all folds go the way claimed."""
+        for fold, q in zip(self.folds, self.squares, strict=True):
+            right = sign(self.sheet.bend(fold)) * q > 0
+            require(right, f"the driven fold {fold} may start the other way")
+        return 1
+
+
+def _folds(sheet: Sheet, given: list[Any]) -> list[Edge]:
+    """Folds of a sheet, none of them twice."""
+    found: list[Edge] = []
+    for fold in given:
+        i, j = (natural(v, "vertex") for v in items(fold, "fold", 2))
+        found.append((i, j))
+    there = set(found) <= set(sheet.folds) and len(set(found)) == len(found)
+    require(there, "what is driven is no fold, or one is driven twice")
+    return found
+
+
+def _areas_over_length(sheet: Sheet, fold: Edge) -> Fraction:
+    """A B / l^2, with twice the areas of the two faces at a fold."""
+    i, j = fold
+    a, b, c, d = (sheet.points[v] for v in (i, j, sheet.next[i][j], sheet.next[j][i]))
+    square = (b[0] - a[0]) ** 2 + (b[1] - a[1]) ** 2
+    return turn(a, b, c) * turn(b, a, d) / square
+
+
+def _row(weights: list[Fraction], k: int, most: int) -> Vector:
+    common = lcm(weights[k].denominator, weights[most].denominator)
+    row = [0] * len(weights)
+    row[k], row[most] = int(weights[most] * common), -int(weights[k] * common)
+    divisor = gcd(*row)
+    return [c // divisor for c in row]
 
 
 def _length(row: Vector) -> int:
     return max(abs(c).bit_length() for c in row)
 
 
-def driven_of(claims: dict[str, Any]) -> str:
-    """The driven folds of a claim, in words."""
-    if "drive" not in claims:
-        return ""
-    drive = claims["drive"]
-    names = ", ".join(f"{i}-{j}" for i, j in drive["folds"])
-    ratio = " : ".join(q.removeprefix("-") for q in drive["squares"])
-    ways = ", ".join("mountain" if q.startswith("-") else "valley" for q in drive["squares"])
-    reached = ", at least that at the end" if drive["reached"] else ""
-    return f", driven by the folds {names} ({ways}), sin^2 of half the angle as {ratio}{reached}"
+def check_reached(equations: LengthEquations, drive: Drive, here: Ball) -> None:
+    """Raise unless all driven folds are bent as far as claimed, or farther, in a box at the end.
+
+    There g <= -2 w for one of them, and so for all, and they are valleys or mountains as claimed.
+    So at some time before all of these angles have exactly the sizes claimed. Nothing is said of
+    the side to which the folds are bent at that time.
+    """
+    bits, k = equations.bits, len(equations.edges) + drive.most
+    u, e = equations.flat[k], equations.along(here.centre)[k]
+    (wide,) = equations.weight_sums(here.radii)[k : k + 1]
+    g = sum(2 * a * x + x * x for a, x in zip(u, e, strict=True))
+    g += sum((2 * abs(a) + 2 * abs(x) + r) * r for a, x, r in zip(u, e, wide, strict=True))
+    beyond = Fraction(g, 2 << 2 * bits) * equations.unit**2 <= -2 * drive.weight
+    require(beyond, "the driven folds are not proved to reach the sizes of their angles")
+    boxes = _boxes(equations, here)
+    for fold, pair, q in zip(drive.folds, drive.diagonals, drive.squares, strict=True):
+        right = volume_sign(boxes, *fold, *pair) * q > 0
+        require(right, f"the driven fold {fold} may end on the other side")
+
+
+def _boxes(equations: LengthEquations, here: Ball) -> Boxes:
+    """The places of all vertices, over 2^bits."""
+    one = Fraction(1 << equations.bits) / equations.unit
+    points, error = equations.sheet.points, max(here.radii) + 1
+    x, y = points[equations.pinned[0]]
+    found: Boxes = {}
+    for v, (a, b) in points.items():
+        at = [int((a - x) * one), int((b - y) * one), 0]
+        if v in equations.place:
+            k = equations.place[v]
+            at = [p + d for p, d in zip(at, here.centre[k : k + 3], strict=True)]
+        found[v] = at, at, error
+    return found

@@ -10,9 +10,8 @@ from operator import add, mul, sub
 from ..core.krawczyk import inverse
 from ..core.reading import require
 from ..sheets.sheet import Sheet
-from .boundary import Rim, Tie
 from .bounds import INVERSE_BITS, Columns, Vector, dot
-from .drive import Drive
+from .restriction import Restriction, Tie
 
 ORDER = 8  # of the polynomial of a piece
 SPARE = 60  # bits before the point
@@ -28,9 +27,9 @@ Coefficient = Callable[[Curve, Parts, int], Vector]
 class LengthEquations:
     """g_e(d) = U_e . d_e + |d_e|^2 / 2 = 0 for every edge with a free end, a_e = a_i - a_j.
 
-    With a rim its ties follow: linear equations of the d_z, `ties` over 2^bits. With a drive,
-    instead, equations between the g of its diagonals, which are `bars` after the edges; then the
-    values of all equations are taken times 2^`more`.
+    A restriction adds its ties, linear equations of the d_z, `ties` over 2^bits; or equations
+    between the g of its diagonals, which are `bars` after the edges: then the values of all
+    equations are taken times 2^`more`.
     Lengths are such that all coordinates U, from the first pinned corner, are at most 1: `unit` is
     their unit in that of the sheet. The unknowns are d_x, d_y, d_z of the free vertices in turn.
     """
@@ -40,9 +39,9 @@ class LengthEquations:
         sheet: Sheet,
         pinned: list[int],
         bits: int,
-        rim: Rim | None = None,
-        drive: Drive | None = None,
+        restriction: Restriction | None = None,
     ) -> None:
+        added = self.restriction = restriction or Restriction(sheet)
         require(frozenset(pinned) in sheet.triangles, "what is pinned is no face")
         denominator = lcm(*(x.denominator for point in sheet.points.values() for x in point))
         x, y = sheet.points[pinned[0]]
@@ -51,7 +50,7 @@ class LengthEquations:
             for v, (a, b) in sheet.points.items()
         }
         least = max(max(abs(a), abs(b)) for a, b in flat.values()).bit_length()
-        needed = max(least, 60, 0 if rim is None else rim.bits)
+        needed = max(least, 60, added.tie_bits)
         require(bits >= needed, "the coordinates need more bits")
         self.sheet, self.pinned, self.bits = sheet, pinned, bits
         self.unit = Fraction(1 << least, denominator)
@@ -59,17 +58,14 @@ class LengthEquations:
         self.place = {v: 3 * k for k, v in enumerate(self.free)}
         self.size = 3 * len(self.free)
         self.edges = [e for e in sheet.edges if not set(pinned).issuperset(e)]
-        self.drive = drive
-        self.mixed = [] if drive is None else drive.rows
-        self.more = 0 if drive is None else drive.bits
-        self.bars = self.edges + ([] if drive is None else drive.diagonals)
+        self.mixed, self.more = added.rows, added.row_bits
+        self.bars = [*self.edges, *added.diagonals]
         up = bits - least
         self.flat = [
             ((flat[i][0] - flat[j][0]) << up, (flat[i][1] - flat[j][1]) << up, 0)
             for i, j in self.bars
         ]
-
-        self.ties = [] if rim is None else [self._tie(tie, bits - rim.bits) for tie in rim.ties]
+        self.ties = [self._tie(tie, bits - added.tie_bits) for tie in added.ties]
 
     def _tie(self, tie: Tie, up: int) -> Vector:
         row = [0] * self.size

@@ -1,8 +1,8 @@
 """Certificates of loops, line by line: motions from the flat state back to it (docs/motions.md).
 
 Why it is a proof: a loop leaves the flat state as the motions of `motion` do. It passes from tube
-to tube, and through nodes on arcs that are analytic there (`motion_nodes`). On its last tube lies a
-point of the start tube of another half-branch, which passes it in the opposite direction: so it
+to tube, and through nodes on arcs that are analytic there (`branch_points`). On its last tube lies
+a point of the start tube of another half-branch, which passes it in the opposite direction: so it
 ends in the flat state along this one. Every half-branch is the beginning of one curve only, which
 makes loops that are given a matching, complete if all 2^(n + 1) names occur in it.
 """
@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import closing
-from typing import Any
+from typing import Any, TypedDict
 
 from ..core.kinds import LineKind
 from ..core.lines import read_object
@@ -24,15 +24,16 @@ from ..core.reading import (
     integer,
     items,
     keys,
+    keys_of,
     parse_rational,
     refusing,
     require,
 )
+from ..sheets.reduced import emptied_sheet
 from ..sheets.sheet import read_sheet
-from .certificate import check_steps, framework, walked
-from .names import names
-from .paths import Path
-from .pieces import first_piece, land
+from .chain import Chain, check_work, equations_of
+from .half_branch import names
+from .returns import land
 from .tubes import Start
 
 HalfBranch = tuple[tuple[int, ...], int]
@@ -44,7 +45,9 @@ class LoopSheet:
 
     def __init__(self, header: dict[str, Any]) -> None:
         self.given, self.sha256 = read_sheet(header["pattern"])
-        self.equations, self.removed = framework(self.given, header)
+        points = dict(self.given.points)
+        sheet, self.removed = emptied_sheet(self.given, points, header["emptied"])
+        self.equations = equations_of(sheet, header["pinned"], header["bits"])
 
     @property
     def half_branches(self) -> int:
@@ -67,17 +70,18 @@ class LoopSheet:
         evidence = entry["evidence"]
         keys(evidence, "start steps landing", "evidence")
         steps = items(evidence["steps"], "steps")
-        check_steps(self.equations, steps)
-        start, tau = first_piece(self.equations, evidence["start"])
-        require(self._named(start) == self.half_branch(entry["from"]), "it begins along another")
-        path = Path(start.configuration(tau), self.equations.bits)
-        walked(self.equations, path, steps, leaves=False)
-        end, side = land(self.equations, path, evidence["landing"])
+        check_work(self.equations, steps)
+        chain = Chain(self.given, self.removed, self.equations, evidence["start"])
+        require(
+            self._named(chain.start) == self.half_branch(entry["from"]), "it begins along another"
+        )
+        chain.walk(steps, leaves=False)
+        end, side = land(chain, evidence["landing"])
         signs, saddle = self._named(end)
         target = tuple(side * s for s in signs), side * saddle
         require(target == self.half_branch(entry["to"]), "it ends along another")
         claimed = parse_rational(entry["length"])
-        require(claimed <= path.land() * self.equations.unit, "it is shorter than claimed")
+        require(claimed <= chain.path.length * self.equations.unit, "it is shorter than claimed")
 
     def _named(self, start: Start) -> HalfBranch:
         signs, side = names(self.given, self.removed, start)
@@ -120,13 +124,21 @@ class Matching:
         self.matched |= ends
 
 
+class LoopsClaims(TypedDict):
+    """How many loops there are, and how many of the half-branches they match."""
+
+    sha256: str
+    loops: int
+    matched: int
+    half_branches: int
+    complete: bool
+
+
 BY_TUBES = Engine(LoopVerifier, 1, on_processes)
 """Loops are followed from tube to tube."""
 
 
-def check_lines(
-    found: Iterator[str], workers: int = 1, engine: Engine = BY_TUBES
-) -> dict[str, Any]:
+def check_lines(found: Iterator[str], workers: int = 1, engine: Engine = BY_TUBES) -> LoopsClaims:
     """Verify every claim, given the lines of a file; returns the claims.
 
     With several workers, loops are checked in that many processes. The claims are: so many loops,
@@ -170,7 +182,7 @@ def check_lines(
     if not last:
         number = counted(matching.loops, "loop holds", "loops hold")
         raise UnfinishedError(f"{number}, but the claims are missing")
-    facts: dict[str, Any] = {
+    facts: LoopsClaims = {
         "sha256": sheet.sha256,
         "loops": matching.loops,
         "matched": len(matching.matched),
@@ -178,14 +190,14 @@ def check_lines(
         "complete": len(matching.matched) == sheet.half_branches,
     }
     (claims,) = last
-    keys(claims, " ".join(facts), "claims")
+    keys(claims, keys_of(LoopsClaims), "claims")
     for key, fact in facts.items():
         claim = claims[key]
         require(type(claim) is type(fact) and claim == fact, f"{key} = {claim!a} is {fact!a}")
     return facts
 
 
-def summary(claims: dict[str, Any]) -> str:
+def summary(claims: LoopsClaims) -> str:
     """One line for verified claims."""
     loops = counted(claims["loops"], "loop", "loops")
     matched, all_of_them = claims["matched"], claims["half_branches"]
@@ -198,6 +210,7 @@ LOOPS = LineKind(
     format="exactfold loops",
     versions=(1,),
     names="format version pattern emptied pinned bits",
+    claims=LoopsClaims,
     check=check_lines,
     summary=summary,
     engine=BY_TUBES,

@@ -48,9 +48,9 @@ class Path:
         self.length += chord(self.here, ball, self.bits)
         self.here, self.velocity, self.tube = ball, velocity, None
 
-    def land(self) -> Fraction:
-        """In the flat state: the length."""
-        return self.length + self._from_flat()
+    def land(self) -> None:
+        """In the flat state."""
+        self.length += self._from_flat()
 
     def _pass_centre(self, end: Fraction) -> None:
         """Count the chord to x(0), if it lies on the way to the parameter `end`."""

@@ -1,4 +1,4 @@
-"""Pieces of a motion, of their keys in a file: start tubes, tubes, arcs through nodes, landings."""
+"""Pieces of a motion, of their keys in a file: start tubes, tubes, arcs through branch points."""
 
 from __future__ import annotations
 
@@ -10,8 +10,7 @@ from ..core.reading import integer, items, keys, natural, require
 from .branch_points import NodeTube
 from .equations import SPARE, LengthEquations
 from .patches import Patch
-from .paths import Path
-from .tubes import Ball, Start, Tube
+from .tubes import Start, Tube
 
 REACH_BITS = 6
 PARAMETER_BITS = 40
@@ -32,7 +31,7 @@ def tube_of(equations: LengthEquations, entry: Any) -> Tube:
 def arc_of(equations: LengthEquations, flat: Any, entry: Any) -> NodeTube:
     """An arc through a node at which some vertices are flat, of its keys."""
     size, bits = equations.size, equations.bits
-    require(equations.drive is None, "a driven motion has a node")
+    require(not equations.mixed, "a driven motion has a node")
     patch = Patch(equations, [natural(v, "flat vertex") for v in items(flat, "flat")])
     return NodeTube(
         patch,
@@ -81,21 +80,3 @@ def start_of(equations: LengthEquations, entry: Any) -> Start:
 def parameter_of(value: Any) -> Fraction:
     """A parameter within a piece."""
     return Fraction(integer(value), 1 << PARAMETER_BITS)
-
-
-def land(equations: LengthEquations, path: Path, entry: Any) -> tuple[Start, int]:
-    """The start tube on which a motion comes back, against its direction, to the flat state.
-
-    A point of it, or of its mirror image for a side of -1, lies on the last tube.
-    """
-    keys(entry, "centre halvings held reach tau", "landing")
-    end, side = start_of(equations, entry), 1
-    tau = Fraction(integer(entry["tau"]), 1 << ROOT_BITS)
-    require(tau, "a loop does not land before the flat state")
-    point, velocity = end.configuration(tau)
-    if tau > 0:
-        velocity = Ball([-x for x in velocity.centre], velocity.radii)
-    else:
-        side = -1
-    path.meet(point, velocity)
-    return end, side

@@ -18,25 +18,25 @@ from ..core.reading import (
     counted,
     items,
     keys,
+    keys_of,
     natural,
     refusing,
     require,
     same,
 )
 from ..sheets.panels import Edge, Near, PanelSheet, connected, pair, read_edges, read_panels
+from .claims import ModeClaim, ModesClaims, PanelFacts, PanelsClaims, PartClaim, SupportClaim
 from .components import components, times
-from .leaves import Verified, verified_part
+from .leaves import PartComponents, verified_part
 from .loops import MOST_ORDER, Loops
 from .modes import Modes, Support, corners_of, name, named
 
 MOST_LISTED = limits.MOST_LISTED
 MOST_SUPPORTS = limits.MOST_SUPPORTS
 
-FACTS = "interior border folds sha256 held flat free second_order true rigid modes"
-
 
 @refusing()
-def check(data: dict[str, Any]) -> dict[str, Any]:
+def check(data: dict[str, Any]) -> PanelsClaims:
     """Verify every claim of a certificate; raises `CertificateError` at the first failure.
 
     Returns the verified claims. They hold for the pattern in the file, if the folds in `held` are
@@ -44,7 +44,7 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
     """
     claims = data["claims"]
     given = claims.get("spaces", []) if isinstance(claims, dict) else []
-    keys(claims, f"{FACTS} supports" + (" spaces" if given else ""), "claims")
+    keys(claims, keys_of(PanelsClaims if given else ModesClaims), "claims")
     sheet, digest = read_panels(data["pattern"])
     held = read_edges(claims["held"], "held")
     for i, j in held:
@@ -69,7 +69,7 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
         true = components([(s.vertices, n) for s, (n, _) in counted if n], len(free))
         true = times(true, known)
     moves = free or any(n for n, _ in extending) or any(part.folds for part in parts)
-    facts = {
+    facts: PanelFacts = {
         "interior": len(sheet.interior),
         "border": len(sheet.border),
         "folds": len(sheet.folds),
@@ -86,7 +86,8 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
         facts["rigid"] = "undecided"
     for key, fact in facts.items():
         require(same(claims[key], fact), f"claim {key} = {claims[key]!a}, but it is {fact!a}")
-    return dict(claims)
+    proved: PanelsClaims = claims
+    return proved
 
 
 def _rigid(second: dict[str, int], true: dict[str, int] | None, moves: object) -> str:
@@ -95,11 +96,11 @@ def _rigid(second: dict[str, int], true: dict[str, int] | None, moves: object) -
     return "refuted" if moves else "undecided"
 
 
-def _parts(sheet: PanelSheet, large: list[Near], given: list[Any]) -> list[Verified]:
+def _parts(sheet: PanelSheet, large: list[Near], given: list[Any]) -> list[PartComponents]:
     """Each part with vertices of more than four folds, with what the file says of it."""
     entries: dict[tuple[int, ...], Any] = {}
     for entry in given:
-        keys(entry, "vertices complete leaves", "a part")
+        keys(entry, keys_of(PartClaim), "a part")
         vertices = tuple(natural(v, "a vertex") for v in items(entry["vertices"], "vertices"))
         entries[vertices] = entry
     require(len(entries) == len(given), "a part of the sheet appears twice")
@@ -124,7 +125,7 @@ def _paired(found: Sequence[Support], given: list[Any]) -> list[tuple[Support, d
     known = {support.folds: support for support in found}
     entries: dict[tuple[Edge, ...], dict[str, Any]] = {}
     for entry in given:
-        keys(entry, "vertices folds count extending by modes", "a support")
+        keys(entry, keys_of(SupportClaim), "a support")
         folds = tuple(read_edges(entry["folds"], "folds of a support"))
         require(folds in known, f"the folds {list(folds)[:20]} are no support")
         require(folds not in entries, f"a support with the folds {list(folds)[:20]} appears twice")
@@ -176,7 +177,7 @@ def _listed(
     known = {_choice(support, row): row for row in rows}
     entries: dict[str, dict[str, Any]] = {}
     for mode in items(given, "modes"):
-        keys(mode, "choice assignment extends loop order", "a mode")
+        keys(mode, keys_of(ModeClaim), "a mode")
         choice = mode["choice"]
         require(choice in known, f"{choice!a} is no mode of {named(support)}")
         require(choice not in entries, f"the mode {choice} of {named(support)} appears twice")
@@ -244,7 +245,7 @@ def _extends(
     return good
 
 
-def summary(claims: dict[str, Any]) -> str:
+def summary(claims: PanelsClaims) -> str:
     """One line for verified claims."""
     shown = ", ".join(f"{n} of dimension {d}" for d, n in claims["second_order"].items())
     true = "not decided" if claims["true"] is None else "the same"
@@ -268,6 +269,7 @@ PANELS = DocumentKind(
     named="panels",
     versions=(3,),
     names="format version kind pattern claims provenance",
+    claims=PanelsClaims,
     check=check,
     summary=summary,
 )

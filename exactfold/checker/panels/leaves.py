@@ -8,19 +8,20 @@ from fractions import Fraction
 from typing import Any
 
 from ..core.intervals import Interval
-from ..core.reading import integer, items, keys, natural, require
+from ..core.reading import integer, items, keys, keys_of, natural, require
 from ..sheets.panels import Edge, PanelSheet, pair
+from .claims import LeafClaim
 from .cones import Place, cone_motion
 from .loops import Loops
 from .modes import Modes, Support
 from .reduction import BITS, enclosed, reduced
 from .spaces import Leaf, Motion, Spaces, folds_of
 
-Kind = tuple[tuple[Edge, ...], int, tuple[int, ...]]
+LeafKind = tuple[tuple[Edge, ...], int, tuple[int, ...]]
 
 
 @dataclass
-class Verified:
+class PartComponents:
     """{dimension: number} of the components of a part: to second order, and truly if it is known.
 
     `folds` says whether some of them are shown to fold.
@@ -31,7 +32,7 @@ class Verified:
     folds: bool
 
 
-def verified_part(sheet: PanelSheet, near: Mapping[int, list[int]], given: Any) -> Verified:
+def verified_part(sheet: PanelSheet, near: Mapping[int, list[int]], given: Any) -> PartComponents:
     """The components of a part, found again and compared with what the file says of it.
 
     The file gives the leaves by their folds, dimension and cones, with how many there are, and how
@@ -39,7 +40,7 @@ def verified_part(sheet: PanelSheet, near: Mapping[int, list[int]], given: Any) 
     """
     what = f"the part of vertex {next(iter(near))}"
     spaces = Spaces(sheet, near)
-    found: dict[Kind, list[Leaf]] = {}
+    found: dict[LeafKind, list[Leaf]] = {}
     for leaf in spaces.leaves():
         _check_component(spaces, leaf)
         found.setdefault((leaf.folds, leaf.dimension, leaf.cones), []).append(leaf)
@@ -65,12 +66,12 @@ def verified_part(sheet: PanelSheet, near: Mapping[int, list[int]], given: Any) 
         regular = complete(spaces, [leaf for leaves in found.values() for leaf in leaves])
         require(regular, f"{what} may have other true motions")
         true = second
-    return Verified(second, true, folding > 0)
+    return PartComponents(second, true, folding > 0)
 
 
-def _kinds(given: Any) -> Iterable[tuple[Kind, tuple[int, int]]]:
+def _kinds(given: Any) -> Iterable[tuple[LeafKind, tuple[int, int]]]:
     for entry in items(given, "leaves"):
-        keys(entry, "folds dimension cones number extending", "a leaf")
+        keys(entry, keys_of(LeafClaim), "a leaf")
         ends = [items(fold, "a fold", 2) for fold in items(entry["folds"], "folds")]
         folds = tuple((integer(i), integer(j)) for i, j in ends)
         cones = tuple(natural(v, "a vertex") for v in items(entry["cones"], "cones"))

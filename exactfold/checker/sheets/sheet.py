@@ -6,15 +6,24 @@ import hashlib
 from collections.abc import Iterable
 from fractions import Fraction
 from math import isqrt
-from typing import Any
+from typing import Any, TypedDict
 
 from ..core.limits import MOST_ABOVE, MOST_MEETINGS
 from ..core.reading import Coordinates, at_most, digits, items, keys, natural, require
 
-FACTS = "interior boundary folds degrees_of_freedom sha256"
 Point = tuple[Fraction, Fraction]
 Edge = tuple[int, int]
 Form = dict[tuple[int, int], Fraction]
+
+
+class SheetFacts(TypedDict):
+    """What claims say of the sheet itself: how much it has of what, and its digest."""
+
+    interior: int
+    boundary: int
+    folds: int
+    degrees_of_freedom: int
+    sha256: str
 
 
 def turn(a: Point, b: Point, c: Point) -> Fraction:
@@ -211,8 +220,12 @@ def read_sheet(data: Any) -> tuple[Sheet, str]:
     return sheet, digest
 
 
-def facts_of(sheet: Sheet, sha256: str) -> dict[str, int | str]:
-    """What claims say of the sheet itself: the keys `FACTS`."""
-    boundary = len(sheet.boundary)
-    values = (len(sheet.interior), boundary, len(sheet.folds), boundary - 3, sha256)
-    return dict(zip(FACTS.split(), values, strict=True))
+def facts_of(sheet: Sheet, sha256: str) -> SheetFacts:
+    """What claims say of the sheet itself."""
+    return {
+        "interior": len(sheet.interior),
+        "boundary": len(sheet.boundary),
+        "folds": len(sheet.folds),
+        "degrees_of_freedom": len(sheet.boundary) - 3,
+        "sha256": sha256,
+    }

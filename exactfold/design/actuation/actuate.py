@@ -1,4 +1,4 @@
-"""`actuate`: torques that drive a sheet along one branch, with the best margin over the others."""
+"""`actuate`: torques that drive a sheet along one branch with the best margin over all others."""
 
 from __future__ import annotations
 
@@ -32,19 +32,23 @@ from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.loading import PatternLike, as_pattern
 
 MOST_FOLDABLE = 12
-"""Most foldable vertices: every branch is a rival, and their number doubles with each vertex."""
+"""The most foldable vertices allowed. Every branch is a rival, and each vertex doubles their
+number.
+"""
 
 NODES = 1000
-"""Linear programs for the choice of creases, unless another number is given."""
+"""The default number of linear programs for the choice of creases."""
 
 _SHARPER = (64, 128)
-"""Bits of the roots where those of the count do not tell two branches apart."""
+"""The roots are refined to these numbers of bits if those of the count do not separate two
+branches.
+"""
 
 _LOOSE = Fraction(1, 10_000)
-"""Bounds of a margin that differ by a larger share of it ask for sharper roots."""
+"""If the bounds of a margin differ by a larger share of it, the roots are refined."""
 
 _DIGITS = (6, 9, 12)
-"""Digits after the point of torques: more only where fewer lose much of the margin."""
+"""Digits after the point of torques: the first number that loses little of the margin is used."""
 
 
 def actuate(
@@ -57,18 +61,21 @@ def actuate(
     nodes: int = NODES,
     progress: Progress | None = None,
 ) -> Actuation:
-    """Torques on the folds for which the ray with given vertex signs has the most power, by most.
+    """Torques on the folds that prefer the ray with given vertex signs by the largest margin.
 
-    Maximises min over all other rays u' of tau . u - tau . u', with |tau_e| <= 1, on at most
-    `creases` folds if given (docs/actuation.md, 2); u is the unit vector of the first-order fold
-    angles. `signs` and `up` as for `find_branch`. A linear program proposes; the torques are made
-    rational, and their margin and the bound of all margins are proved in interval arithmetic. The
-    folds are chosen by branch and bound with at most `nodes` linear programs; where these are not
-    enough, the bound is larger than the margin, but still proved. With `torques`, exact numbers by
-    fold, these are judged instead: `best` is then that of torques as large as the largest given.
+    The margin is the minimum over all other rays u' of tau . u - tau . u', where u is the unit
+    vector of the first-order fold angles of the ray. It is maximised over torques with |tau_e| <=
+    1, on at most `creases` folds if that is given (docs/actuation.md, 2). `signs` and `up` are
+    those of `find_branch`. A linear program proposes the torques, and they are rounded to rational
+    numbers. Interval arithmetic then proves their margin and an upper bound of all margins. Branch
+    and bound chooses the folds, with at most `nodes` linear programs; if these are not enough, the
+    bound is larger than the margin but still proved.
 
-    Raises `NotCountedError` for more than 12 foldable vertices, `UndecidedBranchError` if not all
-    branches are proved, `UsageError` for wrong arguments, and the errors of `find_branch`.
+    If `torques` are given, exact numbers by fold, they are judged instead. Then `best` bounds the
+    margin of all torques that are at most as large as the largest one given.
+
+    Raises `NotCountedError` if more than 12 vertices are foldable, `UndecidedBranchError` if some
+    branch is not proved, `UsageError` for wrong arguments, and the errors of `find_branch`.
 
     >>> found = actuate("two-vertex", "+-")
     >>> found
@@ -96,13 +103,13 @@ def require_few(size: int) -> None:
     """Raise `NotCountedError` if too many vertices can pop."""
     if size > MOST_FOLDABLE:
         raise NotCountedError(
-            f"{size} vertices can pop: exactfold compares a branch with its rivals where at most "
-            f"{MOST_FOLDABLE} can, as every branch is a rival and there are 2^{size}"
+            f"{size} vertices can pop: exactfold compares a branch with all others, and there are "
+            f"2^{size} of them; it does so if at most {MOST_FOLDABLE} vertices can pop"
         )
 
 
 def proved_branches(pattern: CreasePattern, progress: Progress | None) -> list[Branch]:
-    """All branches; raises `UndecidedBranchError` if they are not proved."""
+    """All branches of a pattern; raises `UndecidedBranchError` if some of them are not proved."""
     count = count_branches(pattern, progress=progress)
     if count.status is not PROVED:
         raise UndecidedBranchError(f"not all branches are proved: {count.reason}")
@@ -116,19 +123,24 @@ def _check(
     nodes: int,
 ) -> None:
     if creases is not None and torques is not None:
-        raise UsageError("give either torques to judge or the number of creases to drive")
+        raise UsageError(
+            "give either torques to judge or the number of creases to drive, but not both"
+        )
     if creases is not None and not 1 <= creases <= len(pattern.folds):
         raise UsageError(
-            f"{creases} driven creases: give from 1 to {len(pattern.folds)}, the number of folds"
+            f"{creases} creases cannot be driven: give a number from 1 to {len(pattern.folds)}, "
+            "the number of folds"
         )
     if nodes < 1:
-        raise UsageError("the choice of creases takes at least one linear program")
+        raise UsageError(
+            f"nodes is {nodes}: allow at least one linear program for the choice of creases"
+        )
     if torques is not None and not any(checked_torques(pattern, torques).values()):
-        raise UsageError("all torques are 0")
+        raise UsageError("all torques are 0: give at least one fold a torque that is not 0")
 
 
 class Search:
-    """The work of one call; `branches` are sharpened where that is needed."""
+    """The work of one call of `actuate`. It refines the roots of `branches` where necessary."""
 
     def __init__(
         self,
@@ -155,7 +167,7 @@ class Search:
             self.progress(stage, 0, 0)
 
     def _matched(self) -> int:
-        """Where in the list the named branch is; its row becomes the ray that was named."""
+        """The place of the named branch in the list; its row then shows the ray that was named."""
         meeting = self.directions.meeting(self.own)
         for bits in _SHARPER:
             if len(meeting) > 1:
@@ -176,7 +188,7 @@ class Search:
                 self.directions = self.directions.with_row(b, row)
 
     def found(self, start: float) -> Actuation:
-        """The answer."""
+        """The result."""
         self._say("torques")
         torques, best = self._torques()
         margin = self._margin(torques)
@@ -213,7 +225,7 @@ class Search:
         )
 
     def _torques(self) -> tuple[list[Fraction], Fraction]:
-        """Torques, and the bound of all margins."""
+        """The torques, and the upper bound of all margins."""
         rays = rivals(self.directions, self.place)
         units: FloatArray = self.directions.middles
         gaps = units[self.place] - np.array([sign * units[b] for b, sign in rays])
@@ -233,7 +245,7 @@ class Search:
         return self._rounded(proposal.torques), best
 
     def _rounded(self, torques: FloatArray) -> list[Fraction]:
-        """Decimal torques of few digits with nearly the margin of these."""
+        """Decimal torques with few digits whose margin is nearly that of the given ones."""
         exact = [max(Fraction(-1), min(Fraction(1), Fraction(x))) for x in torques.tolist()]
         wanted = self._margin(exact)[0]
         for digits in _DIGITS:
@@ -254,9 +266,9 @@ class Search:
 
 
 def judged(margin: Bounds, torques: Sequence[Fraction]) -> tuple[Verdict, str]:
-    """What the margin says of the torques."""
+    """The verdict that the bounds of the margin allow, and the reason for it."""
     if not any(torques):
-        return UNDECIDED, "no torques on so few creases that prefer the branch were found"
+        return UNDECIDED, "no torques on so few creases were found that prefer the branch"
     if margin[0] > 0:
         return PROVED, "the branch has more power than every other ray"
     if margin[1] <= 0:

@@ -1,4 +1,7 @@
-"""Which creases to drive if only some may be: branch and bound, every bound proved."""
+"""The choice of at most a given number of creases to drive, by branch and bound.
+
+Every bound is proved.
+"""
 
 from __future__ import annotations
 
@@ -15,21 +18,23 @@ from exactfold.design.actuation.powers import Ray, exact_weights, margin_bound
 from exactfold.design.actuation.programs import Proposal, largest_margin
 
 _JOINING = 8
-"""Rivals that join the linear programs at once."""
+"""At most this many rivals join the linear program at once."""
 
 _SHORT = 1e-7
-"""A rival that falls short of a margin by less does not join: the tolerance of the solver."""
+"""A rival joins only if it falls short of the margin by more than this, the solver's tolerance."""
 
 _CLOSE = 1e-4
-"""A share of the margin for which it is not worth to go on."""
+"""The search does not go on for a gain smaller than this share of the margin."""
 
 _ZERO = 1e-9
-"""A torque, or a margin, that is taken for 0."""
+"""A torque or a margin below this counts as 0."""
 
 
 @dataclass(frozen=True)
 class Choice:
-    """Proposed `torques`, and a proved bound of the margins of all torques on so few folds."""
+    """The proposed `torques`, and a proved upper bound of the margin of all torques on so few
+    folds.
+    """
 
     torques: FloatArray
     bound: Fraction
@@ -37,7 +42,7 @@ class Choice:
 
 @dataclass(order=True)
 class _Node:
-    """The choices that drive the folds `inside` and leave those `barred` alone."""
+    """All choices that drive the folds `inside` and do not drive the folds `barred`."""
 
     order: tuple[float, int]
     inside: BoolArray = field(compare=False)
@@ -48,10 +53,10 @@ class _Node:
 class CreaseChoice:
     """Branch and bound over the choices of at most `most` folds.
 
-    A node is bounded by a linear program that limits the sum of the sizes of the torques instead of
-    their number, so that its dual solution bounds all choices of the node (`margin_bound`). Few
-    rivals decide, so the programs are about some of them, and others join when they are needed; a
-    bound from some of the rivals holds for all of them.
+    A linear program bounds each node. It limits the sum of the sizes of the torques instead of
+    their number, so its dual solution bounds all choices of the node (`margin_bound`). As few
+    rivals are decisive, the program contains only some of them, and others join when they are
+    needed. A bound from some of the rivals also holds with all of them.
     """
 
     def __init__(
@@ -72,7 +77,7 @@ class CreaseChoice:
         self._improve(start.torques)
 
     def best(self, nodes: int, progress: Progress | None = None) -> Choice:
-        """The best torques found within so many nodes, and the bound of all choices."""
+        """The best torques found with at most this many nodes, and the bound of all choices."""
         nothing = np.zeros(len(self.allowed), dtype=np.bool_)
         queue = [_Node((-np.inf, 0), nothing, ~self.allowed, None)]
         settled: list[Fraction] = []
@@ -103,7 +108,7 @@ class CreaseChoice:
         return self.margin * (1 + _CLOSE) + _ZERO
 
     def _bounded(self, node: _Node) -> tuple[Proposal, Fraction]:
-        """The linear program of a node, and the proved bound of its choices."""
+        """The solution of a node's linear program, and the proved bound of the node's choices."""
         limited = ~node.inside & ~node.barred
         left = self.most - int(node.inside.sum())
         while True:
@@ -127,7 +132,7 @@ class CreaseChoice:
         return found, bound
 
     def _improve(self, torques: FloatArray) -> None:
-        """Take the folds with the largest torques, if no better choice is known."""
+        """Try the folds with the largest torques; keep them if they are the best choice so far."""
         sizes = np.where(self.allowed, np.abs(torques), -1.0)
         support = np.zeros(len(torques), dtype=np.bool_)
         support[np.argsort(-sizes, kind="stable")[: self.most]] = True
@@ -135,7 +140,7 @@ class CreaseChoice:
             return
         self.tried.add(support.tobytes())
         known = largest_margin(self.gaps[self.known], support & self.allowed)
-        if known.margin <= self._enough:  # all rivals leave no more than some do
+        if known.margin <= self._enough:  # with all rivals the margin is no larger
             return
         found = largest_margin(self.gaps, support & self.allowed)
         if found.margin > self.margin:
@@ -144,7 +149,7 @@ class CreaseChoice:
     def _undecided(self, found: Proposal, node: _Node) -> int | None:
         """The fold with the largest torque that is neither inside nor barred.
 
-        None where so few folds are driven that the program has found the best of the node.
+        None if so few folds are driven that the program has found the best choice of the node.
         """
         driven = np.abs(found.torques) > _ZERO
         if int((driven | node.inside).sum()) <= self.most:

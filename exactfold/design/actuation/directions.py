@@ -1,4 +1,4 @@
-"""The unit vectors of fold angles along which the branches leave the flat state, enclosed."""
+"""Proved bounds of the unit vectors of fold angles along which branches leave the flat state."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ BITS = 96
 """Bounds of the components are multiples of 2^-BITS."""
 
 _WORK = 128
-"""Bits of the largest component before it is divided by the norm, and of the lengths of folds."""
+"""Bits of the largest component before it is divided by the norm, and bits of the fold lengths."""
 
 Ends = tuple[list[int], list[int]]
 
 
 @dataclass(frozen=True, repr=False)
 class Directions:
-    """Unit vectors u_b of the first-order fold angles of branches: u_b = phi_b / |phi_b|.
+    """Unit vectors u_b = phi_b / |phi_b| of the first-order fold angles phi_b of branches.
 
-    phi_b has one component for each fold, as `Branch.fold_angles`, in radians, positive for a
-    valley; |.| is the Euclidean norm. `low[b][e]` and `high[b][e]` are proved bounds of component
-    e of branch b in units of 2^-96, in the order of `folds`; a fold that is proved flat has 0.
-    Each branch is shown by one of its rays; the other has the opposite vector.
+    phi_b has one component per fold, as in `Branch.fold_angles`, in radians, positive for a valley;
+    |.| is the Euclidean norm. `low[b][e]` and `high[b][e]` are proved bounds of component e of
+    branch b in units of 2^-96, in the order of `folds`. They are 0 for a fold that is proved flat.
+    Each branch is represented by one of its two rays; the other ray has the opposite vector.
 
     >>> from exactfold.branches.counting.collect import count_branches
     >>> directions = Directions.of(count_branches("two-vertex").branches)
@@ -49,7 +49,9 @@ class Directions:
 
     @classmethod
     def of(cls, branches: Iterable[Branch]) -> Directions:
-        """The directions of some branches of one pattern, at least one, each as it is listed."""
+        """The directions of at least one branch of a single pattern; each is shown by its listed
+        ray.
+        """
         branches = list(branches)
         pattern = branches[0].pattern
         lengths = _lengths(pattern)
@@ -84,12 +86,12 @@ class Directions:
 
     @cached_property
     def moving(self) -> BoolArray:
-        """The folds that bend on some branch: torques on others do no work."""
+        """The folds that bend on some branch; torques on all other folds do no work."""
         moving: BoolArray = ((self.lows != 0) | (self.highs != 0)).any(axis=0)
         return moving
 
     def with_row(self, place: int, other: Directions) -> Directions:
-        """The same with row `place` replaced by the only row of another."""
+        """A copy in which row `place` is replaced by the only row of `other`."""
         return replace(
             self,
             low=(*self.low[:place], other.low[0], *self.low[place + 1 :]),
@@ -97,22 +99,22 @@ class Directions:
         )
 
     def alone(self, place: int, sign: int) -> Directions:
-        """Row `place` alone, or the opposite of it."""
+        """Row `place` alone; if `sign` is negative, its opposite."""
         low, high = self.low[place], self.high[place]
         if sign < 0:
             low, high = tuple(-x for x in high), tuple(-x for x in low)
         return replace(self, low=(low,), high=(high,))
 
     def narrowed(self, other: Directions) -> Directions:
-        """The only row within the bounds of the only row of another, which holds the same ray."""
+        """The intersection of the only rows of two objects that show the same ray."""
         low = tuple(map(max, self.low[0], other.low[0]))
         high = tuple(map(min, self.high[0], other.high[0]))
         return replace(self, low=(low,), high=(high,))
 
     def meeting(self, other: Directions) -> list[tuple[int, int]]:
-        """(place, sign) of the rays whose bounds meet those of the only row of another.
+        """(place, sign) of all rays whose bounds meet those of the only row of `other`.
 
-        A line that is known to be one of these and meets a single one is that.
+        If the row is known to be one of these rays and meets only one of them, it is that ray.
         """
         low, high = other.lows[0], other.highs[0]
         here = ((self.lows <= high) & (self.highs >= low)).astype(bool).all(axis=1)
@@ -122,9 +124,9 @@ class Directions:
 
 
 def _densities(branches: Sequence[Branch]) -> Iterator[Ends]:
-    """Bounds of the fold densities of each branch as integers, up to a positive factor each.
+    """Bounds of the fold densities of each branch as integers, up to a positive factor per branch.
 
-    At a root in a box all are linear in the root, so that one product of matrices does it.
+    If the root lies in a box, all densities are linear in the root, so one matrix product suffices.
     """
     heights, rows, reach = None, np.zeros((0, 1), dtype=object), np.zeros(0, dtype=object)
     for branch in branches:
@@ -145,7 +147,7 @@ def _densities(branches: Sequence[Branch]) -> Iterator[Ends]:
 
 
 def _from_angles(branch: Branch) -> Ends:
-    """The same from the bounds of the branch, on whichever root it is."""
+    """The same from the fold angles of the branch, for any kind of root."""
     densities = branch.fold_angles.densities.values()
     common = lcm(*(x.denominator for pair in densities for x in pair))
     low, high = ([int(pair[k] * common) for pair in densities] for k in (0, 1))
@@ -153,7 +155,7 @@ def _from_angles(branch: Branch) -> Ends:
 
 
 def _density_rows(pattern: CreasePattern, heights: Mapping[int, Sequence[Fraction]]) -> BigArray:
-    """Fold densities as integer rows on (x, 1), all by one positive factor."""
+    """Fold densities as integer rows on (x, 1), all multiplied by one positive factor."""
     rows = []
     for fold in pattern.folds:
         weights = fold_functional(pattern, fold)
@@ -171,7 +173,7 @@ def _density_rows(pattern: CreasePattern, heights: Mapping[int, Sequence[Fractio
 
 
 def _lengths(pattern: CreasePattern) -> list[tuple[int, int]]:
-    """Bounds of the lengths of the folds as integers, by one positive factor."""
+    """Bounds of the lengths of the folds as integers, all multiplied by one positive factor."""
     points, _ = pattern.integer_vertices
     found = []
     for i, j in pattern.folds:
@@ -183,10 +185,10 @@ def _lengths(pattern: CreasePattern) -> list[tuple[int, int]]:
 
 
 def _unit(densities: Ends, lengths: Sequence[tuple[int, int]]) -> Ends:
-    """Bounds of the unit vector; [-1, 1] for all where the norm may be 0."""
+    """Bounds of the unit vector; [-1, 1] for all components if the norm may be 0."""
     low = [d * ends[d < 0] for d, ends in zip(densities[0], lengths, strict=True)]
     high = [d * ends[d > 0] for d, ends in zip(densities[1], lengths, strict=True)]
-    # Shorter numbers of the same accuracy, rounded outwards.
+    # Shorten the numbers without a loss of accuracy; round them outwards.
     shift = max(map(abs, (*low, *high))).bit_length() - 2 * _WORK
     if shift > 0:
         low, high = [x >> shift for x in low], [-(-x >> shift) for x in high]

@@ -1,4 +1,6 @@
-"""`actuate_all`: the torques with the best margin for every branch of a sheet, found together."""
+"""`actuate_all`: the torques with the best margin for every branch of a sheet, computed
+together.
+"""
 
 from __future__ import annotations
 
@@ -30,24 +32,25 @@ from exactfold.pattern.loading import PatternLike, as_pattern
 from exactfold.rigidity.equations.problem import Problem
 
 _CLOSE = Fraction(1, 10_000)
-"""A margin that falls short of its bound by a larger share of it is looked for once more."""
+"""If a margin falls short of its bound by a larger share of the bound, it is computed once more."""
 
 _SHARP = 64
-"""Bits of the roots of branches for which that is so, and of their closest rivals."""
+"""Then the roots of this branch and of its closest rivals are refined to this many bits."""
 
 
 def actuate_all(pattern: PatternLike, *, progress: Progress | None = None) -> tuple[Actuation, ...]:
-    """For each branch of a sheet the torques that prefer it to all others, by most.
+    """For each branch of a sheet, the torques that prefer it to all others by the largest margin.
 
-    In the order of `count_branches`, each for the ray that is listed there, with the 2B - 1 rivals
-    of `actuate`, and margin, bound and dimension proved in the same way. The opposite ray has the
-    same margin and dimension, with opposite torques: turning the sheet over permutes all rays and
-    reverses all powers (docs/actuation.md, 6). The linear programs are solved together, and
-    whatever does not depend on the branch is computed once. Torques are decimals with twelve digits
-    after the point; where several are equally good they may be others than those of `actuate`.
+    The branches are in the order of `count_branches`, each with the ray listed there and with the
+    2B - 1 rivals of `actuate`. Margin, bound and dimension are proved in the same way. The opposite
+    ray has the same margin and dimension with opposite torques, because turning the sheet over
+    permutes all rays and reverses all powers (docs/actuation.md, 6). The linear programs are solved
+    together, and everything that does not depend on the branch is computed once. Torques are
+    decimals with twelve digits after the point. If several torques are equally good, they may
+    differ from those of `actuate`.
 
-    Raises `NotCountedError` for more than 12 foldable vertices, `UndecidedBranchError` if not all
-    branches are proved, and the errors of `count_branches`.
+    Raises `NotCountedError` if more than 12 vertices are foldable, `UndecidedBranchError` if some
+    branch is not proved, and the errors of `count_branches`.
 
     >>> for found in actuate_all("two-vertex"):
     ...     print(found)
@@ -68,7 +71,7 @@ def actuate_all(pattern: PatternLike, *, progress: Progress | None = None) -> tu
 
 
 class _Together:
-    """The work of one call; `branches` are sharpened where that is needed."""
+    """The work of one call of `actuate_all`. It refines the roots of `branches` where necessary."""
 
     def __init__(
         self,
@@ -85,7 +88,7 @@ class _Together:
         self.results: dict[int, Actuation] = {}
 
     def found(self) -> list[Actuation]:
-        """The answers, in the order of the branches."""
+        """The results, in the order of the branches."""
         places = range(len(self.branches))
         self._try(places)
         left = [b for b in places if b not in self.results]
@@ -95,7 +98,9 @@ class _Together:
         return [self.results.get(b) or self._one(b) for b in places]
 
     def _try(self, places: Sequence[int]) -> None:
-        """Torques of some branches, kept where what is proved of them leaves little room."""
+        """Compute torques for these branches; keep those whose proved margin is close to
+        the bound.
+        """
         if self.progress is not None:
             self.progress("torques", len(self.results), len(self.branches))
         proposals = largest_margins(self.directions.middles, np.array(places))
@@ -114,7 +119,7 @@ class _Together:
     def _proved(
         self, place: int, proposal: RayProposal, torques: list[Fraction], leading: list[int]
     ) -> Actuation | None:
-        """The answer, if what is proved of the margin leaves little room."""
+        """The result, if the proved margin is close to its bound; otherwise None."""
         margin = Powers.of(self.directions, torques, [place, *leading]).margin(0)
         best = margin_bound(self.directions, place, exact_weights(proposal.rays, proposal.weights))
         if margin[0] < best * (1 - _CLOSE):
@@ -147,7 +152,7 @@ class _Together:
         self.directions = Directions.of(self.branches)
 
     def _one(self, place: int) -> Actuation:
-        """The answer of `actuate`."""
+        """The result of `actuate` for one branch."""
         branches, named = list(self.branches), self.branches[place]
         search = Search(self.pattern, named, branches, self.size, None, None, NODES, self.progress)
         return search.found(time.perf_counter())

@@ -1,10 +1,11 @@
-"""The linear programs of all branches of a sheet, solved together; floating point proves nothing.
+"""The linear programs of all branches of a sheet, solved together in floating point.
 
-A primal-dual interior point method with predictor and corrector (Mehrotra, SIAM Journal on
-Optimization 2, 1992) for the programs of `programs.largest_margin`. All branches have the same
-rivals but for themselves, so that products of matrices make the normal equations of all programs
-at once. Close to the solution it is told which constraints are tight there: these make a square
-system, whose solution is a vertex to rounding errors.
+The results prove nothing by themselves. The method is a primal-dual interior point method with
+predictor and corrector (Mehrotra, SIAM Journal on Optimization 2, 1992) for the programs of
+`programs.largest_margin`. Each branch has all other rays as rivals, so the programs differ only in
+one ray, and matrix products make the normal equations of all programs at once. Close to the
+solution, the constraints that seem tight form a square system; its solution is a vertex of the
+program, up to rounding errors.
 """
 
 from __future__ import annotations
@@ -20,27 +21,27 @@ from exactfold._support.arrays import BoolArray, FloatArray, IndexArray
 from exactfold.design.actuation.powers import Ray
 
 _STEPS = 40
-"""Most steps; 8 to 20 are usual."""
+"""The largest number of steps; 8 to 20 are usual."""
 
 _GAP = 1e-9
-"""A program ends where its margin and its bound differ by less."""
+"""A program ends when its margin and its bound differ by less than this."""
 
 _STEP = 0.999
-"""The share of the way to the nearest constraint that a step goes."""
+"""A step goes this share of the way to the nearest constraint."""
 
 _ENTRIES = 1 << 18
-"""Programs times rays that are held at once."""
+"""The largest number of programs times rays that are in memory at once."""
 
 _DAMPING = 2e-15
-"""Of directions in which torques are equally good."""
+"""Regularises the directions in which torques are equally good."""
 
 _SMALL = 1e-12
-"""Weights below this are left out."""
+"""Weights below this are dropped."""
 
 
 @dataclass(frozen=True)
 class RayProposal:
-    """`torques` by fold, and `weights` of the rivals `rays` that bound all margins."""
+    """Proposed `torques` by fold, and `weights` of the rivals `rays` that bound all margins."""
 
     torques: FloatArray
     rays: list[Ray]
@@ -50,9 +51,9 @@ class RayProposal:
 def largest_margins(units: FloatArray, places: IndexArray) -> Iterator[RayProposal | None]:
     """For each row u of `units` at `places`, torques that maximise the least (u - u') . tau.
 
-    With |tau_e| <= 1; the least is over all rays u' but u, and rays are the rows and their
-    opposites. Where a program fails there is None, or the torques and weights are poor, which shows
-    when they are proved.
+    The torques satisfy |tau_e| <= 1. The least is taken over all rays u' other than u; the rays are
+    the rows and their opposites. If a program fails, the result is None, or the torques and weights
+    are poor; the proof that follows reveals this.
 
     >>> for found in largest_margins(np.array([[1.0, 0.0], [0.6, 0.8]]), np.arange(2)):
     ...     print(found.torques.round(6).tolist(), found.rays, found.weights.round(6).tolist())
@@ -61,7 +62,7 @@ def largest_margins(units: FloatArray, places: IndexArray) -> Iterator[RayPropos
     """
     moving = (units != 0).any(axis=0)
     inner = units[:, moving]
-    # Coordinates in the space of all motions, which has few dimensions.
+    # `basis` spans the space of all motions, which has a small dimension.
     _, sizes, basis = np.linalg.svd(inner, full_matrices=False)
     basis = basis[sizes > 1e-12 * sizes[0]]
     number = max(1, _ENTRIES // len(units))
@@ -79,12 +80,13 @@ def largest_margins(units: FloatArray, places: IndexArray) -> Iterator[RayPropos
 
 
 class _Programs:
-    """Maximise m with A (tau, m) + c >= 0, for the branches at `places`, one program a row.
+    """Maximise m with A (tau, m) + c >= 0 for the branches at `places`, one program per row.
 
-    The constraints, along the last axis of `slack` and of the multipliers `force`: for each ray u_r
-    (u - u_r) . tau >= m, then (u + u_r) . tau >= m; then tau <= 1 and tau >= -1 for each fold. The
-    ray u is not its own rival: where `counts` is False the slack stays 1 and the multiplier 0. The
-    multipliers are a solution of the dual program: A^T force = (0, -1).
+    The constraints lie along the last axis of `slack` and of the multipliers `force`, in this
+    order: (u - u_r) . tau >= m for each ray u_r; (u + u_r) . tau >= m for each ray; tau <= 1 for
+    each fold; tau >= -1 for each fold. The ray u is not its own rival: where `counts` is False, the
+    slack stays 1 and the multiplier stays 0. The multipliers are a solution of the dual program,
+    A^T force = (0, -1).
     """
 
     def __init__(self, units: FloatArray, basis: FloatArray, places: IndexArray) -> None:
@@ -107,26 +109,26 @@ class _Programs:
         self.force[:, 2 * self.rays :] = pushes + 1.0 / self.folds
 
     def moved(self, tau: FloatArray, m: FloatArray) -> FloatArray:
-        """A (tau, m): what a step does to the slacks."""
+        """A (tau, m): the change of the slacks caused by a step."""
         others = tau @ self.units.T
         own = (tau * self.own).sum(axis=1) - m
         moved = np.hstack([own[:, None] - others, own[:, None] + others, -tau, tau])
         return np.where(self.counts, moved, 0.0)
 
     def gathered(self, force: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """A^T force, in its two parts."""
+        """The two parts of A^T force."""
         with_u, against, below, above = self.parts(force)
         total = (with_u + against).sum(axis=1)
         pull = total[:, None] * self.own - (with_u - against) @ self.units
         return pull - below + above, -total
 
     def parts(self, values: FloatArray) -> list[FloatArray]:
-        """The four kinds of constraints apart."""
+        """The values split into the four kinds of constraints."""
         rays, folds = self.rays, self.folds
         return np.split(values, [rays, 2 * rays, 2 * rays + folds], axis=1)
 
     def solve(self, steps: int = _STEPS) -> None:
-        """Step until all programs have ended; the last ones without those that have."""
+        """Step until all programs have ended. When few are left, only these go on."""
         for done in range(steps):
             gaps = (self.slack * self.force).sum(axis=1)
             going = gaps >= _GAP
@@ -151,12 +153,12 @@ class _Programs:
             getattr(self, name)[which] = getattr(part, name)
 
     def _step(self, mu: FloatArray, going: BoolArray) -> None:
-        """One step of all programs that are `going`: where the slackness would be 0, corrected."""
+        """One predictor-corrector step of all programs that are `going`."""
         stiff = self.force / self.slack
         solver = _Normal(self, stiff)
 
         def change(target: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-            """Of torques, slacks and multipliers, so that slack times force is the target."""
+            """The change of torques, slacks and multipliers that makes slack * force the target."""
             wanted = np.where(self.counts, target / self.slack, 0.0)
             pull, total = self.gathered(wanted)
             tau, slack = solver.solve(pull, total + 1.0)
@@ -174,7 +176,9 @@ class _Programs:
         self.force += back * force
 
     def proposal(self, k: int) -> RayProposal | None:
-        """The better torques and the better weights of the end of program k, and of a vertex."""
+        """The better torques and the better weights of two points: the end of program k, and a
+        vertex.
+        """
         ends = [self._inside(k)]
         if not all(np.isfinite(values).all() for values in ends[0]):
             return None
@@ -198,13 +202,15 @@ class _Programs:
         return float(np.abs(self.own[k] - (rays[0] - rays[1]) @ self.units).sum())
 
     def _inside(self, k: int) -> tuple[FloatArray, FloatArray]:
-        """Where program k has ended, inside of all constraints."""
+        """The point where program k has ended, inside all constraints."""
         weights = self.force[k, : 2 * self.rays]
         weights = np.where(weights > _SMALL, weights, 0.0)
         return self.tau[k], weights / weights.sum()
 
     def _vertex(self, k: int) -> tuple[FloatArray, FloatArray]:
-        """The point where the constraints are tight that seem so, next to where k has ended."""
+        """The vertex near the end of program k at which the constraints that seem tight
+        are tight.
+        """
         tight = self.force[k] > self.slack[k]
         rays = np.flatnonzero(tight[: 2 * self.rays])
         fixed = tight[2 * self.rays :].reshape(2, -1)
@@ -223,11 +229,11 @@ class _Programs:
 
 
 class _Normal:
-    """The normal equations A^T D A (tau, m) = (pull, total) of programs, D diagonal.
+    """The normal equations A^T D A (tau, m) = (pull, total) of the programs, with D diagonal.
 
-    With d_r and d'_r for the ray u_r and its opposite, s = sum_r (d_r + d'_r) and
-    q = sum_r (d_r - d'_r) u_r, the matrix of tau once m is eliminated is
-    sum_r (d_r + d'_r) u_r u_r^T - q q^T / s and what the bounds of the torques add to the diagonal.
+    Let d_r and d'_r belong to the ray u_r and its opposite, s = sum_r (d_r + d'_r) and q = sum_r
+    (d_r - d'_r) u_r. Once m is eliminated, the matrix of tau is sum_r (d_r + d'_r) u_r u_r^T - q
+    q^T / s, plus a diagonal that comes from the bounds of the torques.
     """
 
     def __init__(self, programs: _Programs, stiff: FloatArray) -> None:
@@ -250,7 +256,9 @@ class _Normal:
         self.inverse = np.linalg.inv(matrix)
 
     def solve(self, pull: FloatArray, total: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """tau, and what (tau, m) does to the slacks: solved, and once more for what is left."""
+        """Return tau and the change of the slacks caused by (tau, m), after one iterative
+        refinement.
+        """
         tau, m = self._solved(pull, total)
         left, rest = self.programs.gathered(self.stiff * self.programs.moved(tau, m))
         more, further = self._solved(pull - left, total - rest)
@@ -264,7 +272,7 @@ class _Normal:
 
 
 def _reach(values: FloatArray, step: FloatArray) -> FloatArray:
-    """The largest factor, at most 1, with values + factor * step >= 0, for each row."""
+    """For each row, the largest factor, at most 1, with values + factor * step >= 0."""
     falls = np.where(values > 0, -step / np.where(values > 0, values, 1.0), 0.0)
     factors: FloatArray = 1.0 / np.maximum(1.0, falls.max(axis=1))
     return factors

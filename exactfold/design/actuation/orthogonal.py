@@ -1,4 +1,6 @@
-"""The torques that do no work on any branch but one: their dimension, proved, and one of them."""
+"""The torques that do no work on any branch but one: proved bounds of their dimension, an
+example.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +21,7 @@ from exactfold.pattern.crease_pattern import Edge
 from exactfold.rigidity.functionals import fold_functional
 
 _INDEPENDENT = 1e-6
-"""Pivots below this are taken for 0: what is proposed has to pass an exact test anyway."""
+"""Pivots below this count as 0. This only guides proposals, which have to pass an exact test."""
 
 _SCALE = 60
 """Bits after the point of an approximate inverse."""
@@ -27,10 +29,11 @@ _SCALE = 60
 
 @dataclass(frozen=True, repr=False)
 class OrthogonalTorques:
-    """Torques at most 1 whose power on every other branch is nearly 0, where there are such.
+    """Torques of size at most 1 whose power on every other branch is nearly 0.
 
-    `share` is a proved bound of the largest power on another branch, over the power on this one.
-    It is not 0, as the fold angles of branches are irrational in general, and torques rational.
+    `share` is a proved bound of the largest power on another branch, divided by the power on this
+    one. It is not 0, because fold angles of branches are irrational in general and torques are
+    rational.
     """
 
     torques: Mapping[Edge, Fraction]
@@ -43,11 +46,12 @@ class OrthogonalTorques:
 def independent_rows(
     directions: Directions, places: Sequence[int]
 ) -> tuple[list[int], list[int]] | None:
-    """Some of the branches at `places`, and as many folds, whose minor is proved not to be 0.
+    """Some of the branches at `places`, and as many folds, whose minor is proved to be nonzero.
 
-    As many as seem independent in floating point; their vectors are then linearly independent.
-    The proof: an approximate inverse C with |C A - 1| < 1 in the norm of row sums, for every A
-    within the bounds. None where that fails, which does not mean that they are dependent.
+    So the vectors of these branches are linearly independent. There are as many as seem independent
+    in floating point. The proof is an approximate inverse C with |C A - 1| < 1, in the norm of row
+    sums, for every matrix A within the bounds. None if the proof fails, which does not mean that
+    the vectors are dependent.
     """
     matrix = directions.middles[list(places)]
     if not len(matrix):
@@ -62,7 +66,7 @@ def independent_rows(
 
 
 def _is_regular(low: BigArray, high: BigArray) -> bool:
-    """Whether every matrix within the bounds, in units of 2^-BITS, is proved to be regular."""
+    """Whether every matrix within the bounds, in units of 2^-BITS, is proved to be invertible."""
     try:
         inverse = np.linalg.inv(((low + high) / (2 << BITS)).astype(float))
     except np.linalg.LinAlgError:
@@ -80,9 +84,10 @@ def _is_regular(low: BigArray, high: BigArray) -> bool:
 
 @dataclass(frozen=True)
 class Alone:
-    """Of the torques that do no work on any branch but one: bounds of their dimension, and proof.
+    """The torques that do no work on any branch but one: proved bounds of their dimension.
 
-    `independent`: the places of other branches that are proved to be linearly independent.
+    `independent` are the places of other branches that are proved to be linearly independent.
+    `orthogonal` is an example of such torques, or None.
     """
 
     dimension: tuple[int, int]
@@ -97,10 +102,10 @@ def alone(
     size: int,
     independent: list[int] | None = None,
 ) -> Alone:
-    """What is proved of the torques that do no work on any branch but that at `place`.
+    """What is proved of the torques that do no work on any branch but the one at `place`.
 
-    `size` is the dimension of all first-order motions. `independent`: other branches that have
-    been proved to be independent, if some are known.
+    `size` is the dimension of the space of first-order motions. `independent` are other branches
+    that have already been proved to be independent, if some are known.
     """
     others = [b for b in range(len(branches)) if b != place]
     if independent is None:
@@ -113,10 +118,11 @@ def alone(
 
 
 def alone_each(directions: Directions, branches: Sequence[Branch], size: int) -> Iterator[Alone]:
-    """`alone` for each branch.
+    """The result of `alone` for each branch.
 
-    Two disjoint sets of `size` independent branches, as there are in general if there are so many
-    branches, prove all: one of them is without the branch in question.
+    If there are enough branches, there are in general two disjoint sets of `size` independent
+    branches. They suffice for all branches, because at least one of the two sets does not contain
+    the branch in question.
     """
     places = range(len(branches))
     full: list[list[int]] = []
@@ -134,12 +140,13 @@ def alone_each(directions: Directions, branches: Sequence[Branch], size: int) ->
 def dimension_bounds(
     branches: Sequence[Branch], others: Sequence[int], proved_rank: int, size: int
 ) -> tuple[int, int]:
-    """Bounds of the dimension of torques orthogonal to the branches at `others`.
+    """Bounds of the dimension of the torques orthogonal to the branches at `others`.
 
-    Torques are taken modulo those that do no work on any first-order motion, a space of dimension
-    `size`. The dimension is `size` less the rank of the others. That is at least `proved_rank`; it
-    is at most their number, and at most the dimension of the motions on which all folds are flat
-    that are proved flat on all of them; and it is known where all heights are exact rationals.
+    Torques are taken modulo those that do no work on any first-order motion; the quotient has
+    dimension `size`. The dimension sought is `size` minus the rank of the other branches. This rank
+    is at least `proved_rank` and at most the number of the other branches. It is also at most the
+    dimension of the motions on which all folds are flat that are proved flat on all these branches.
+    If all heights are exact rationals, the rank is computed.
     """
     chosen = [branches[b] for b in others]
     most = min(len(chosen), size)
@@ -153,8 +160,10 @@ def dimension_bounds(
 
 
 def _motions_with_flat_folds(branches: Sequence[Branch]) -> int:
-    """The dimension of the first-order motions with the folds flat that all branches have flat."""
-    from exactfold.exact.linalg import rank  # FLINT, for this alone
+    """The dimension of the first-order motions on which the folds that are flat on all branches are
+    flat.
+    """
+    from exactfold.exact.linalg import rank  # imported here because it loads FLINT
 
     pattern = branches[0].pattern
     vertices = range(len(pattern.vertices))
@@ -167,11 +176,12 @@ def _motions_with_flat_folds(branches: Sequence[Branch]) -> int:
 
 
 def _exact_rank(branches: Sequence[Branch]) -> int | None:
-    """The rank of branches all of whose heights are known to be rational, else None.
+    """The rank of the branches if all their heights are known to be rational; otherwise None.
 
-    Heights modulo planes: three corners of the boundary have height 0 in every branch of a count.
+    Heights are taken modulo planes: three corners of the boundary have height 0 in every branch of
+    a count.
     """
-    from exactfold.exact.linalg import rank  # FLINT, for this alone
+    from exactfold.exact.linalg import rank  # imported here because it loads FLINT
 
     rows = []
     for branch in branches:
@@ -183,7 +193,7 @@ def _exact_rank(branches: Sequence[Branch]) -> int | None:
 
 
 def _densities(branch: Branch, heights: Mapping[int, Fraction]) -> list[Fraction]:
-    """Exact fold densities: fold angles over lengths, which does not change the rank."""
+    """Exact fold densities, that is, fold angles divided by lengths; they have the same rank."""
     found = fold_angles(branch.pattern, {v: (h, h) for v, h in heights.items()})
     return [low for low, _ in found.densities.values()]
 
@@ -193,13 +203,14 @@ def orthogonal_torques(
 ) -> OrthogonalTorques | None:
     """The strongest torques on branch `chosen` that do no work on the branches at `silent`.
 
-    `silent` span all others. None where none is found that works on the chosen branch.
+    The branches at `silent` span all other branches. None if no such torques are found that work on
+    the chosen branch.
     """
     units: FloatArray = directions.middles
     found = strongest_within(units[chosen], units[list(silent)], moving)
     if found is None:
         return None
-    # The solver allows errors of 1e-7: project onto what is orthogonal, to rounding errors.
+    # The solver allows errors of 1e-7. Projecting makes the torques orthogonal up to rounding.
     basis = qr(units[list(silent)].T, mode="economic")[0] if len(silent) else units[:0].T
     for _ in range(2):
         found = found - basis @ (basis.T @ found)

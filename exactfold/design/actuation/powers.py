@@ -1,6 +1,6 @@
-"""What torques do on each branch, proved: powers, margins, and bounds of what is possible.
+"""What torques do on each branch: powers, margins, and bounds of all margins, all proved.
 
-All of it is interval arithmetic in integers on the bounds of `Directions`.
+The proofs are interval arithmetic in integers on the bounds of `Directions`.
 """
 
 from __future__ import annotations
@@ -16,17 +16,17 @@ from exactfold.design.actuation.directions import BITS, Directions
 from exactfold.exact.numbers import over_common_denominator
 
 _SMALL = 1e-12
-"""Weights below this are left out."""
+"""Weights below this are dropped."""
 
 TORQUE_DIGITS = 12
-"""Digits after the point of torques of all branches."""
+"""The torques of `actuate_all` have this many digits after the point."""
 
 _TORQUE_BITS, _UNIT_BITS = 20, 30
-"""Bits after the point of torques and of components of unit vectors in 64-bit integers."""
+"""Bits after the point of torques, and of components of unit vectors, as 64-bit integers."""
 
 Bounds = tuple[Fraction, Fraction]
 Ray = tuple[int, int]
-"""The place of a branch, and 1 for the ray shown or -1 for the opposite one."""
+"""The place of a branch, and 1 for the ray shown or -1 for the opposite ray."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -44,7 +44,9 @@ class Powers:
         torques: Sequence[Fraction],
         places: slice | Sequence[int] = slice(None),
     ) -> Powers:
-        """The powers of torques, in the order of the folds, on the branches at `places`."""
+        """The powers of these torques on the branches at `places`; torques are in the order of the
+        folds.
+        """
         integers, common = over_common_denominator(torques)
         tau = np.array(integers, dtype=object)
         up, down = np.maximum(tau, 0), np.minimum(tau, 0)
@@ -56,9 +58,9 @@ class Powers:
         return Fraction(self.low[place], self.unit), Fraction(self.high[place], self.unit)
 
     def largest_rival(self, chosen: int) -> Bounds:
-        """Bounds of the largest power on a ray other than the one shown of branch `chosen`.
+        """Bounds of the largest power on any ray other than the one shown of branch `chosen`.
 
-        Rays come in pairs with opposite powers, and the ray opposite to the chosen one is a rival.
+        Rays come in pairs with opposite powers. The ray opposite to the chosen one is a rival, too.
         """
         others = np.arange(len(self.low)) != chosen
         low = [*np.maximum(self.low, -self.high)[others], -self.high[chosen]]
@@ -66,13 +68,15 @@ class Powers:
         return Fraction(max(low), self.unit), Fraction(max(high), self.unit)
 
     def margin(self, chosen: int) -> Bounds:
-        """Bounds of the margin: the power on the chosen ray less the largest on any other."""
+        """Bounds of the margin: the power on the chosen ray minus the largest power on any other
+        ray.
+        """
         (low, high), (under, over) = self.bounds(chosen), self.largest_rival(chosen)
         return low - over, high - under
 
 
 def rivals(directions: Directions, chosen: int) -> list[Ray]:
-    """All rays but the one shown of branch `chosen`."""
+    """All rays except the one shown of branch `chosen`."""
     others = [b for b in range(len(directions)) if b != chosen]
     return [(chosen, -1), *((b, sign) for b in others for sign in (1, -1))]
 
@@ -80,12 +84,13 @@ def rivals(directions: Directions, chosen: int) -> list[Ray]:
 def leading_rivals(
     directions: Directions, places: Sequence[int], torques: IntArray
 ) -> list[list[int]]:
-    """For the branch at each place and its row of torques, the others that may have most power.
+    """For each place and its row of torques: the other branches that may have the largest power.
 
-    Torques are in units of 10^-12 and at most 1. A ray of a branch that is left out has less power
-    than the largest rival. Proved in integers of 64 bits: for t and u rounded to t' and u' with
-    |t - t'| <= 2^-20 and |u - u'| <= 2^-30 + w, where w is half the width of the widest bounds of a
-    component, t . u and t' . u' differ by at most F (2^-20 + 2^-30 + w) on F folds.
+    Torques are integers in units of 10^-12 and at most 1 in size. Every ray of a branch that is not
+    returned has less power than the largest rival. The proof uses 64-bit integers. Let t and u be
+    rounded to t' and u' with |t - t'| <= 2^-20 and |u - u'| <= 2^-30 + w, where w is half the width
+    of the widest bounds of a component. Then t . u and t' . u' differ by at most F (2^-20 + 2^-30 +
+    w) on F folds.
     """
     if np.abs(torques).max(initial=0) > 10**TORQUE_DIGITS:
         raise ArithmeticError("torques are larger than 1")
@@ -106,7 +111,7 @@ def leading_rivals(
 
 
 Weights = Sequence[tuple[Ray, Fraction]]
-"""Weights of rivals, not negative, with sum 1."""
+"""Nonnegative weights of rivals with sum 1."""
 
 
 def margin_bound(
@@ -117,14 +122,16 @@ def margin_bound(
     most: int = 0,
     barred: Sequence[bool] | None = None,
 ) -> Fraction:
-    """No torques of size at most 1 have a larger margin than this.
+    """An upper bound of the margin of all torques of size at most 1, by weak duality.
 
-    With `limited`, no torques that drive at most `most` of these folds, and any of the others; with
-    `barred`, none that leave these folds alone. Weak duality: the margin of tau is at most
-    sum_r w_r tau . (u - u_r) = tau . g for weights w_r >= 0 with sum 1 on rivals r; and tau . g is
-    at most the sum of |g_e|, over the `most` largest of the limited folds and all others, as
-    |tau_e| <= 1. Every choice of weights gives a true bound. Raises `ArithmeticError` for weights
-    that are negative, do not add up to 1, or are not on rivals: the ray itself is none.
+    If `limited` is given, the bound is for torques that drive at most `most` of these folds and any
+    of the others. If `barred` is given, it is for torques that do not drive these folds. The margin
+    of tau is at most sum_r w_r tau . (u - u_r) = tau . g for weights w_r >= 0 with sum 1 on rivals
+    r. As |tau_e| <= 1, tau . g is at most the sum of |g_e| over the `most` largest of the limited
+    folds and over all other folds. So every choice of weights gives a true bound.
+
+    Raises `ArithmeticError` if a weight is negative, if the weights do not add up to 1, or if a
+    weight is not on a rival; the chosen ray itself is no rival.
     """
     places = range(len(directions.lows))
     for place, sign in (ray for ray, _ in weights):
@@ -147,7 +154,9 @@ def margin_bound(
 
 
 def exact_weights(rays: Sequence[Ray], weights: FloatArray) -> list[tuple[Ray, Fraction]]:
-    """Weights that are exactly what `margin_bound` asks for, near those of a linear program."""
+    """Weights near those of a linear program that satisfy the conditions of
+    `margin_bound` exactly.
+    """
     exact = [Fraction(x) if x > _SMALL else Fraction(0) for x in weights.tolist()]
     total = sum(exact, Fraction(0))
     return [(ray, x / total) for ray, x in zip(rays, exact, strict=True) if x]

@@ -1,4 +1,4 @@
-"""Linear programs that propose torques; what they return is floating point and proves nothing."""
+"""Linear programs that propose torques. Their solutions are floating point and prove nothing."""
 
 from __future__ import annotations
 
@@ -12,7 +12,9 @@ from exactfold._support.arrays import BoolArray, FloatArray
 
 @dataclass(frozen=True)
 class Proposal:
-    """`torques` by fold, their `margin`, and `weights` of the rivals: the dual solution."""
+    """The proposed `torques` by fold, their `margin`, and the dual solution: `weights` of the
+    rivals.
+    """
 
     torques: FloatArray
     margin: float
@@ -22,10 +24,11 @@ class Proposal:
 def largest_margin(
     gaps: FloatArray, allowed: BoolArray, limited: BoolArray | None = None, most: int = 0
 ) -> Proposal:
-    """Maximise m with gaps @ tau >= m, |tau_e| <= 1, tau_e = 0 unless allowed.
+    """Maximise m with gaps @ tau >= m and |tau_e| <= 1, where tau_e = 0 unless e is allowed.
 
-    Row r of `gaps` is u - u_r for rival r. With `limited`, the sizes of the torques on these folds
-    add up to at most `most`: that admits all torques on at most `most` of them, and more.
+    Row r of `gaps` is u - u_r for rival r. If `limited` is given, the sizes of the torques on these
+    folds add up to at most `most`. This admits all torques that drive at most `most` of these
+    folds, and others.
     """
     count, folds = gaps.shape
     reach = allowed.astype(float)
@@ -53,7 +56,7 @@ def largest_margin(
 def strongest_within(
     target: FloatArray, silent: FloatArray, allowed: BoolArray
 ) -> FloatArray | None:
-    """Maximise target . tau with silent @ tau = 0, |tau_e| <= 1; None if that fails."""
+    """Maximise target . tau with silent @ tau = 0 and |tau_e| <= 1; None if the solver fails."""
     reach = allowed.astype(float)
     found = linprog(
         -target,

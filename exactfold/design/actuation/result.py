@@ -1,4 +1,4 @@
-"""Torques for one branch with what is proved of them, and how they rank all branches."""
+"""Torques for one branch with all that is proved of them, and the ranking of all branches."""
 
 from __future__ import annotations
 
@@ -37,11 +37,11 @@ from exactfold.pattern.near_degeneracy import WarningDocument, warnings
 Bounds = tuple[Fraction, Fraction]
 
 _DIGITS = 15
-"""Digits after the point of bounds that are shown or kept, rounded outwards."""
+"""Bounds that are shown or stored are rounded outwards to this many digits after the point."""
 
 
 def outward(bounds: Bounds) -> Bounds:
-    """The bounds as decimals with 15 digits after the point, no narrower.
+    """The bounds rounded outwards to decimals with 15 digits after the point.
 
     >>> outward((Fraction(1, 3), Fraction(1, 2)))
     (Fraction(333333333333333, 1000000000000000), Fraction(1, 2))
@@ -112,9 +112,10 @@ class ActuationDocument(TypedDict):
 class Ranked:
     """One branch in a ranking by power.
 
-    `signs` name the branch as it is listed; `ray` is 1 if the ray with these signs has the larger
-    power, -1 if the opposite one has it (all signs reversed), 0 if neither is proved. `power`:
-    bounds of that of the stronger ray. `above_next`: it is proved to exceed that of the next.
+    `signs` name the branch as it is listed. `ray` is 1 if the ray with these signs is proved to
+    have the larger power, -1 if the opposite ray is (all signs reversed), and 0 if neither is
+    proved. `power` are bounds of the power of the stronger ray. `above_next` says whether this
+    power is proved to exceed that of the next branch.
     """
 
     signs: str
@@ -123,7 +124,7 @@ class Ranked:
     above_next: bool
 
     def to_dict(self) -> RankedDocument:
-        """The object in `ranking` of the JSON output."""
+        """The object of this branch in `ranking` of the JSON output."""
         return {
             "signs": self.signs,
             "ray": self.ray,
@@ -134,20 +135,23 @@ class Ranked:
 
 @dataclass(frozen=True, repr=False)
 class Actuation:
-    """Torques that drive a sheet along one ray of one branch, and what is proved of them.
+    """Torques that drive a sheet along one ray of one branch, and all that is proved of them.
 
-    The power of torques tau along a ray with unit vector u of fold angles is tau . u; the margin is
-    the power along the ray of `branch` less the largest along any of the other 2B - 1 rays, and
-    `margin` are proved bounds of it. All torques have size at most 1, a positive one folds its
-    crease towards a valley. `best`: no such torques, on at most `creases` folds if that is given,
-    have a larger margin; proved. `given` tells torques that were given from those that were found.
+    The power of torques tau along a ray with unit vector u of fold angles is tau . u. The margin is
+    the power along the ray of `branch` minus the largest power along any of the other 2B - 1 rays.
+    `margin` are proved bounds of the margin. All torques have size at most 1; a positive torque
+    folds its crease towards a valley. `best` is a proved upper bound of the margin of all such
+    torques, on at most `creases` folds if that is not None. `given` says whether the torques were
+    given or found.
 
-    `orthogonal_dimension`: proved bounds of the dimension of the torques that do no work on any
-    other branch (Tachi and Hull's necessary condition), modulo those that do none on any motion.
-    `independent`: other branches whose fold angles are proved to be linearly independent.
-    `orthogonal` is an example, where the dimension is proved to be positive.
+    `orthogonal_dimension` are proved bounds of the dimension of the torques that do no work on any
+    other branch (Tachi and Hull's necessary condition), modulo the torques that do no work on any
+    motion. `independent` are other branches whose fold angles are proved to be linearly
+    independent. If the dimension is proved to be positive, `orthogonal` is an example of such
+    torques.
 
-    `status` is PROVED if the margin is proved to be positive, REFUTED if it is proved not to be.
+    `status` is PROVED if the margin is proved to be positive, and REFUTED if it is proved not to
+    be.
     """
 
     pattern: CreasePattern
@@ -183,10 +187,11 @@ class Actuation:
         return outward(self._powers(self.torques).largest_rival(self.place))
 
     def ranking(self, torques: Mapping[Edge, RationalLike] | None = None) -> list[Ranked]:
-        """All branches by the power of their stronger ray, largest first; by default of `torques`.
+        """All branches, sorted by the power of their stronger ray, largest first.
 
-        `torques` by fold (i, j), i < j, exact numbers of any size; folds that are not named have 0.
-        Raises `UsageError` for what is not a fold of the pattern, `NumberError` for floats.
+        `torques` are exact numbers of any size by fold (i, j), i < j; folds that are missing have
+        torque 0. By default they are the torques of this result. Raises `UsageError` for a key that
+        is not a fold of the pattern, and `NumberError` for floats.
 
         >>> from exactfold.design.actuation.actuate import actuate
         >>> found = actuate("two-vertex", "+-")
@@ -209,7 +214,7 @@ class Actuation:
         return found
 
     def checked(self, torques: Mapping[Edge, RationalLike]) -> dict[Edge, Fraction]:
-        """Torques of all folds from those of some. Raises as `ranking`."""
+        """Torques of all folds from torques of some of them. Raises the errors of `ranking`."""
         return checked_torques(self.pattern, torques)
 
     def _powers(self, torques: Mapping[Edge, Fraction]) -> Powers:
@@ -259,9 +264,9 @@ class Actuation:
 def checked_torques(
     pattern: CreasePattern, torques: Mapping[Edge, RationalLike]
 ) -> dict[Edge, Fraction]:
-    """Exact torques of all folds from those of some.
+    """Exact torques of all folds from torques of some of them; missing folds have torque 0.
 
-    Raises `UsageError` for what is not a fold of the pattern, `NumberError` for floats.
+    Raises `UsageError` for a key that is not a fold of the pattern, and `NumberError` for floats.
     """
     folds = set(pattern.folds)
     for fold in torques:

@@ -1,4 +1,7 @@
-"""Cone programs in the bends of folds: which bends have given letters, or what refutes them."""
+"""Cone programs whose unknowns are the bends of the folds.
+
+They find bends that have given letters, or folds and vertices that refute the letters.
+"""
 
 from __future__ import annotations
 
@@ -29,10 +32,11 @@ _CURVED = 1e-6
 
 @dataclass(frozen=True)
 class Bends:
-    """Bends of all folds of a sheet with given letters, in floating point, where K_v >= 0.
+    """Bends of all folds that have given letters, with K_v >= 0 at every vertex; floating point.
 
-    `slopes`: fold angles nearly, by fold in the order of the sheet, the largest of size 1. `sides`:
-    the vertices with K_v > 0, and to which side they pop.
+    `slopes` are approximate fold angles in the order of the folds of the sheet, scaled so that the
+    largest has size 1. `sides` contains the vertices with K_v > 0, and to which side each of them
+    pops.
     """
 
     slopes: FloatArray
@@ -41,14 +45,17 @@ class Bends:
 
 @dataclass(frozen=True)
 class BendProgram:
-    """The cone program of one sheet and its letters, in the bends of its folds.
+    """The cone program of one sheet and its letters; its unknowns are the bends of the folds.
 
-    Maximise m, where every fold with a letter bends its way by an angle of at least m, none by more
-    than 1, folds that stay flat by 0, every star closes up, and lies in the nappe of the sign of
-    its vertex if it has one. If m is 0, the dual solution names folds and vertices that refute the
-    letters, and `ConeProgram` finds heights on these alone: other folds and vertices, which may
-    have solutions of their own, as on the other side of a fold from border to border, are in no way
-    of the refutation. Else the bends have the letters, and only K_v = 0 is missing.
+    The program maximises a margin m. Every fold with a letter bends the way of its letter by an
+    angle of at least m. No fold bends by more than 1, and folds that stay flat bend by 0. Every
+    star closes up. A star whose vertex has a sign lies in the nappe of that sign.
+
+    If the maximum is 0, the dual solution names folds and vertices that refute the letters, and
+    `ConeProgram` looks for heights on these alone. The other folds and vertices may have solutions
+    of their own, for example on the other side of a fold that runs from border to border; these do
+    not hinder the refutation. If the maximum is positive, the bends have the letters, and only the
+    equations K_v = 0 may fail.
     """
 
     sheet: CreasePattern
@@ -56,10 +63,12 @@ class BendProgram:
     bends: dict[frozenset[tuple[int, int]], Bends] = field(
         default_factory=dict, repr=False, compare=False
     )
-    """What was found for signs that seem possible."""
+    """The bends found for each set of signs that seems possible."""
 
     def solved(self, signs: Mapping[int, int]) -> Refutation | Witness | None:
-        """A verified refutation, else signs that seem possible, None if there is no telling."""
+        """Return a verified refutation, else signs that seem possible, or None if neither
+        is found.
+        """
         try:
             x, duals = self._solution(signs)
         except OverflowError:  # lengths beyond the range of floats
@@ -73,7 +82,7 @@ class BendProgram:
         return {**found.sides, **signs}
 
     def _refutation(self, signs: Mapping[int, int], duals: _Duals) -> Refutation | None:
-        """Heights at the vertices and folds that the dual solution names, verified exactly."""
+        """Find heights where the dual solution is not 0, and verify them exactly."""
         largest = max(duals.letters.values(), default=0.0)
         kept = {fold for fold, x in duals.letters.items() if x > _USED * largest}
         for least in (_USED, 0.0):
@@ -111,7 +120,9 @@ class BendProgram:
 
     @cached_property
     def _common(self) -> tuple[Any, Any, list[int], list[int]]:
-        """The rows that do not depend on signs: equations, then letters and bounds."""
+        """The rows that do not depend on signs: first the equations, then the letters and the
+        bounds.
+        """
         count, stars = len(self._folds), star_rows(self.sheet)
         flat = [k for k, fold in enumerate(self._folds) if self.letters[fold] == "F"]
         held = [k for k, fold in enumerate(self._folds) if self.letters[fold] in "MV"]
@@ -181,7 +192,7 @@ class BendProgram:
         return {}
 
     def _nappe(self, v: int) -> FloatArray:
-        """The rows of `StarRows.cone` on the bends of a star that closes up."""
+        """The rows of `StarRows.cone` in terms of the bends of a star that closes up."""
         if v not in self._nappes:
             star = star_rows(self.sheet)[v]
             self._nappes[v] = star.cone @ np.linalg.pinv(_bending(star.spokes))
@@ -190,7 +201,7 @@ class BendProgram:
 
 @dataclass
 class _Duals:
-    """How much each fold with a letter, each star and each nappe is used."""
+    """How much the dual solution uses each fold with a letter, each star and each nappe."""
 
     letters: dict[Edge, float] = field(default_factory=dict)
     stars: dict[int, float] = field(default_factory=dict)
@@ -198,10 +209,10 @@ class _Duals:
 
 
 def _bending(spokes: FloatArray) -> FloatArray:
-    """The densities of the folds of a star from the heights at their ends, the hub at 0.
+    """The matrix that takes the heights of a star's neighbours to the densities of its folds.
 
-    w_k = z_(k-1) / c_(k-1) + z_(k+1) / c_k - z_k [d_(k-1), d_(k+1)] / (c_(k-1) c_k) with c_k =
-    [d_k, d_(k+1)].
+    The hub is at height 0. With c_k = [d_k, d_(k+1)], the density of fold k is w_k = z_(k-1) /
+    c_(k-1) + z_(k+1) / c_k - z_k [d_(k-1), d_(k+1)] / (c_(k-1) c_k).
     """
     size = len(spokes)
     matrix = np.zeros((size, size))

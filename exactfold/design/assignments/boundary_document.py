@@ -1,4 +1,4 @@
-"""What a match of a sheet with more than four corners says: in words, and as JSON."""
+"""The answer of a match of a sheet with more than four corners, in words and as JSON."""
 
 from __future__ import annotations
 
@@ -43,12 +43,12 @@ def rim_match_document(found: RimMatch, name: str | None = None) -> StartingDocu
 
 
 def truly(found: RimMatch) -> Verdict:
-    """Whether true motions begin with the letters.
+    """Whether motions begin with the letters, that is, solutions that extend to a finite flex.
 
-    A branch with a rim is the start of true ones, whose heights differ by O(|rim|^3), so that no
-    mountain or valley changes (docs/any_border.md, Theorem 8). A vertex with four folds has no true
-    motion either if it has none to second order, and the inside of a triangulated triangle stays
-    flat.
+    A branch over boundary heights b is the start of such motions. Their heights differ from those
+    of the branch by O(|b|^3), so no mountain or valley changes (docs/any_border.md, Theorem 8). The
+    answer REFUTED needs a vertex with at most four folds that has no motion to second order, and so
+    none at all, or a fold with a letter inside a triangulated triangle, which stays flat.
     """
     if found.starts is PROVED:
         return PROVED
@@ -77,7 +77,7 @@ def _ways(found: RimMatch) -> int | None:
 
 
 def reasons(found: RimMatch) -> tuple[str, ...]:
-    """Why, in plain words, one sentence each."""
+    """The reasons for the answer in plain words, one sentence each."""
     if found.branch is not None:
         signs = found.branch.sign_text
         return (
@@ -119,7 +119,7 @@ def _heights(found: RimMatch) -> str:
 
 
 def _stuck(found: RimMatch) -> list[str]:
-    """The folds with letters that lie in triangulated triangles."""
+    """The folds that are asked to be mountains or valleys but lie inside triangulated triangles."""
     moving = {tuple(sorted(found.labels[v] for v in fold)) for fold in found.sheet.folds}
     wanted = [fold for fold, x in sorted(found.letters.items()) if x in "MV"]
     return [fold_text(fold) for fold in wanted if fold not in moving]

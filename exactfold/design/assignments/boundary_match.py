@@ -1,4 +1,4 @@
-"""`match_rim`: whether some rim of a sheet with more than four corners has given letters."""
+"""`match_rim`: whether a sheet with more than four corners can start to fold with given letters."""
 
 from __future__ import annotations
 
@@ -25,19 +25,24 @@ from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.loading import PatternLike, as_pattern
 
 _MOST_LISTED: Final = 4
-"""Most foldable vertices of a pentagon whose assignments are listed where a rim is not found."""
+"""If no boundary heights are found, the assignments of a pentagon with up to this many foldable
+vertices are listed.
+"""
 
 
 @dataclass(frozen=True, repr=False)
 class RimMatch:
     """Whether a sheet with more than four corners starts to fold with given letters.
 
-    `starts` PROVED: `branch` has them, over the heights `Branch.rim` of the border. REFUTED: no
-    solution has; `tree` covers all signs of vertices by sets that are refuted, `refutations` by
-    vectors, `reasons` says those that need none; `listed`: for some signs that is shown by the
-    complete list of `all_assignments` instead. UNDECIDED: neither was shown for the signs
-    `open_signs`. `sheet` is the pattern without what lies in triangulated triangles, where vertex v
-    is `labels[v]` of the pattern; `leaves`: for how many sign vectors a rim was looked for.
+    `starts` is PROVED if `branch` has the letters; its boundary heights are `Branch.rim`. `starts`
+    is REFUTED if no solution has the letters. Then `tree` covers all signs of the vertices by
+    refuted sets of signs: `refutations` are those refuted by vectors, and `reasons` explains those
+    that need no vectors. If `listed` is true, the complete list of `all_assignments` settles some
+    of the signs instead. `starts` is UNDECIDED if neither was shown for the signs in `open_signs`.
+
+    `sheet` is the pattern without the folds and vertices inside triangulated triangles; its vertex
+    v is vertex `labels[v]` of the pattern. `leaves` counts the sign vectors for which boundary
+    heights were searched for.
     """
 
     pattern: CreasePattern
@@ -59,12 +64,12 @@ class RimMatch:
 
     @property
     def refutations(self) -> tuple[Refutation, ...]:
-        """The vectors that were used."""
+        """The refutations by vectors that the tree uses."""
         return self.tree.refutations
 
     @property
     def leaves(self) -> int:
-        """For how many sign vectors a rim was looked for."""
+        """The number of sign vectors for which boundary heights were searched for."""
         return len(self.tree.leaves)
 
     def __repr__(self) -> str:
@@ -80,17 +85,18 @@ def match_rim(
 ) -> RimMatch:
     """Whether a sheet with more than four corners starts to fold with given letters.
 
-    `letters`: by fold (i, j), i < j, or a text in the order of the folds: "M", "V", "F" for a fold
-    that is to stay flat, "U" where anything may be; folds left out are free. Signs of vertices are
-    refuted as by `match`, for any border. For the signs of all vertices that are left, a rim is
-    looked for, in floating point, whose branch has the letters; its heights are rounded, and the
-    branch over it is proved by `find_branch` (docs/assignment.md, More than four corners). The
-    first that is found ends the search. At most `most` sign vectors are tried; what is open then is
-    decided by `all_assignments` where the sheet has five corners and few vertices.
+    `letters` is a mapping from folds (i, j), i < j, or a text in the order of the folds. "M" is a
+    mountain, "V" a valley, "F" a fold that has to stay flat, and "U" a fold that may do anything;
+    folds left out are free. The search first refutes signs of vertices as `match` does; this holds
+    for any boundary heights. For every sign vector that is left it looks, in floating point, for
+    boundary heights whose branch has the letters. It rounds these heights, and `find_branch` proves
+    the branch over them (docs/assignment.md, More than four corners). The first branch found ends
+    the search. At most `most` sign vectors are tried. If some are still open then, and the sheet
+    has five corners and few vertices, `all_assignments` decides.
 
-    A rim is looked for only if the border is convex and no fold with "F" can move. Raises
-    `UsageError` for letters that do not fit, and `NotCountedError` for fewer than five boundary
-    vertices, or if no vertex can pop.
+    Boundary heights are searched for only if the border is convex and no fold that can move has the
+    letter "F". Raises `UsageError` for letters that do not fit, and `NotCountedError` if the sheet
+    has fewer than five boundary vertices or no vertex that can pop.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> found = match_rim(single_vertex(5), "MMVMV")
@@ -102,13 +108,14 @@ def match_rim(
     given = as_pattern(pattern)
     if given.Ve < 5:
         raise NotCountedError(
-            f"a rim is looked for on sheets with more than four corners; this one has {given.Ve}"
+            "boundary heights are searched for only on sheets with more than four corners; this "
+            f"sheet has {given.Ve}"
         )
     return _Search(given, by_fold(given.folds, letters), most, progress).result()
 
 
 def can_pop(pattern: CreasePattern) -> bool:
-    """Whether some vertex can pop: one that lies in no triangulated triangle.
+    """Whether some vertex can pop, that is, lies outside all triangulated triangles.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> can_pop(single_vertex(5))
@@ -118,7 +125,7 @@ def can_pop(pattern: CreasePattern) -> bool:
 
 
 class _Search(SignSearch["Branch | None"]):
-    """The search whose leaves are branches over a rim that was found, or None."""
+    """The search whose leaves are branches with the letters, or None where none was found."""
 
     def __init__(
         self, pattern: CreasePattern, letters: Letters, most: int, progress: Progress | None
@@ -127,18 +134,24 @@ class _Search(SignSearch["Branch | None"]):
         self.start = time.perf_counter()
         sheet, labels = pattern.without_rigid_parts()
         if not sheet.interior:
-            raise NotCountedError("no vertex can pop: letters of single creases are free")
+            raise NotCountedError(
+                "no vertex of this sheet can pop, so every crease may be a mountain or a valley"
+            )
         super().__init__(sheet, labels, letters, most)
         self.branch: Branch | None = None
 
     @cached_property
     def program(self) -> BendProgram:
-        """The cone program in bends, in which partial solutions are in no way."""
+        """The cone program in bends; solutions on a part of the sheet do not hinder its
+        refutations.
+        """
         return BendProgram(self.sheet, self.own)
 
     @cached_property
     def rims(self) -> RimSearch | None:
-        """The search for rims; None where none can be shown to have the letters."""
+        """The search for boundary heights; None if no result of it could be proved to have the
+        letters.
+        """
         if not self.sheet.is_convex or "F" in self.own.values():
             return None
         return RimSearch(self.sheet, self.own)
@@ -164,10 +177,11 @@ class _Search(SignSearch["Branch | None"]):
         )
 
     def _is_listed(self) -> bool:
-        """Whether a complete list of assignments shows what is open; the branch, if there is one.
+        """Whether the complete list of assignments shows that no solution has the letters.
 
-        Letters M and V hold near a solution that has them, and so on some arc without flat folds.
-        Where folds are flat along whole arcs the list has letters of all folds only.
+        If the list contains a branch with the letters, `_take` keeps it. A solution with letters M
+        and V keeps them on solutions near it, and so on some arc without flat folds. Where folds
+        are flat along whole arcs, the list has only assignments of letters to all folds.
         """
         if self.rims is None or self.sheet.Ve != 5 or self.sheet.Vi > _MOST_LISTED:
             return False
@@ -184,13 +198,13 @@ class _Search(SignSearch["Branch | None"]):
         return found.status is PROVED and self.branch is None and not occurs
 
     def _take(self, signs: str | Mapping[int, int], rim: Mapping[int, Fraction]) -> None:
-        """Keep the branch over a rim if it is proved and has the letters."""
+        """Keep the branch over these boundary heights if it is proved and has the letters."""
         branch = find_branch(self.pattern, signs, rim=rim)
         if branch.status is PROVED and not any(differing(self.letters, branch.assignment)):
             self.branch, self.done = branch, True
 
     def _at_leaf(self, signs: dict[int, int]) -> Branch | None:
-        """The branch with these signs over a rim that seems to give it the letters, if it has."""
+        """Return a branch with these signs that has the letters, or None if none is found."""
         if self.progress is not None:
             self.progress("sign vectors", len(self.leaves) + 1, 0)
         bends = self.program.bends.get(frozenset(signs.items()))

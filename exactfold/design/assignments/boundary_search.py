@@ -1,4 +1,7 @@
-"""Rims over which a branch has given letters, looked for in floating point; they prove nothing."""
+"""A search in floating point for boundary heights whose branch has given letters.
+
+What it returns proves nothing; the caller proves it.
+"""
 
 from __future__ import annotations
 
@@ -32,13 +35,14 @@ _DIGITS: Final = (1, 2, 3, 4, 6, 9, 12)
 
 
 class RimSearch:
-    """Local search for the rims of one convex sheet, for the letters of all its folds.
+    """Local search for boundary heights of one convex sheet whose branch has given letters.
 
-    Over a rim b there is one solution h_e(b) in the closed nappes of e, continuous in b
-    (docs/circles.md, Theorem 1). The least of the signed fold angles of the folds with letters,
-    over the largest, is to be positive. A linear program on the tangents K_v = 0 proposes a step,
-    of a length that is found by trial; its rim is taken, and Newton's method on the nappes finds
-    the solution over that.
+    Over boundary heights b there is exactly one solution h_e(b) in the closed nappes of the signs
+    e, and it is continuous in b (docs/circles.md, Theorem 1). The search maximises a margin: the
+    least signed fold angle of the folds with letters, divided by the largest fold angle. A positive
+    margin means that the solution has the letters. A linear program in the tangent space of K_v = 0
+    proposes a step, and trials choose its length. From the result only the boundary heights are
+    kept, and Newton's method on the nappes finds the solution over them.
     """
 
     def __init__(self, sheet: CreasePattern, letters: Letters) -> None:
@@ -52,7 +56,9 @@ class RimSearch:
         self._random = np.random.default_rng(0)
 
     def _rows(self) -> sparse.csr_matrix:
-        """The fold angle nearly, for small heights, of each fold: omega_f L_f."""
+        """The matrix that takes heights to fold angles omega_f L_f, which is accurate for small
+        heights.
+        """
         floats, count = self._floats, len(self._floats.lengths)
         values = floats.weights * floats.lengths[:, None]
         places = (np.repeat(np.arange(count), 4), floats.corners.ravel())
@@ -61,9 +67,11 @@ class RimSearch:
     def found(
         self, signs: Mapping[int, int], slopes: FloatArray | None
     ) -> dict[int, Fraction] | None:
-        """A rational rim over which the solution with these signs seems to have the letters.
+        """Return boundary heights whose solution with these signs seems to have the letters, or
+        None.
 
-        `slopes`: fold angles from which to start (`Bends`).
+        The heights are rational. `slopes` are fold angles from which the search may start
+        (`Bends`).
         """
         e = np.array([float(signs[v]) for v in self.sheet.interior])
         over = [self._over(rim, e, None) for rim in self._starts(slopes)]
@@ -81,7 +89,10 @@ class RimSearch:
     def _over(
         self, rim: FloatArray, signs: FloatArray, start: FloatArray | None
     ) -> FloatArray | None:
-        """The heights of the solution over a rim, shape (V,), the largest fold angle being 1."""
+        """Heights of the solution over given boundary heights, scaled to largest fold angle 1.
+
+        The shape is (V,). None if Newton's method fails.
+        """
         floats = replace(self._floats, rim=rim)
         with np.errstate(all="ignore"):
             end = solve(floats, signs, start)
@@ -94,7 +105,7 @@ class RimSearch:
         return h / largest if largest else None
 
     def _margin(self, h: FloatArray) -> float:
-        """The least signed fold angle of those with letters, over the largest."""
+        """The least signed fold angle of the folds with letters, over the largest fold angle."""
         angles = self._angles @ h
         held = self._sides != 0
         return float((self._sides * angles)[held].min() / np.abs(angles).max())
@@ -118,14 +129,16 @@ class RimSearch:
     # --- the way up ------------------------------------------------------------------------------
 
     def _climbed(self, h: FloatArray, signs: FloatArray) -> FloatArray | None:
-        """Heights with the letters, from others with the same signs; None if none are found."""
+        """Find heights that have the letters, starting from heights with the same signs;
+        or None.
+        """
         value, radius, after = self._margin(h), 0.5, 0
         reached: list[float] = []
         for _ in range(_STEPS):
             if value > _ENOUGH or after > _MORE or radius < 1e-4:
                 break
             if len(reached) >= _WATCHED and value < (1 - _LEAST_GAIN) * reached[-_WATCHED] < 0:
-                break  # it has hardly grown
+                break  # the margin has hardly grown
             reached.append(value)
             step = self._step(h, radius)
             if step is None:
@@ -146,7 +159,7 @@ class RimSearch:
         return rim
 
     def _step(self, h: FloatArray, radius: float) -> FloatArray | None:
-        """The best step in the tangent space: unknowns are the heights and the margin."""
+        """The best step in the tangent space; the unknowns are the heights and the margin."""
         floats, count = self._floats, len(h)
         held = np.flatnonzero(self._sides)
         ways = sparse.diags(-self._sides[held]) @ self._angles[held]
@@ -174,7 +187,9 @@ class RimSearch:
         return np.array(found.x[:count]) if found.status == 0 else None
 
     def _tangents(self, omega: FloatArray, count: int) -> sparse.csr_matrix:
-        """dK_v at heights with these bends, a row for each interior vertex, scaled to size 1."""
+        """The derivatives dK_v at heights with these bends, one row per interior vertex, scaled to
+        1.
+        """
         i, j = self._floats.corners[:, 0], self._floats.corners[:, 1]
         values = np.concatenate([omega, -omega, omega, -omega])
         places = (np.concatenate([i, i, j, j]), np.concatenate([j, i, i, j]))
@@ -185,7 +200,11 @@ class RimSearch:
     # --- rational rims ---------------------------------------------------------------------------
 
     def _rounded(self, h: FloatArray, signs: FloatArray) -> dict[int, Fraction] | None:
-        """A rim near that of h with as few digits as keep half of the margin, the largest 1."""
+        """Round the boundary heights of h to as few digits as keep half of the margin.
+
+        The rounded heights are scaled so that the largest is 1. None if no rounding keeps the
+        margin.
+        """
         given = {int(v): Fraction(float(h[v])) for v in self._rim}
         level = above_plane(self.sheet, given)
         largest = max(map(abs, level.values()))
@@ -207,7 +226,7 @@ class RimSearch:
 
 
 def _three_corners(sheet: CreasePattern) -> tuple[int, ...]:
-    """Three boundary vertices that are far from being on one line."""
+    """Three boundary vertices that span a triangle of large area."""
     a, b = sheet.boundary[:2]
     (ax, ay), (bx, by) = sheet.vertices[a], sheet.vertices[b]
 

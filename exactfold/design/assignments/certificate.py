@@ -7,7 +7,7 @@ from math import lcm
 from exactfold._support.verdict import PROVED
 from exactfold.branches.certificates.single import branch_certificate, heights_evidence
 from exactfold.certificates.entries import Document, emptied_evidence, pattern_document
-from exactfold.checker.letters.letters import LETTERS
+from exactfold.checker.letters.letters import LETTERS, LettersClaims
 from exactfold.design.assignments.boundary_match import RimMatch
 from exactfold.design.assignments.search import Match, Matched
 from exactfold.design.circles.certificate import assignments_certificate
@@ -23,12 +23,14 @@ from exactfold.exact.numbers import format_integer
 def match_certificate(found: Match | RimMatch | PanelMatch) -> Document:
     """The proof of a match, as a JSON object (docs/assignment.md, Certificates).
 
-    It shows that a match has all halves; of a sheet with more than four corners, that no solution
-    has the letters, or, as a certificate of one branch, that one has; of rigid panels, that they
-    start to fold with the letters, or do not. Where letters of all folds are refuted by the list of
-    all assignments, it is that of the list. `write_certificate` writes it to a file. Raises
-    `NotApplicableError` unless the answer is proved, where letters of some folds were refuted by
-    the list, and if a motion of panels was found by splitting forms.
+    For a sheet with four corners the certificate shows that the match lists all rays with the
+    letters. For a sheet with more corners it shows that no solution has the letters, or it is the
+    certificate of one branch that has them. For rigid panels it shows that they start to fold with
+    the letters, or that they do not. Where the list of all assignments refutes letters of all
+    folds, the certificate is that of the list. `write_certificate` writes it to a file.
+
+    Raises `NotApplicableError` in three cases: the answer is not proved; the list refuted letters
+    that leave some folds free; a motion of panels was found by splitting forms.
 
     >>> from exactfold import checker
     >>> from exactfold.design.assignments.search import match
@@ -40,7 +42,9 @@ def match_certificate(found: Match | RimMatch | PanelMatch) -> Document:
     if isinstance(found, PanelMatch):
         return starting_certificate(found)
     if found.status is not PROVED:
-        raise NotApplicableError(f"there is no certificate of a match that is {found.status}")
+        raise NotApplicableError(
+            f"this match is {found.status}; only a match that is proved has a certificate"
+        )
     if isinstance(found, Match):
         emptied = emptied_evidence(found.pattern)
         leaves = [[_half(half, emptied) for half in both] for _, both in found.tree.leaves]
@@ -53,12 +57,13 @@ def match_certificate(found: Match | RimMatch | PanelMatch) -> Document:
 
 
 def _list(found: RimMatch) -> Document:
-    """The certificate of a list in which the letters are not."""
+    """The certificate of the list of all assignments, none of which has the letters."""
     pattern, labels = found.pattern, found.labels
     moving = [tuple(sorted((labels[i], labels[j]))) for i, j in found.sheet.folds]
     if any(found.letters[i, j] == "U" for i, j in moving):
         raise NotApplicableError(
-            "the list of all assignments says nothing of letters that are free"
+            "no certificate: these letters were refuted by the list of all assignments, whose "
+            "certificate covers only letters of all folds; give every fold a letter M, V or F"
         )
     return assignments_certificate(all_assignments(pattern))
 
@@ -67,20 +72,18 @@ def _letters(
     found: Match | RimMatch, matches: tuple[Matched, ...], leaves: list[list[Document]]
 ) -> Document:
     pattern = found.pattern
+    claims: LettersClaims = {
+        "letters": "".join(found.letters[fold] for fold in pattern.folds),
+        "halves": [
+            {"vertex_signs": [half.vertex_signs[v] for v in pattern.interior], "side": half.side}
+            for half in matches
+        ],
+    }
     return {
         "format": LETTERS.format,
         "version": LETTERS.version,
         "pattern": pattern_document(pattern),
-        "claims": {
-            "letters": "".join(found.letters[fold] for fold in pattern.folds),
-            "halves": [
-                {
-                    "vertex_signs": [half.vertex_signs[v] for v in pattern.interior],
-                    "side": half.side,
-                }
-                for half in matches
-            ],
-        },
+        "claims": claims,
         "evidence": {
             "emptied": emptied_evidence(pattern),
             "refuted": [_refuted(found, each) for each in found.tree.refuted],
@@ -91,7 +94,7 @@ def _letters(
 
 
 def _refuted(found: Match | RimMatch, refuted: Refuted) -> Document:
-    """The signs and the integer heights of the stars that are not flat."""
+    """The signs, and as integers the heights of the stars that are not flat."""
     signs = [[found.labels[v], sign] for v, sign in sorted(refuted.signs.items())]
     if refuted.refutation is None:
         return {"signs": signs, "heights": None}
@@ -107,7 +110,7 @@ def _refuted(found: Match | RimMatch, refuted: Refuted) -> Document:
 
 
 def _step(found: Match | RimMatch, step: Step) -> list[str | int]:
-    """A step of the tree, its vertices named as in the pattern."""
+    """A step of the tree with the pattern's names of the vertices."""
     kind, *at = step
     if kind in ("split", "force"):
         at[-1] = found.labels[at[-1]]

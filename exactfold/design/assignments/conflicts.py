@@ -1,4 +1,4 @@
-"""Which folds are to blame: sets of folds of which every branch has one with another letter."""
+"""Which folds are to blame: sets of folds such that every branch differs at one of them."""
 
 from __future__ import annotations
 
@@ -13,9 +13,10 @@ Folds = frozenset[Edge]
 
 @dataclass(frozen=True)
 class Clause:
-    """A half of a branch with all these signs has another letter at one of these folds.
+    """A claim: every ray with all these signs has another letter than asked at one of these folds.
 
-    Only a half that is known may have none. `signs` are pairs of a vertex and its sign.
+    Only rays that are already known may be exceptions. `signs` is a set of pairs of a vertex and
+    its sign.
     """
 
     signs: frozenset[tuple[int, int]]
@@ -23,10 +24,10 @@ class Clause:
 
 
 def clause_of(refutation: Refutation, labels: Sequence[int]) -> Clause:
-    """What a refutation says of letters that agree with those refuted at some folds only.
+    """What a refutation implies for letters that agree with the refuted ones at some folds only.
 
-    In the sum of docs/assignment.md, Theorem 1, a fold whose two heights cancel has no part: its
-    letter may be any. A vertex whose heights are all 0 may have either sign.
+    In the sum of docs/assignment.md, Theorem 1, a fold whose two heights cancel does not occur, so
+    its letter is irrelevant. The sign of a vertex whose heights are all 0 is irrelevant, too.
     """
     sums: dict[tuple[int, int], object] = {}
     for v, w in refutation.heights:
@@ -42,10 +43,11 @@ def clause_of(refutation: Refutation, labels: Sequence[int]) -> Clause:
 
 
 class Stars:
-    """What the stars of single vertices say of letters, some of which are freed.
+    """What the stars of single vertices imply for letters when some folds are freed.
 
-    `letters` of all folds of `sheet`, whose vertex v is `labels[v]` of the pattern; the folds that
-    are freed have the names of the pattern. Each star is looked at once for each set freed in it.
+    `letters` are those of all folds of `sheet`, whose vertex v is vertex `labels[v]` of the
+    pattern. The folds that are freed have the pattern's names. Each star is examined once for each
+    set of its folds that is freed.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> sheet = single_vertex(4)
@@ -63,11 +65,13 @@ class Stars:
         self._known: dict[tuple[int, Folds], list[Clause]] = {}
 
     def clauses(self, freed: Set[Edge]) -> list[Clause]:
-        """For each sign that the star of its vertex alone refutes, what it says."""
+        """The clauses of all signs that the star of their vertex refutes by itself."""
         return [clause for v in self.sheet.interior for clause in self._at(v, freed)]
 
     def conflicts(self, freed: Set[Edge]) -> dict[int, Folds]:
-        """By vertex whose letters leave it no sign: folds of which one has another letter."""
+        """Folds at one of which every ray differs, for each vertex whose letters leave it
+        no sign.
+        """
         found: dict[int, Folds] = {}
         for v in self.sheet.interior:
             clauses = self._at(v, freed)
@@ -96,10 +100,11 @@ class Stars:
 
 
 def to_blame(clauses: Iterable[Clause]) -> Folds:
-    """Folds of which every half that is not known has one with another letter.
+    """Folds such that every unknown ray has another letter than asked at one of them.
 
-    The clauses leave no vector of signs. Signs that follow from one clause after the other lead to
-    one that they contradict, and only the clauses on the way are needed; if none is met so, all.
+    The clauses together leave no vector of signs. Signs are derived from one clause after the other
+    until they contradict a clause; then only the folds of the clauses used are returned. If no such
+    contradiction is met, the folds of all clauses are returned.
     """
     known = sorted(clauses, key=lambda clause: len(clause.folds))
     signs: dict[int, int] = {}
@@ -119,7 +124,7 @@ def to_blame(clauses: Iterable[Clause]) -> Folds:
 
 
 def disjoint(conflicts: Mapping[int, Folds]) -> int:
-    """How many of some sets of folds, taken greedily, have no fold in common.
+    """The size of a collection of pairwise disjoint sets among these sets, chosen greedily.
 
     >>> disjoint({4: frozenset({(0, 4)}), 5: frozenset({(0, 4), (0, 5)})})
     1
@@ -134,7 +139,7 @@ def disjoint(conflicts: Mapping[int, Folds]) -> int:
 
 
 def _behind(last: Clause, origin: Mapping[int, Clause]) -> Folds:
-    """The folds of a clause and of those from which its signs follow."""
+    """The folds of a clause and of all clauses from which its signs were derived."""
     folds: set[Edge] = set()
     stack, seen = [last], {last}
     while stack:

@@ -1,4 +1,4 @@
-"""A half of a branch with few other letters, found by popping vertices, one or two at a time."""
+"""A search for rays with few other letters that pops one or two vertices at a time."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from exactfold.pattern.crease_pattern import CreasePattern
 
 @dataclass
 class Descent:
-    """Looks at branches one by one, `finds` of them at most, and keeps what it has seen.
+    """Finds branches one by one, at most `finds` of them, and remembers what it has found.
 
-    Nothing follows from what it does not find.
+    If it finds nothing, nothing follows.
     """
 
     pattern: CreasePattern
@@ -34,7 +34,7 @@ class Descent:
         self.done = 0
 
     def leaning(self) -> dict[int, int]:
-        """For each vertex the sign for which most of its letters speak: up for mountains."""
+        """For each vertex, the sign that most of its letters suggest: mountains suggest up."""
         found = {}
         for v in self.finder.poppable:
             near = [letter for fold, letter in self.letters.items() if v in fold and letter in "MV"]
@@ -42,7 +42,9 @@ class Descent:
         return found
 
     def descended(self, signs: Mapping[int, int]) -> list[Matched]:
-        """The halves seen on the way down from these signs, of all vertices that can pop."""
+        """Descend from these signs of all vertices that can pop, and return the rays found on the
+        way.
+        """
         here = dict(signs)
         best, halves = self._looked_at(here)
         found = [*halves]
@@ -61,7 +63,9 @@ class Descent:
         return found
 
     def _looked_at(self, signs: Mapping[int, int]) -> tuple[int, tuple[Matched, ...]]:
-        """How many letters differ at least on the two halves with these signs, and the halves."""
+        """The two rays with these signs, and the least number of letters at which one of them
+        differs.
+        """
         key = tuple(signs[v] for v in self.finder.poppable)
         if key not in self.seen:
             halves = []
@@ -81,9 +85,9 @@ class Descent:
         return differing(self.letters, half.assignment)
 
     def _moves(self, signs: Mapping[int, int]) -> Iterator[tuple[int, ...]]:
-        """Vertices to pop: one at an end of a fold of another letter, then two of them.
+        """The sets of vertices to pop: first single ends of folds with another letter, then pairs.
 
-        Those with most such folds first.
+        Vertices with the most such folds come first.
         """
         _, halves = self._looked_at(signs)
         wrong: Counter[int] = Counter()

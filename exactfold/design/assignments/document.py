@@ -1,4 +1,4 @@
-"""A match and the branches nearest to its letters, as JSON."""
+"""A match, and the branches whose letters are nearest to those asked for, as JSON."""
 
 from __future__ import annotations
 

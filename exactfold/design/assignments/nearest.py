@@ -1,4 +1,4 @@
-"""`nearest_branches`: the branches whose letters differ at the fewest folds from given ones."""
+"""`nearest_branches`: the branches whose letters differ from given ones at the fewest folds."""
 
 from __future__ import annotations
 
@@ -23,24 +23,27 @@ from exactfold.design.assignments.search import Match, Matched, match
 from exactfold.pattern.crease_pattern import Edge
 
 LISTED = 12
-"""Most foldable vertices of which all branches are listed."""
+"""On sheets with up to this many foldable vertices, all branches are listed."""
 _MOST, _LEAST = 1000, 8
-"""Searches for all vertices together, and for a sheet at least."""
+"""The most searches of a sheet with one vertex, divided by the number of vertices for others, and
+the least number for any sheet.
+"""
 _FINDS = 6
-"""Branches that are looked at one by one, for each of the searches."""
+"""The number of branches that are found one by one, for each of the searches."""
 _LOCAL = 10
-"""So many sets of folds whose stars alone refute them take the time of one that needs more."""
+"""This many sets of folds that single stars refute take the time of one full search."""
 
 
 @dataclass(frozen=True, repr=False)
 class Nearest:
-    """The halves of branches whose letters differ at the fewest folds from those of `match`.
+    """The rays whose letters differ at the fewest folds from those of `match`.
 
-    `halves` differ at `distance` folds each; None, and no halves, if none was found. Every half of
-    a branch differs at `at_least` folds or more: this is proved. So `status` is PROVED if
-    `distance` is `at_least`; UNDECIDED halves are the nearest found. `complete`: there is no other
-    half as near. `by`: "match" if the letters are those of a branch, "list" if all branches were
-    listed, else "search".
+    A ray is one of the two halves of a branch. Each ray of `halves` differs at `distance` folds. If
+    none was found, `distance` is None and `halves` is empty. It is proved that every ray differs at
+    `at_least` folds or more. So `status` is PROVED if `distance` equals `at_least`; if `status` is
+    UNDECIDED, `halves` are the nearest rays that were found. `complete` is true if no other ray is
+    as near. `by` is "match" if some ray has the letters, "list" if all branches were listed, and
+    "search" otherwise.
     """
 
     match: Match
@@ -52,7 +55,7 @@ class Nearest:
     by: str
 
     def differences(self, half: Matched) -> dict[Edge, tuple[str, str]]:
-        """By fold, the letter wanted and that of a half, where they differ."""
+        """For each fold at which a ray differs: the letter wanted, and the letter of the ray."""
         letters = half.assignment
         wanted = self.match.letters
         return {f: (wanted[f], letters[f]) for f in differing(wanted, letters)[0]}
@@ -67,15 +70,17 @@ class Nearest:
 def nearest_branches(
     found: Match, *, tries: int | None = None, progress: Progress | None = None
 ) -> Nearest:
-    """The halves of branches whose letters differ at the fewest folds from those of a match.
+    """Find the rays whose letters differ at the fewest folds from those of a match.
 
-    Of a sheet with at most 12 foldable vertices all branches are listed. Of others sets of folds
-    are freed, smallest first, until the letters of the rest are those of a branch: where they are
-    not, the refutations name folds of which every branch has one with another letter, so that only
-    these need to be freed (docs/assignment.md, The nearest branches). Beside that, vertices are
-    popped one by one as long as more letters agree. `tries`: how many sets it takes a search
-    (`match`) for, by default 1000 by the number of foldable vertices, or 8; a half of them at most
-    is spent on other halves that are as near as one proved. What is not proved to be nearest is
+    If the sheet has at most 12 foldable vertices, all branches are listed. Otherwise sets of folds
+    are freed, the smallest sets first, until some ray has the letters of the other folds. Where no
+    ray has them, the refutations name folds at one of which every ray differs, so only these folds
+    need to be freed next (docs/assignment.md, The nearest branches). Besides, vertices are popped
+    one by one as long as more letters agree.
+
+    `tries` limits the number of sets for which `match` is run; by default it is 1000 divided by the
+    number of foldable vertices, but at least 8. At most half of these tries look for further rays
+    as near as one that is proved to be nearest. Rays that are not proved to be nearest have status
     UNDECIDED. Raises the errors of `count_branches`.
 
     >>> from exactfold.pattern.random_squares import random_square
@@ -97,7 +102,10 @@ def nearest_branches(
 
 
 def _listed(found: Match, progress: Progress | None) -> Nearest | None:
-    """The nearest of all branches; None if not all are proved, or a letter that counts is not."""
+    """The nearest rays of all branches.
+
+    None if some branch is not proved, or if an unproved letter could change the answer.
+    """
     listed = count_branches(found.pattern, progress=progress)
     if listed.status is not PROVED:
         return None
@@ -111,12 +119,12 @@ def _listed(found: Match, progress: Progress | None) -> Nearest | None:
 
 
 class _Search:
-    """Sets of folds that are freed, those with the least bound first.
+    """The search over sets of freed folds; the set with the least bound comes first.
 
-    A set F stands for the halves that differ at all folds of F. If the other letters are those of
-    no half, each such half is known or differs at one fold more, of some set C; so the sets F with
-    one fold of C take the place of F. Halves that are not known differ at as many folds as
-    the least bound of a set that is left, or more.
+    A set F stands for the rays that differ at all folds of F. If no unknown ray has the letters of
+    the folds outside F, every unknown ray of F also differs at a fold of some set C. So the sets
+    that consist of F and one fold of C take the place of F. Every unknown ray differs at no fewer
+    folds than the least bound of the sets that are left.
     """
 
     def __init__(self, found: Match, tries: int | None, progress: Progress | None) -> None:
@@ -128,7 +136,7 @@ class _Search:
             (min(labels[i], labels[j]), max(labels[i], labels[j])) for i, j in found.sheet.folds
         }
         self.stuck = [f for f, x in found.letters.items() if x in "MV" and f not in moving]
-        """Folds in triangulated triangles, which differ on every half."""
+        """Folds inside triangulated triangles; every ray differs at them."""
         self.letters = {f: x if f in moving else "U" for f, x in found.letters.items()}
         own = {
             (i, j): self.letters[min(labels[i], labels[j]), max(labels[i], labels[j])]
@@ -167,7 +175,7 @@ class _Search:
         )
 
     def _freed(self, bound: int) -> int | None:
-        """A bound of the distance of all halves that are not known; None if there are none."""
+        """A lower bound of the distance of all unknown rays; None if there are no unknown rays."""
         order = count()
         queue: list[tuple[int, int, Folds]] = [(bound, next(order), frozenset())]
         seen: set[Folds] = {frozenset()}
@@ -195,7 +203,7 @@ class _Search:
             best = self._best()
             near = sum(row[0] + len(self.stuck) == best for row in queue)
             if best == distance and self.tried + near > self.tries // 2:
-                break  # there is no time for all that may be as near
+                break  # too few tries are left for all sets that may be as near
         left = [*open_, *(row[0] for row in queue[:1])]
         return min(left) + len(self.stuck) if left else None
 
@@ -206,9 +214,9 @@ class _Search:
         return len(freed) + disjoint(self.stars.conflicts(freed))
 
     def _blamed(self, freed: Folds) -> Folds | None:
-        """Folds of which each half that is not known has another letter at one; None if not known.
+        """A set of folds such that every unknown ray has another letter at one of them, or None.
 
-        Every half that has the letters is noted.
+        Every ray found to have the letters is noted.
         """
         found = self.found
         conflicts = self.stars.conflicts(freed)
@@ -228,7 +236,7 @@ class _Search:
         clauses += [Clause(frozenset(signs.items()), frozenset()) for signs, _ in found.compared]
         return to_blame(clauses)
 
-    # --- the halves that are known ---------------------------------------------------------------
+    # --- the rays that are known -----------------------------------------------------------------
 
     def _note(self, halves: list[Matched] | tuple[Matched, ...]) -> None:
         for half in halves:

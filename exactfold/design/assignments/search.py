@@ -1,4 +1,4 @@
-"""`match`: the branches that have given mountains and valleys, all of them, proved."""
+"""`match`: all branches that have given mountains and valleys, with a proof."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ from exactfold.pattern.loading import PatternLike, as_pattern
 
 @dataclass(frozen=True, repr=False)
 class Matched:
-    """A half of a branch with the letters asked for, seen from +z as the sheet moves.
+    """A ray with the letters asked for: one of the two halves of a branch, seen from +z.
 
-    `side` 1: with the heights of `branch`; -1: with the opposite ones, where signs and letters are
-    those of the branch reversed. `vertex_signs` and `assignment` are those of this half.
+    If `side` is 1, its heights are those of `branch`. If `side` is -1, its heights, signs and
+    letters are the opposite ones. `vertex_signs` and `assignment` are those of this ray.
     """
 
     branch: Branch
@@ -33,23 +33,23 @@ class Matched:
 
     @property
     def vertex_signs(self) -> dict[int, int]:
-        """The signs of this half, by interior vertex."""
+        """The signs of this ray, by interior vertex."""
         return {v: self.side * sign for v, sign in self.branch.vertex_signs.items()}
 
     @property
     def assignment(self) -> dict[Edge, str]:
-        """The letters of this half, by fold."""
+        """The letters of this ray, by fold."""
         turn = UPSIDE_DOWN if self.side < 0 else {}
         return {fold: letter.translate(turn) for fold, letter in self.branch.assignment.items()}
 
     @property
     def sign_text(self) -> str:
-        """The vertex signs of this half in the order of the vertices."""
+        """The vertex signs of this ray in the order of the vertices."""
         return "".join(SIGNS[sign] for _, sign in sorted(self.vertex_signs.items()))
 
     @property
     def names(self) -> tuple[str, int]:
-        """What no other half of a branch shares: the vertex signs and the side."""
+        """The vertex signs and the side; no other ray has the same pair."""
         return self.sign_text, self.side
 
     def __repr__(self) -> str:
@@ -57,20 +57,20 @@ class Matched:
 
 
 Compared = tuple[Mapping[int, int], tuple[Matched, Matched]]
-"""Signs by vertex of the pattern, and the two halves of branches that have them."""
+"""Signs by vertex of the pattern, and the two rays with these signs."""
 
 
 @dataclass(frozen=True, repr=False)
 class Match(Page):
-    """Which halves of branches have given letters.
+    """Which rays (halves of branches) have given letters.
 
-    `status` PROVED: `matches` are all. Else `open_signs` are the signs for which not both halves
-    were decided, and there may be more. `refutations` show for which signs there is none, each by
-    vectors in the nappes of `sheet`, the pattern without what lies in triangulated triangles, where
-    vertex v is `labels[v]` of the pattern; `reasons` are those that need no vector. `leaves`: how
-    many sign vectors were left, whose two halves were found and compared: `compared` has both for
-    each of these signs. `tree` has all in the order of the search, and is what `match_certificate`
-    writes.
+    If `status` is PROVED, `matches` are all such rays. Otherwise there may be more: `open_signs`
+    are the signs for which not both rays were decided. `refutations` show for which signs there is
+    no such ray, each by vectors in the nappes of `sheet`. `reasons` are the refutations that need
+    no vectors. `sheet` is the pattern without the folds and vertices inside triangulated triangles;
+    its vertex v is vertex `labels[v]` of the pattern. `leaves` is the number of sign vectors that
+    were not refuted; for each of them both rays were found and compared, and `compared` holds them.
+    `tree` holds all of this in the order of the search, and `match_certificate` writes it.
     """
 
     pattern: CreasePattern
@@ -97,17 +97,18 @@ def match(
     most: int = 256,
     progress: Progress | None = None,
 ) -> Match:
-    """All halves of branches of a sheet with four corners and no chord that have given letters.
+    """All rays with given letters, on a sheet with four corners and no chord.
 
-    `letters`: by fold (i, j), i < j, or a text in the order of the folds: "M", "V", "F" for a fold
-    that is to stay flat, "U" where anything may be; folds left out are free. Vertices whose letters
-    force their signs, and sign vectors that no letters like these can have, are refuted by vectors
-    in the nappes (`Refutation`), which a cone program proposes and rational numbers verify; the
-    branches of the signs that are left are found and compared (docs/assignment.md). At most `most`
-    sign vectors are left to that.
+    A ray is one of the two halves of a branch. `letters` is a mapping from folds (i, j), i < j, or
+    a text in the order of the folds. "M" is a mountain, "V" a valley, "F" a fold that has to stay
+    flat, and "U" a fold that may do anything; folds left out are free. Some letters force the sign
+    of a vertex, and some sign vectors cannot have the letters. A cone program proposes vectors in
+    the nappes that refute these signs, and rational arithmetic verifies them (`Refutation`). For
+    all other signs the branches are found and compared (docs/assignment.md). At most `most` sign
+    vectors are compared in this way.
 
-    Raises `UsageError` for letters that do not fit, and the errors of `find_branch`: of a sheet
-    whose only fold that moves is a chord no vertex can pop.
+    Raises `UsageError` for letters that do not fit, and the errors of `find_branch`, for example if
+    a chord is the only fold that moves, so that no vertex can pop.
 
     >>> from exactfold.pattern.random_squares import random_square
     >>> from exactfold.branches.counting.find import find_branch
@@ -123,7 +124,7 @@ def match(
 
 
 class _Search(SignSearch[Compared]):
-    """The search whose leaves are two halves of branches."""
+    """The search whose leaves are the two rays with given signs."""
 
     def __init__(
         self, pattern: CreasePattern, letters: dict[Edge, str], most: int, progress: Progress | None
@@ -136,7 +137,7 @@ class _Search(SignSearch[Compared]):
 
     @cached_property
     def program(self) -> ConeProgram:
-        """The cone program in heights of stars."""
+        """The cone program whose unknowns are the heights of stars."""
         return ConeProgram(self.sheet, self.own)
 
     def result(self) -> Match:
@@ -158,7 +159,7 @@ class _Search(SignSearch[Compared]):
         )
 
     def _at_leaf(self, signs: dict[int, int]) -> Compared:
-        """Find both halves with all signs given, and compare their letters."""
+        """Find the two rays with these signs of all vertices, and compare their letters."""
         if self.progress is not None:
             self.progress("sign vectors", len(self.leaves) + 1, 0)
         up, down = (self._half(signs, side) for side in (1, -1))
@@ -176,7 +177,7 @@ class _Search(SignSearch[Compared]):
         return Matched(branch, side)
 
     def _agrees(self, half: Matched) -> bool | None:
-        """Whether a half has the letters; None if it is not proved, or one of them is not."""
+        """Whether a ray has the letters; None if the ray or one of its letters is not proved."""
         if half.branch.status is not PROVED:
             return None
         other, unknown = differing(self.letters, half.assignment)

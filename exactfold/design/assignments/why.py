@@ -1,4 +1,4 @@
-"""Why the letters at single vertices are those of no branch, in plain words."""
+"""Why the letters around a single vertex occur on no branch, in plain words."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ from exactfold.pattern.crease_pattern import CreasePattern, Edge
 
 _NAMES = {"M": "mountain", "V": "valley"}
 _NAMED = 8
-"""Folds that are named; more are counted."""
+"""Up to this many folds are named; more are only counted."""
 
 
 def vertex_conflicts(found: Match | RimMatch) -> dict[int, str]:
-    """By vertex whose letters leave it no way to pop: why it can pop neither up nor down.
+    """For each vertex that its letters keep from popping: why it can pop neither up nor down.
 
-    A vertex pops up only if its mountains, and the folds that are free, lie in no closed half-plane
-    and it has a valley: for down, valleys and mountains change places (docs/assignment.md, The
-    search).
+    A vertex pops up only if it has a valley, and its mountains and free folds do not all lie in one
+    closed half-plane. For popping down, valleys and mountains change places (docs/assignment.md,
+    The search).
 
     >>> from exactfold.design.assignments.search import match
     >>> from exactfold.pattern.families import single_vertex
@@ -48,7 +48,7 @@ def vertex_conflicts(found: Match | RimMatch) -> dict[int, str]:
 def _at(
     sheet: CreasePattern, labels: tuple[int, ...], own: dict[Edge, str], vertex: int, sign: int
 ) -> str:
-    """What is missing for a vertex that cannot pop to one side."""
+    """What a vertex lacks that cannot pop to one side."""
     here = {w: own[min(vertex, w), max(vertex, w)] for w in sheet.star(vertex)}
     needed, other = ("M", "V") if sign > 0 else ("V", "M")
     folds = {

@@ -26,10 +26,10 @@ from exactfold.pattern.described import PatternDocument, described
 
 @dataclass(frozen=True)
 class Arc:
-    """A part of a circle on which no fold is flat, by one proved branch on it.
+    """A part of a circle on which no fold is flat, represented by one proved branch on it.
 
-    All branches of the arc have the letters of `branch`, or if `mirrored` those of its mirror
-    image, on which all heights, signs and letters are reversed.
+    All branches of the arc have the letters of `branch`. If `mirrored` is true, they have the
+    letters of its mirror image instead, whose heights, signs and letters are all reversed.
     """
 
     branch: Branch
@@ -37,20 +37,23 @@ class Arc:
 
     @property
     def letters(self) -> str:
-        """The letters of all folds, in order."""
+        """The letters of all folds, in the order of the folds."""
         text = self.branch.assignment_text
         return text.translate(UPSIDE_DOWN) if self.mirrored else text
 
     @property
     def rim(self) -> dict[int, Fraction]:
-        """Heights of the border on the arc."""
+        """The boundary heights of the branch that represents the arc."""
         heights = self.branch.rim or {}
         return {v: -height for v, height in heights.items()} if self.mirrored else heights
 
 
 @dataclass(frozen=True)
 class Crossing:
-    """A point of a circle at which folds are flat: `folds`, and all those at the `vertices`."""
+    """A point of a circle at which some folds are flat.
+
+    `folds` are these folds. At the vertices in `vertices` all folds are flat.
+    """
 
     folds: tuple[Edge, ...]
     vertices: tuple[int, ...]
@@ -58,10 +61,10 @@ class Crossing:
 
 @dataclass(frozen=True)
 class Circle:
-    """The solutions with one sign vector, up to positive factors, in the order of the rim.
+    """The solutions with one sign vector, up to positive factors, in cyclic order.
 
-    `crossings[k]` lies before `arcs[k]` and behind the arc before that; without crossings there is
-    one arc.
+    The order is that of the directions of the boundary heights. `crossings[k]` lies between `arcs[k
+    - 1]` and `arcs[k]`. A circle without crossings has one arc.
     """
 
     signs: str
@@ -114,11 +117,12 @@ class AssignmentsDocument(TypedDict):
 
 @dataclass(frozen=True, repr=False)
 class AllAssignments:
-    """The mountain-valley assignments that occur, complete if `status` is PROVED.
+    """The mountain-valley assignments that occur; the list is complete if `status` is PROVED.
 
-    `circles` are those of all sign vectors, in their order. Where folds are flat along whole arcs,
-    or more than five vertices can pop, there are none, and the list is proved by `points` all round
-    the circles. UNDECIDED: `reason` says what is missing, and the list may be too short.
+    `circles` has one circle for each sign vector, in the order of the sign vectors. Where folds are
+    flat along whole arcs, or more than five vertices can pop, `circles` is empty, and `points` all
+    round the circles prove the list. If `status` is UNDECIDED, `reason` says what could not be
+    decided, and the list may be incomplete.
     """
 
     pattern: CreasePattern
@@ -129,7 +133,9 @@ class AllAssignments:
 
     @cached_property
     def assignments(self) -> tuple[str, ...]:
-        """The different assignments in which no fold is flat but those that always are, sorted."""
+        """The different assignments, sorted. Only folds that are flat in every solution are F in
+        them.
+        """
         if self.points is not None:
             return self.points.assignments
         return tuple(sorted({arc.letters for circle in self.circles for arc in circle.arcs}))

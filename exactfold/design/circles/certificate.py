@@ -13,9 +13,9 @@ from exactfold.errors import NotApplicableError
 def assignments_certificate(found: AllAssignments, *, progress: Progress | None = None) -> Document:
     """The proof of a list of all assignments, as a JSON object (docs/circles.md, The certificate).
 
-    It is found apart from the list, by points all round the circles, and has to show the same
-    list. Raises `NotApplicableError` for a list that is not proved, and where such points are not
-    found.
+    The proof consists of points all round the circles. It is found independently of the list and
+    has to show the same list. Raises `NotApplicableError` for a list that is not proved, and if no
+    such points are found.
 
     >>> from exactfold import checker
     >>> from exactfold.design.circles.circles import all_assignments
@@ -25,7 +25,9 @@ def assignments_certificate(found: AllAssignments, *, progress: Progress | None 
     20
     """
     if found.status is not PROVED:
-        raise NotApplicableError(f"there is no certificate of a list that is {found.status}")
+        raise NotApplicableError(
+            f"this list is {found.status}; only a list that is proved has a certificate"
+        )
     try:
         points = found.points or covering(found.pattern, progress)
         document = verified(found.pattern, points)

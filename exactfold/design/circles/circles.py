@@ -1,9 +1,9 @@
-"""All mountain-valley assignments of a convex sheet with five boundary vertices, circle by circle.
+"""All mountain-valley assignments of a convex sheet with five boundary vertices, by circles.
 
-For each sign vector the solutions, up to a positive factor, form a circle over the directions of
-the rim (docs/circles.md, Theorem 1). Along a circle the letters change only where a fold is flat.
-All these places are found exactly, fold by fold, and put in order; one branch is proved between
-two neighbours.
+For each sign vector, the solutions up to a positive factor form a circle; the direction of the
+boundary heights is the angle on it (docs/circles.md, Theorem 1). Along a circle the letters change
+only where a fold is flat. All such places are computed exactly, fold by fold, and sorted. Between
+two neighbouring places one branch is proved.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from exactfold.solve.algebraic.exact_solution import RootClass
 from exactfold.solve.algebraic.groebner_bases import groebner
 
 MOST_FOLDABLE = 6
-"""Most vertices that can pop of a sheet whose assignments are listed."""
+"""Assignments are listed for sheets on which at most this many vertices can pop."""
 _MOST_SOLVED = 5
 _CHARTS = ((1, 0), (3, 1), (2, 5), (-4, 3))
 _BITS = 64
@@ -38,18 +38,18 @@ _MOST_BITS = 1 << 14
 
 
 def all_assignments(pattern: PatternLike, *, progress: Progress | None = None) -> AllAssignments:
-    """Every mountain-valley assignment with which a sheet with five corners starts to fold.
+    """Every mountain-valley assignment with which a sheet with five corners can start to fold.
 
-    For each fold f the system {K_v = 0 for all v, f flat} is solved exactly in projective space,
-    and all its zeros are there as their number with multiplicity is 2^n. The real ones are put in
-    order on the circles; between neighbours no fold is flat, so that one branch shows the letters
-    (docs/circles.md, Theorem 1).
+    For each fold f the system {K_v = 0 for all v, f flat} is solved exactly in projective space.
+    All its zeros are found, because their number with multiplicity is 2^n. The real zeros are
+    sorted along the circles. Between two neighbours no fold is flat, so that one branch there shows
+    the letters (docs/circles.md, Theorem 1).
 
     Where folds are flat along whole arcs, or more than five vertices can pop, the circles are
-    covered by points instead, and the stand-alone checker verifies that they show all (Theorem 2).
-
-    Raises `NotCountedError` unless the border is convex and has five vertices (D = 2), and from one
-    to six vertices can pop. UNDECIDED where neither succeeds.
+    covered by points instead, and the stand-alone checker verifies that the points show all
+    assignments (Theorem 2). If neither method succeeds, the status is UNDECIDED. Raises
+    `NotCountedError` unless the border is convex and has five vertices (D = 2), and from one to six
+    vertices can pop.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> found = all_assignments(single_vertex(5))
@@ -59,16 +59,19 @@ def all_assignments(pattern: PatternLike, *, progress: Progress | None = None) -
     given = as_pattern(pattern)
     if given.Ve != 5 or not given.is_convex:
         raise NotCountedError(
-            "all assignments are listed for a convex border of five vertices; this one has "
-            f"{given.Ve}"
+            "all assignments are listed only if the border is convex and has five vertices; this "
+            f"border has {given.Ve}"
             + ("" if given.is_convex else f", and vertex {given.reflex_corner} is reflex")
         )
     sheet, _ = given.without_rigid_parts()
     if not sheet.interior:
-        raise NotCountedError("no vertex can pop: letters of single creases are free")
+        raise NotCountedError(
+            "no vertex of this sheet can pop, so every crease may be a mountain or a valley"
+        )
     if sheet.Vi > MOST_FOLDABLE:
         raise NotCountedError(
-            f"{sheet.Vi} vertices can pop: all assignments are listed for at most {MOST_FOLDABLE}"
+            f"{sheet.Vi} vertices can pop; all assignments are listed only if at most "
+            f"{MOST_FOLDABLE} can"
         )
     found = None
     if sheet.Vi <= _MOST_SOLVED:
@@ -86,7 +89,9 @@ def all_assignments(pattern: PatternLike, *, progress: Progress | None = None) -
 
 @dataclass(frozen=True)
 class _Event:
-    """A real zero: folds that are flat there, signs of vertices (0 where flat), and its slope."""
+    """A real zero: the folds that are flat there, the signs of the vertices (0 where flat), its
+    slope.
+    """
 
     zeros: RootClass
     row: tuple[Fraction, ...]
@@ -95,12 +100,12 @@ class _Event:
     signs: tuple[int, ...]
 
     def slope(self, bits: int) -> Interval:
-        """Bounds of mu / lambda, the direction of the rim in the chart lambda = 1."""
+        """Bounds of mu / lambda, the direction of the boundary heights in the chart lambda = 1."""
         return _value(self.zeros, self.row, self.place, bits)
 
 
 class _UndecidedError(Exception):
-    """What could not be decided."""
+    """Something could not be decided; the text says what."""
 
 
 class _Search:
@@ -111,7 +116,7 @@ class _Search:
         self.free = tuple(v for v in self.system.variables if v in self.sheet.boundary)
 
     def found(self) -> AllAssignments:
-        """The answer."""
+        """The list of all assignments, or the reason why it is undecided."""
         reason = "no chart was found without zeros at infinity"
         for form in _CHARTS:
             try:
@@ -131,7 +136,7 @@ class _Search:
     # --- where folds are flat --------------------------------------------------------------------
 
     def _events(self, form: tuple[int, int]) -> Iterator[_Event]:
-        """All real points in the chart at which a fold is flat, each once."""
+        """All real points in the chart at which some fold is flat, each point once."""
         first, second = self.free
         functional = {v: Fraction(c) for v, c in zip(self.free, form, strict=True) if c}
         chart = Chart(self.system, functional, first if form[0] else second)
@@ -142,10 +147,10 @@ class _Search:
             if section is None:
                 raise _AtInfinityError  # the fold is flat where lambda = 0
             if section.system is None:
-                raise _UndecidedError(f"fold {self._name(fold)} is flat on whole families")
+                raise _UndecidedError(f"fold {self._name(fold)} is flat on a whole family")
             solution = groebner(section.system)
             if solution.dimension is None:
-                raise _UndecidedError(f"fold {self._name(fold)} is flat on whole families")
+                raise _UndecidedError(f"fold {self._name(fold)} is flat on a whole family")
             if solution.dimension != section.system.bezout_number:
                 raise _AtInfinityError
             for zeros in solution.classes:
@@ -154,7 +159,9 @@ class _Search:
     def _real(
         self, section: FlatSheets, fold: Edge, zeros: RootClass, form: tuple[int, int]
     ) -> Iterator[_Event]:
-        """The real zeros of a class, if `fold` is the first that is flat on it."""
+        """The real zeros of a class, if `fold` is the first of the folds that are flat on the
+        class.
+        """
         chart = section.chart
         rows = {
             f: section.restrict(chart.restrict(fold_functional(self.sheet, f)))
@@ -196,15 +203,16 @@ class _Search:
     def _circle(
         self, form: tuple[int, int], signs: tuple[int, ...], events: list[_Event]
     ) -> Circle:
-        """One circle: first its half with lambda > 0, by slope, then that with lambda < 0.
+        """One circle: first its half with lambda > 0, sorted by slope, then its half with lambda <
+        0.
 
-        A zero with signs e lies on the circles of e, and its opposite on those of -e; at a flat
-        vertex either sign fits.
+        A zero with signs e lies on the circle of e, and the opposite zero on the circle of -e. At a
+        flat vertex either sign is allowed.
         """
         mirror = tuple(-s for s in signs)
         upper = _in_order(event for event in events if _fits(event.signs, signs))
         lower = _in_order(event for event in events if _fits(event.signs, mirror))
-        # The arc behind the last event of each half runs over lambda = 0.
+        # The arc after the last event of each half crosses lambda = 0.
         directions = [(Fraction(1), slope) for slope in _between(upper)]
         directions += [(Fraction(0), Fraction(1))] * bool(upper)
         directions += [(Fraction(-1), -slope) for slope in _between(lower)]
@@ -219,7 +227,7 @@ class _Search:
     def _arc(
         self, form: tuple[int, int], signs: tuple[int, ...], direction: tuple[Fraction, Fraction]
     ) -> Arc:
-        """The arc that holds a direction (lambda, mu) of the rim."""
+        """The arc that contains the direction (lambda, mu) of the boundary heights."""
         (p, q), (x, y) = form, direction
         heights = dict.fromkeys(self.sheet.boundary, Fraction(0))
         heights |= dict(zip(self.free, (p * x - q * y, q * x + p * y), strict=True))
@@ -244,7 +252,7 @@ class _Search:
 
 
 class _AtInfinityError(Exception):
-    """Some zeros are not in the chart."""
+    """Some zeros lie at infinity of this chart."""
 
 
 def _fits(signs: tuple[int, ...], wanted: tuple[int, ...]) -> bool:
@@ -252,10 +260,10 @@ def _fits(signs: tuple[int, ...], wanted: tuple[int, ...]) -> bool:
 
 
 def _in_order(events: Iterable[_Event]) -> list[tuple[_Event, Interval]]:
-    """Events of one half of a circle by slope, with bounds that do not meet.
+    """The events of one half of a circle sorted by slope, with disjoint bounds of the slopes.
 
-    Solutions with the same signs and the same rim are the same (docs/branch.md, Theorem 5), so that
-    different events have different slopes.
+    Two solutions with the same signs and the same boundary heights are equal (docs/branch.md,
+    Theorem 5), so different events have different slopes.
     """
     chosen = list(events)
     bits = _BITS
@@ -268,7 +276,7 @@ def _in_order(events: Iterable[_Event]) -> list[tuple[_Event, Interval]]:
 
 
 def _between(ordered: list[tuple[_Event, Interval]]) -> list[Fraction]:
-    """A short number between each two neighbours."""
+    """A fraction with a small denominator between each two neighbours."""
     return [simplest_between(a[1], b[0]) for (_, a), (_, b) in pairwise(ordered)]
 
 
@@ -288,7 +296,10 @@ def simplest_between(low: Fraction, high: Fraction) -> Fraction:
 
 
 def _value(zeros: RootClass, row: Sequence[Fraction], place: int, bits: int) -> Interval:
-    """Bounds of a functional at one real zero of a class, from a root with so many bits."""
+    """Bounds of a functional at one real zero of a class.
+
+    The zero comes from a root with at least `bits` bits.
+    """
     while True:
         found = zeros.value_on(row, zeros.real_roots(bits)[place])
         if found is not None:
@@ -307,7 +318,7 @@ def _sign(zeros: RootClass, row: Sequence[Fraction], place: int) -> int:
 
 
 def _second(form: tuple[int, int]) -> tuple[Fraction, Fraction]:
-    """The functional mu that belongs to lambda."""
+    """The coefficients of the functional mu that completes lambda to coordinates."""
     return Fraction(-form[1]), Fraction(form[0])
 
 

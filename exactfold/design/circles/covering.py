@@ -1,9 +1,9 @@
 """Circles of solutions covered by points, between which the letters of most folds are known.
 
-That proves a list of all assignments without algebra: where letters are open between two points,
-all ways to complete them that agree with the signs of the vertices have to occur elsewhere
-(docs/circles.md, Theorem 2). Points are proposed by Newton's method; what they show is what the
-stand-alone checker sees in them.
+Such points prove a list of all assignments without algebra. Where some letters are unknown between
+two points, every completion of the letters that agrees with the signs of the vertices has to occur
+elsewhere (docs/circles.md, Theorem 2). Newton's method proposes the points. The code of the
+stand-alone checker says what they show.
 """
 
 from __future__ import annotations
@@ -20,7 +20,12 @@ from exactfold._support.progress import Progress
 from exactfold.certificates.entries import Document, emptied_evidence, pattern_document
 from exactfold.checker.core.reading import CertificateError
 from exactfold.checker.letters.arcs import Arcs, Word
-from exactfold.checker.letters.assignments import ASSIGNMENTS, MOST_VERTICES, free_border
+from exactfold.checker.letters.assignments import (
+    ASSIGNMENTS,
+    MOST_VERTICES,
+    AssignmentsClaims,
+    free_border,
+)
 from exactfold.checker.sheets.sheet import Sheet
 from exactfold.design.circles.nappe_points import NappePoints
 from exactfold.exact.numbers import format_integer
@@ -37,11 +42,12 @@ Heights = tuple[int, ...]
 
 @dataclass(frozen=True)
 class Covering:
-    """Points on the circle of each sign vector that begins with a plus, heights as integers.
+    """Points on the circle of each sign vector that begins with a plus; heights are integers.
 
-    Heights are those of two border vertices, and then of those that can pop, all others being 0.
-    With a fold from border to border the corner behind it is left out, and one border vertex has a
-    height. `assignments` are the letters that occur, of all folds of the pattern.
+    A point has the heights of two border vertices, followed by those of the vertices that can pop;
+    all other heights are 0. If a fold runs from border to border, the corner behind it is left out,
+    and only one border vertex has a height. `assignments` are the assignments of letters to all
+    folds of the pattern that occur.
     """
 
     circles: tuple[tuple[Heights, ...], ...]
@@ -58,13 +64,15 @@ class NotCoveredError(Exception):
 def covering(pattern: CreasePattern, progress: Progress | None = None) -> Covering:
     """Points that go round all circles of a convex sheet with five corners.
 
-    From each point to the next the letters that are open can be completed only to letters that
-    some points have. With a fold from border to border two points are enough. Raises
-    `NotCoveredError` where that is not found; that says nothing of the sheet.
+    Between neighbouring points, the unknown letters have only completions that some points have. If
+    a fold runs from border to border, two points are enough. Raises `NotCoveredError` if no such
+    points are found; nothing about the sheet follows from that.
     """
     sheet, labels = pattern.without_rigid_parts()
     if not 0 < sheet.Vi <= MOST_VERTICES:
-        raise NotCoveredError(f"{sheet.Vi} vertices can pop, not one to {MOST_VERTICES}")
+        raise NotCoveredError(
+            f"{sheet.Vi} vertices can pop; points are found only if 1 to {MOST_VERTICES} can"
+        )
     chords = {(labels[i], labels[j]) for i, j in sheet.chords}
     if sheet.chords:
         sheet, kept = _without_ear(sheet)
@@ -81,12 +89,13 @@ def covering(pattern: CreasePattern, progress: Progress | None = None) -> Coveri
 
 
 def covering_document(pattern: CreasePattern, points: Covering) -> Document:
-    """The certificate of the list, not verified (docs/circles.md, The certificate)."""
+    """The certificate of the list, not yet verified (docs/circles.md, The certificate)."""
+    claims: AssignmentsClaims = {"assignments": list(points.assignments)}
     return {
         "format": ASSIGNMENTS.format,
         "version": ASSIGNMENTS.version,
         "pattern": pattern_document(pattern),
-        "claims": {"assignments": list(points.assignments)},
+        "claims": claims,
         "evidence": {
             "emptied": emptied_evidence(pattern),
             "circles": [
@@ -98,17 +107,19 @@ def covering_document(pattern: CreasePattern, points: Covering) -> Document:
 
 
 def verified(pattern: CreasePattern, points: Covering) -> Document:
-    """The certificate, verified by the checker; raises `NotCoveredError` if it is refused."""
+    """The certificate, verified by the checker; raises `NotCoveredError` if the checker
+    refuses it.
+    """
     document = covering_document(pattern, points)
     try:
         ASSIGNMENTS.check(document)
     except CertificateError as error:
-        raise NotCoveredError(f"the checker does not follow: {error}") from None
+        raise NotCoveredError(f"the checker refuses the points found: {error}") from None
     return document
 
 
 def _without_ear(sheet: CreasePattern) -> tuple[CreasePattern, list[int]]:
-    """The sheet without the first corner that is on one face only, and what its vertices were."""
+    """The sheet without the first corner that lies on a single face, and the old vertex numbers."""
     tip = next(v for v in sheet.boundary if sum(v in t for t in sheet.triangles) == 1)
     kept = [v for v in range(len(sheet.vertices)) if v != tip]
     place = {v: k for k, v in enumerate(kept)}
@@ -141,7 +152,7 @@ class _Search:
             found: dict[Word, tuple[Heights, ...]] = {}
             for signs in vectors:
                 self._tell(len(found), len(vectors))
-                with suppress(NotCoveredError):  # what is missing, others may show
+                with suppress(NotCoveredError):  # points of other circles may show what is missing
                     found[signs] = self._circle(signs)
             for signs in vectors:
                 if signs not in found:
@@ -158,7 +169,7 @@ class _Search:
             self.progress("circles", done, whole)
 
     def _circle(self, signs: Word) -> tuple[Heights, ...]:
-        """The points of one circle, as fine as it needs."""
+        """The points of one circle, as dense as the letters require."""
         reason = ""
         for solver in self.solvers:
             try:
@@ -181,7 +192,9 @@ class _Search:
         raise NotCoveredError(f"with the vertex signs {text} {reason}")
 
     def _start(self, signs: Word, solver: NappePoints) -> list[Heights]:
-        """Points round a circle; or on the two rays."""
+        """The first points round a circle, or one on each of the two rays if there is only one
+        height.
+        """
         rims: list[tuple[float, ...]] = [(1.0,), (-1.0,)]
         if len(self.free) == 2:
             turns = [2 * pi * (k + _OFF) / _START for k in range(_START)]
@@ -198,12 +211,12 @@ class _Search:
         found = solver.solved(signs, rim, start) if start is not None else None
         found = found or solver.solved(signs, rim)
         if found is None:
-            raise NotCoveredError("no heights were found over some border")
+            raise NotCoveredError("no solution was found over some heights of the border")
         self._look(found)
         return found
 
     def _look(self, a: Heights) -> None:
-        """Keep the letters of a point, and of its reflection, if all are known."""
+        """Remember the letters of a point and of its reflection, if all of them are known."""
         word = self.arcs.letters(a, a)
         if all(word):
             self.seen |= {word, tuple(-x for x in word)}
@@ -211,7 +224,7 @@ class _Search:
     def _between(
         self, signs: Word, solver: NappePoints, a: Heights, b: Heights
     ) -> Iterator[Heights]:
-        """Points from a to b, without b."""
+        """The points from a to b, including a but not b."""
         stack = [b]
         number = 0
         while stack:
@@ -236,10 +249,10 @@ class _Search:
     def _open(self, a: Heights, b: Heights) -> str:
         letters = zip(self.sheet.folds, self.arcs.letters(a, b), strict=True)
         folds = [f"{self.labels[i]}-{self.labels[j]}" for (i, j), x in letters if not x]
-        return f"the letters of the folds {', '.join(folds)} are open near one point"
+        return f"the letters of the folds {', '.join(folds)} could not be decided near one point"
 
     def _is_known(self, signs: Word, a: Heights, b: Heights) -> bool:
-        """Whether all letters that are possible between two points have been seen."""
+        """Whether all completions of the letters between two points have been seen."""
         try:
             return self.arcs.possible(self.arcs.letters(a, b), signs) <= self.seen
         except CertificateError:

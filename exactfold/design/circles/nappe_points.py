@@ -1,4 +1,4 @@
-"""Heights inside the nappes of given signs, over a given border: proposals in integers."""
+"""Heights inside the nappes of given signs over given boundary heights, proposed as integers."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ _STRIDE: Final = 3
 
 
 class NappePoints:
-    """Solutions of K_v = 4^-depth on one convex sheet of size 1, rounded.
+    """Approximate solutions of K_v = 4^-depth on one convex sheet, scaled to size 1.
 
-    Heights are integers over 2^bits: first those of the border vertices `free`, then of those
-    inside; all other border vertices have height 0.
+    Heights are integers over 2^bits. The heights of the border vertices `free` come first, then
+    those of the interior vertices; all other border vertices have height 0.
     """
 
     def __init__(self, sheet: CreasePattern, free: Sequence[int], depth: int) -> None:
@@ -36,7 +36,7 @@ class NappePoints:
         self._sides = [self._side(v) for v in sheet.interior]
 
     def _form(self, v: int) -> list[list[int]]:
-        """K_v on the heights, times 2^places."""
+        """The matrix of K_v in the heights, times 2^places."""
         form = curvature_form(self.sheet, v)
         whole = [[0] * len(self._at) for _ in self._at]
         for row, i in zip(form.matrix, form.labels, strict=True):
@@ -46,7 +46,9 @@ class NappePoints:
         return whole
 
     def _side(self, v: int) -> list[int]:
-        """l_v = K_v(t, .) / K_v(t)^(1/2), times 2^places: K_v = l_v^2 - |A_v|^2."""
+        """The functional l_v = K_v(t, .) / K_v(t)^(1/2), times 2^places, so that K_v = l_v^2 -
+        |A_v|^2.
+        """
         form, cone = curvature_form(self.sheet, v), round_cone(self.sheet, v)
         square = Fraction(form(cone)) / self._size**2
         root = isqrt((square.numerator << 4 * self._places) // square.denominator)
@@ -59,9 +61,10 @@ class NappePoints:
     def solved(
         self, signs: Sequence[int], rim: Sequence[float], start: Sequence[int] | None = None
     ) -> tuple[int, ...] | None:
-        """Heights over a rim with these vertex signs; None if they are not found.
+        """Heights over these boundary heights with these vertex signs; None if none are found.
 
-        From a start, or else from larger excesses one after the other.
+        Newton's method begins at `start`. If there is no start, or if it fails there, it solves for
+        larger values of K_v first and reduces them step by step.
         """
         edge = [round(x * (1 << self.bits)) for x in rim]
         if start is not None:
@@ -81,7 +84,7 @@ class NappePoints:
     ) -> tuple[int, ...] | None:
         """Newton's method for l_v = e_v (|A_v h|^2 + excess)^(1/2).
 
-        The equations are evaluated in integers and solved in floating point.
+        The equations are evaluated in integers; the linear systems are solved in floating point.
         """
         k, heights = len(self.free), list(start)
         excess = 1 << 2 * (self.bits - depth)
@@ -114,7 +117,7 @@ class NappePoints:
         return None
 
     def _first(self, signs: Sequence[int], rim: Sequence[float]) -> list[int]:
-        """Heights with l_v = 3 e_v."""
+        """Heights with l_v = 3 e_v at every interior vertex."""
         k = len(self.free)
         sides = np.array([[x / (1 << self._places) for x in row] for row in self._sides])
         found = np.linalg.solve(sides[:, k:], 3 * np.array(signs) - sides[:, :k] @ np.array(rim))

@@ -1,4 +1,4 @@
-"""Motions to second order with given letters, looked for in floating point; they prove nothing."""
+"""A search in floating point for motions to second order with given letters; it proves nothing."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ _POLISHING: Final = 12
 
 
 class MotionSearch:
-    """Sequential linear programs for a motion with given letters where all forms vanish.
+    """Sequential linear programming for a motion with given letters at which all forms vanish.
 
-    At each step the forms are replaced by their tangents, a step is at most so long, and what they
-    are off is a penalty beside the least amount by which a fold goes its way. Newton's method ends
-    it.
+    Each step replaces the forms by their tangents and has limited length. The objective is the
+    least amount by which a fold bends its way, minus a penalty for the values of the forms.
+    Newton's method finishes the search.
     """
 
     def __init__(self, program: FirstOrderProgram) -> None:
@@ -41,7 +41,9 @@ class MotionSearch:
             self._forms.append((folds, (brackets + brackets.T) / np.abs(brackets).max()))
 
     def found(self, start: Mapping[Edge, float]) -> dict[Edge, float] | None:
-        """A motion near which there seems to be one with the letters and vanishing forms."""
+        """A motion that seems close to one with the letters and vanishing forms; None if none is
+        found.
+        """
         folds = self.program.folds
         w = np.array([start[edge] for edge in folds])
         radius = 0.5
@@ -87,7 +89,10 @@ class MotionSearch:
         return sparse.csr_matrix((np.concatenate(values), parts), shape=shape)
 
     def _step(self, w: FloatArray, radius: float) -> FloatArray | None:
-        """The step of one linear program: unknowns are w, what forms are off, and the margin."""
+        """The step of one linear program.
+
+        The unknowns are w, the values of the forms, and the margin.
+        """
         program, count, forms = self.program, len(w), len(self._forms)
         at = [k for k, edge in enumerate(program.folds) if program.letters[edge] in SIDES]
         signs = [-SIDES[program.letters[program.folds[k]]] for k in at]
@@ -118,7 +123,7 @@ class MotionSearch:
         return step
 
     def _polished(self, w: FloatArray) -> FloatArray:
-        """Newton's method for all equations, with the shortest steps."""
+        """Newton's method for all equations, with steps of least norm."""
         for _ in range(_POLISHING):
             residual = np.concatenate([self.program.matrix @ w, self._values(w)])
             if np.abs(residual).max() < 1e-15:

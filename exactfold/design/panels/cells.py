@@ -1,4 +1,4 @@
-"""The motions of sheets whose vertices have at most four folds that have given letters."""
+"""The motions with given letters of sheets whose vertices have at most four folds."""
 
 from __future__ import annotations
 
@@ -17,7 +17,9 @@ from exactfold.panels.stars import Star
 from exactfold.pattern.panel_pattern import Edge
 
 Steps: TypeAlias = list[tuple[str, Any]]
-"""Cases as a walk meets them, depth first: ("at", vertex), ("loop", vertices), ("cell", number)."""
+"""The cases in the order of a depth-first walk: ("at", vertex), ("loop", vertices), ("cell",
+number).
+"""
 
 _MOST_STEPS: Final = 200_000
 _BITS: Final = 256
@@ -26,10 +28,10 @@ _NEARLY: Final = 1e-4
 
 @dataclass(frozen=True)
 class Cell:
-    """All motions with the same signs of all folds: one number > 0 for each of some modes.
+    """All motions with the same signs of all folds: a positive number for each of some modes.
 
-    `modes` are elementary modes, each as its local modes; `signs` of the folds that move, and
-    `densities` up to one positive factor for each mode, in floating point.
+    `modes` are elementary modes, each given by its local modes. `signs` are those of the folds that
+    move. `densities` are floats, up to one positive factor for each mode.
     """
 
     modes: tuple[tuple[LocalMode, ...], ...]
@@ -39,9 +41,9 @@ class Cell:
 
 @dataclass(frozen=True)
 class OpenLoop:
-    """A loop of vertices round which the densities that the letters leave do not fit.
+    """A loop of vertices along which the densities that the letters allow do not fit together.
 
-    `off` is the product of the gains round it less 1, which is not 0.
+    `off` is the product of the gains along the loop minus 1; it is not 0.
     """
 
     loop: tuple[int, ...]
@@ -49,27 +51,27 @@ class OpenLoop:
 
     @property
     def text(self) -> str:
-        """Why there is no motion, in words."""
+        """The reason, in words, why there is no motion."""
         where = "-".join(str(v) for v in self.loop)
         near = abs(self.off) < _NEARLY
-        more = "; that is nearly 1, and the drawing may be rounded" if near else ""
+        more = "; it is nearly 1, so the coordinates of the drawing may be rounded" if near else ""
         total = f"1 {self.off:+.3g}" if near else f"{1 + self.off:.6g}"
         return (
-            f"round the loop {where} the fold angles that the letters leave do not fit: from fold "
-            f"to fold they grow by a factor of {total} in all, not 1{more}"
+            f"round the loop of vertices {where} the fold angles do not fit: with these letters "
+            f"they grow from fold to fold by a factor of {total} in all, and it has to be 1{more}"
         )
 
 
 class CellSearch:
-    """A search for all cells with given letters, where stars have four folds or a straight pair.
+    """A search for all cells with given letters; each star has four folds or is a straight pair.
 
-    At each vertex the letters leave some of its local modes, with a sign, or that it rests. Next
-    comes a vertex with the fewest ways that fit. Vertices that share a moving fold are joined, with
-    the exact quotient of their densities; where a loop closes that quotient has to be 1 (docs/
-    panels.md, Structure theorem). `open_loops` are those that did not. The search is complete
-    if it ends; it raises `TooManyModesError` after a fixed number of steps. `cases` are then those
-    that it went through: at each vertex its ways that fit, by the sides of its folds, the
-    neighbours taken by number.
+    At each vertex the letters allow some of its local modes, each with a sign, or allow the vertex
+    to rest. The search goes on with a vertex that has the fewest ways left. Vertices that share a
+    moving fold are joined, together with the exact quotient of their densities. Where a loop
+    closes, that quotient has to be 1 (docs/panels.md, Structure theorem); `open_loops` are the
+    loops where it is not. The search is complete if it ends. After a fixed number of steps it
+    raises `TooManyModesError`. Afterwards `cases` are the cases it went through: at each vertex the
+    ways that fit, sorted by the signs of its folds, where the neighbours are sorted by number.
     """
 
     def __init__(self, stars: Mapping[int, Star], letters: Letters, ground: SurdField) -> None:
@@ -85,7 +87,7 @@ class CellSearch:
         self._joined: dict[int, tuple[int, Density]] = {}
 
     def __iter__(self) -> Iterator[Cell]:
-        """The cells, one after the other."""
+        """Yield the cells one after the other."""
         stuck = next((v for v, ways in self.ways.items() if not ways), None)
         if stuck is not None:
             self.cases = [("at", stuck)]
@@ -111,7 +113,10 @@ class CellSearch:
         ]
 
     def _search(self, start: set[int]) -> Iterator[Cell]:
-        """Depth first, without recursion: each level has a vertex, its ways left, what to undo."""
+        """Depth-first search without recursion.
+
+        Each level holds a vertex, the ways it has left, and what has to be undone.
+        """
         waiting = dict.fromkeys(sorted(start))
         levels: list[_Level] = []
         if not waiting:
@@ -137,7 +142,7 @@ class CellSearch:
             self._steps += 1
             if self._steps > _MOST_STEPS:
                 raise TooManyModesError(
-                    f"the motions with these letters were not all found in {_MOST_STEPS} steps"
+                    f"not all motions with these letters were found within {_MOST_STEPS} steps"
                 )
             mode, side, signs = level.ways.pop(0)
             child: Steps = []
@@ -158,7 +163,7 @@ class CellSearch:
     def _next(
         self, waiting: Mapping[int, None], counts: Mapping[int, int], near: Mapping[int, set[int]]
     ) -> int:
-        """A vertex next to those that are done, with few ways; or else any with few ways."""
+        """The waiting vertex with the fewest ways, preferably next to a vertex that is done."""
         best, rank = next(iter(waiting)), (2, 99)
         for v in waiting:
             here = (int(not near[v] & self._chosen.keys()), counts[v])
@@ -171,7 +176,7 @@ class CellSearch:
     def _take(
         self, level: _Level, mode: LocalMode | None, side: int, signs: Mapping[Edge, int]
     ) -> bool:
-        """Choose a way at a vertex; False if a loop does not close."""
+        """Choose a way at a vertex; return False if a loop does not close."""
         v = level.vertex
         self._chosen[v] = (mode, side)
         level.taken = True
@@ -192,11 +197,13 @@ class CellSearch:
     def _value(self, v: int, edge: Edge) -> Density:
         mode, side = self._chosen[v]
         if mode is None:
-            raise TooManyModesError("a vertex that rests has no densities")
+            raise TooManyModesError(f"vertex {v} rests and has no densities")
         return self.roots.density(side * mode.values[mode.folds.index(edge)])
 
     def _root(self, v: int) -> tuple[int, Density]:
-        """The vertex that stands for those joined with v, and the scale of v in its units."""
+        """The vertex that represents all vertices joined with v, and the scale of v in
+        its units.
+        """
         scale = self.roots.density(1)
         while v in self._joined:
             v, factor = self._joined[v]
@@ -218,7 +225,7 @@ class CellSearch:
         return True
 
     def _loop(self, u: int, v: int) -> tuple[int, ...]:
-        """The shortest way over moving folds from u to v without the fold between them."""
+        """The shortest path from u to v along moving folds other than the fold between them."""
         graph = nx.Graph()
         for mode, _ in self._chosen.values():
             if mode is not None:
@@ -252,7 +259,7 @@ class CellSearch:
 
 
 class _Level:
-    """One vertex of the search: the ways that are left, and what the last one changed."""
+    """One vertex of the search: the ways it has left, and what the last way changed."""
 
     def __init__(self, vertex: int) -> None:
         self.vertex = vertex
@@ -263,7 +270,7 @@ class _Level:
         self.children: list[tuple[Mapping[Edge, int], Steps]] = []
 
     def cases(self) -> Steps:
-        """The vertex, and then what came of each of its ways."""
+        """The vertex, followed by the cases of each of its ways."""
 
         def sides(child: tuple[Mapping[Edge, int], Steps]) -> list[int]:
             return [child[0][edge] for edge in sorted(child[0], key=sum)]

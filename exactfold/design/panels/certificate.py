@@ -1,4 +1,4 @@
-"""Certificates of whether rigid panels start to fold with given letters, for the checker."""
+"""Certificates for the checker: whether rigid panels start to fold with given letters."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy as np
 from exactfold._support.arrays import FloatArray
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.certificates.entries import Document
-from exactfold.checker.letters.panels import PANEL_LETTERS
+from exactfold.checker.letters.panels import PANEL_LETTERS, PanelLettersClaims
 from exactfold.design.panels.cells import CellSearch, Steps
 from exactfold.design.panels.match import PanelMatch, flat_with_letters
 from exactfold.design.panels.parts import PartAnswer
@@ -26,16 +26,18 @@ from exactfold.panels.stars import Star, bracket, stars
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
 _BITS: Final = 62
-_SLACK: Final = 8  # bits of the inverse beyond those that make |1 - Y J| small
+_SLACK: Final = 8  # more bits of the inverse than |1 - Y J| < 1 needs
 
 
 def starting_certificate(found: PanelMatch) -> Document:
-    """The proof that panels start to fold with given letters or not, as a JSON object.
+    """The proof, as a JSON object, that panels start to fold with given letters or do not.
 
-    Raises `NotApplicableError` if the question is open, or was answered by splitting forms.
+    Raises `NotApplicableError` if the question is undecided or was answered by splitting forms.
     """
     if found.starts is UNDECIDED:
-        raise NotApplicableError("there is no certificate of an answer that is undecided")
+        raise NotApplicableError(
+            "this match is undecided; only a match that is proved has a certificate"
+        )
     moving = stars(found.pattern, held(found.letters))
     truly, evidence = found.truly, dict[str, Any]()
     if found.starts is PROVED:
@@ -49,21 +51,19 @@ def starting_certificate(found: PanelMatch) -> Document:
     else:
         evidence, truly = _refuted(found, moving)
     first = found.first_order
-    if first is not None:
-        moved = {"together": _pairs(first.together), "never": _pairs(first.never)}
-    else:
-        moved = {"together": [], "never": []}
+    claims: PanelLettersClaims = {
+        "letters": "".join(found.letters[fold] for fold in found.pattern.folds),
+        "starts": str(found.starts),
+        "truly": str(truly),
+        "together": [] if first is None else _pairs(first.together),
+        "never": [] if first is None else _pairs(first.never),
+    }
     evidence |= _first_order(found)
     return {
         "format": PANEL_LETTERS.format,
         "version": PANEL_LETTERS.version,
         "pattern": panels_document(found.pattern),
-        "claims": {
-            "letters": "".join(found.letters[fold] for fold in found.pattern.folds),
-            "starts": str(found.starts),
-            "truly": str(truly),
-            **moved,
-        },
+        "claims": claims,
         "evidence": evidence,
     }
 
@@ -72,7 +72,10 @@ def starting_certificate(found: PanelMatch) -> Document:
 
 
 def _refuted(found: PanelMatch, moving: Mapping[int, Star]) -> tuple[Document, Verdict]:
-    """The evidence of one part that cannot move as is asked for, of true motions if one does."""
+    """The evidence of one part that cannot move with its letters.
+
+    A part for which true motions are refuted is preferred.
+    """
     parts = [part for part in found.parts if part.starts is REFUTED]
     if not parts:
         i, j = flat_with_letters(found.pattern, found.letters, moving)[0]
@@ -86,9 +89,9 @@ def _refuted(found: PanelMatch, moving: Mapping[int, Star]) -> tuple[Document, V
     if not signs:
         return {"refuted": sets, "tree": [["refuted", 0]]}, part.truly
     v, first = signs[0]
-    if len(sets) == 1:  # all its letters are one, which refutes both signs
+    if len(sets) == 1:  # all letters of the vertex are equal, which refutes both signs
         return {"refuted": [], "tree": [["curved", v]]}, part.truly
-    ends = [["refuted", 0], ["refuted", 1]]  # the case of the vertex up comes first
+    ends = [["refuted", 0], ["refuted", 1]]  # the case in which the vertex is up comes first
     return {
         "refuted": sets,
         "tree": [["split", v], *(ends if first > 0 else ends[::-1])],
@@ -96,7 +99,10 @@ def _refuted(found: PanelMatch, moving: Mapping[int, Star]) -> tuple[Document, V
 
 
 def _set(found: PanelMatch, moving: Mapping[int, Star], refutation: PanelRefutation) -> Document:
-    """Vectors, and heights of all neighbours over folds that may fold, by number."""
+    """The vectors of a refutation, and the heights of all neighbours that a moving fold reaches.
+
+    The neighbours are sorted by number.
+    """
     field, scale, heights = found.pattern.field, _scale(found.pattern), []
     for v in sorted({v for v, _ in refutation.heights}):
         around = sorted(i + j - v for i, j in moving[v].folds)
@@ -113,7 +119,7 @@ def _set(found: PanelMatch, moving: Mapping[int, Star], refutation: PanelRefutat
 
 
 def _scale(pattern: PanelPattern) -> Number:
-    """By how much the directions of stars are longer than they are drawn."""
+    """The factor by which the directions of stars are longer than in the drawing."""
     i, j = pattern.edges[0]
     axis = 0 if pattern.direction(i, j)[0] else 1
     drawn = pattern.vertices[j][axis] - pattern.vertices[i][axis]
@@ -121,17 +127,24 @@ def _scale(pattern: PanelPattern) -> Number:
 
 
 def _open_loops(found: PanelMatch, own: Mapping[int, Star], loop: Iterable[int]) -> list[Any]:
-    """The cases of the vertices of one loop if these are enough, else of all with few folds."""
+    """The cases of the vertices of one loop if they suffice, else of all with at most
+    four folds.
+    """
     few = {v: star for v, star in own.items() if len(star.folds) <= 4}
     for stars_ in ({v: few[v] for v in loop}, few):
         search = CellSearch(stars_, found.letters, found.pattern.field)
         if stars_ and next(iter(search), None) is None:
             return _tree(search.cases, [])
-    raise NotApplicableError("the cases of the vertices with few folds were not found again")
+    raise NotApplicableError(
+        "no certificate can be written: the loop of vertices with at most four folds that refutes "
+        "the letters was not found again"
+    )
 
 
 def _failing(found: PanelMatch, own: Mapping[int, Star]) -> list[Any]:
-    """All cells with the letters, each with a loop that fails at an order in the fold angle."""
+    """All cells with the letters, each with a loop that does not close at some order in
+    the angle.
+    """
     search = CellSearch(own, found.letters, found.pattern.field)
     known: Loops = {}
     failing = []
@@ -143,7 +156,7 @@ def _failing(found: PanelMatch, own: Mapping[int, Star]) -> list[Any]:
 
 
 def _tree(cases: Steps, cells: list[list[Any]]) -> list[list[Any]]:
-    """The steps as the file has them; those of a cell are given."""
+    """The steps as the file contains them; `cells` gives the steps that stand for cells."""
     tree = []
     for kind, at in cases:
         if kind == "cell":
@@ -157,7 +170,7 @@ def _tree(cases: Steps, cells: list[list[Any]]) -> list[list[Any]]:
 
 
 def _first_order(found: PanelMatch) -> Document:
-    """The vectors, one step after the other, and the motion of `found.first_order`."""
+    """The motion of `found.first_order`, and its vectors, step by step."""
     if found.first_order is None:
         return {"flat": [], "densities": []}
     field, scale = found.pattern.field, _scale(found.pattern)
@@ -178,7 +191,10 @@ def _pairs(folds: Iterable[Edge]) -> list[list[int]]:
 
 
 def _motion(found: PanelMatch, moving: Mapping[int, Star], part: PartAnswer) -> Document | None:
-    """A motion of a part: none if nothing is asked of it, the sides of its folds, or densities."""
+    """The evidence of a part that moves: None if no letters are asked of it, signs, or densities.
+
+    If all vertices have at most four folds, the signs of the folds are enough.
+    """
     own = {v: moving[v] for v in part.vertices}
     folds = sorted({edge for star in own.values() for edge in star.folds})
     if not any(found.letters[edge] in "MV" for edge in folds):
@@ -190,7 +206,8 @@ def _motion(found: PanelMatch, moving: Mapping[int, Star], part: PartAnswer) -> 
     boxes = regular_motion(own, near)
     if boxes is None:
         raise NotApplicableError(
-            "the motion was found by splitting forms, of which no certificate can be written"
+            "no certificate can be written: the motion was found by splitting forms, and the "
+            "checker knows no such proof"
         )
     unknowns = [k for k, edge in enumerate(folds) if boxes[edge][1]]
     radius = 2 * max(radius for _, radius in boxes.values())
@@ -212,9 +229,9 @@ def _motion(found: PanelMatch, moving: Mapping[int, Star], part: PartAnswer) -> 
 
 
 def _derivative(own: Mapping[int, Star], near: Mapping[Edge, float], scale: float) -> FloatArray:
-    """The derivatives of all conditions, in the order of the checker: x, y and the form.
+    """The derivatives of all conditions in the order of the checker: x, y, and the form.
 
-    The fold to the neighbour with the least number comes first in the form.
+    In the form, the fold to the neighbour with the smallest number comes first.
     """
     place = {edge: k for k, edge in enumerate(sorted(near))}
     rows = []

@@ -1,4 +1,7 @@
-"""Linear programs on the first-order motions of a sheet of panels; floats propose, and no more."""
+"""Linear programs on the first-order motions of a sheet of panels.
+
+Floating point proposes what exact arithmetic verifies.
+"""
 
 from __future__ import annotations
 
@@ -29,11 +32,11 @@ SIDES = {"V": 1, "M": -1}
 
 
 class FirstOrderProgram:
-    """The linear programs of one sheet and its letters: motions with them, and why there are none.
+    """The linear programs of one sheet and its letters: motions with the letters, or refutations.
 
-    A motion w has `sum_k w_k d_k = 0` at each vertex (`Star`), and goes its way at a fold if w_f >
-    0 for a valley and < 0 for a mountain. `stars` are those that the flat closure leaves; all other
-    folds have no condition here. Lengths are taken in units of the longest fold.
+    A motion w satisfies sum_k w_k d_k = 0 at each vertex (`Star`). It bends a fold the way of its
+    letter if w_f > 0 for a valley and w_f < 0 for a mountain. `stars` are those that the flat
+    closure leaves; all other folds have no condition here. The unit of length is the longest fold.
     """
 
     def __init__(self, stars: Mapping[int, Star], letters: Letters) -> None:
@@ -46,12 +49,12 @@ class FirstOrderProgram:
 
     @cached_property
     def unit(self) -> float:
-        """The longest coordinate of a fold."""
+        """The largest coordinate of a fold."""
         return max(abs(float(x)) for s in self.stars.values() for d in s.directions for x in d)
 
     @cached_property
     def matrix(self) -> sparse.csr_matrix:
-        """Two rows for each vertex, a column for each fold: matrix @ w = 0 for motions."""
+        """The matrix with matrix @ w = 0 for motions: two rows per vertex, one column per fold."""
         values, rows, columns = [], [], []
         for k, star in enumerate(self.stars.values()):
             for edge, direction in zip(star.folds, star.directions, strict=True):
@@ -63,11 +66,11 @@ class FirstOrderProgram:
         return sparse.csr_matrix((values, (rows, columns)), shape=shape)
 
     def going_together(self) -> tuple[dict[Edge, float], list[Edge]]:
-        """A motion in which no fold goes against its letter and as many as may be go their way,
-        and those that do not.
+        """A motion in which as many folds as possible bend their way, and the folds that do not.
 
-        Sums of such motions are such motions, so that it is a linear program: the sum over the
-        folds of the amount by which they go their way, at most 1 each, is the largest possible.
+        No fold bends against its letter. Sums of such motions are such motions, so this is a
+        linear program: it maximises the sum, over the folds, of the amount by which each bends
+        its way, counted up to 1.
         """
         count, many = len(self.folds), len(self.lettered)
         signs = [-SIDES[self.letters[edge]] for edge in self.lettered]
@@ -89,9 +92,10 @@ class FirstOrderProgram:
         return dict(zip(self.folds, map(float, found.x[:count]), strict=True)), rest
 
     def holding_flat(self, rest: Iterable[Edge]) -> dict[int, Point] | None:
-        """Vectors whose sums are against the letters of these folds, and 0 at all others.
+        """Vectors whose sums are against the letters of these folds, and 0 at all other folds.
 
-        As many as may be of the sums are not 0; exact where they must be 0. None if none are found.
+        As many of the sums as possible are not 0. Sums that have to be 0 are exactly 0. None if no
+        such vectors are found.
         """
         strict = set(rest)
         sums, size = self.matrix.T.tocsr(), 2 * len(self.stars)
@@ -117,8 +121,9 @@ class FirstOrderProgram:
         return self._exact(y, sums @ y) if np.abs(y).max() > 0 else None
 
     def motion(self, wanted: Iterable[Edge] | None = None) -> dict[Edge, float] | None:
-        """A motion in which the wanted folds, or all with letters, go their way by as much as may
-        be; None if there is none.
+        """A motion in which all wanted folds bend their way as much as possible; None if none can.
+
+        By default all folds with letters are wanted.
         """
         chosen = self.lettered if wanted is None else list(wanted)
         count = len(self.folds)
@@ -144,10 +149,11 @@ class FirstOrderProgram:
         return dict(zip(self.folds, map(float, found.x[:-1]), strict=True))
 
     def refutation(self, wanted: Iterable[Edge] | None = None) -> PanelRefutation | None:
-        """Vectors that show that not all wanted folds, or all with letters, can go their way.
+        """Vectors that show that not all wanted folds can bend their way; None if none are found.
 
-        Small ones at few vertices, by a linear program; then exact where their sums vanish. The
-        other letters are free. None if none is found, which decides nothing.
+        By default all folds with letters are wanted; the other letters are free. A linear program
+        proposes small vectors at few vertices, which are then made exact where their sums vanish.
+        None decides nothing.
         """
         chosen = set(self.lettered if wanted is None else wanted)
         letters = {f: self.letters[f] if f in chosen else "U" for f in self.folds}
@@ -159,7 +165,7 @@ class FirstOrderProgram:
         signs = np.array([SIDES[letters[f]] for f in held], dtype=float)
         if not held:
             return None
-        turned = sparse.diags(signs) @ sums[at]  # at most 0, and in all -1
+        turned = sparse.diags(signs) @ sums[at]  # each sum is at most 0, and their total is -1
         upper = sparse.hstack([turned, -turned], format="csr")
         equal = [sparse.csr_matrix(signs @ sums[at])]
         if free:
@@ -183,7 +189,10 @@ class FirstOrderProgram:
         return refutation if refutation.holds_on(self.stars, letters) else None
 
     def _exact(self, y: FloatArray, sums: FloatArray) -> dict[int, Point] | None:
-        """Exact vectors near those given, 0 where these are, with sums 0 where theirs are."""
+        """Exact vectors near those given.
+
+        They are 0 where the given vectors are 0, and their sums are 0 where the given sums are 0.
+        """
         largest = float(np.abs(y).max())
         used = [k for k in range(len(y)) if abs(y[k]) > _TIGHT * largest]
         if not used:
@@ -217,8 +226,9 @@ def solved(
 ) -> dict[Key, Entry] | None:
     """An exact solution of homogeneous linear equations near one in floating point.
 
-    Unknowns that are not solved for are rounded to multiples of 2^-40 of those given. Each equation
-    is solved for the unknown with the largest coefficient, nearly. None if it takes too long.
+    Each equation is solved for the unknown whose coefficient is about the largest. All other
+    unknowns get the given values, rounded to multiples of 2^-40. None if the computation takes too
+    long.
 
     >>> solved([{0: fmpq(1), 1: fmpq(2)}, {0: fmpq(1), 1: fmpq(2)}], {0: 0.5, 1: 0.0})
     {0: 1/2, 1: -1/4}
@@ -258,7 +268,7 @@ def solved(
 
 
 def _size(value: Entry) -> float:
-    """The logarithm of the size of a number, nearly."""
+    """The logarithm of the size of a number, approximately."""
     if isinstance(value, Surd):
         return log2(abs(float(value)))
     return int(value.p).bit_length() - int(value.q).bit_length()

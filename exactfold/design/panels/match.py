@@ -22,7 +22,6 @@ from exactfold._support.documents import (
 from exactfold._support.plurals import agreeing, counted
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
-from exactfold.branches.counting.ways import Sheet, open_sheet
 from exactfold.design.panels.parts import PartAnswer, answered
 from exactfold.design.panels.refutation import PanelRefutation, held
 from exactfold.design.panels.together import Together, going_together
@@ -32,6 +31,7 @@ from exactfold.panels.decomposition import groups_of
 from exactfold.panels.stars import Star, stars
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import PanelsDocument, described_panels
+from exactfold.pattern.loading import PatternLike, open_sheet
 from exactfold.pattern.opening import panels
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
@@ -89,17 +89,18 @@ class StartingDocument(TypedDict):
 class PanelMatch:
     """Whether a sheet of rigid panels starts to fold with given letters.
 
-    `starts`: whether there is a motion to second order in which every fold with a letter goes its
-    way; `truly`: whether true motions of the panels begin like that (docs/assignment.md, Rigid
-    panels).
-    `status` is PROVED if `starts` is decided. `reasons` says why, one sentence each;
-    `densities` is one such motion nearly (fold angle / length, up to a positive factor for each
-    part), empty if there is none; `ways` the number of different sets of signs that motions with
-    these letters have, None if it is not known. `refutations` are vectors that refute letters by
-    themselves (`PanelRefutation.holds`). `vertices` are those named in a reason. `parts` are the
-    answers for the parts of the sheet that move apart from each other. `first_order` says which
-    folds can go their way together to first order, and which never; None if the sheet starts to
-    fold, or is too large.
+    `starts` says whether there is a motion to second order in which every fold with a letter bends
+    its way. `truly` says whether true motions of the panels begin like that (docs/assignment.md,
+    Rigid panels). `status` is PROVED if `starts` is decided. `reasons` gives the reasons, one
+    sentence each, and `vertices` are the vertices they name.
+
+    `densities` is one such motion, approximately (fold angle / length, up to a positive factor for
+    each part); it is empty if there is none. `ways` is the number of different sign patterns of the
+    motions with these letters, or None if it is not known. `refutations` are vectors that refute
+    letters by themselves (`PanelRefutation.holds`). `parts` are the answers for the parts of the
+    sheet that move independently of each other. `first_order` says which folds can bend their way
+    together to first order, and which never can; it is None if the sheet starts to fold or is too
+    large.
     """
 
     pattern: PanelPattern
@@ -122,17 +123,17 @@ class PanelMatch:
 
     @property
     def assignment(self) -> dict[Edge, str]:
-        """The letters of the motion in `densities`, by fold; F where it is flat."""
+        """The letters of the motion in `densities`, by fold; F where the fold is flat."""
         letters = dict.fromkeys(self.pattern.folds, "F") if self.densities else {}
         return letters | {e: "V" if x > 0 else "M" for e, x in self.densities.items() if x}
 
     @property
     def lines(self) -> tuple[str, ...]:
-        """The answer in words, one line each, for a terminal."""
+        """The answer in words, one line each, for the terminal."""
         answer = {
             PROVED: "the sheet starts to fold with these mountains and valleys"
             if _goes(self.letters)
-            else "no fold is asked to be a mountain or a valley: this holds if nothing moves",
+            else "no fold has to be a mountain or a valley, so the flat sheet has these letters",
             REFUTED: "the sheet does not start to fold with these mountains and valleys",
             UNDECIDED: "whether the sheet starts to fold with these mountains and valleys is open",
         }
@@ -168,22 +169,25 @@ class PanelMatch:
 
 
 def match_panels(
-    pattern: Sheet,
+    pattern: PatternLike,
     letters: Mapping[Edge, str] | str | None = None,
     *,
     progress: Progress | None = None,
 ) -> PanelMatch:
     """Whether rigid panels start to fold with given mountains and valleys, with a proof.
 
-    `letters`: by fold (i, j), i < j, or a text in the order of the folds: "M", "V", "F" for a fold
-    that is to stay flat, "U" where anything may be; folds left out are free. None: the letters of
-    the file (`Opened.letters`). The question is whether some w with sum_k w_k d_k = 0 and
-    K_v(w) = 0 at every vertex is > 0 at all valleys, < 0 at all mountains and 0 at folds that stay
-    flat. No is shown at one vertex, by vectors (`PanelRefutation`), or by loops that do not close;
-    yes by exact modes where vertices have at most four folds, else by a candidate that balls or
-    bounds prove (docs/assignment.md, Rigid panels). UNDECIDED where neither is found.
+    `letters` is a mapping from folds (i, j), i < j, or a text in the order of the folds. "M" is a
+    mountain, "V" a valley, "F" a fold that has to stay flat, and "U" a fold that may do anything;
+    folds left out are free. If `letters` is None, the letters of the file are used
+    (`Opened.letters`). The question is whether there are densities w with sum_k w_k d_k = 0 and
+    K_v(w) = 0 at every vertex that are > 0 at all valleys, < 0 at all mountains, and 0 at folds
+    that stay flat.
 
-    Raises `UsageError` for letters that do not fit, and the errors of `open_pattern`.
+    The answer no is proved at one vertex, by vectors (`PanelRefutation`), or by loops that do not
+    close. The answer yes is proved by exact modes if all vertices have at most four folds, and
+    otherwise by balls or bounds around a candidate (docs/assignment.md, Rigid panels). If neither
+    succeeds, the answer is UNDECIDED. Raises `UsageError` for letters that do not fit, and the
+    errors of `open_pattern`.
 
     >>> from exactfold.design import match_panels
     >>> found = match_panels("bird-base")
@@ -221,7 +225,10 @@ def match_panels(
 def _first_order(
     moving: Mapping[int, Star], asked: Letters, dead: Iterable[Edge], free: Iterable[Edge]
 ) -> Together | None:
-    """With the folds that the flat closure holds flat, and those from border to border."""
+    """What can move together to first order, completed by the folds outside all moving stars.
+
+    Folds that the flat closure keeps flat never move, and folds from border to border always can.
+    """
     found = going_together(moving, asked)
     if found is None:
         return None
@@ -232,7 +239,10 @@ def _first_order(
 def flat_with_letters(
     sheet: PanelPattern, letters: Letters, moving: Mapping[int, Star]
 ) -> list[Edge]:
-    """The folds with a letter that the flat closure, which leaves these stars, holds flat."""
+    """The mountains and valleys asked for on folds that the flat closure keeps flat.
+
+    `moving` are the stars that the flat closure leaves.
+    """
     active = {edge for star in moving.values() for edge in star.folds}
     inner = set(sheet.interior)
     return [e for e in sheet.folds if letters[e] in "MV" and e not in active and inner & set(e)]
@@ -249,8 +259,9 @@ def _result(
         (i, j), more = dead[0], len(dead) - 1
         others = f", and so {agreeing(more, 'stays')} {counted(more, 'fold')} more" if more else ""
         reason = (
-            f"fold {i}-{j} has a letter and stays flat in every motion: at one of its ends the "
-            f"folds leave a sector of 180 degrees or more, or there are fewer than four{others}"
+            f"fold {i}-{j} has a letter but stays flat in every motion, because one of its ends "
+            "has a sector of 180 degrees or more between neighbouring folds, or fewer than four "
+            f"folds{others}"
         )
         return PanelMatch(sheet, letters, REFUTED, REFUTED, (reason,), {}, 0, (), (), ())
     starts = _all(part.starts for part in parts)
@@ -285,7 +296,7 @@ def _result(
 
 
 def _goes(letters: Letters) -> bool:
-    """Whether some fold is asked to be a mountain or a valley."""
+    """Whether some fold has to be a mountain or a valley."""
     return not {"M", "V"}.isdisjoint(letters.values())
 
 
@@ -298,7 +309,7 @@ def _of_true(truly: Verdict) -> str:
 
 
 def _all(verdicts: Any) -> Verdict:
-    """REFUTED if one is, PROVED if all are."""
+    """The verdict on all parts: REFUTED if one part is REFUTED, PROVED if all parts are PROVED."""
     found = set(verdicts)
     if REFUTED in found:
         return REFUTED

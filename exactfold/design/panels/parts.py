@@ -1,4 +1,4 @@
-"""One part of a sheet of panels that moves apart from the others: has it given letters?"""
+"""Whether one part of a sheet of panels, which moves independently of the others, has letters."""
 
 from __future__ import annotations
 
@@ -27,10 +27,11 @@ _MOST_CELLS: Final = 64
 
 @dataclass(frozen=True)
 class PartAnswer:
-    """Whether a part starts to fold with its letters, and truly, and why.
+    """Whether a part starts to fold with its letters, whether a finite flex does, and why.
 
-    `ways` is the number of cells with these letters, None if it is not known; `densities` one
-    motion, nearly; `named` the vertices of the reason.
+    `starts` is about motions to second order, and `truly` about true motions of the panels. `ways`
+    is the number of cells with these letters, or None if it is not known. `densities` is one such
+    motion, approximately. `named` are the vertices that the reason names.
     """
 
     vertices: tuple[int, ...]
@@ -44,14 +45,16 @@ class PartAnswer:
 
 
 def answered(pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters) -> PartAnswer:
-    """The answer for a part, from the cheapest proof to the dearest.
+    """The answer for one part; cheap proofs are tried first.
 
-    Single vertices first; then vectors that refute all first-order motions; then loops of vertices
-    with at most four folds, which are the complete answer if there are no others; then a candidate.
+    The order is: single vertices; vectors that refute all first-order motions; loops of vertices
+    with at most four folds, which are the complete answer if there are no other vertices; a
+    candidate in floating point and its proof.
     """
     vertices = tuple(moving)
     few = all(len(star.folds) <= 4 for star in moving.values())
-    no = REFUTED if few else UNDECIDED  # of true motions: their cells are those to second order
+    # With at most four folds at each vertex, true motions lie in the cells to second order.
+    no = REFUTED if few else UNDECIDED
     if not any(letters[edge] in "MV" for star in moving.values() for edge in star.folds):
         return PartAnswer(vertices, PROVED, PROVED, ways=None)
     if stuck := _stuck(moving, letters):
@@ -78,9 +81,12 @@ def answered(pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters
             truly = PROVED if proved.folds else UNDECIDED
             return PartAnswer(vertices, PROVED, truly, densities=proved.densities)
     if start is None:
-        text = "no motion was found, and no vectors that refute one"
+        text = "neither a first-order motion with these letters nor a refutation of one was found"
     else:
-        text = "there are first-order motions with these letters, and none to second order is known"
+        text = (
+            "some first-order motions have these letters, but no motion to second order that has "
+            "them was proved"
+        )
     return PartAnswer(vertices, UNDECIDED, UNDECIDED, f"{_where(vertices)}: {text}")
 
 
@@ -92,10 +98,13 @@ def _stuck(moving: Mapping[int, Star], letters: Letters) -> list[VertexReason]:
 def _refused_at(
     vertices: tuple[int, ...], moving: Mapping[int, Star], stuck: list[VertexReason]
 ) -> PartAnswer:
-    """The vertex with the fewest folds stands for all; with four it decides true motions too."""
+    """The answer refuted at single vertices; the reason names the vertex with the fewest folds.
+
+    If this vertex has at most four folds, true motions are refuted, too.
+    """
     first = min(stuck, key=lambda reason: (len(moving[reason.vertex].folds), reason.vertex))
     more = len(stuck) - 1
-    others = f"; {counted(more, 'vertex')} more cannot have theirs" if more else ""
+    others = f"; {counted(more, 'vertex')} more cannot have their letters either" if more else ""
     return PartAnswer(
         vertices,
         REFUTED,
@@ -107,7 +116,9 @@ def _refused_at(
 
 
 def _by_cells(pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters) -> PartAnswer:
-    """The structure theorem: all cells, as far as they are few, and which of them truly fold."""
+    """The answer of the structure theorem: all cells, if they are few, and which of them truly
+    fold.
+    """
     vertices = tuple(moving)
     try:
         search = CellSearch(moving, letters, pattern.field)
@@ -115,7 +126,7 @@ def _by_cells(pattern: PanelPattern, moving: Mapping[int, Star], letters: Letter
     except (TooManyModesError, UndecidedDensityError) as error:
         return PartAnswer(vertices, UNDECIDED, UNDECIDED, f"{_where(vertices)}: {error}")
     if not cells:
-        text = "at no choice of their modes do the vertices fit together"
+        text = "no choice of a mode at each vertex makes the vertices fit together"
         loop = search.open_loops[0] if search.open_loops else None
         return PartAnswer(
             vertices,
@@ -158,9 +169,9 @@ def _extends(
 def _loop(
     pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters
 ) -> tuple[tuple[int, ...], str] | None:
-    """Why the vertices with at most four folds alone cannot have these letters; None if they can.
+    """Why the vertices with at most four folds cannot have these letters; None if they can.
 
-    Folds that lead to other vertices are in no other condition then.
+    Only these vertices are considered. Folds that lead to other vertices have no condition there.
     """
     few = {v: star for v, star in moving.items() if len(star.folds) <= 4}
     if any(letters[edge] == "U" for star in few.values() for edge in star.folds):
@@ -178,8 +189,8 @@ def _first_order_text(named: Iterable[int]) -> str:
     shown = [str(v) for v in named]
     where = ", ".join(shown[:12]) + (f" and {len(shown) - 12} more" if len(shown) > 12 else "")
     return (
-        f"the vertices {where} cannot have their letters together, even at the first instant: that "
-        "the folds around each of them close up contradicts these mountains and valleys"
+        f"the vertices {where} cannot have their letters together, not even to first order: these "
+        "mountains and valleys contradict that the folds around each of them close up"
     )
 
 

@@ -1,4 +1,7 @@
-"""A motion to second order near a candidate, proved: as it is, or in a subspace of the motions."""
+"""The proof that there is a motion to second order near a candidate.
+
+Some motions are proved directly, others only in a subspace of the first-order motions.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +26,11 @@ _MOST_WORK: Final = 2_000_000
 
 @dataclass(frozen=True)
 class ProvedMotion:
-    """A motion to second order: its densities nearly, and whether it is known to fold truly."""
+    """A proved motion to second order.
+
+    `densities` are approximate. `folds` says whether the motion is known to extend to a finite
+    flex.
+    """
 
     densities: Mapping[Edge, float]
     folds: bool
@@ -32,12 +39,13 @@ class ProvedMotion:
 def proved_motion(
     stars: Mapping[int, Star], letters: Letters, near: Mapping[Edge, float]
 ) -> ProvedMotion | None:
-    """A motion near a candidate with these letters where all forms vanish, or None.
+    """A motion near a candidate with these letters at which all forms vanish, or None.
 
-    Where all conditions are independent, `regular_motion` proves it. Elsewhere semidefinite forms
-    leave their kernels and forms of inertia (1, 1) that factor of theirs which vanishes near the
-    candidate, exactly, until nothing changes, and Krawczyk's operator shows a zero of the forms
-    that are left (`regular_point`). None decides nothing.
+    If all conditions are independent, `regular_motion` proves it. Otherwise the space of motions is
+    cut down exactly: a semidefinite form leaves its kernel, and a form of inertia (1, 1) leaves
+    that of its two factors which vanishes near the candidate. This is repeated until nothing
+    changes. Then Krawczyk's operator shows a zero of the remaining forms (`regular_point`). None
+    decides nothing.
     """
     found = regular_motion(stars, near)
     if found is not None:
@@ -64,14 +72,16 @@ def _wanted(stars: Mapping[int, Star], letters: Letters) -> list[tuple[Edge, int
 
 
 def _has_letters(w: Balls, letters: Letters, stars: Mapping[int, Star]) -> bool:
-    """Whether balls show that all folds of these stars that have letters go their way."""
+    """Whether balls show that every fold of these stars with a letter bends the way of
+    its letter.
+    """
     return all(edge in w and bool(side * w[edge] > 0) for edge, side in _wanted(stars, letters))
 
 
 def leaf_near(
     stars: Mapping[int, Star], rows: Rows, size: int, near: Mapping[Edge, float]
 ) -> Leaf | None:
-    """The exact space on which the forms that can be are split, near a candidate."""
+    """The exact space near a candidate that remains when every form that can be split is split."""
     work = 0
     while True:
         left: list[int] = []
@@ -102,7 +112,7 @@ def leaf_near(
 
 
 def _relative(functional: Sequence[Any], at: Sequence[float]) -> float:
-    """How large a functional is at a point, for its size."""
+    """The size of a functional at a point, relative to the sizes of both."""
     weights = [float(x) for x in functional]
     total = sum(x * y for x, y in zip(weights, at, strict=True))
     return abs(total) / (max(map(abs, weights)) * max(map(abs, at)))

@@ -1,4 +1,4 @@
-"""Why no motion of rigid panels has given letters: one vector at each vertex, exactly."""
+"""Why no motion of rigid panels has given letters: one exact vector at each vertex."""
 
 from __future__ import annotations
 
@@ -14,17 +14,19 @@ from exactfold.pattern.panel_pattern import PanelPattern, Point
 
 @dataclass(frozen=True, repr=False)
 class PanelRefutation:
-    """No motion to second order in the closed nappes of `signs` has given letters.
+    """A proof that no motion to second order in the closed nappes of `signs` has given letters.
 
-    `planes[v]` is a vector y_v: z_v(u) = y_v . d_vu at the neighbours u of v, d_vu = p_u - p_v.
-    `heights[v, u]` are such heights z_v(u) for the vertices of `signs`, and then z_v lies in the
-    closed nappe of that sign; what is left out is 0. Motions w with these signs have
+    `planes[v]` is a vector y_v. It gives the heights z_v(u) = y_v . d_vu at the neighbours u of v,
+    where d_vu = p_u - p_v. At the vertices of `signs`, `heights[v, u]` are the heights z_v(u)
+    themselves; there z_v lies in the closed nappe of the sign. Missing entries are 0. Motions w
+    with these signs satisfy
 
-        sum_f w_f s_f = sum_v sum_u w_vu z_v(u) >= 0,   s_f = z_v(u) + z_u(v) for f = vu,
+        sum_f w_f s_f = sum_v sum_u w_vu z_v(u) >= 0,   s_f = z_v(u) + z_u(v) for f = vu.
 
-    which is negative for letters whose valleys have s_f <= 0, mountains s_f >= 0 and free folds
-    s_f = 0, if one sum of a mountain or valley is not 0. Without signs it is 0, and the letters
-    are refuted to first order (docs/assignment.md, Theorem 4). Folds that stay flat may have any.
+    If s_f <= 0 for valleys, s_f >= 0 for mountains and s_f = 0 for free folds, and s_f is not 0 for
+    some mountain or valley, the left side is negative, which is a contradiction. Without signs the
+    right side is 0, and the letters are refuted to first order (docs/assignment.md, Theorem 4).
+    Folds that stay flat may have any s_f.
     """
 
     planes: Mapping[int, Point]
@@ -32,14 +34,14 @@ class PanelRefutation:
     heights: Mapping[tuple[int, int], Number] = field(default_factory=dict)
 
     def holds(self, pattern: PanelPattern, letters: Letters) -> bool:
-        """Whether it refutes these letters of all folds, decided in the field of the coordinates.
+        """Whether this refutes these letters of all folds, decided in the field of the coordinates.
 
         Heights and vectors that are not exact numbers refute nothing.
         """
         return self.holds_on(stars(pattern, held(letters)), letters)
 
     def holds_on(self, moving: Mapping[int, Star], letters: Letters) -> bool:
-        """The same on the stars that are left when folds that stay flat are taken away."""
+        """The same on given stars, from which the folds that stay flat have been removed."""
         numbers = [x for y in self.planes.values() for x in y] + list(self.heights.values())
         if not all(isinstance(x, Surd | Fraction | int) for x in numbers):
             return False
@@ -68,7 +70,7 @@ class PanelRefutation:
 
 
 def held(letters: Letters) -> list[tuple[int, int]]:
-    """The folds that are to stay flat."""
+    """The folds that have to stay flat."""
     return [fold for fold, letter in letters.items() if letter == "F"]
 
 
@@ -83,12 +85,12 @@ def _is_against(total: Mapping[tuple[int, int], Number], letters: Letters) -> bo
 
 
 def in_nappe(star: Star, side: int, heights: list[Number]) -> bool:
-    """Whether heights of a star, 0 at its hub, lie in the closed up (1) or down (-1) nappe.
+    """Whether heights of a star, with its hub at 0, lie in the closed up (1) or down (-1) nappe.
 
-    All sectors are less than pi. The densities of the heights are w_k = z_(k-1) / c_(k-1,k) +
-    z_(k+1) / c_(k,k+1) - z_k c_(k-1,k+1) / (c_(k-1,k) c_(k,k+1)), and the form is sum_k w_k z_k
-    / 2. Where it is not negative, the sign of the product with one vector inside the up nappe
-    tells the two nappes apart.
+    All sectors are smaller than pi. The densities of the heights are w_k = z_(k-1) / c_(k-1,k) +
+    z_(k+1) / c_(k,k+1) - z_k c_(k-1,k+1) / (c_(k-1,k) c_(k,k+1)), and the form is sum_k w_k z_k /
+    2. Where the form is not negative, the sign of the product with a vector inside the up nappe
+    distinguishes the two nappes.
 
     >>> right = Star(0, ((0, 1), (0, 2), (0, 3), (0, 4)), ((1, 0), (0, 1), (-1, 0), (0, -1)))
     >>> in_nappe(right, 1, [-1, -1, -1, -1]), in_nappe(right, -1, [-1, -1, -1, -1])
@@ -105,7 +107,9 @@ def in_nappe(star: Star, side: int, heights: list[Number]) -> bool:
 
 
 def bends(star: Star, heights: list[Number]) -> list[Number]:
-    """The densities of the folds of a star with these heights at their ends, all sectors < pi."""
+    """The densities of the folds of a star with these heights at their ends; all sectors
+    are < pi.
+    """
     d, count = star.directions, len(star.folds)
     found: list[Number] = []
     for k in range(count):
@@ -118,7 +122,7 @@ def bends(star: Star, heights: list[Number]) -> list[Number]:
 
 
 def _balance(star: Star) -> list[Number]:
-    """Positive weights with sum_k weight_k d_k = 0: minus the densities of one concave star."""
+    """Positive weights with sum_k weight_k d_k = 0: the densities of a concave star, negated."""
     d, count = star.directions, len(star.folds)
     weights: list[Number] = [Fraction(1)] * count
     for x, y in d:
@@ -134,7 +138,7 @@ def _balance(star: Star) -> list[Number]:
 
 
 def wedge(star: Star, side: int, normal: Point) -> PanelRefutation:
-    """The refutation of one sign by the heights -(n . x)_+ of a star, turned round for down."""
+    """The refutation of one sign by the heights -(n . x)_+ of a star, negated for the down sign."""
     nx, ny = normal
     heights: dict[tuple[int, int], Number] = {}
     for (i, j), (x, y) in zip(star.folds, star.directions, strict=True):

@@ -1,4 +1,6 @@
-"""A motion at which all conditions are independent, proved near a candidate in floating point."""
+"""The proof of a motion at which all conditions are independent, near a floating-point
+candidate.
+"""
 
 from __future__ import annotations
 
@@ -24,18 +26,19 @@ _RADII: Final = (1e-12, 1e-11, 1e-10, 1e-9, 1e-8, 1e-7)
 def regular_motion(
     stars: Mapping[int, Star], near: Mapping[Edge, float]
 ) -> dict[Edge, tuple[float, float]] | None:
-    """Each density within a radius of the one given, of an exact motion; or None.
+    """For each fold, a density and a radius within which an exact motion has its density; or None.
 
-    The conditions F are two linear ones and the form at each vertex, one at a straight pair. With
-    as many unknowns as conditions, all others as given, J the derivative at the candidate c and Y
-    an approximate inverse, there is exactly one zero within r of c if
+    The conditions F are two linear equations and the form at each vertex, and one linear equation
+    at a straight pair. As many densities as there are conditions are unknown; all others keep the
+    values given. Let J be the derivative at the candidate c, and Y an approximate inverse of J.
+    There is exactly one zero within r of c if
 
         |Y F(c)| + |1 - Y J| r + |Y| H r^2 < r   in each row, summed,
 
-    where H bounds how much J changes (Krawczyk's operator). F(c) is enclosed in balls; all other
-    terms are bounded in floating point with their rounding errors. The conditions are independent
-    at that motion, so that it is tangent to true ones (docs/panels.md, Regular points fold). None
-    decides nothing.
+    where H bounds how much J changes (Krawczyk's operator). F(c) is enclosed in balls. All other
+    terms are bounded in floating point together with their rounding errors. The conditions are
+    independent at that motion, so it is tangent to true motions (docs/panels.md, Regular points
+    fold). None decides nothing.
     """
     system = _System(stars, near)
     if system.count == 0 or system.count > min(_MOST_CONDITIONS, len(system.folds)):
@@ -67,7 +70,7 @@ def regular_motion(
 
 
 class _System:
-    """The conditions of a sheet, scaled at each vertex; one linear one for each straight pair."""
+    """The conditions of a sheet, scaled at each vertex; a straight pair has a single linear one."""
 
     def __init__(self, stars: Mapping[int, Star], near: Mapping[Edge, float]) -> None:
         self.stars, self.near = stars, near
@@ -86,8 +89,11 @@ class _System:
         self.count = len(self._rows)
 
     def derivative(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """J at the candidate; how much each entry can change for a change of 1 in all folds; and
-        the sum of the sizes of its terms, to which its rounding error is in proportion.
+        """The derivative J at the candidate, and two matrices of bounds for its entries.
+
+        The second matrix holds the largest change of each entry if all densities change by at most
+        1. The third holds the sum of the sizes of the terms of each entry; its rounding error is
+        proportional to that sum.
         """
         matrix = np.zeros((self.count, len(self.folds)))
         changes, terms = np.zeros_like(matrix), np.zeros_like(matrix)
@@ -112,7 +118,7 @@ class _System:
         return matrix, changes, terms
 
     def values(self) -> FloatArray:
-        """Bounds of |F(c)|, from balls."""
+        """Upper bounds of |F(c)|, computed with balls."""
         before = ctx.prec
         ctx.prec = BITS
         try:

@@ -1,4 +1,4 @@
-"""Which creases can fold their way together to first order, and which never."""
+"""Which creases can bend their way together to first order, and which never can."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from exactfold.panels.stars import Star
 from exactfold.pattern.panel_pattern import Edge, Point
 
 Planes = Mapping[int, Point]
-"""A vector for each of some vertices."""
+"""A vector at each of some vertices."""
 
 _ROUNDS: Final = 12
 _MOST_FOLDS: Final = 6_000
@@ -22,13 +22,14 @@ _MOST_FOLDS: Final = 6_000
 
 @dataclass(frozen=True, repr=False)
 class Together:
-    """Which folds with letters can fold their way together to first order, and which never.
+    """Which folds with letters can bend their way together to first order, and which never can.
 
-    Of the first-order motions sum_k w_k d_k = 0 in which no fold goes against its letter, `motion`
-    is one in which all of `together` go their way; in all of them the folds `never` stay flat, as
-    `steps` show, one after the other (`FlatByLetters`). `undecided` are the folds of which neither
-    is proved. Motions are densities of the folds that the flat closure leaves; the others with
-    letters are among `never`, and those from border to border among `together`.
+    Consider the first-order motions sum_k w_k d_k = 0 in which no fold bends against its letter.
+    `motion` is one of them in which all folds of `together` bend their way. In all of them the
+    folds of `never` stay flat, as `steps` show one after the other (`FlatByLetters`). `undecided`
+    are the folds of which neither is proved. `motion` holds densities of the folds that the flat
+    closure leaves. Other folds with letters are among `never`, except folds from border to border,
+    which are among `together`.
     """
 
     together: tuple[Edge, ...]
@@ -42,9 +43,10 @@ class Together:
 
 
 def going_together(stars: Mapping[int, Star], letters: Letters) -> Together | None:
-    """Which folds of these stars can go their way together, and which never; None if too many.
+    """Which folds of these stars can bend their way together, and which never; None if too many.
 
-    Single vertices first, then linear programs, the motion and the vectors of which are made exact.
+    Single vertices come first. Then linear programs propose motions and vectors, which are made
+    exact.
 
     >>> star = Star(0, ((0, 1), (0, 2), (0, 3), (0, 4)), ((1, 0), (0, 1), (-1, 0), (0, -1)))
     >>> found = going_together({0: star}, dict(zip(star.folds, "MVVV")))
@@ -79,9 +81,10 @@ def _result(
 def _motion(
     program: FirstOrderProgram, letters: Letters, near: Mapping[Edge, float], rest: Iterable[Edge]
 ) -> dict[Edge, Number]:
-    """An exact motion near one in floating point in which some folds are flat; empty if none.
+    """An exact motion near a floating-point motion in which the folds of `rest` stay flat.
 
-    Where rounded coordinates let folds go against their letters, these are held flat as well.
+    If rounded coordinates make some folds bend against their letters, these are held flat as well.
+    The result is empty if no exact motion is found.
     """
     held = set(rest)
     order = sorted(program.stars, key=lambda v: min(program.stars[v].folds))
@@ -107,11 +110,13 @@ def _motion(
 
 
 class FlatByLetters:
-    """Folds with letters that stay flat in all first-order motions where none goes against its own.
+    """Folds with letters that stay flat in all motions in which no fold bends against its letter.
 
-    If w_f s_f is at most 0 for all folds that are not flat, and 0 for free ones, in the sum 0 =
-    sum_v y_v . sum_k w_k d_k = sum_f w_f s_f, then w_f = 0 where s_f is not (docs/assignment.md,
-    Theorem 7). `steps` are such vectors, each with the folds before it flat; `flat` these folds.
+    The motions are those to first order. Consider the sum 0 = sum_v y_v . sum_k w_k d_k = sum_f w_f
+    s_f. If w_f s_f is at most 0 for all folds that are not known to be flat, and 0 for free ones,
+    then w_f = 0 wherever s_f is not 0 (docs/assignment.md, Theorem 7). `flat` are the folds shown
+    to be flat. `steps` are the vectors that show it; each step uses the folds that earlier steps
+    showed to be flat.
     """
 
     def __init__(self, stars: Mapping[int, Star], letters: Letters) -> None:
@@ -121,7 +126,7 @@ class FlatByLetters:
         self._spread(stars)
 
     def left(self) -> dict[int, Star]:
-        """The stars of the folds that are not known to stay flat."""
+        """The stars, restricted to the folds that are not known to stay flat."""
         found = {
             v: star.only(edge for edge in star.folds if edge not in self.flat)
             for v, star in self.stars.items()
@@ -129,9 +134,9 @@ class FlatByLetters:
         return {v: star for v, star in found.items() if star.folds}
 
     def add(self, planes: Planes) -> bool:
-        """Take the folds for flat that vectors show to be so, and what follows at single vertices.
+        """Add the folds that these vectors show to be flat, and all that follow at single vertices.
 
-        False if they show nothing.
+        Return False if the vectors show nothing.
         """
         found = self._shown(planes)
         if not found:

@@ -15,10 +15,11 @@ from exactfold.pattern.panel_pattern import Edge, Point
 
 @dataclass(frozen=True)
 class VertexReason:
-    """Why a vertex cannot have the letters of its folds, in words, and by what it is refuted.
+    """Why a vertex cannot have the letters of its folds, in words and as refutations.
 
-    One refutation without signs, or one for each of the two signs, where a sign is not refuted
-    because a star of mountains alone, or of valleys alone, is curved (`curved` has these signs).
+    `refutations` is either one refutation without signs, or one for each of the two signs. A sign
+    in `curved` has no refutation by vectors; it is impossible because a star of mountains alone, or
+    of valleys alone, is curved.
     """
 
     vertex: int
@@ -30,11 +31,11 @@ class VertexReason:
 def vertex_reason(star: Star, letters: Letters) -> VertexReason | None:
     """Why a vertex cannot have these letters, by its own folds alone; None if it can.
 
-    The star is what the flat closure leaves: a straight pair, or four folds or more with all
-    sectors less than pi. To first order sum_k w_k d_k = 0 is refuted by a vector y with y . d_k
-    <= 0 for valleys, >= 0 for mountains, 0 for free folds and not always 0. To second order the
-    vertex pops up only if its mountains lie in no closed half-plane and it has a valley, and down
-    with letters exchanged (docs/assignment.md, Theorem 4).
+    The star is one that the flat closure leaves: a straight pair, or at least four folds with all
+    sectors smaller than pi. To first order, sum_k w_k d_k = 0 is refuted by a vector y with y . d_k
+    <= 0 for valleys, >= 0 for mountains, and 0 for free folds, not always 0. To second order, the
+    vertex pops up only if its mountains lie in no closed half-plane and it has a valley. For
+    popping down, mountains and valleys change places (docs/assignment.md, Theorem 4).
 
     >>> star = Star(4, ((0, 4), (1, 4), (2, 4), (3, 4)), ((2, 1), (-1, 1), (-1, -1), (1, -2)))
     >>> vertex_reason(star, dict(zip(star.folds, "MMMV")))
@@ -62,8 +63,9 @@ def vertex_reason(star: Star, letters: Letters) -> VertexReason | None:
 def refuted_side(star: Star, letters: Letters, side: int) -> PanelRefutation | str | None:
     """Why a vertex cannot pop up (1) or down (-1) with these letters; None if it may.
 
-    A text if it has no valley (mountain) to pop up (down) with: the star is curved then, unless
-    all its folds stay flat or it is bent along one straight line, which first order decides.
+    The reason is a text if the vertex has no valley (mountain) with which to pop up (down). Then
+    the star is curved, unless all its folds stay flat or it is bent along one straight line; first
+    order decides these cases.
     """
     mountain, valley = ("M", "V") if side > 0 else ("V", "M")
     letter = [letters[fold] for fold in star.folds]
@@ -81,7 +83,9 @@ def refuted_side(star: Star, letters: Letters, side: int) -> PanelRefutation | s
 
 
 def _normals(star: Star) -> Iterator[Point]:
-    """Normals of the lines along the folds: a closed half-plane can be turned to one of these."""
+    """Normals of the lines along the folds; every closed half-plane can be turned to one
+    of these.
+    """
     for x, y in star.directions:
         yield -y, x
         yield y, -x
@@ -101,12 +105,15 @@ def _first_order_text(star: Star, letter: list[str]) -> str:
     where = f"at vertex {star.vertex}"
     if len(star.folds) == 2:
         both = _pair(star.folds)
-        return f"{where} the folds {both} are one straight crease and have different letters"
+        return f"{where} the folds {both} form one straight crease but have different letters"
     if len(star.folds) == 4:
         return _four_text(star, letter)
     if "U" in letter:
         where += ", whatever its free folds do,"
-    return f"{where} the valleys, and the mountains turned round, lie on one side of a line"
+    return (
+        f"{where} the valleys, and the opposite directions of the mountains, lie on one side of "
+        "a line, so the folds cannot close up"
+    )
 
 
 def _second_order_text(star: Star, letter: list[str]) -> str:
@@ -115,10 +122,10 @@ def _second_order_text(star: Star, letter: list[str]) -> str:
         return _four_text(star, letter)
     if len(set(letter)) == 1:
         word = {"M": "mountains", "V": "valleys"}.get(letter[0], "folds")
-        return f"{where} has {word} only, and is curved when they fold"
+        return f"{where} has only {word}; when all of them fold, they cannot close up"
     return (
-        f"{where} can pop neither up, as its mountains lie in a half-plane or it has no valley, "
-        "nor down, as its valleys lie in a half-plane or it has no mountain"
+        f"{where} can pop neither up, because its mountains lie in a half-plane or it has no "
+        "valley, nor down, because its valleys lie in a half-plane or it has no mountain"
     )
 
 
@@ -126,12 +133,12 @@ def _four_text(star: Star, letter: list[str]) -> str:
     ways = ", ".join(_four(star))
     return (
         f"the folds of vertex {star.vertex} have the letters {ways} when they fold, or the "
-        f"opposite, not {''.join(letter)}"
+        f"opposite letters, but not {''.join(letter)}"
     )
 
 
 def _four(star: Star) -> list[str]:
-    """The letters of the two modes of four folds, F where a fold stays flat."""
+    """The letters of the two modes of four folds; F where a fold stays flat."""
     found = []
     for mode in local_modes(star):
         values = dict(zip(mode.folds, mode.values, strict=True))

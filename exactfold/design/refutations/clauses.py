@@ -1,4 +1,4 @@
-"""Sets of signs that are refuted, and what follows from them for other vertices."""
+"""Refuted sets of signs, and the signs that follow from them for other vertices."""
 
 from __future__ import annotations
 
@@ -11,20 +11,23 @@ from exactfold.design.refutations.refutation import Refutation
 Signs = Mapping[int, int]
 
 _LATER = 1.02
-"""How much more a clause counts than the one before it."""
+"""Each clause counts this much more than the one learned before it."""
 
 
 class Refuted(NamedTuple):
-    """Signs that no solution has together; without a refutation, the star itself is the reason."""
+    """Signs that no solution has all at once. If `refutation` is None, the star itself is the
+    reason.
+    """
 
     signs: Signs
     refutation: Refutation | None
 
 
 class Forced(NamedTuple):
-    """Signs with all that follow, and how: (number of the set, vertex) for each new sign.
+    """Signs together with all signs that follow from them.
 
-    `contradicted` is the number of a set that is contained in the signs.
+    `steps` says how each new sign follows: (number of the refuted set, vertex). `contradicted` is
+    the number of a refuted set that the signs contain, or None.
     """
 
     signs: dict[int, int]
@@ -40,11 +43,11 @@ class Clauses:
         self._with: dict[tuple[int, int], list[int]] = defaultdict(list)
         self._alone: list[int] = []
         self.weight: dict[int, float] = defaultdict(float)
-        """By vertex: how many sets name it; small ones, and those learned later, count for more."""
+        """By vertex: a weighted number of sets that name it; small and later sets count more."""
         self._step = 1.0
 
     def learn(self, refuted: Refuted) -> None:
-        """Keep a set of signs."""
+        """Keep a refuted set of signs."""
         number = len(self.known)
         self.known.append(refuted)
         self._step *= _LATER
@@ -55,7 +58,9 @@ class Clauses:
             self._alone.append(number)
 
     def forced(self, signs: Signs) -> Forced:
-        """What follows from signs: where all of a set but one are there, the opposite of this."""
+        """The signs that follow: where all signs of a set but one hold, the last one is the
+        opposite.
+        """
         found, steps, fresh = dict(signs), list[tuple[int, int]](), list(signs.items())
         numbers = list(self._alone)
         while True:

@@ -1,4 +1,4 @@
-"""Cone programs that propose refutations; what they return is floating point and proves nothing."""
+"""Cone programs that propose refutations. Their solutions are floating point and prove nothing."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ from exactfold.rigidity.timelike import round_cone
 
 _LEAST = 1e-4
 _PLACES = (8, 20, 40)
-"""Binary places to which heights are rounded, one after the other, until they refute."""
+"""The numbers of binary places to which heights are rounded, in turn, until they refute."""
 _BENT = 1e-6
-"""K_v of bends from which on a witness is taken to have a sign at v, for bends up to 1."""
+"""With bends up to 1, a witness gives v a sign if K_v of the bends exceeds this."""
 
 Witness = dict[int, int]
 """Signs by vertex that seem to be possible together with the letters."""
@@ -33,13 +33,14 @@ Witness = dict[int, int]
 
 @dataclass(frozen=True)
 class ConeProgram:
-    """The cone program of one sheet and its letters, for any signs of some vertices.
+    """The cone program of one sheet and its letters, for any signs of some of its vertices.
 
-    Maximise m <= 1, where z_v lies in the nappe of v's sign by at least m, or is affine where v has
-    none, and z_v(w) + z_w(v) <= -m for valleys, >= m for mountains, 0 for free folds. As all
-    heights may be multiplied, m is 0 or 1; if it is 1, they refute the letters (`Refutation`). If
-    it is 0, the dual solution is a bend of each fold with these letters, for which K_v >= 0 on the
-    right side where v has a sign, and the star closes up where it has none.
+    The program maximises m <= 1. If v has a sign, z_v lies in the nappe of that sign by at least m;
+    if it has none, z_v is affine. The sum z_v(w) + z_w(v) is <= -m for valleys, >= m for mountains
+    and 0 for free folds. As all heights may be multiplied by a positive number, the maximum is 0 or
+    1. If it is 1, the heights refute the letters (`Refutation`). If it is 0, the dual solution is a
+    bend of each fold that agrees with these letters: K_v >= 0 on the right side where v has a sign,
+    and the star closes up where v has none.
     """
 
     sheet: CreasePattern
@@ -53,9 +54,9 @@ class ConeProgram:
     def solved(
         self, signs: Mapping[int, int], within: Collection[int] | None = None
     ) -> Refutation | Witness | None:
-        """A verified refutation, else signs that seem possible, None if there is no telling.
+        """Return a verified refutation, or signs that seem possible, or None if neither is found.
 
-        With `within`, the stars of other vertices are left flat: then no signs are returned.
+        If `within` is given, the stars of all other vertices stay flat, and no signs are returned.
         """
         try:
             return self._solved(signs, within)
@@ -83,7 +84,9 @@ class ConeProgram:
         return dict(signs) | self._sides(program.bends(dual), signs)
 
     def _sides(self, bends: FloatArray, signs: Mapping[int, int]) -> Witness:
-        """The signs of those other vertices for which bends of all folds have K_v > 0."""
+        """For each vertex without a given sign at which the bends have K_v > 0: the sign of the
+        bends.
+        """
         bends = bends / (np.abs(bends).max() or 1.0)
         sides = {}
         for v in self.sheet.interior:
@@ -96,23 +99,26 @@ class ConeProgram:
 
     @cached_property
     def factors(self) -> FloatArray:
-        """By fold: 1 for a valley, -1 for a mountain, 0 for a free fold, NaN if it stays flat."""
+        """By fold: 1 for a valley, -1 for a mountain, 0 for a free fold, NaN for one that stays
+        flat.
+        """
         value = {"V": 1.0, "M": -1.0, "U": 0.0, "F": np.nan}
         return np.array([value[self.letters[fold]] for fold in self.sheet.folds])
 
     @property
     def stars(self) -> dict[int, StarRows]:
-        """What the programs need to know of each star."""
+        """The rows of each star that the programs need."""
         return star_rows(self.sheet)
 
 
 @dataclass(frozen=True)
 class StarRows:
-    """One star in floats, in multiples of `unit_of`; its neighbours are counter-clockwise.
+    """One star in floats; lengths are multiples of `unit_of`, neighbours counter-clockwise.
 
-    On the up nappe, the first of the rows `cone` is at least the norm of the others: it is
-    K_v(t, .) for the round cone t, the others are a root of K_v(t, .)^2 - K_v. `curvature` is
-    the form K_v in the bends of the folds, 1/2 sum_(k<j) w_k w_j [d_k, d_j], up to a factor.
+    On the up nappe, the first of the rows `cone` is at least the norm of the other rows. The first
+    row is K_v(t, .) for the round cone t, and the others are a square root of K_v(t, .)^2 - K_v.
+    `curvature` is the form K_v in the bends of the folds, 1/2 sum_(k<j) w_k w_j [d_k, d_j], up to a
+    factor.
     """
 
     ring: tuple[int, ...]
@@ -125,7 +131,7 @@ class StarRows:
 
 @remembered
 def unit_of(sheet: CreasePattern) -> Fraction:
-    """A power of two near the middle length of the folds, which is about 1 in the programs."""
+    """A power of two near the median length of the folds; in the programs it is the unit."""
     points = sheet.vertices
     spans = sorted(max(abs(points[i][k] - points[j][k]) for k in (0, 1)) for i, j in sheet.folds)
     return Fraction(2) ** frexp(float(spans[len(spans) // 2]))[1]
@@ -155,7 +161,7 @@ def _star_rows(sheet: CreasePattern, v: int, numbers: Mapping[tuple[int, int], i
 
 
 class _Program:
-    """One cone program: columns for the heights of stars with a sign and the planes of others."""
+    """One cone program, whose columns are heights of stars with a sign and planes of the others."""
 
     def __init__(
         self, whole: ConeProgram, signs: Mapping[int, int], chosen: Collection[int]
@@ -191,7 +197,9 @@ class _Program:
         return len(self.lettered_folds) > 0
 
     def solution(self) -> tuple[FloatArray, FloatArray]:
-        """The columns, the margin last, and the dual values of all rows; in floats."""
+        """The values of the columns, with the margin last, and the dual values of all rows; in
+        floats.
+        """
         frees, helds = len(self.free_folds), len(self.lettered_folds)
         margin = self.margin
         rows = [self._free[0], self._held[0] + frees, np.arange(frees, frees + helds + 1)]
@@ -226,7 +234,7 @@ class _Program:
         return x, dual
 
     def bends(self, dual: FloatArray) -> FloatArray:
-        """The bend of each fold of the sheet that a dual solution stands for."""
+        """The bend of each fold of the sheet that a dual solution describes."""
         bends = np.zeros(len(self.whole.factors))
         frees, helds = len(self.free_folds), len(self.lettered_folds)
         bends[self.free_folds] = dual[:frees]
@@ -235,7 +243,7 @@ class _Program:
         return bends
 
     def rounded(self, x: FloatArray, places: int) -> dict[tuple[int, int], Fraction]:
-        """Rational heights near those of a solution: affine, and opposite on free folds."""
+        """Rational heights near a solution: affine where required, and opposite on free folds."""
         heights: dict[tuple[int, int], Fraction] = {}
         for v, (p, q) in self._planes(x, places).items():
             for w, (a, b) in zip(*spokes(self.whole.sheet, v), strict=True):
@@ -252,7 +260,9 @@ class _Program:
         return {key: z for key, z in heights.items() if z}
 
     def _planes(self, x: FloatArray, places: int) -> dict[int, tuple[Fraction, Fraction]]:
-        """The planes of the vertices without a sign, which agree on the free folds among them."""
+        """The planes of the vertices without a sign; they agree on free folds between such
+        vertices.
+        """
         unit = unit_of(self.whole.sheet)
         unsigned = [v for v in self.at if v not in self.signs]
         near = {v: [_near(x[self.at[v] + k], places) / unit for k in (0, 1)] for v in unsigned}
@@ -288,7 +298,7 @@ class _Program:
 
 
 def settings() -> Any:
-    """Clarabel, quiet and on one core, as exact as is needed to round what it finds."""
+    """The settings of Clarabel: quiet, one thread, and tolerances that suffice for rounding."""
     chosen = clarabel.DefaultSettings()
     chosen.verbose = False
     chosen.max_threads = 1
@@ -304,7 +314,7 @@ def _second_order_cone(sheet: CreasePattern, v: int) -> FloatArray:
     t = np.array([float(cone[w]) for w in ring])
     first = matrix @ t / np.sqrt(t @ matrix @ t)
     values, vectors = np.linalg.eigh(np.outer(first, first) - matrix)
-    # The rest has rank N - 3: its kernel are the planes and the round cone.
+    # The rest has rank N - 3: the planes and the round cone span its kernel.
     kept = np.argsort(values)[3:]
     rest = vectors[:, kept] * np.sqrt(np.maximum(values[kept], 0.0))
     return np.vstack([first, rest.T])

@@ -1,4 +1,4 @@
-"""Why no branch with some vertex signs has given letters: one vector in each nappe, exactly."""
+"""Why no branch with given vertex signs has given letters: one exact vector in each nappe."""
 
 from __future__ import annotations
 
@@ -13,35 +13,36 @@ from exactfold.rigidity.curvature import curvature_form, spokes
 from exactfold.rigidity.timelike import round_cone
 
 Letters = Mapping[Edge, str]
-"""By fold (i, j), i < j: "M", "V", "F" for a fold that stays flat, "U" where anything may be."""
+"""By fold (i, j), i < j: "M", "V", "F" for a fold that stays flat, "U" for a free fold."""
 
 _ZERO = Fraction(0)
 
 
 @dataclass(frozen=True, repr=False)
 class Refutation:
-    """No solution in the closed nappes of these signs has given letters.
+    """A proof that no solution in the closed nappes of these signs has given letters.
 
-    `heights[v, w]` is the height of the neighbour w of v in a star z_v whose hub is at height 0;
-    what is left out is 0. At a vertex of `signs` z_v lies in the closed nappe of that sign,
-    elsewhere it is affine. For solutions h with these signs K_v(z_v, h) >= 0, and 0 where z_v is
-    affine. With omega_f, which is positive for a valley and negative for a mountain,
+    The vector z_v holds heights of the neighbours of v, while v itself is at height 0: `heights[v,
+    w]` is the height of the neighbour w, and missing entries are 0. If v has a sign in `signs`, z_v
+    lies in the closed nappe of that sign; otherwise z_v is affine. Every solution h with these
+    signs has K_v(z_v, h) >= 0, with equality where z_v is affine. Let omega_f be positive for a
+    valley and negative for a mountain. Then
 
-        sum_v K_v(z_v, h) = 1/2 sum_f omega_f(h) (z_v(w) + z_w(v)),   f = vw,
+        sum_v K_v(z_v, h) = 1/2 sum_f omega_f(h) (z_v(w) + z_w(v)),   f = vw.
 
-    which is negative for letters whose valleys have sums <= 0, mountains >= 0, and free folds 0, if
-    one sum of a mountain or valley is not 0; folds that stay flat may have any, as omega is 0 there
-    (docs/assignment.md, Theorem 1).
+    If the sums z_v(w) + z_w(v) are <= 0 for valleys, >= 0 for mountains and 0 for free folds, and
+    not 0 for some mountain or valley, the right side is negative, which is a contradiction. Folds
+    that stay flat may have any sum, because omega is 0 there (docs/assignment.md, Theorem 1).
     """
 
     signs: Mapping[int, int]
     heights: Mapping[tuple[int, int], Fraction]
 
     def holds(self, sheet: CreasePattern, letters: Letters) -> bool:
-        """Whether it refutes these letters, decided in rational numbers.
+        """Whether this refutes the letters, decided in rational arithmetic.
 
-        `sheet`: triangulated, any border; `letters` of all its folds. Heights that are not rational
-        numbers refute nothing.
+        `sheet` is triangulated and may have any border. `letters` has a letter for each of its
+        folds. Heights that are not rational numbers refute nothing.
         """
         inside = sheet.interior_set
         if not all(isinstance(z, Fraction) for z in self.heights.values()):
@@ -54,7 +55,7 @@ class Refutation:
         return all(self._is_placed(sheet, v) for v in hubs) and self._is_against(sheet, letters)
 
     def _is_placed(self, sheet: CreasePattern, v: int) -> bool:
-        """Whether z_v is in the closed nappe of the sign of v, or affine."""
+        """Whether z_v lies in the closed nappe of the sign of v or, if v has no sign, is affine."""
         star = _star(sheet, v)
         heights = integer_row([self.heights.get((v, w), _ZERO) for w in star.ring])
         if v not in self.signs:
@@ -62,7 +63,7 @@ class Refutation:
         return star.form(heights) >= 0 and self.signs[v] * star.side(heights) >= 0
 
     def _is_against(self, sheet: CreasePattern, letters: Letters) -> bool:
-        """Whether no term of the sum over the folds is positive, and one is negative."""
+        """Whether no term of the sum over the folds is positive, and at least one is negative."""
         strict = False
         for i, j in {(v, w) if v < w else (w, v) for v, w in self.heights}:
             letter = letters[i, j]
@@ -81,7 +82,7 @@ class Refutation:
 
 @dataclass(frozen=True)
 class _Star:
-    """One star in integers: positive multiples of its form, of its side, and of its spokes."""
+    """The form, the side and the spokes of one star as integers, up to positive factors."""
 
     ring: tuple[int, ...]
     matrix: tuple[tuple[int, ...], ...]
@@ -97,7 +98,7 @@ class _Star:
         )
 
     def side(self, heights: Sequence[int]) -> int:
-        """A positive multiple of K_v(t, .) for a rational t near the round cone."""
+        """A positive multiple of K_v(t, .), where t is a rational vector near the round cone."""
         return sum(c * x for c, x in zip(self.towards, heights, strict=True))
 
     def is_affine(self, heights: Sequence[int]) -> bool:
@@ -131,10 +132,11 @@ def refuted_at(
 ) -> Refutation | str | None:
     """Why a vertex cannot have a sign with these letters, by its star alone; None if it may.
 
-    It can pop up only if its mountains lie in no closed half-plane, unless all other folds stay
-    flat, and one of its folds is a valley: turned round for down. The first is refuted by the
-    wedge -(n . x)_+, which lies in the up nappe (docs/assignment.md, The search); the second, a
-    text, because a star without a valley is concave, and has K_v > 0 then unless it is flat or bent
+    A vertex can pop up only under two conditions; for popping down, mountains and valleys change
+    places. First, its mountains lie in no closed half-plane, unless all other folds stay flat.
+    Where this fails, the wedge -(n . x)_+, which lies in the up nappe, is a refutation
+    (docs/assignment.md, The search). Second, one of its folds is a valley. Where this fails the
+    reason is a text: a star without a valley is concave, and so K_v > 0, unless it is flat or bent
     along one straight line.
     """
     ring, d = spokes(sheet, vertex)
@@ -166,5 +168,5 @@ def refuted_at(
 def _normals(
     held: list[tuple[Fraction, Fraction]], others: list[tuple[Fraction, Fraction]]
 ) -> list[tuple[Fraction, Fraction]]:
-    """Normals of lines of which one bounds a half-plane with all held spokes, if there is any."""
+    """Normals to try: if some closed half-plane holds all held spokes, one of these bounds it."""
     return [(s * -y, s * x) for x, y in held for s in (1, -1)] or others

@@ -1,4 +1,4 @@
-"""The search through the signs of vertices that given letters leave, whatever ends it."""
+"""The search through the vertex signs that given letters allow; subclasses decide the leaves."""
 
 from __future__ import annotations
 
@@ -17,26 +17,28 @@ from exactfold.design.refutations.refutation import Letters, Refutation, refuted
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 
 _REMEMBERED = 512
-"""Sign vectors that seem possible, kept so that no cone program is solved for a part of them."""
+"""Sign vectors that seem possible are kept, so that no cone program is solved for a part of them.
+"""
 
 SignArray = npt.NDArray[np.int8]
 
 Step = tuple[Any, ...]
-"""The kind of a step of a `Tree`, then numbers."""
+"""The kind of a step of a `Tree`, followed by its numbers."""
 
 Leaf = TypeVar("Leaf")
 
 
 @dataclass(frozen=True)
 class Tree(Generic[Leaf]):
-    """How the signs of all vertices were covered.
+    """How the search covered all signs of the vertices.
 
-    `steps`, in the order in which the tree is walked: ("force", k, v), v has the opposite of its
-    sign in the k-th refuted set, of which all others are there; ("split", v), first all that
-    follows with v up, then with v down; ("refuted", k), the signs contain the k-th set; ("leaf",),
-    all signs are there, and the next of `leaves` is about them; ("flat", i, j), a mountain or a
-    valley is asked for where the sheet stays flat. Vertices are those of the sheet without what
-    lies in triangulated triangles, but for "flat".
+    `steps` are in the order in which the tree is walked. ("force", k, v): all signs of the k-th
+    refuted set but that of v hold, so v has the opposite sign. ("split", v): the following steps
+    first treat v up, then v down. ("refuted", k): the signs contain the k-th refuted set.
+    ("leaf",): all vertices have signs, and the next entry of `leaves` is about these signs.
+    ("flat", i, j): a mountain or a valley is asked for at a fold where the sheet stays flat. The
+    vertices are those of the sheet without the folds and vertices inside triangulated triangles,
+    except in "flat", which has those of the pattern.
     """
 
     refuted: tuple[Refuted, ...]
@@ -45,23 +47,26 @@ class Tree(Generic[Leaf]):
 
     @property
     def refutations(self) -> tuple[Refutation, ...]:
-        """Those of the refuted sets that are refuted by vectors."""
+        """The refutations by vectors among the refuted sets."""
         return tuple(each.refutation for each in self.refuted if each.refutation is not None)
 
 
 class Program(Protocol):
-    """What proposes refutations: `ConeProgram`, `BendProgram`."""
+    """A program that proposes refutations: `ConeProgram` or `BendProgram`."""
 
     def solved(self, signs: Mapping[int, int]) -> Refutation | Witness | None:
-        """A verified refutation, else signs that seem possible, None if there is no telling."""
+        """Return a verified refutation, else signs that seem possible, or None if neither
+        is found.
+        """
 
 
 class SignSearch(ABC, Generic[Leaf]):
-    """The tree of vertex signs, on a sheet without what lies in triangulated triangles.
+    """The search tree of vertex signs of a sheet that has nothing inside triangulated triangles.
 
-    `letters` are by fold of the pattern, of which vertex v of `sheet` is `labels[v]`. What is done
-    with all signs of a sheet is `_at_leaf`; `most` of them are left to that. `open` has the signs
-    for which the question is open, by vertex of the pattern.
+    `letters` are given by fold of the pattern; vertex v of `sheet` is vertex `labels[v]` of the
+    pattern. A subclass says in `_at_leaf` what happens once all vertices have signs; this happens
+    for at most `most` sign vectors. `open` contains the signs, by vertex of the pattern, for which
+    the question remains open.
     """
 
     def __init__(
@@ -85,20 +90,20 @@ class SignSearch(ABC, Generic[Leaf]):
     @property
     @abstractmethod
     def program(self) -> Program:
-        """What proposes refutations."""
+        """The program that proposes refutations."""
 
     @abstractmethod
     def _at_leaf(self, signs: dict[int, int]) -> Leaf:
-        """What is known with all signs given, by vertex of the sheet."""
+        """What is found for these signs of all vertices, given by vertex of the sheet."""
 
     def searched(self) -> None:
-        """Cover all signs, up to `done`."""
+        """Cover all signs; stop early once `done` is set."""
         if not self._stays_flat():
             self._at_vertices()
             self._search()
 
     def tree(self) -> Tree[Leaf]:
-        """What the search has done, with the refuted sets that it used."""
+        """The tree of the search, with only those refuted sets that it uses."""
         used = sorted({at[0] for kind, *at in self.steps if kind in ("force", "refuted")})
         place = {number: k for k, number in enumerate(used)}
         refuted = tuple(self.clauses.known[number] for number in used)
@@ -109,11 +114,11 @@ class SignSearch(ABC, Generic[Leaf]):
         return Tree(refuted, steps, tuple(self.leaves))
 
     def named(self, signs: Mapping[int, int]) -> dict[int, int]:
-        """Signs by vertex of the pattern."""
+        """The signs by vertex of the pattern."""
         return {self.labels[v]: sign for v, sign in signs.items()}
 
     def _stays_flat(self) -> bool:
-        """Whether a letter is on a fold inside a triangulated triangle."""
+        """Whether a mountain or valley is asked for inside a triangulated triangle."""
         moving = {_fold(self.labels[i], self.labels[j]) for i, j in self.sheet.folds}
         for fold, letter in self.letters.items():
             if letter in "MV" and fold not in moving:
@@ -123,7 +128,7 @@ class SignSearch(ABC, Generic[Leaf]):
         return False
 
     def _at_vertices(self) -> None:
-        """Learn what the letters of single stars refute, up to one that has no sign left."""
+        """Learn which signs single stars refute; stop at a vertex that has no sign left."""
         for v in self.sheet.interior:
             left = 2
             for sign in (1, -1):
@@ -139,7 +144,7 @@ class SignSearch(ABC, Generic[Leaf]):
                 return
 
     def _search(self) -> None:
-        """Try all signs that are not refuted."""
+        """Walk through all signs that are not refuted."""
         stack: list[dict[int, int]] = [{}]
         while stack and not self.done:
             signs = self._closed(stack.pop())
@@ -157,7 +162,7 @@ class SignSearch(ABC, Generic[Leaf]):
                 stack += [signs | {v: sign} for sign in (-1, 1)]
 
     def _closed(self, before: dict[int, int]) -> dict[int, int] | None:
-        """The signs with all that is found to follow; None if they contradict."""
+        """The signs together with all signs found to follow from them; None if they contradict."""
         signs = self._forced(before)
         if signs is None:
             return None
@@ -173,11 +178,11 @@ class SignSearch(ABC, Generic[Leaf]):
         return signs
 
     def _by_weight(self, vertices: list[int]) -> list[int]:
-        """Those that most refutations name first."""
+        """The vertices, those that most refutations name first."""
         return sorted(vertices, key=lambda v: -self.clauses.weight[v])
 
     def _forced(self, signs: dict[int, int]) -> dict[int, int] | None:
-        """The signs with those that the refuted sets force; None if they contradict."""
+        """The signs together with those that refuted sets force; None if they contradict."""
         forced = self.clauses.forced(signs)
         self.steps += [("force", number, v) for number, v in forced.steps]
         if forced.contradicted is None:
@@ -186,7 +191,7 @@ class SignSearch(ABC, Generic[Leaf]):
         return None
 
     def _seems_possible(self, signs: dict[int, int]) -> bool:
-        """False if the signs are refuted, which is learned then."""
+        """False if the program refutes the signs; the refutation is then learned."""
         at = [self.place[v] for v in signs]
         values = np.array(list(signs.values()), dtype=np.int8)
         if any(np.array_equal(known[at], values) for known in self.possible):

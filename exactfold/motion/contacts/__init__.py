@@ -1,1 +1,1 @@
-"""The first contact of faces, and fold angles along a motion, enclosed."""
+"""The first contact of faces along a motion, and proved bounds of fold angles."""

@@ -19,17 +19,18 @@ from exactfold.motion.tubes.tube_start import ROOT_BITS
 
 _PLACES = 40
 _SLACK = Fraction(1, 10**6)
-"""Of a length: the checker takes tubes to be a little wider, or narrower, than they are here."""
+"""A share of a length: the bounds of the checker may be wider than those here by this much."""
 
 
 def certificate_with_contact(track: Track, contact: FirstContact) -> Document:
-    """`Track.certificate` with what is proved of the first contact on this track.
+    """`Track.certificate` together with what is proved of the first contact on this track.
 
-    It claims a time before which no two faces touch and, if the contact is enclosed, which faces
-    touch, and by when. The times are those of `contact` with a little room, as the checker has
-    coarser bounds of lengths. Of a track that ends at a node it claims whether no two faces touch
-    up to the node, and at it. Where nothing is known near the flat state, or the track has no tube,
-    nothing is claimed of contacts.
+    The certificate claims a time before which no two faces touch. If the contact is enclosed, it
+    also claims which faces touch, and a time by which they do. The times are those of `contact`,
+    made slightly weaker because the checker has coarser bounds of lengths. For a track that ends at
+    a branch point, the certificate claims whether no two faces touch before it and at it. If
+    nothing is known near the flat state, or if the track has no tube, nothing is claimed of
+    contacts.
 
     >>> from exactfold import checker
     >>> from exactfold.branches.counting.find import find_branch
@@ -77,7 +78,9 @@ def certificate_with_contact(track: Track, contact: FirstContact) -> Document:
 
 @dataclass(frozen=True)
 class _Part:
-    """A piece of a track: between which parameters it is entered, and left."""
+    """A piece of a track, with bounds of the parameters at which the motion enters and
+    leaves it.
+    """
 
     path: Path
     entry: tuple[Fraction, Fraction]
@@ -85,7 +88,7 @@ class _Part:
 
 
 def _parts(track: Track) -> list[_Part]:
-    """The start tube, the tubes, and the arcs through nodes."""
+    """The start tube, the tubes, and the arcs through branch points, in the order of the track."""
     zero, last = Fraction(0), Fraction(track.start.last, 1 << ROOT_BITS)
     parts = [_Part(_start_path(track), (zero, zero), (last, last))]
     for step, after in zip_longest(track.steps, track.steps[1:]):
@@ -140,9 +143,9 @@ def _arc_path(node: Passage) -> Path:
 
 
 def _rounded(value: Fraction, direction: int = -1) -> Fraction:
-    """A dyadic number near a rational one, not above it (-1) or not below it (1).
+    """A dyadic number near a rational one: at most (-1) or at least (1) the rational number.
 
-    It has about `_PLACES` binary places, whatever the unit is.
+    It has about `_PLACES` significant binary places, whatever the unit is.
     """
     size = value.numerator.bit_length() - value.denominator.bit_length() if value else 0
     unit = Fraction(2) ** (min(size, 0) - _PLACES)

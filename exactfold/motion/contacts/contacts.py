@@ -1,4 +1,7 @@
-"""The first contact of two faces along a track, enclosed: clear before, touching after, proved."""
+"""The first contact of two faces along a track.
+
+It is proved that no two faces touch before a time, and that some touch by a later time.
+"""
 
 from __future__ import annotations
 
@@ -30,27 +33,30 @@ from exactfold.pattern.crease_pattern import Triangle
 _FINEST = 2.0**-22
 _STEPS = 20
 _ROOM, _MORE = 4.0, 1e-10
-"""Tubes are taken to be so much wider, so that a checker with weights of its own sees the same."""
+"""Tubes are widened by this factor and this length, so that a checker with its own
+weights agrees.
+"""
 _FIRST = "the first contact"
-_NEITHER = "some faces are not proved to stay apart, nor to touch"
+_NEITHER = "some faces are proved neither to stay apart nor to touch"
 _AFTER = 1 << 14
-"""Over 2^PARAMETER_BITS: so much later than the entry of its tube a contact is looked for."""
+"""Over 2^PARAMETER_BITS: the search for a contact begins this much after the entry of its tube."""
 
 
 @dataclass(frozen=True, repr=False)
 class FirstContact:
     """What is proved of the first contact of a motion, ignoring thickness.
 
-    No two faces touch, but for the folds and corners they share, before the time `clear`, in the
-    unit of the sheet. `event`: a contact or a closed fold that is proved to happen, in `event.time`
-    = (not before, at the latest); the first one where its lower end is `clear`. None if the track
-    ended before, or nothing was proved to touch; `open_faces` are the pairs then that are not
-    proved to stay apart after `clear`. `status` is PROVED if the first contact is enclosed.
+    Before the time `clear`, in the unit of the sheet, no two faces touch except in the folds and
+    corners they share. `event` is a contact or a closed fold that is proved to happen, with
+    `event.time` = (not before, at the latest). It is the first one if its lower bound is `clear`.
+    It is None if the track ended earlier or nothing was proved to touch; then `open_faces` are the
+    pairs that are not proved to stay apart after `clear`. `status` is PROVED if the first contact
+    is enclosed.
 
-    `parameters`: on the last step of the track, over 2^PARAMETER_BITS, where what is clear ends,
-    and between which two the contact is proved, the last two equal for an edge that runs through a
-    face; None if nothing is proved to be clear. If that step is an arc through a node, and
-    `before_the_arc`, they are on the tube before.
+    `parameters` are on the last step of the track, over 2^PARAMETER_BITS: the end of the clear
+    part, and two parameters between which the contact is proved. The last two are equal if an edge
+    runs through a face. `parameters` is None if nothing is proved to be clear. If the last step is
+    an arc through a branch point and `before_the_arc` is true, they are on the tube before the arc.
     """
 
     status: Verdict
@@ -63,7 +69,7 @@ class FirstContact:
 
     @property
     def clear_to_the_end(self) -> bool:
-        """Whether no two faces touch on the whole track, nor in its last configuration."""
+        """Whether no two faces touch on the whole track, including its last configuration."""
         return self.event is None and not self.open_faces
 
     def __repr__(self) -> str:
@@ -72,9 +78,10 @@ class FirstContact:
 
 
 def first_contact(branch: Branch, side: int = 1, *, most: int = 1000) -> tuple[Track, FirstContact]:
-    """Follow a branch, with proof, to its first contact, and enclose that in time.
+    """Follow a branch, with proof, to its first contact, and enclose the time of the contact.
 
-    Raises as `follow_proved`. An UNDECIDED contact says that nothing touches before `clear`.
+    Raises the errors of `follow_proved`. If the contact is UNDECIDED, it is still proved that
+    nothing touches before `clear`.
 
     >>> from exactfold.branches.counting.find import find_branch
     >>> track, contact = first_contact(find_branch("two-vertex", "+-"))
@@ -88,7 +95,7 @@ def first_contact(branch: Branch, side: int = 1, *, most: int = 1000) -> tuple[T
 
 @dataclass
 class ContactWatch:
-    """Looks for the first contact on one step of a track after the other.
+    """Looks for the first contact on each step of a track in turn.
 
     Times are in the unit of the framework.
     """
@@ -101,7 +108,10 @@ class ContactWatch:
     _pairs: FacePairs | None = field(default=None, repr=False)
 
     def __call__(self, step: Step) -> str | None:
-        """Why the track may end: a contact, or pairs that are not separated; None to go on."""
+        """Return why the track may end, or None to go on.
+
+        The reason is a contact, or pairs of faces that are not separated.
+        """
         pairs = self._pairs = self._pairs or FacePairs(step.tube.framework)
         if isinstance(step, Passage):
             return self._at_a_node(step, pairs)
@@ -119,7 +129,7 @@ class ContactWatch:
             self.parameters = link.exit, link.exit, link.exit
             return None
         self.open_pairs = left
-        # The clear part ends at `at`, a float; one unit less is below it.
+        # The clear part ends at `at`, a float; subtracting one unit makes up for its rounding.
         parameter = max(link.entry[1], int(at * (1 << PARAMETER_BITS)) - 1)
         self.clear = link.time(parameter)[0] if parameter > link.entry[1] else link.entered[0]
         self.parameters = parameter, parameter, parameter
@@ -133,10 +143,11 @@ class ContactWatch:
         return _FIRST
 
     def _at_a_node(self, node: Passage, pairs: FacePairs) -> str | None:
-        """The tube before is clear to its exit; the arc may begin a little after.
+        """Look for a contact on the arc through a branch point.
 
-        On an arc that ends at the node a contact is looked for before it, not in the node itself,
-        where those of the other arcs begin, too.
+        The tube before is clear up to its exit, and the arc may begin a little later. If the arc
+        ends at the branch point, contacts are looked for before that point but not at it, because
+        there the contacts of the other arcs begin, too.
         """
         link = node.before
         coefficients, radius = positions_of(link.tube)
@@ -148,7 +159,7 @@ class ContactWatch:
             return _NEITHER
         arc = on_node_tube(node.tube, node.entry, node.exit)
         at, left = _clear(pairs, arc.coefficients, arc.radius, arc.begin, arc.end)
-        # Of a float that is no whole number of units the whole ones below it.
+        # `at` is a float: round it down to a whole number of units.
         parameter = max(node.entry, math.floor(at * (1 << PARAMETER_BITS))) if left else node.exit
         self.clear, self.parameters = node.time(parameter)[0], (parameter, parameter, parameter)
         if not left:
@@ -164,13 +175,13 @@ class ContactWatch:
         return _FIRST
 
     def result(self, track: Track) -> FirstContact:
-        """What was found on a track that was followed with this as its `stop`."""
+        """What was found on a track that was followed with this object as its `stop`."""
         pairs = self._pairs = self._pairs or FacePairs(track.framework)
         coefficients, radius = planar_positions_of(track.start)
         reach = (track.start.last / (1 << ROOT_BITS)) ** 2
         _, left = _clear(pairs, coefficients, radius, 0.0, reach, planar=True)
         if left:
-            reason = "some faces are not proved to stay apart near the flat state"
+            reason = "near the flat state, some faces are not proved to stay apart"
             return FirstContact(UNDECIDED, Fraction(0), None, _named(track, pairs, left), reason)
         clear = self.clear * track.framework.unit
         if self.touching is None:
@@ -190,7 +201,7 @@ class ContactWatch:
 
 @dataclass(frozen=True)
 class _Touching:
-    """Faces that touch between two parameters, and at the latest at a time.
+    """Faces that touch between two parameters, and a time by which they do.
 
     The parameters are whole numbers over 2^PARAMETER_BITS.
     """
@@ -210,13 +221,15 @@ def _clear(
     high: float,
     planar: bool = False,
 ) -> tuple[float, Open]:
-    """`clear_until`, in tubes that are wider."""
+    """The result of `clear_until` in tubes that are widened."""
     radius = _ROOM * radius + _MORE
     return clear_until(pairs, coefficients, radius, low, high, planar=planar, finest=_FINEST)
 
 
 def positions_of(tube: Piece) -> tuple[FloatArray, FloatArray]:
-    """The vertices on a tube: coefficients (order + 1, V, 3), and how far they may be, (V, 3)."""
+    """The positions of the vertices on a tube: coefficients (order + 1, V, 3), and error bounds (V,
+    3).
+    """
     framework = tube.framework
     one = float(1 << tube.bits)
     rows = np.array([[x / one for x in row] for row in tube.coefficients])
@@ -226,7 +239,7 @@ def positions_of(tube: Piece) -> tuple[FloatArray, FloatArray]:
 
 
 def planar_positions_of(start: StartTube) -> tuple[FloatArray, FloatArray]:
-    """The same on a start tube, as polynomials in s = tau^2: only x and y are bounded."""
+    """The same on a start tube, as polynomials in s = tau^2; only x and y are bounded."""
     framework, scale = start.framework, 0.25**start.halvings
     one = float(1 << start.bits)
     rows = np.array([[scale * (x / one) for x in row] for row in start.coefficients])
@@ -254,9 +267,10 @@ def _touching(
 ) -> _Touching | None:
     """Parameters between which faces are proved to touch, and how; None if none are found.
 
-    `where`: the first parameter that may be used, that after which to look, and the last. A fold is
-    closed at some time between two at which it is a valley and a mountain, if its other corners are
-    near each other all the while. Or an edge runs through a face.
+    `where` holds three parameters: the first that may be used, the one after which to look, and the
+    last. If a fold is a valley at one parameter and a mountain at another, and its two other
+    corners are near each other in between, the fold is closed at some time in between. Otherwise an
+    edge runs through a face.
     """
     crossings = Crossings(pairs.framework)
     first, low, high = where
@@ -291,7 +305,7 @@ def _touching(
         if low + step >= high:
             return None
         step = min(2.0 * step, high - low)
-    # Where a fold closes, faces beside it touch at the same time, and are often seen before.
+    # Where a fold closes, faces beside it touch at the same time, and are often found earlier.
     later = min(16.0 * step, high - low)
     return earliest(closed, low + later) or earliest(crossed, low + step)
 
@@ -302,12 +316,12 @@ def _whole(s: float) -> float:
 
 
 def _closes(pairs: FacePairs, swept: Swept, fold: int) -> bool:
-    """Whether a fold, a valley at one end and a mountain at the other, reaches 180 degrees."""
+    """Whether a fold reaches 180 degrees; it is a valley at one end and a mountain at the other."""
     _, _, left, right = pairs.framework.hinges[fold]
     gap = np.abs(swept.start[left] - swept.start[right])
     gap = gap + swept.half * np.abs(swept.slope[left] - swept.slope[right])
     gap = gap + swept.error[left] + swept.error[right]
-    # At 90 degrees the square is the mean of those of the closed and of the open fold.
+    # At 90 degrees the squared distance is the mean of those of the closed and of the open fold.
     flat = pairs.framework.flat[left] - pairs.framework.flat[right]
     mean = 0.5 * (pairs.closed[fold] + float(flat @ flat))
     return bool((gap * gap).sum() < mean * (1 - 1e-9) - 1e-11)
@@ -333,7 +347,7 @@ def _labelled(track: Track, face: Triangle) -> Triangle:
 
 
 def _named(track: Track, pairs: FacePairs, left: Open) -> tuple[tuple[Triangle, Triangle], ...]:
-    """The pairs of faces that are left, with the vertices of the pattern."""
+    """The pairs of faces that are left, with the pattern's numbers of the vertices."""
     found = [pairs.names(int(k), "apart") for k in left.apart]
     found += [pairs.names(int(k), "corner") for k in left.corner]
     for fold in left.folds:

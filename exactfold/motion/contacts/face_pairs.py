@@ -1,4 +1,4 @@
-"""The pairs of faces of a sheet that may touch, by what they share: nothing, a vertex, a fold."""
+"""The pairs of faces of a sheet that may touch, sorted by whether they share a vertex or a fold."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from exactfold.pattern.crease_pattern import Triangle
 
 
 class AnyPairs(ABC):
-    """All pairs of faces of a sheet of triangles, by what they share."""
+    """All pairs of faces of a triangulated sheet, sorted by what they share."""
 
     @property
     @abstractmethod
@@ -25,15 +25,17 @@ class AnyPairs(ABC):
     @property
     @abstractmethod
     def hinges(self) -> IndexArray:
-        """Each fold as (i, j, left, right): left and right are the corners across it."""
+        """Each fold as (i, j, left, right); left and right are the opposite corners of its two
+        faces.
+        """
 
     @property
     @abstractmethod
     def closed(self) -> FloatArray:
-        """|left - right|^2 of each fold where it is closed, not less than exact."""
+        """An upper bound of |left - right|^2 of each fold when it is closed."""
 
     def one_body(self, i: int, j: int) -> bool:
-        """Whether two faces are parts of one rigid body, so that nothing is to be proved."""
+        """Whether two faces belong to one rigid body, so that nothing has to be proved of them."""
         return False
 
     @cached_property
@@ -56,7 +58,7 @@ class AnyPairs(ABC):
 
     @cached_property
     def corners(self) -> IndexArray:
-        """For each row of `corner` the vertices (v, a, b, c, d), faces vab and vcd."""
+        """The vertices (v, a, b, c, d) of each row of `corner`; the faces are vab and vcd."""
         triangles, rows = self.triangles.tolist(), []
         for i, j in self.corner:
             first, second = triangles[i], triangles[j]
@@ -67,29 +69,29 @@ class AnyPairs(ABC):
 
 @dataclass(frozen=True, repr=False)
 class FacePairs(AnyPairs):
-    """All pairs of faces of a sheet, by what they share.
+    """All pairs of faces of the sheet of a framework, sorted by what they share.
 
-    `apart`: rows of two faces without a common vertex. `corner`: rows (v, a, b, c, d), faces vab
-    and vcd. `folds`: rows (left, right) of corners across a fold, in the order of `sheet.folds`;
-    `closed`: their squared distance where the fold is closed, rounded up, in units of the
-    framework.
+    The rows of `apart` are two faces without a common vertex. The rows of `corner` are two faces
+    with one common vertex. `hinges` are the folds in the order of `sheet.folds`. `closed` holds, in
+    the unit of the framework, upper bounds of the squared distance of the opposite corners of each
+    fold when it is closed.
     """
 
     framework: Framework
 
     @property
     def triangles(self) -> IndexArray:
-        """Those of the framework."""
+        """The triangles of the framework."""
         return self.framework.triangles
 
     @property
     def hinges(self) -> IndexArray:
-        """Those of the framework."""
+        """The hinges of the framework."""
         return self.framework.hinges
 
     @cached_property
     def closed(self) -> FloatArray:
-        """|l - r'|^2 for the mirror image r' of r in the line of the fold, not less than exact."""
+        """Upper bounds of |l - r'|^2, where r' is the mirror image of r in the line of the fold."""
         points, bits = self.framework.points, self.framework.bits
         found = []
         for i, j in self.framework.sheet.folds:
@@ -104,7 +106,7 @@ class FacePairs(AnyPairs):
         return np.array(found) * (1 + 1e-12)
 
     def names(self, row: int, kind: str) -> tuple[Triangle, Triangle]:
-        """The two faces of a pair."""
+        """The two faces of a pair, as triangles of the sheet."""
         triangles = self.framework.sheet.triangles
         i, j = (self.apart if kind == "apart" else self.corner)[row]
         return triangles[i], triangles[j]
@@ -115,7 +117,9 @@ class FacePairs(AnyPairs):
 
 @dataclass(frozen=True)
 class Open:
-    """Pairs that are not proved to be apart: rows of `apart`, of `corner`, and of the folds."""
+    """Pairs that are not proved to be apart: row numbers of `apart`, of `corner`, and of
+    the folds.
+    """
 
     apart: IndexArray
     corner: IndexArray
@@ -126,6 +130,6 @@ class Open:
 
     @classmethod
     def all_of(cls, pairs: AnyPairs) -> Open:
-        """Everything."""
+        """All pairs and all folds."""
         sizes = len(pairs.apart), len(pairs.corner), len(pairs.closed)
         return cls(*(np.arange(size, dtype=np.intp) for size in sizes))

@@ -1,22 +1,22 @@
-"""Fold angles along a chain of pieces: bounds of the extreme ones, and whole turns, proved.
+"""Fold angles along a chain of pieces: proved bounds of their extremes, and of whole turns.
 
-The faces keep their shapes. So with A = X_j - X_i along a fold, a = X_l - X_i and b = X_r - X_i to
-the other corners of its two faces, the fold angle phi has
+The faces keep their shapes. Let A = X_j - X_i be along a fold, and let a = X_l - X_i and b = X_r -
+X_i lead to the other corners of its two faces. The fold angle phi satisfies
 
     cos phi = k2 (k1 - a . b),     sin phi = k3 det(A, a, b),
     k1 = (a . A)(b . A) / |A|^2,   k2 = |A|^2 / (|A x a| |A x b|),   k3 = |A| / (|A x a| |A x b|),
 
-where k1, k2, k3 are those of the flat sheet. `Swept` bounds the positions on a part of a piece; so
-(cos phi, sin phi) stays within a distance of a segment, and phi within `spread` of an angle. Where
-this is less than 1 radian on every part, and parts have a configuration in common with those next
-to them, the angle is followed continuously: next to each other the angles differ by less than pi.
-The configuration that a stretch has in common with the next is known to lie within `SLACK` of an
-end of both; so parts are not halved for this where they are shorter than twice that.
+where k1, k2, k3 are those of the flat sheet. `Swept` bounds the positions on a part of a piece. So
+(cos phi, sin phi) stays within a distance of a segment, and phi stays within `spread` of an angle.
+If `spread` is less than 1 radian on every part, and neighbouring parts have a configuration in
+common, the angle is followed continuously, because the angles of neighbouring parts differ by less
+than pi. The configuration that a stretch has in common with the next lies within `SLACK` of an end
+of both. Therefore parts shorter than twice `SLACK` are not halved for this purpose.
 
-Roundings: coordinates are less than 4 in size (`Swept`), differences less than 8, so that the sums
-above are sums of terms that add up to less than 6 * 8^3, each rounded less than 20 times: off by
-less than 1e-11 = `_ROUND`. The factors k, quotients, square roots and angles are off by less than
-1e-14 of themselves, of which `_RELATIVE` takes care.
+Rounding errors: coordinates are less than 4 in size (`Swept`), and differences less than 8. So the
+sums above have terms that add up to less than 6 * 8^3, and each term is rounded less than 20 times.
+Their errors are less than 1e-11 = `_ROUND`. The factors k, quotients, square roots and angles have
+relative errors of less than 1e-14, which `_RELATIVE` covers.
 """
 
 from __future__ import annotations
@@ -41,15 +41,17 @@ from exactfold.pattern.crease_pattern import Edge
 
 _ROUND, _RELATIVE = 1e-11, 1e-12
 _WIDEST = 1.0
-"""Radians that the angle may be off the middle one of a part."""
+"""The angle may differ from the middle angle of a part by less than this many radians."""
 SLACK = 2.0**-20
-"""How far, in its parameter, a stretch may go on beyond what it has in common with the next."""
+"""How far, in its parameter, a stretch may extend beyond what it has in common with the next."""
 _CLOSE = 1e-3
-"""Radians within which extreme angles are looked for."""
+"""Extreme angles are bounded to within this many radians."""
 _MOST_PARTS = 4000
-"""Of a chain; with more, angles that turn too fast are given up, extreme ones are less close."""
+"""The most parts of a chain. If more are needed, an angle is not followed, or its extremes are less
+close.
+"""
 _MOST_NUMBERS = 2**20
-"""Coefficients of parts that are bounded at once."""
+"""The most coefficients of parts that are bounded at once."""
 _MICRO = 10**6
 
 
@@ -67,8 +69,8 @@ class FoldRangeDocument(TypedDict):
 class FoldRange:
     """How the angle of a fold changes along a loop, followed continuously from 0 in the flat state.
 
-    `turns`: its value at the end, in whole turns. `least` and `greatest` bound the least and the
-    greatest value from below and from above, in degrees: proved.
+    `turns` is its final value in whole turns. `least` and `greatest` are proved bounds, from below
+    and from above, of its least and of its greatest value, in degrees.
     """
 
     fold: Edge
@@ -77,7 +79,7 @@ class FoldRange:
     greatest: Interval
 
     def to_dict(self) -> FoldRangeDocument:
-        """The range as `exactfold motions --json` prints it."""
+        """The range in the JSON output of `exactfold motions --json`."""
         return {
             "fold": list(self.fold),
             "least": list(angle_in_floats(self.least)),
@@ -92,9 +94,10 @@ class FoldRange:
 
 @dataclass(frozen=True, repr=False)
 class Stretch:
-    """A part of a piece: positions near sum_k c_k s^k, for s from `begin` to `end`.
+    """A part of a piece: positions near sum_k c_k s^k for s from `begin` to `end`.
 
-    `coefficients`: shape (order + 1, V, 3); `radius`: how far positions may be, shape (V, 3).
+    `coefficients` are the c_k, shape (order + 1, V, 3). `radius` bounds the distance of each
+    coordinate from the polynomial, shape (V, 3).
     """
 
     coefficients: FloatArray
@@ -116,7 +119,7 @@ class Stretch:
 
 @dataclass(frozen=True, repr=False)
 class Folds:
-    """The folds of a framework, with what does not change about them."""
+    """The folds of a framework, and their constants."""
 
     framework: Framework
 
@@ -142,9 +145,10 @@ class Folds:
         return k1, k2, k3
 
     def angles(self, swept: Swept) -> tuple[FloatArray, FloatArray]:
-        """An angle of every fold, and how far the angles may be from it; infinite if not known.
+        """An angle of every fold, and how far the true angle may differ from it.
 
-        Both of the shape (parts, folds), for the parts of a stretch.
+        The second is infinite where nothing is known. Both have the shape (parts, folds), for the
+        parts of a stretch.
         """
         i, j, left, right = self.framework.hinges.T
         k1, k2, k3 = self._constants
@@ -158,7 +162,7 @@ class Folds:
         normal = cross(b0, c0)
         sin0 = k3 * _dot(a0, normal)
         sin1 = k3 * (_dot(a1, normal) + _dot(a0, cross(b1, c0) + cross(b0, c1)))
-        # What is left is at most the product of all sizes without the terms above.
+        # The remaining terms are at most the product of all sizes without the terms above.
         (la, ma), (lb, mb), (lc, mc) = (
             (np.linalg.norm(u, axis=-1), np.linalg.norm(v, axis=-1) + error)
             for u, v, error in zip((a0, b0, c0), (a1, b1, c1), e, strict=True)
@@ -177,10 +181,10 @@ class Folds:
 
 
 def box_angles(framework: Framework, box: Ball) -> list[Interval]:
-    """Bounds of all fold angles, in degrees and in the order of the folds, of a configuration.
+    """Bounds of all fold angles of the configuration in a box, in the order of the folds.
 
-    It is the one in a box; angles are between -180 and 180, or a little more by their errors. Where
-    the box says nothing of an angle, they are -180 and 180.
+    They are in degrees, between -180 and 180, or exceed this slightly by their errors. If the box
+    says nothing about an angle, its bounds are -180 and 180.
     """
     (angle,), (spread,) = angles_in(framework, box)
     whole = Fraction(-180), Fraction(180)
@@ -194,8 +198,8 @@ def fold_ranges(
 ) -> tuple[FoldRange, ...] | None:
     """The ranges of all folds on a chain of stretches from the flat state to the flat state.
 
-    Each stretch has a configuration in common with the next, within `SLACK` of the end of the one
-    and of the beginning of the other. None if an angle is not followed.
+    Each stretch has a configuration in common with the next one, within `SLACK` of the end of the
+    former and of the beginning of the latter. None if some angle cannot be followed.
     """
     parts = _Parts(Folds(framework), chain)
     if not parts.narrow():
@@ -221,7 +225,7 @@ def fold_ranges(
 
 
 def angle_in_floats(bounds: Interval) -> tuple[float, float]:
-    """Bounds of an angle as floats, rounded outwards: unlike those of lengths they have signs.
+    """Bounds of an angle as floats, rounded outwards; unlike lengths, angles may be negative.
 
     >>> low, high = angle_in_floats((Fraction(-1, 3), Fraction(-1, 3)))
     >>> Fraction(low) < Fraction(-1, 3) < Fraction(high)
@@ -241,7 +245,7 @@ class _Parts:
         self.angles, self.spreads = self._angles(self.stretch, self.ends)
 
     def _angles(self, stretch: IndexArray, ends: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """As `Folds.angles`, of parts of several stretches."""
+        """The result of `Folds.angles` for parts of several stretches."""
         shape = (len(stretch), len(self.folds.framework.hinges))
         angles, spreads = np.empty(shape), np.empty(shape)
         for terms in np.unique(self.terms[stretch]):
@@ -253,7 +257,7 @@ class _Parts:
         return angles, spreads
 
     def _halved(self, wide: BoolArray) -> tuple[IndexArray, FloatArray]:
-        """All parts, those that are too wide in two halves, one after the other."""
+        """All parts in order, where each part that is too wide is replaced by its two halves."""
         twice = np.where(wide, 2, 1)
         ends = np.repeat(self.ends, twice, axis=0)
         first = (np.cumsum(twice) - twice)[wide]
@@ -262,7 +266,9 @@ class _Parts:
         return np.repeat(self.stretch, twice), ends
 
     def narrow(self) -> bool:
-        """Halve parts until angles change by less than a radian on each; False if they do not."""
+        """Halve parts until each angle changes by less than a radian on each; False if
+        that fails.
+        """
         while len(self.stretch) < _MOST_PARTS:
             wide = self.spreads.max(axis=1, initial=0.0) >= _WIDEST
             if not wide.any():
@@ -273,7 +279,7 @@ class _Parts:
         return False
 
     def _split(self, wide: BoolArray) -> None:
-        """Halve some parts."""
+        """Halve the marked parts and compute the angles of the halves."""
         twice = np.where(wide, 2, 1)
         stretch, ends = self._halved(wide)
         new = np.repeat(wide, twice)
@@ -284,8 +290,8 @@ class _Parts:
     def extremes(self) -> tuple[FloatArray, FloatArray]:
         """Bounds of the least and of the greatest angles, shape (2, folds) each.
 
-        The angles are continuous from part to part by now. Parts on which the least or the greatest
-        one may lie are halved until its bounds are close.
+        By now the angles are continuous from part to part. Parts on which the least or the greatest
+        angle may lie are halved until its bounds are close.
         """
         while len(self.stretch) < _MOST_PARTS:
             above, below = self.angles + self.spreads, self.angles - self.spreads
@@ -297,7 +303,7 @@ class _Parts:
             above, below = (np.repeat(x, np.where(wide, 2, 1), axis=0) for x in (above, below))
             self._split(wide)
             self.angles -= 2 * np.pi * np.rint((self.angles - parents) / (2 * np.pi))
-            # What is known of the whole part holds for its halves.
+            # Bounds of the whole part also hold for its halves.
             above = np.minimum(above, self.angles + self.spreads)
             below = np.maximum(below, self.angles - self.spreads)
             self.angles = (above + below) / 2
@@ -310,13 +316,13 @@ class _Parts:
 
 
 def angles_in(framework: Framework, box: Ball) -> tuple[FloatArray, FloatArray]:
-    """As `Folds.angles`, of the configurations in a box."""
+    """The result of `Folds.angles` for the configurations in a box."""
     none = np.zeros(1)
     return Folds(framework).angles(_swept([Stretch.at(framework, box)], none, none))
 
 
 def _swept(stretches: Sequence[Stretch], begin: FloatArray, end: FloatArray) -> Swept:
-    """Bounds of the positions on a part of each of them, from one parameter to another."""
+    """Bounds of the positions on a part of each stretch, from one parameter to another."""
     low, high = np.minimum(begin, end), np.maximum(begin, end)
     return Swept.of(
         np.stack([stretch.coefficients for stretch in stretches], axis=1),
@@ -327,7 +333,7 @@ def _swept(stretches: Sequence[Stretch], begin: FloatArray, end: FloatArray) -> 
 
 
 def _degrees(low: float, high: float) -> Interval:
-    """Bounds in radians as bounds in whole millionths of a degree."""
+    """Bounds in radians, converted to bounds in whole millionths of a degree."""
     a, b = (np.degrees(x) * _MICRO for x in (low, high))
     return Fraction(floor(a - 1e-2), _MICRO), Fraction(ceil(b + 1e-2), _MICRO)
 

@@ -1,29 +1,32 @@
 """Proof that the faces of a sheet do not touch while it moves along a piece of a curve.
 
-Between two faces without a common vertex stands a plane if some direction n has n.(x - y) > 0 for
-all corners x of one and y of the other; between two that share only the vertex v, if n.(x - v) > 0
-and n.(v - y) > 0 for the other corners. Two faces with a common fold touch beyond it only where the
-fold is closed: where the distance of their other corners is as small as in the sheet folded over
-along it, which is a rational number. So sums of a few products decide everything.
+A plane separates two faces without a common vertex if some direction n has n.(x - y) > 0 for all
+corners x of one face and y of the other. A plane separates two faces that share only the vertex v
+if n.(x - v) > 0 and n.(v - y) > 0 for the other corners. Two faces with a common fold touch outside
+the fold only if the fold is closed. Then the squared distance of their other corners is that in the
+sheet folded over along the fold, which is a rational number. So sums of a few products decide
+everything.
 
-The sums are computed in floats, u = 2^-53, and their roundings are bounded as follows.
+The sums are computed in floats, with u = 2^-53. Their rounding errors are bounded as follows.
 
-- Positions are a + b (s - m) + e with floats a, b, m, exactly these numbers, and |e| <= `error`.
-  They come from c_0, ..., c_K, K <= 20, with sum |c_k| M^k < `_MOST` = 4 for every coordinate,
-  M = max |s|; else the error is infinite, and nothing is separated. The terms of the expansion at
-  m are products of at most K + 2 factors: each is rounded at most 3 K times, and those of all a, b,
-  ... times the powers of half add up to at most 4, as |m| + half = M: 240 u. The ulps of m and half
-  move s by less than 2 u M, and the position by less than 2 u K 4 = 160 u. The sum of the rest is
-  off by less than 45 u of 4 = 180 u, and the coefficients by 4 u of 4 when they were converted. All
-  is less than 700 u < 1e-13 = `_ROUND`.
-- So a, b half and e are at most 4 and those of differences at most 8. With |n| <= 1 the three parts
-  of a sum n.x are at most 8 sqrt(3) < 14 and rounded less than 10 times: off by less than 30 u 14,
-  with the subtractions less than 60 u 14 < 1e-13. The squares and products of folds are sums of
-  terms that add up to less than 1500, each rounded less than 20 times: off by less than 4e-12.
-  `_MARGIN` is more than either.
+- Positions are a + b (s - m) + e with |e| <= `error`, where a, b and m are floats, taken exactly.
+  They come from c_0, ..., c_K with K <= 20 and sum |c_k| M^k < `_MOST` = 4 for every coordinate,
+  where M = max |s|. If this bound fails, the error is infinite, and nothing is separated. The terms
+  of the expansion at m are products of at most K + 2 factors, and each is rounded at most 3 K
+  times. As |m| + half = M, the terms of all a, b, ... times the powers of half add up to at most 4,
+  so their error is at most 240 u. The ulps of m and half move s by less than 2 u M, and so the
+  position by less than 2 u K 4 = 160 u. The error of the remaining sum is less than 45 u of 4 =
+  180 u, and the conversion of the coefficients adds 4 u of 4. In all this is less than 700 u <
+  1e-13 = `_ROUND`.
+- So a, b half and e are at most 4, and those of differences at most 8. With |n| <= 1 the three
+  parts of a sum n.x are at most 8 sqrt(3) < 14 and are rounded less than 10 times. Their error is
+  less than 30 u 14, and with the subtractions less than 60 u 14 < 1e-13. The squares and products
+  of folds are sums of terms that add up to less than 1500, each rounded less than 20 times; their
+  error is less than 4e-12. `_MARGIN` is larger than both errors.
 - The six products of a determinant add up to at most 3^(3/2) times the product of the lengths of
-  its rows, each rounded less than 10 times; the products of lengths are off by less than 40 u of
-  themselves, twice. Less than 2e-14 of the product, of which `_OF_VOLUME` is demanded.
+  its rows, and each is rounded less than 10 times. The relative errors of the two products of
+  lengths are less than 40 u each. In all the error is less than 2e-14 of the product of the
+  lengths; `_OF_VOLUME` of it is demanded.
 """
 
 from __future__ import annotations
@@ -48,10 +51,11 @@ _SUMS = "...k,k...vc->...vc"
 
 @dataclass(frozen=True)
 class Swept:
-    """Positions of all vertices on |s - middle| <= half: a + b (s - middle) + e, |e| <= error.
+    """Positions of all vertices on |s - middle| <= half: a + b (s - middle) + e with |e| <= error.
 
-    Arrays of shape (V, 3), in units of the framework; `planar` if the third component is not
-    bounded and must not be used. For many intervals at once, they have one more axis in front.
+    The arrays have shape (V, 3), in units of the framework. If `planar` is true, the third
+    component is not bounded and must not be used. For many intervals at once, the arrays have one
+    more axis in front.
     """
 
     start: FloatArray
@@ -70,11 +74,13 @@ class Swept:
         *,
         planar: bool = False,
     ) -> Swept:
-        """From p(s) = sum_k c_k s^k, shape (order + 1, V, 3), and |x - p| <= radius, shape (V, 3).
+        """The positions given by p(s) = sum_k c_k s^k and |x - p| <= radius.
 
-        The polynomial is expanded at the middle; what is beyond the slope goes into the error.
-        `low` and `high` are numbers, or arrays of shape (intervals, 1, 1). Then each interval may
-        have a polynomial and a radius of its own: (order + 1, intervals, V, 3), (intervals, V, 3).
+        The c_k have shape (order + 1, V, 3) and the radius (V, 3). The polynomial is expanded at
+        the middle of the interval; all terms beyond the linear one go into the error. `low` and
+        `high` are numbers, or arrays of shape (intervals, 1, 1). In the second case each interval
+        may have its own polynomial and radius, of shapes (order + 1, intervals, V, 3) and
+        (intervals, V, 3).
         """
         middle, half = 0.5 * (low + high), 0.5 * (high - low)
         most = np.maximum(np.abs(low), np.abs(high))
@@ -94,7 +100,9 @@ class Swept:
 
 
 def _powers(x: Any, count: int) -> FloatArray:
-    """1, x, ..., x^(count - 1), along a new last axis instead of the last two; by products."""
+    """1, x, ..., x^(count - 1), computed by products, along a new last axis in place of the last
+    two.
+    """
     x = np.asarray(x, dtype=float)
     factors = np.ones((*x.shape[:-2], count))
     factors[..., 1:] = x.reshape(x.shape[:-2])[..., None]
@@ -103,7 +111,7 @@ def _powers(x: Any, count: int) -> FloatArray:
 
 @cache
 def _binomials(count: int) -> tuple[FloatArray, IndexArray]:
-    """j over k in row k and column j, and j - k where that is not negative, else 0."""
+    """The binomial coefficient j over k in row k and column j, and max(j - k, 0)."""
     rows = range(count)
     return (
         np.array([[float(comb(j, k)) for j in rows] for k in rows]),
@@ -112,7 +120,7 @@ def _binomials(count: int) -> tuple[FloatArray, IndexArray]:
 
 
 def not_separated(pairs: AnyPairs, swept: Swept, among: Open) -> Open:
-    """Which of the pairs are not proved to stay apart on a stretch of the motion."""
+    """The pairs that are not proved to stay apart on a stretch of the motion."""
     apart = np.array_split(among.apart, 1 + len(among.apart) * 9 * 23 // _PRODUCTS)
     triangles = pairs.triangles
     left = [part[~_apart(swept, triangles, pairs.apart[part])] for part in apart]
@@ -134,12 +142,12 @@ def clear_until(
     among: Open | None = None,
     finest: float = 1e-6,
 ) -> tuple[float, Open]:
-    """How far along a piece no two faces touch, proved, and what was not proved right after that.
+    """How far along a piece no two faces touch, and which pairs were not separated after that.
 
-    The piece is p(s) = sum_k c_k s^k for low <= s <= high, shape (order + 1, V, 3), with every
-    coordinate within `radius` of it, shape (V, 3). It is halved where a pair is not separated, down
-    to the part `finest` of it; the second answer is empty where all of it is clear. Pairs that are
-    named there may be apart all the same.
+    The first value is proved. The piece is p(s) = sum_k c_k s^k for low <= s <= high, shape (order
+    + 1, V, 3); every coordinate is within `radius` of it, shape (V, 3). Where a pair is not
+    separated the piece is halved, down to the share `finest` of its length. The second value is
+    empty if the whole piece is clear. Pairs named there may still be apart.
     """
     shortest = finest * (high - low)
     stack = [(low, high, Open.all_of(pairs) if among is None else among)]
@@ -157,7 +165,7 @@ def clear_until(
 
 
 def _apart(swept: Swept, triangles: IndexArray, rows: IndexArray) -> BoolArray:
-    """Whether pairs of faces without a common vertex are separated by a plane."""
+    """Whether planes separate pairs of faces without a common vertex."""
     one, two = triangles[rows[:, 0]], triangles[rows[:, 1]]
     axes = np.broadcast_to(np.eye(3)[: 2 if swept.planar else 3], (len(rows), 3 - swept.planar, 3))
     done = _separated(swept, one, two, axes)
@@ -169,7 +177,7 @@ def _apart(swept: Swept, triangles: IndexArray, rows: IndexArray) -> BoolArray:
 
 
 def _at_corner(swept: Swept, rows: IndexArray) -> BoolArray:
-    """Whether pairs of faces with one common vertex are separated by a plane through it."""
+    """Whether planes through the common vertex separate pairs of faces with one common vertex."""
     if not len(rows):
         return np.zeros(0, dtype=bool)
     v, one, two = rows[:, :1], rows[:, 1:3], rows[:, 3:]
@@ -177,7 +185,7 @@ def _at_corner(swept: Swept, rows: IndexArray) -> BoolArray:
     axes = _nearest_points(_unit(np.concatenate([at[one] - at[v], at[v] - at[two]], axis=1)))
     if swept.planar:
         axes = axes * np.array([1.0, 1.0, 0.0])
-    # The plane passes through the moving vertex: both sides are differences from it.
+    # The plane passes through the moving vertex, so both sides are differences from it.
     left = _least(swept, axes, one, np.broadcast_to(v, one.shape))
     right = _least(swept, axes, np.broadcast_to(v, two.shape), two)
     return np.asarray((np.minimum(left, right) > _MARGIN).any(axis=1))
@@ -192,7 +200,7 @@ def _open_folds(swept: Swept, pairs: AnyPairs, rows: IndexArray) -> BoolArray:
     spread += swept.error[left] + swept.error[right]
     if swept.planar:
         gap, spread = gap[:, :2], spread[:, :2]
-    # |gap + d|^2 >= |gap|^2 + 2 gap.d; the part linear in s is kept together.
+    # |gap + d|^2 >= |gap|^2 + 2 gap.d; the part that is linear in s is bounded as a whole.
     drift = swept.half * np.abs(
         (gap * (swept.slope[left] - swept.slope[right])[:, : gap.shape[1]]).sum(axis=1)
     )
@@ -206,9 +214,10 @@ def _open_folds(swept: Swept, pairs: AnyPairs, rows: IndexArray) -> BoolArray:
 
 
 def _upright(swept: Swept, i: IndexArray, j: IndexArray, k: IndexArray) -> BoolArray:
-    """Whether the projections of faces ijk to the plane are proved to stay counter-clockwise.
+    """Whether the projections of the faces ijk to the plane are proved to stay counter-clockwise.
 
-    Where those of both faces at a fold do, they are on different sides of it: it is not closed.
+    If the projections of both faces at a fold do, the faces are on different sides of the fold, and
+    it is not closed.
     """
     a, b = (swept.start[v, :2] - swept.start[i, :2] for v in (j, k))
     u, v = (swept.slope[w, :2] - swept.slope[i, :2] for w in (j, k))
@@ -228,7 +237,7 @@ def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
 def bends(swept: Swept, hinges: IndexArray) -> IndexArray:
     """1 for folds that are valleys all the time, -1 for mountains, 0 if neither is proved.
 
-    By the sign of det(j - i, left - i, right - i), the volume between the two faces.
+    The sign is that of det(j - i, left - i, right - i), the volume between the two faces.
     """
     if swept.planar:
         return np.zeros(len(hinges), dtype=np.intp)
@@ -237,7 +246,7 @@ def bends(swept: Swept, hinges: IndexArray) -> IndexArray:
 
 
 def through(swept: Swept, edge: Edge, face: Triangle) -> bool:
-    """Whether an edge is proved to run through a face without touching its sides."""
+    """Whether an edge is proved to run through a face without touching the sides of the face."""
     (p, q), (a, b, c) = edge, face
     rows = [(p, a, b, c), (q, a, b, c), (p, q, a, b), (p, q, b, c), (p, q, c, a)]
     start, end, *sides = _volume_signs(swept, np.array(rows, dtype=np.intp))
@@ -245,7 +254,9 @@ def through(swept: Swept, edge: Edge, face: Triangle) -> bool:
 
 
 def _volume_signs(swept: Swept, rows: IndexArray) -> IndexArray:
-    """The sign of det(x_j - x_i, x_k - x_i, x_l - x_i) for rows (i, j, k, l); 0 if not certain."""
+    """The sign of det(x_j - x_i, x_k - x_i, x_l - x_i) for rows (i, j, k, l); 0 if it is
+    uncertain.
+    """
     i = rows[:, 0]
     arms = [swept.start[rows[:, k]] - swept.start[i] for k in (1, 2, 3)]
     spreads = [
@@ -257,7 +268,8 @@ def _volume_signs(swept: Swept, rows: IndexArray) -> IndexArray:
     size = [np.linalg.norm(arm, axis=1) for arm in arms]
     most = [n + np.linalg.norm(spread, axis=1) for n, spread in zip(size, spreads, strict=True)]
     volume = (arms[0] * cross(arms[1], arms[2])).sum(axis=1)
-    # |det(e + de, ...) - det(e, ...)| is at most the product of the larger lengths less the others.
+    # |det(e + de, ...) - det(e, ...)| is at most the product of the larger lengths minus the
+    # product of the smaller ones.
     product = most[0] * most[1] * most[2]
     change = product - size[0] * size[1] * size[2]
     clear = np.abs(volume) > change + _OF_VOLUME * product
@@ -265,14 +277,14 @@ def _volume_signs(swept: Swept, rows: IndexArray) -> IndexArray:
 
 
 def _separated(swept: Swept, one: IndexArray, two: IndexArray, axes: FloatArray) -> BoolArray:
-    """Whether one of the axes, shape (pairs, axes, 3), separates two faces, shape (pairs, 3)."""
+    """Whether some of the axes, shape (pairs, axes, 3), separates two faces, shape (pairs, 3)."""
     i, j = np.repeat(one, 3, axis=1), np.tile(two, (1, 3))
     best = np.maximum(_least(swept, axes, i, j), _least(swept, -axes, i, j))
     return np.asarray((best > _MARGIN).any(axis=1))
 
 
 def _least(swept: Swept, axes: FloatArray, i: IndexArray, j: IndexArray) -> FloatArray:
-    """The least of n.(x_i - x_j) over pairs of vertices, for each axis: shape (pairs, axes)."""
+    """The least n.(x_i - x_j) over pairs of vertices, for each axis; shape (pairs, axes)."""
     at = np.einsum("pac,pkc->pak", axes, swept.start[i] - swept.start[j])
     drift = np.einsum("pac,pkc->pak", axes, swept.slope[i] - swept.slope[j])
     error = np.einsum("pac,pkc->pak", np.abs(axes), swept.error[i] + swept.error[j])
@@ -280,7 +292,10 @@ def _least(swept: Swept, axes: FloatArray, i: IndexArray, j: IndexArray) -> Floa
 
 
 def _axes(a: FloatArray, b: FloatArray, planar: bool) -> FloatArray:
-    """Directions among which one separates two triangles (pairs, 3, 3) if any does; length <= 1."""
+    """Directions, one of which separates two triangles (pairs, 3, 3) if any direction does.
+
+    Their lengths are at most 1.
+    """
     sides_a, sides_b = (np.roll(t, -1, axis=1) - t for t in (a, b))
     if planar:
         sides = np.concatenate([sides_a, sides_b], axis=1)
@@ -292,10 +307,11 @@ def _axes(a: FloatArray, b: FloatArray, planar: bool) -> FloatArray:
 
 
 def _nearest_points(p: FloatArray) -> FloatArray:
-    """Of four points, shape (pairs, 4, 3), the point next to 0 of each line and plane they span.
+    """The point nearest to 0 on each line and plane that four points span.
 
-    n.p > 0 for all four points has a solution n exactly if 0 is not in their convex hull; then the
-    point of the hull next to 0 is one, and it is among the points, these, or there is none.
+    The four points have shape (pairs, 4, 3). The inequalities n.p > 0 for all four points have a
+    solution n exactly if 0 is not in their convex hull. Then the point of the hull nearest to 0 is
+    a solution; it is one of the four points or one of the points returned here.
     """
     found = [p]
     for i, j in combinations(range(4), 2):

@@ -1,4 +1,6 @@
-"""Parts of pieces as polynomials in floats with bounds: what fold angles are read from."""
+"""Parts of pieces as polynomials in floats with error bounds, from which fold angles are
+computed.
+"""
 
 from __future__ import annotations
 
@@ -15,11 +17,11 @@ from exactfold.motion.tubes.tube import Tube
 from exactfold.motion.tubes.tube_start import ROOT_BITS, StartTube
 
 _RELATIVE, _LEAST = 1e-9, 1e-15
-"""What radii gain, so that roundings of them, and of coefficients, are below it."""
+"""Radii are enlarged by this share and this length, which covers all rounding errors."""
 
 
 def on_start_tube(start: StartTube, begin: int, end: int) -> Stretch:
-    """The stretch from one tau to another; negative ones are on the mirror image."""
+    """The stretch from one tau to another on a start tube; negative tau is on the mirror image."""
     one, m = float(1 << start.bits), start.halvings
     vertical = np.arange(start.framework.size) % 3 == 2
     rows = [np.zeros(start.framework.size)]
@@ -35,7 +37,7 @@ def on_start_tube(start: StartTube, begin: int, end: int) -> Stretch:
 
 
 def on_tube(tube: Tube, begin: int, end: int) -> Stretch:
-    """The stretch from one parameter of a tube to another."""
+    """The stretch of a tube from one parameter to another."""
     one = float(1 << tube.bits)
     rows = [np.array([x / one for x in row]) for row in tube.coefficients]
     radii = [r / one for r in tube.lengths(tube.radius)]
@@ -43,7 +45,7 @@ def on_tube(tube: Tube, begin: int, end: int) -> Stretch:
 
 
 def on_node_tube(tube: NodeTube, begin: int, end: int) -> Stretch:
-    """The stretch from one parameter of an arc through a node to another."""
+    """The stretch of an arc through a branch point from one parameter to another."""
     one, node = float(1 << tube.bits), tube.node.finer(tube.bits)
     rows = [np.array([x / one for x in row]) for row in (node.centre, *tube.coefficients)]
     radii = [r / one for r in tube.ball(max(abs(begin), abs(end))).radii]

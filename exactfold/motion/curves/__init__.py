@@ -1,1 +1,1 @@
-"""Curves of configurations that are followed in floating point; nothing is proved here."""
+"""Curves of configurations, followed in floating point; nothing is proved here."""

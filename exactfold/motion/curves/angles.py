@@ -15,10 +15,10 @@ def hinges_of(pattern: CreasePattern) -> IndexArray:
 
 
 def hinge_vectors(positions: FloatArray, hinges: IndexArray) -> tuple[FloatArray, ...]:
-    """The unit vector along each fold, and in each of its two faces the vector across the fold.
+    """The unit vector along each fold, and a vector across the fold in each of its two faces.
 
-    `positions`: shape (..., V, 3). `hinges`: rows (i, j, left, right). The vectors across are
-    orthogonal to the fold, and point away from it.
+    `positions` has shape (..., V, 3), and `hinges` has rows (i, j, left, right). The vectors across
+    are orthogonal to the fold and point away from it.
     """
     i, j, left, right = hinges.T
     axis = positions[..., j, :] - positions[..., i, :]
@@ -33,24 +33,24 @@ def hinge_vectors(positions: FloatArray, hinges: IndexArray) -> tuple[FloatArray
 def fold_angles_of(positions: FloatArray, hinges: IndexArray) -> FloatArray:
     """The fold angle of every hinge in radians, in (-pi, pi], shape (..., folds).
 
-    0 is flat, positive a valley, negative a mountain, seen from the side that is +z in the flat
-    sheet; the size pi is a fold that is closed.
+    0 is flat, positive is a valley, and negative is a mountain, seen from the side that is +z in
+    the flat sheet. An angle of size pi is a closed fold.
 
     >>> tent = np.array([[0, 0, 0], [0, 1, 0], [-1, 0, 0.5], [1, 0, 0.5]])
     >>> float(fold_angles_of(tent, np.array([[0, 1, 2, 3]]))[0]) > 0
     True
     """
     axis, a, b = hinge_vectors(positions, hinges)
-    # The left face turned by the fold angle about the axis continues the right one.
+    # If the left face is turned about the axis by the fold angle, it continues the right face.
     sine = (cross(b, -a) * axis).sum(-1)
     return np.asarray(np.arctan2(sine, -(a * b).sum(-1)))
 
 
 def angle_rates(positions: FloatArray, velocities: FloatArray, hinges: IndexArray) -> FloatArray:
-    """How fast every fold angle changes, in radians by the unit of the parameter.
+    """The rate of every fold angle, in radians per unit of the parameter.
 
-    Each corner of the two faces moves its face by its speed along the normal, over its distance
-    from the fold. Shapes as in `fold_angles_of`.
+    Each of the two opposite corners turns its face at the rate of its speed along the normal,
+    divided by its distance from the fold. The shapes are those of `fold_angles_of`.
     """
     i, j, left, right = hinges.T
     p, v = positions, velocities
@@ -60,7 +60,8 @@ def angle_rates(positions: FloatArray, velocities: FloatArray, hinges: IndexArra
     for off, sign in ((left, 1.0), (right, -1.0)):
         arm = p[..., off, :] - p[..., i, :]
         normal = sign * cross(axis, arm)
-        # |normal| is the distance from the fold times its length; 1 / |normal|^2 makes both unit.
+        # |normal| is the length of the fold times the distance from it; dividing by |normal|^2
+        # removes both factors.
         weight = np.sqrt(squared) / (normal * normal).sum(-1)
         along = (arm * axis).sum(-1) / squared
         moved = (

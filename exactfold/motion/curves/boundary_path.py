@@ -1,4 +1,4 @@
-"""The rim path: linear equations that keep the heights of the border in a given ratio."""
+"""The path of boundary heights: linear equations that keep the border in a given ratio."""
 
 from __future__ import annotations
 
@@ -15,17 +15,19 @@ from exactfold.rigidity.equations.problem import Problem, barycentric
 
 
 def problem_of(branch: Branch) -> Problem:
-    """The problem of the sheet of a branch; with more than four corners, with the rim it has."""
+    """The problem of the sheet of a branch; with more than four corners, with its
+    boundary heights.
+    """
     rim = branch.rim if branch.pattern.Ve > 4 else None
     return Problem.of(branch.pattern, rim=rim)
 
 
 def ties_of(problem: Problem) -> tuple[Tie, ...]:
-    """The D - 1 equations of the rim path of a problem, none with four boundary vertices.
+    """The D - 1 equations of the path of boundary heights; none with four boundary vertices.
 
-    The heights of all boundary vertices v satisfy them iff z_v = l b_v + an affine function of the
-    flat vertex U_v, with the given heights b and some number l (docs/motion.md, More than four
-    corners). Vertices are those of `rigidity.equations.sheet`.
+    Let b be the given boundary heights. Heights z of the boundary vertices v satisfy the equations
+    if and only if z_v = l b_v + an affine function of the flat vertex U_v, for some number l
+    (docs/motion.md, More than four corners). Vertices are those of `rigidity.equations.sheet`.
 
     >>> from exactfold.branches.counting.find import find_branch
     >>> from exactfold.pattern.families import single_vertex
@@ -54,7 +56,7 @@ def ties_of(problem: Problem) -> tuple[Tie, ...]:
 def framework_of(
     problem: Problem, pinned: Triangle | None = None, drive: Drive | None = None
 ) -> Framework:
-    """The framework of a problem, with a drive or else with the ties of the rim path."""
+    """The framework of a problem, with a drive, or else with the ties of the boundary heights."""
     if drive is None:
         return Framework.of(problem.sheet, pinned, ties_of(problem))
     place = {label: v for v, label in enumerate(problem.labels)}
@@ -63,7 +65,7 @@ def framework_of(
 
 
 def factor_functional(sheet: CreasePattern, rim: Mapping[int, Fraction]) -> dict[int, Fraction]:
-    """The functional of the heights of the border that is l on l b + an affine function.
+    """The functional of the boundary heights whose value is l at l b + an affine function.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> sheet = single_vertex(5)
@@ -78,13 +80,15 @@ def factor_functional(sheet: CreasePattern, rim: Mapping[int, Fraction]) -> dict
 
 
 def level(sheet: CreasePattern, base: tuple[int, ...], v: int) -> dict[int, Fraction]:
-    """The height of a vertex above the plane through three others, as a functional."""
+    """The height of a vertex above the plane through three other vertices, as a functional."""
     row = {w: -c for w, c in zip(base, barycentric(sheet, base, v), strict=True)}
     return row | {v: Fraction(1)}
 
 
 def _base(sheet: CreasePattern, rim: Mapping[int, Fraction]) -> tuple[tuple[int, ...], int]:
-    """Three boundary vertices far apart, and the one whose given height above them is largest."""
+    """Three boundary vertices far apart, and the one whose given height above their plane is
+    largest.
+    """
     points, _ = sheet.integer_vertices
 
     def apart(v: int, w: int) -> int:
@@ -107,7 +111,7 @@ def _value(row: Mapping[int, Fraction], heights: Mapping[int, Fraction]) -> Frac
 
 
 def _whole(row: Mapping[int, Fraction]) -> Tie:
-    """The multiple with integers that have no common divisor."""
+    """The multiple whose coefficients are integers without a common divisor."""
     vertices = sorted(v for v, c in row.items() if c)
     whole = integer_row([row[v] for v in vertices])
     common = gcd(*whole)

@@ -1,4 +1,4 @@
-"""Which of many boxes meet which others: two trees of boxes, walked level by level."""
+"""Which of many boxes meet which others, by walking two trees of boxes level by level."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ Corners: TypeAlias = tuple[FloatArray, FloatArray]
 
 @dataclass(frozen=True, repr=False)
 class BoxTree:
-    """An order of n things in which those next to each other are close in the flat sheet.
+    """An order of n things in which neighbours are close to each other in the flat sheet.
 
-    A binary tree over that order stays good while the sheet folds, as its parts stay together.
+    A binary tree over that order stays good while the sheet folds, because its parts stay together.
     """
 
     order: IndexArray
 
     @classmethod
     def of(cls, places: FloatArray) -> BoxTree:
-        """The tree of things at places in the plane, shape (n, 2)."""
+        """The tree of things at these places in the plane, shape (n, 2)."""
         low, high = places.min(axis=0), places.max(axis=0)
         cells = ((places - low) / np.maximum(high - low, 1e-300) * 65535).astype(np.uint64)
-        code = np.zeros(len(places), dtype=np.uint64)  # the bits of x and y in turn (Morton)
+        code = np.zeros(len(places), dtype=np.uint64)  # bits of x and y alternate (Morton order)
         for bit in range(16):
             for axis in range(2):
                 code |= ((cells[:, axis] >> np.uint64(bit)) & np.uint64(1)) << np.uint64(
@@ -36,10 +36,10 @@ class BoxTree:
         return cls(np.argsort(code, kind="stable"))
 
     def levels(self, corners: Corners, depth: int) -> list[FloatArray]:
-        """Boxes of the nodes, from the root down to single things, shape (6, 2^k) each.
+        """The boxes of the nodes, from the root down to single things, shape (6, 2^k) each.
 
-        `corners`: of the boxes of the things; of a node the three lower and the three upper bounds.
-        What is missing of 2^depth things has an empty box.
+        `corners` are those of the boxes of the things. A column holds the three lower and the three
+        upper bounds of a node. If there are fewer than 2^depth things, the others have empty boxes.
         """
         low, high = corners
         boxes = np.full((6, 1 << depth), np.inf)
@@ -59,7 +59,8 @@ class BoxTree:
 def meeting(one: BoxTree, two: BoxTree, corners: Corners, others: Corners) -> IndexArray:
     """All pairs (k, m) such that box k of the first tree meets box m of the second.
 
-    `corners`, `others`: of their boxes. Shape (pairs, 2), in no order that means anything.
+    `corners` and `others` are those of their boxes. The result has shape (pairs, 2); its order has
+    no meaning.
 
     >>> places = np.array([[0.0, 0.0], [1.0, 0.0], [5.0, 5.0]])
     >>> low = np.column_stack([places, np.zeros(3)])
@@ -75,7 +76,7 @@ def meeting(one: BoxTree, two: BoxTree, corners: Corners, others: Corners) -> In
             one_at = (2 * one_at + np.array([[0], [0], [1], [1]])).reshape(-1)
             two_at = (2 * two_at + np.array([[0], [1], [0], [1]])).reshape(-1)
         a, b = first[k], second[k]
-        for axis in range(3):  # one after the other: most pairs are gone after the first
+        for axis in range(3):  # one axis after the other: the first removes most pairs
             kept = np.flatnonzero(
                 (a[axis][one_at] <= b[axis + 3][two_at]) & (b[axis][two_at] <= a[axis + 3][one_at])
             )

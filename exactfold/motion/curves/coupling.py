@@ -1,4 +1,4 @@
-"""Equations between the diagonals of driven folds: their angles grow in a given ratio."""
+"""Equations between the diagonals of driven folds that keep their angles in a given ratio."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from exactfold.pattern.crease_pattern import Edge
 
 @dataclass(frozen=True)
 class Coupling:
-    """Equations sum_k c_k g_k = 0 between half the changes g_k of the squares of some distances.
+    """Equations sum_k c_k g_k = 0, where g_k is half the change of the square of a distance.
 
-    The distances are those between the two vertices opposite to driven folds, the `diagonals` k.
-    `rows` are the integers c_k, one row for each equation (docs/motion.md, 10).
+    The distance is that of the two vertices opposite to driven fold k, the `diagonals` k. `rows`
+    are the integers c_k, one row for each equation (docs/motion.md, 10).
     """
 
     diagonals: tuple[Edge, ...] = ()
@@ -25,7 +25,7 @@ class Coupling:
 
     @property
     def bits(self) -> int:
-        """The rows are over 2^bits, so that their numbers are at most 1; 0 without rows."""
+        """The rows are divided by 2^bits, so that their numbers are at most 1; 0 without rows."""
         return max((abs(c).bit_length() for row in self.rows for c in row), default=0)
 
     @cached_property
@@ -36,9 +36,9 @@ class Coupling:
         return np.array(values).reshape(len(self.rows), len(self.diagonals))
 
     def combined(self, values: FloatArray) -> FloatArray:
-        """Values of all bars, the edges and then the diagonals, as values of the equations.
+        """The values of the equations, from the values of all bars.
 
-        Bars are on the first axis.
+        Bars are on the first axis: the edges, then the diagonals.
 
         >>> Coupling(((0, 1), (2, 3)), ((1, -1),)).combined(np.array([5.0, 3.0, 1.0]))
         array([5., 1.])
@@ -49,7 +49,7 @@ class Coupling:
         return np.concatenate([values[:edges], self.floats @ values[edges:]])
 
     def stacked(self, bars: Sequence[int], linear: Sequence[int]) -> list[int]:
-        """The same in integers, and `linear` equations after them; all times 2^`bits`.
+        """The same in integers, followed by the values of `linear` equations; all times 2^`bits`.
 
         >>> Coupling(((0, 1), (2, 3)), ((1, -1),)).stacked([5, 3, 1], [7])
         [10, 2, 14]
@@ -63,7 +63,9 @@ class Coupling:
         return [*(int(x) << up for x in bars[:edges]), *mixed, *(x << up for x in linear)]
 
     def on_bars(self, inverse: FloatArray, edges: int) -> FloatArray:
-        """The columns of P for the equations as columns for the bars, without those after them."""
+        """The columns of P for the equations, converted to columns for the bars; later ones are
+        dropped.
+        """
         if not self.diagonals:
             return inverse[:, :edges]
         middle = inverse[:, edges : edges + len(self.rows)]

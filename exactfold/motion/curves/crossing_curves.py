@@ -1,4 +1,4 @@
-"""Where curves of configurations cross: found in floats by the sign of a determinant."""
+"""Where curves of configurations cross, found in floats by the sign of a determinant."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _FLAT, _EXACTLY_FLAT = 1e-4, 1e-7
 
 
 def crossing_in(framework: Framework, piece: Piece) -> tuple[float, float]:
-    """Parameters of a piece between which its orientation changes, by bisection."""
+    """Two parameters of a piece between which its orientation changes, by bisection."""
     low, high = 0.0, piece.reach
     for _ in range(_BISECTIONS):
         middle = 0.5 * (low + high)
@@ -28,8 +28,8 @@ def crossing_in(framework: Framework, piece: Piece) -> tuple[float, float]:
 def flat_star_in(framework: Framework, piece: Piece) -> tuple[float, float] | None:
     """Parameters of a piece between which all folds at some vertex are flat at once, or nearly.
 
-    Found by the signs of their angles. Such a configuration may be a node although the orientation
-    does not change: with an even number of flat vertices it does not.
+    The signs of the fold angles show it. Such a configuration may be a branch point although the
+    orientation does not change: with an even number of flat vertices it does not change.
     """
     ends = np.array([0.0, piece.reach])
     angles = fold_angles_of(framework.positions(piece.at(ends)), framework.hinges)
@@ -56,9 +56,9 @@ def flat_star_in(framework: Framework, piece: Piece) -> tuple[float, float] | No
 def crossing_ahead(
     framework: Framework, x: FloatArray, direction: FloatArray
 ) -> tuple[FloatArray, FloatArray] | None:
-    """Unknowns and tangent at the first crossing of curves a few steps ahead, None if none is met.
+    """Unknowns and tangent at the first crossing of curves a few steps ahead, or None.
 
-    `x`: a configuration on the curve; `direction`: the way to go.
+    `x` is a configuration on the curve, and `direction` is the direction in which to go.
     """
     before: Piece | None = None
     try:
@@ -77,7 +77,7 @@ def crossing_ahead(
 
 
 def flat_vertices(framework: Framework, unknowns: FloatArray) -> tuple[int, ...]:
-    """The interior vertices all of whose folds are flat, or nearly."""
+    """The interior vertices whose folds are all flat, or nearly."""
     angles = np.abs(fold_angles_of(framework.positions(unknowns), framework.hinges))
     ends = framework.hinges[:, :2]
     return tuple(

@@ -1,4 +1,4 @@
-"""Which faces of a sheet in space run into each other, in floats."""
+"""Which faces of a sheet in space intersect each other, computed in floats."""
 
 from __future__ import annotations
 
@@ -13,14 +13,16 @@ from exactfold.motion.curves.framework import Framework
 
 _ALL_PAIRS = 40_000
 _AT_ONCE = 100_000
-"""Pairs of sides and times that are looked at together: more take more memory and no less time."""
+"""The most pairs of sides and times that are treated at once; more need memory but save no time."""
 _NOISE = 1e-13
-"""Of a volume, in cubic units of the sheet: below it the side of a plane is not known."""
+"""A volume below this, in cubic units of the sheet, does not decide the side of a plane."""
 
 
 @dataclass(frozen=True)
 class Crossing:
-    """An edge (i, j) that runs through a face, a triple of vertices it has no corner in."""
+    """An edge (i, j) that runs through a face, given by three vertices; the edge has no corner in
+    it.
+    """
 
     edge: tuple[int, int]
     face: tuple[int, int, int]
@@ -28,9 +30,10 @@ class Crossing:
 
 @dataclass(frozen=True, repr=False)
 class Crossings:
-    """Finds edges that run through faces: two faces meet beyond what they share iff one does.
+    """Finds edges that run through faces.
 
-    Faces that share a fold are not looked at: they meet only where the fold is closed.
+    Two faces meet outside the vertices they share if and only if an edge of one runs through the
+    other. Faces that share a fold are not examined; they meet only where the fold is closed.
     """
 
     framework: Framework
@@ -42,7 +45,7 @@ class Crossings:
 
     @cached_property
     def _pairs(self) -> IndexArray | None:
-        """All pairs (edge, face) without a common corner, None if they are too many."""
+        """All pairs (edge, face) without a common corner; None if there are too many."""
         e, f = self.edges, self.framework.triangles
         if len(e) * len(f) > _ALL_PAIRS:
             return None
@@ -63,7 +66,7 @@ class Crossings:
         )
 
     def _near(self, positions: FloatArray) -> IndexArray:
-        """The pairs whose bounding boxes meet, at one configuration (V, 3)."""
+        """The pairs whose bounding boxes meet, at one configuration of shape (V, 3)."""
         if self._pairs is not None:
             return self._pairs
         ends, corners = positions[self.edges], positions[self.framework.triangles]
@@ -80,7 +83,7 @@ class Crossings:
         return np.asarray(pairs[self.cross(positions[None], pairs)[0]])
 
     def any_of(self, positions: FloatArray) -> BoolArray:
-        """Whether there is a crossing at each of many configurations, shape (times, V, 3)."""
+        """Whether there is a crossing, for each of many configurations of shape (times, V, 3)."""
         if self._pairs is not None:
             return np.asarray(self.cross(positions, self._pairs).any(axis=1))
         graphs = self.graphs(positions)
@@ -91,8 +94,9 @@ class Crossings:
     def graphs(self, positions: FloatArray) -> BoolArray:
         """Whether the sheet lies over the plane of the pinned face without overlap, at each time.
 
-        It does if every face lies over it with its upper side up and the rim with no crossing: such
-        a map of a disk has degree 1, so that no two points have one image. Then nothing meets.
+        It does if the upper side of every face points up and the boundary projects without a
+        crossing. Such a map of a disk has degree 1, so no two points have the same image, and no
+        faces meet.
         """
         plane = positions[..., :2]
         a, b, c = (plane[:, v] for v in self.framework.triangles.T)
@@ -104,7 +108,7 @@ class Crossings:
             apart = (_turn(p, q, r) * _turn(p, q, s) > _NOISE) | (
                 _turn(r, s, p) * _turn(r, s, q) > _NOISE
             )
-            # Sides on one line are told apart by their boxes.
+            # Sides on the same line are separated by their bounding boxes.
             one, two = np.minimum(p, q) - np.maximum(r, s), np.minimum(r, s) - np.maximum(p, q)
             apart |= (np.maximum(one, two) > _NOISE).any(axis=-1)
             upright[left] = apart.all(axis=1)
@@ -112,7 +116,9 @@ class Crossings:
 
     @cached_property
     def _sides(self) -> IndexArray:
-        """All pairs of sides pq and rs of the rim without a common corner, shape (pairs, 4)."""
+        """All pairs of sides pq and rs of the boundary without a common corner, shape
+        (pairs, 4).
+        """
         rim = self.framework.sheet.boundary
         ends = np.array([rim, (*rim[1:], rim[0])], dtype=np.intp).T
         one, two = np.triu_indices(len(rim), 2)
@@ -120,7 +126,7 @@ class Crossings:
         return np.hstack([ends[one[apart]], ends[two[apart]]])
 
     def named(self, pair: IndexArray) -> Crossing:
-        """A pair (edge, face) by its vertices."""
+        """The crossing of a pair (edge, face), given by its vertices."""
         (i, j), (a, b, c) = self.edges[pair[0]], self.framework.triangles[pair[1]]
         return Crossing((int(i), int(j)), (int(a), int(b), int(c)))
 
@@ -140,7 +146,7 @@ class Crossings:
         return np.asarray(result)
 
     def kind(self, crossing: Crossing, positions: FloatArray) -> str:
-        """ "vertex on face" or "edge on edge": how a crossing that just began came to be."""
+        """How a crossing that has just begun came about: "vertex on face" or "edge on edge"."""
         p, q = (positions[v] for v in crossing.edge)
         a, b, c = (positions[v] for v in crossing.face)
         normal = cross(b - a, c - a)
@@ -155,7 +161,7 @@ class Crossings:
 
 
 def _turn(a: FloatArray, b: FloatArray, c: FloatArray) -> FloatArray:
-    """Twice the area of triangles in the plane, positive where they are counter-clockwise."""
+    """Twice the area of triangles in the plane; positive if they are counter-clockwise."""
     u, v = b - a, c - a
     return np.asarray(u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 ORDER = 10
 TOLERANCE = 1e-11
-"""Of the predictor, in units of the sheet: Newton's method takes away the rest."""
+"""The tolerance of the predictor, in units of the sheet; Newton's method removes the rest."""
 
 _CORRECTIONS = 8
 _SMALLEST = 1e-7
@@ -29,15 +29,15 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
 
 
 class LostCurveError(NotApplicableError):
-    """Steps became too short: the configuration is singular, or too close to a singular one."""
+    """Steps became too short: the configuration is singular or too close to a singular one."""
 
 
 @dataclass(frozen=True, repr=False)
 class Piece:
     """The unknowns of a framework as a polynomial of a parameter from 0 to `reach`.
 
-    `coefficients`: shape (order + 1, unknowns). `time` is the arclength at 0, in units of the
-    framework. `orientation` is the sign of the determinant of the Jacobian bordered by the tangent:
+    `coefficients` has shape (order + 1, unknowns). `time` is the arclength at 0, in units of the
+    framework. `orientation` is the sign of the determinant of the Jacobian bordered by the tangent;
     it changes where another curve crosses. It is 0 for a series at the flat sheet.
     """
 
@@ -47,7 +47,7 @@ class Piece:
     orientation: int = 0
 
     def at(self, parameter: FloatArray | float) -> FloatArray:
-        """The unknowns, shape (..., unknowns)."""
+        """The unknowns at a parameter, shape (..., unknowns)."""
         s = np.asarray(parameter, dtype=np.float64)[..., None]
         value = np.zeros(s.shape[:-1] + self.coefficients.shape[1:])
         for row in self.coefficients[::-1]:
@@ -55,7 +55,7 @@ class Piece:
         return np.asarray(value)
 
     def speed(self, parameter: FloatArray | float) -> FloatArray:
-        """The derivative of the unknowns by the parameter, shape (..., unknowns)."""
+        """The derivative of the unknowns with respect to the parameter, shape (..., unknowns)."""
         s = np.asarray(parameter, dtype=np.float64)[..., None]
         value = np.zeros(s.shape[:-1] + self.coefficients.shape[1:])
         for k in range(len(self.coefficients) - 1, 0, -1):
@@ -68,19 +68,19 @@ class Piece:
         return self.length_to(self.reach)
 
     def length_to(self, parameter: float) -> float:
-        """The arclength from 0, by Gauss-Legendre quadrature."""
+        """The arclength from 0 to a parameter, by Gauss-Legendre quadrature."""
         s = 0.5 * parameter * (_NODES + 1)
         return float(0.5 * parameter * (_WEIGHTS @ self._pace(s)))
 
     @cached_property
     def _squares(self) -> FloatArray:
-        """The squared speed as a polynomial, highest power first."""
+        """The squared speed as a polynomial, with the highest power first."""
         rows = self.coefficients[1:] * np.arange(1, len(self.coefficients))[:, None]
         products = rows @ rows.T
         return np.array([np.trace(products[:, ::-1], k) for k in range(1 - len(rows), len(rows))])
 
     def _pace(self, parameter: FloatArray | float) -> FloatArray:
-        """The speed as a number: the change of arclength."""
+        """The speed as a number: the derivative of the arclength."""
         return np.asarray(np.sqrt(np.maximum(np.polyval(self._squares, parameter), 0.0)))
 
     def parameter(self, length: float) -> float:
@@ -95,13 +95,13 @@ class Piece:
         return s
 
     def cut(self, reach: float) -> Piece:
-        """The piece up to a parameter."""
+        """The part of the piece up to a parameter."""
         return replace(self, reach=reach)
 
     def turned(self, end: float, time: float) -> Piece:
-        """The same curve run through backwards, from the parameter `end` to 0.
+        """The same curve, run through backwards from the parameter `end` to 0.
 
-        By Taylor's theorem the polynomial p(end - s), exactly.
+        By Taylor's theorem this is exactly the polynomial p(end - s).
         """
         top = len(self.coefficients)
         rows = np.zeros_like(self.coefficients)
@@ -116,32 +116,32 @@ class Piece:
 
 @dataclass(frozen=True, repr=False)
 class Curve:
-    """Configurations of a framework from the flat one on, piece after piece."""
+    """Configurations of a framework, beginning with the flat one, piece by piece."""
 
     framework: Framework
     pieces: tuple[Piece, ...]
 
     @property
     def duration(self) -> float:
-        """The arclength of the whole, in units of the framework."""
+        """The arclength of the whole curve, in units of the framework."""
         return self.pieces[-1].time + self.pieces[-1].length
 
     def at(self, time: float) -> FloatArray:
-        """The unknowns at a time, put on the curve by Newton's method where it converges."""
+        """The unknowns at a time, moved onto the curve by Newton's method where it converges."""
         starts = [piece.time for piece in self.pieces]
         k = max(int(np.searchsorted(starts, time, side="right")) - 1, 0)
         piece = self.pieces[k]
         s = piece.parameter(time - piece.time)
         x = piece.at(s)
-        if not piece.orientation:  # a series at the flat sheet, where the Jacobian is singular
+        if not piece.orientation:  # series at the flat sheet, where the Jacobian is singular
             return near_flat(self.framework, x)
         try:
             return on_curve(self.framework, x, piece.speed(s))[0]
-        except LostCurveError:  # close to a node: the polynomial is good to the tolerance
+        except LostCurveError:  # near a branch point the polynomial itself meets the tolerance
             return x
 
     def samples(self, each: int) -> tuple[FloatArray, FloatArray]:
-        """Times and unknowns at `each` points of every piece, and at the end."""
+        """Times and unknowns at `each` points of every piece, and at the end of the curve."""
         times, values = [], []
         for piece in self.pieces:
             s = np.linspace(0.0, piece.reach, each, endpoint=False)
@@ -156,9 +156,9 @@ class Curve:
 
 
 def leaving_piece(start: Start, tolerance: float = TOLERANCE) -> Piece:
-    """The first piece, from the flat state, with t as its parameter."""
+    """The first piece, which leaves the flat state, with t as its parameter."""
     framework, coefficients = start.framework, start.in_t()
-    # The error is relative to t, as the equations are divided by t^2 there.
+    # The error is relative to t, because the equations are divided by t^2 there.
     reach = _radius(coefficients, tolerance)
     for _ in range(60):
         piece = Piece(coefficients, reach, 0.0)
@@ -166,17 +166,17 @@ def leaving_piece(start: Start, tolerance: float = TOLERANCE) -> Piece:
         if error <= tolerance * reach:
             return piece
         reach *= 0.8
-    raise LostCurveError("the series at the flat state has too small a radius")
+    raise LostCurveError("the radius of convergence of the series at the flat state is too small")
 
 
 def continued(
     framework: Framework, first: Piece, tolerance: float = TOLERANCE, order: int = ORDER
 ) -> Iterator[Piece]:
-    """`first`, and the pieces that follow it without end.
+    """Yield `first` and then, without end, the pieces that follow it.
 
-    Each piece is the Taylor polynomial by arclength at its start, to first order: one sparse
-    factorisation of the Jacobian gives all coefficients, and corrects the start by Newton's method.
-    Raises `LostCurveError` where steps become too short.
+    Each piece is the Taylor polynomial at its start, whose parameter is arclength to first order.
+    One sparse factorisation of the Jacobian gives all coefficients, and Newton's method uses it to
+    correct the start. Raises `LostCurveError` if steps become too short.
     """
     piece = first
     while True:
@@ -190,7 +190,9 @@ def continued(
 def piece_of(
     coefficients: FloatArray, orientation: int, time: float = 0.0, tolerance: float = TOLERANCE
 ) -> Piece:
-    """The piece as far as an expansion is good; raises `LostCurveError` if that is not far."""
+    """The piece as far as an expansion is accurate; raises `LostCurveError` if that is
+    too short.
+    """
     reach = _radius(coefficients, tolerance)
     if not (np.isfinite(reach) and reach > _SMALLEST):
         raise LostCurveError("the steps of the continuation become too short")
@@ -200,10 +202,10 @@ def piece_of(
 def expansion(
     framework: Framework, x: FloatArray, direction: FloatArray, order: int = ORDER
 ) -> tuple[FloatArray, int]:
-    """Taylor coefficients of the curve at the configuration next to x, and the orientation.
+    """Taylor coefficients of the curve at the configuration nearest to x, and the orientation.
 
-    The parameter is s with |dx/ds| = 1 at 0 and T . (x(s) - x(0)) = s for T the tangent there, in
-    the direction given. Shape (order + 1, unknowns). Raises `LostCurveError`.
+    The parameter s has |dx/ds| = 1 at 0 and T . (x(s) - x(0)) = s, where T is the tangent there, in
+    the given direction. The shape is (order + 1, unknowns). Raises `LostCurveError`.
     """
     x, factors, held = on_curve(framework, x, direction)
     right = np.zeros(framework.size)
@@ -229,7 +231,9 @@ def expansion(
 
 
 def orientation_at(framework: Framework, x: FloatArray, direction: FloatArray) -> int:
-    """The sign of det [J; T] at a configuration, T the tangent in the direction given, or 0."""
+    """The sign of det [J; T] at a configuration, where T is the tangent in the given direction; or
+    0.
+    """
     held = int(np.argmax(np.abs(direction)))
     try:
         factors = factorised(bordered(framework.jacobian(x), held))
@@ -241,9 +245,10 @@ def orientation_at(framework: Framework, x: FloatArray, direction: FloatArray) -
 def on_curve(
     framework: Framework, x: FloatArray, direction: FloatArray
 ) -> tuple[FloatArray, SuperLU, int]:
-    """The configuration next to x with the same value of the unknown that changes most.
+    """The configuration near x with the same value of the unknown that changes most.
 
-    Also the factorised bordered Jacobian at x, and that unknown. Raises `LostCurveError`.
+    Also returns the factorised bordered Jacobian at x, and the number of that unknown. Raises
+    `LostCurveError`.
     """
     held = int(np.argmax(np.abs(direction)))
     try:
@@ -264,10 +269,11 @@ def on_curve(
 
 
 def near_flat(framework: Framework, x: FloatArray) -> FloatArray:
-    """The configuration next to x, close to the flat one, with the same largest height.
+    """The configuration near x, close to the flat one, that has the same largest height.
 
-    By two steps of Newton's method in the blown-up equations, which are regular there. Heights of
-    the size of rounding errors have no direction: then x, which is as good as floats are, stays.
+    Two steps of Newton's method are made in the blown-up equations, which are regular there.
+    Heights of the size of rounding errors have no direction; then x is returned, which is as
+    accurate as floats are.
     """
     t = float(np.max(np.abs(x[2::3]), initial=0.0))
     if t < _NO_HEIGHT:
@@ -286,7 +292,7 @@ def near_flat(framework: Framework, x: FloatArray) -> FloatArray:
 
 
 def _radius(coefficients: FloatArray, tolerance: float) -> float:
-    """The parameter up to which the first terms left out are about `tolerance`."""
+    """The parameter up to which the first neglected terms are about `tolerance`."""
     top = len(coefficients) - 1
     sizes = np.max(np.abs(coefficients), axis=1)
     bounds = [(tolerance / sizes[k]) ** (1.0 / k) for k in (top - 1, top) if sizes[k]]
@@ -296,7 +302,7 @@ def _radius(coefficients: FloatArray, tolerance: float) -> float:
 def _orientation(factors: SuperLU, component: float) -> int:
     """The sign of det [J; T] for the tangent T, from the factors of [J; e_held].
 
-    The kernel of J is spanned by T, so that det [J; e_held] = T_held det [J; T].
+    T spans the kernel of J, so det [J; e_held] = T_held det [J; T].
     """
     diagonal = np.sign(factors.U.diagonal()).prod()
     return int(diagonal * _parity(factors.perm_r) * _parity(factors.perm_c) * np.sign(component))

@@ -1,4 +1,4 @@
-"""Drives: folds whose angles grow together, in the ratio in which their goals are."""
+"""Drives: folds whose angles grow together, in the ratio of their goals."""
 
 from __future__ import annotations
 
@@ -31,12 +31,13 @@ Goals: TypeAlias = dict[FoldText, GoalDocument]
 
 @dataclass(frozen=True)
 class Drive:
-    """Folds that are driven from 0 to given angles: the sines of half of these keep their ratio.
+    """Folds that are driven from 0 to given angles, with a fixed ratio of the sines of half angles.
 
-    With the fold angles a_k the numbers sin(a_k / 2) are in a fixed ratio all along, which is that
-    at the goal. `squares[k]` is sin(a_k / 2)^2 at the goal, exactly, with the sign of the angle:
-    positive for a valley. It is 1/2 for 90 degrees, and rational for all angles, but of most only a
-    number near it with a denominator up to 10^12, to 1e-12. `folds` are those of a pattern.
+    Let a_k be the fold angles. The ratio of the numbers sin(a_k / 2) is constant during the motion
+    and equals that at the goal. `squares[k]` is exactly sin(a_k / 2)^2 at the goal, with the sign
+    of the angle, which is positive for a valley. It is 1/2 for 90 degrees. For most angles sin(a_k
+    / 2)^2 is not rational; then the square is a rational number with a denominator up to 10^12,
+    with an error of at most 1e-12. `folds` are folds of a pattern.
 
     >>> Drive.of({(3, 7): 90, (4, 9): -45})
     <Drive: 3-7 to 90, 4-9 to -45 degrees>
@@ -47,11 +48,15 @@ class Drive:
 
     @classmethod
     def of(cls, angles: Mapping[Edge, float]) -> Drive:
-        """From angles in degrees by fold; raises `BadDriveError` for one that is no goal."""
+        """A drive from angles in degrees by fold; raises `BadDriveError` for an angle that is no
+        goal.
+        """
         for fold, angle in angles.items():
             if not 0 < abs(angle) <= 180 or not square_of(angle):
                 raise BadDriveError(
-                    f"fold {fold_text(fold)}: the angle {angle:g}: {_why_not(angle)}", [fold]
+                    f"fold {fold_text(fold)} cannot be driven to {angle:g} degrees: "
+                    f"{_why_not(angle)}",
+                    [fold],
                 )
         return cls(tuple(angles), tuple(square_of(angle) for angle in angles.values()))
 
@@ -65,7 +70,9 @@ class Drive:
 
     @property
     def sines(self) -> tuple[float, ...]:
-        """sin(a_k / 2) at the goal: to first order the ratio of the angles near the flat sheet."""
+        """sin(a_k / 2) at the goal; near the flat sheet the angles have this ratio to
+        first order.
+        """
         return tuple(copysign(sqrt(abs(q)), q) for q in self.squares)
 
     @property
@@ -76,25 +83,26 @@ class Drive:
 
     @property
     def ratio(self) -> str:
-        """To first order the ratio of the angles, the largest 1, in words."""
+        """The ratio of the angles to first order, scaled so that the largest is 1, in words."""
         largest = max(map(abs, self.sines))
         pairs = zip(self.folds, self.sines, strict=True)
         return ", ".join(f"{fold_text(fold)} {sine / largest:.4g}" for fold, sine in pairs)
 
     def to_dict(self) -> Goals:
-        """By fold its goal in degrees, and its square, exactly."""
+        """By fold: its goal in degrees, and its exact square."""
         return {
             fold_text(fold): {"angle": angle, "square": format_rational(q)}
             for (fold, angle), q in zip(self.angles.items(), self.squares, strict=True)
         }
 
     def coupling(self, sheet: CreasePattern, place: Mapping[int, int]) -> Coupling:
-        """The equations of the drive in a sheet; `place[v]` is its vertex for v.
+        """The equations of the drive on a sheet.
 
-        With the two faces at fold k of areas A, B and its length l, half the change of the square
-        of the distance of its two opposite vertices is g_k = -8 (A B / l^2) sin(a_k / 2)^2. So
-        these squares are in the ratio of q_k iff w_m g_k = w_k g_m, w_k = q_k A B / l^2, for one m
-        and all other k (docs/motion.md, 10). None are needed for one fold.
+        Vertex v of the pattern is vertex `place[v]` of the sheet. Let the two faces at fold k have
+        the areas A and B, and let l be its length. Half the change of the squared distance of its
+        two opposite vertices is g_k = -8 (A B / l^2) sin(a_k / 2)^2. So these squares are in the
+        ratio of q_k if and only if w_m g_k = w_k g_m with w_k = q_k A B / l^2, for one m and all
+        other k (docs/motion.md, 10). For a single fold there are no equations.
 
         >>> from exactfold.pattern.families import single_vertex
         >>> star = single_vertex(5)
@@ -131,11 +139,12 @@ class Drive:
         points: Sequence[Sequence[Fraction]],
         radius: Fraction,
     ) -> bool:
-        """Whether all folds are proved to be bent as far as their goals or farther, to their sides.
+        """Whether all folds are proved to be bent to their goals or beyond, each to its own side.
 
-        `points` are those of the vertices of the sheet in its unit, each coordinate off by at most
-        `radius`; `place` as in `coupling`. With the diagonal of fold k this is g_k <= -8 (A B /
-        l^2) |q_k|, and the sign of the volume of its two faces. False says nothing.
+        `points` are those of the vertices of the sheet in its unit; each coordinate has an error of
+        at most `radius`. `place` is that of `coupling`. In terms of the diagonal of fold k the
+        condition is g_k <= -8 (A B / l^2) |q_k|, together with the sign of the volume of its two
+        faces. False proves nothing.
 
         >>> from exactfold.pattern.families import single_vertex
         >>> star = single_vertex(5)
@@ -165,9 +174,10 @@ class Drive:
         return True
 
     def ways(self, labels: Sequence[int]) -> tuple[tuple[Edge, int], ...]:
-        """The folds by vertices of the sheet of a framework, 1 for a valley and -1 for a mountain.
+        """The folds, each with 1 if it has to become a valley or -1 if a mountain.
 
-        `labels[v]` is the vertex of the pattern that vertex v of that sheet is.
+        The folds are given by vertices of the framework's sheet. Vertex v of that sheet is vertex
+        `labels[v]` of the pattern.
         """
         place = {label: v for v, label in enumerate(labels)}
         return tuple(
@@ -182,16 +192,18 @@ class Drive:
 def _why_not(angle: float) -> str:
     """Why an angle in degrees is no goal."""
     if angle != angle:
-        return "it is no number"
+        return "that is not a number"
     if abs(angle) > 180:
-        return "it is beyond 180"
+        return "the limit is 180 degrees"
     if angle:
-        return "a fold is driven to 0.0001 degrees or more"
-    return "a fold that stays flat is not driven"
+        return "give at least 0.0001 degrees"
+    return "at 0 it stays flat; give another angle, or leave the fold out"
 
 
 def _alike(rows: list[tuple[int, ...]]) -> tuple[tuple[int, ...], ...]:
-    """Rows multiplied by powers of 2, so that their largest numbers have the same length."""
+    """The rows multiplied by powers of 2 such that their largest numbers have the same
+    bit length.
+    """
     lengths = [max(abs(c).bit_length() for c in row) for row in rows]
     most = max(lengths)
     return tuple(tuple(c << most - n for c in row) for row, n in zip(rows, lengths, strict=True))
@@ -210,7 +222,7 @@ def _volume(a: Sequence[Fraction], b: Sequence[Fraction], c: Sequence[Fraction])
 
 
 def square_of(angle: float) -> Fraction:
-    """sin(a / 2)^2 of an angle in degrees with its sign, rounded as `Drive` says."""
+    """sin(a / 2)^2 of an angle in degrees, with its sign, rounded as described in `Drive`."""
     square = Fraction((1 - cos(radians(abs(angle)))) / 2).limit_denominator(_DENOMINATOR)
     return square if angle > 0 else -square
 
@@ -221,7 +233,7 @@ def fold_text(fold: Edge) -> str:
 
 
 def not_a_fold(edges: Container[Edge], pair: Edge, purpose: str) -> str:
-    """Why two vertices are no fold: they are an edge of the border, or none.
+    """Why two vertices are not a fold: they form an edge of the border, or no edge.
 
     >>> not_a_fold([(0, 1), (0, 4)], (0, 1), "to drive")
     '0-1 is an edge of the border, not a fold to drive'

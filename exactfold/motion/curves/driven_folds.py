@@ -1,6 +1,6 @@
-"""Driven folds near the flat state: what their angles are to first order, and where they are given.
+"""Driven folds near the flat state: their angles to first order, and where these are prescribed.
 
-All in floats: what is found here is proved elsewhere.
+Everything here is floating point; other modules prove what is found here.
 """
 
 from __future__ import annotations
@@ -29,15 +29,16 @@ _DEPENDENT = 1e-9
 _STILL = 1e-9
 _ROUND = 10**6
 _LARGEST = 600
-"""Unknowns, beyond which all tangents are computed only where folds are missing."""
+"""With more unknowns than this, the tangents are computed only if folds are missing."""
 
 
 @dataclass
 class DrivenFolds:
-    """The folds of `angles` on the sheet of a problem; angles in degrees, None where none is given.
+    """The folds of `angles` on the sheet of a problem.
 
-    Solutions are unknowns (u, h) of the blown-up equations at the flat state (`Start`). `farthest`:
-    after `reached`, the first-order angles of the driven folds as far as it came.
+    Angles are in degrees, or None if not prescribed. Solutions are unknowns (u, h) of the blown-up
+    equations at the flat state (`Start`). After a call of `reached`, `farthest` holds the
+    first-order angles of the driven folds up to which it came.
     """
 
     problem: Problem
@@ -46,7 +47,7 @@ class DrivenFolds:
 
     @cached_property
     def framework(self) -> Framework:
-        """The sheet, without ties or coupling."""
+        """The framework of the sheet, without ties or coupling."""
         return Framework.of(self.problem.sheet)
 
     @property
@@ -56,9 +57,10 @@ class DrivenFolds:
 
     @cached_property
     def bends(self) -> FloatArray:
-        """First-order angles of all folds of the sheet of the framework, rows on its unknowns.
+        """The first-order angles of all folds of the framework's sheet, as rows on its unknowns.
 
-        In the order of `sheet.folds`, from the heights above the pinned triangle.
+        They are in the order of `sheet.folds`, and computed from the heights above the pinned
+        triangle.
         """
         sheet, framework = self.problem.sheet, self.framework
         unit = framework.unit
@@ -78,7 +80,7 @@ class DrivenFolds:
 
     @cached_property
     def rows(self) -> FloatArray:
-        """Those of the driven folds."""
+        """The rows of `bends` of the driven folds."""
         folds = self.problem.sheet.folds
         place = {label: v for v, label in enumerate(self.problem.labels)}
         pairs = [sorted((place[i], place[j])) for i, j in self.folds]
@@ -89,7 +91,7 @@ class DrivenFolds:
         return float(np.square(self.bends @ y).sum())
 
     def unknowns(self, heights: FloatArray) -> FloatArray:
-        """(u, h) for heights of all vertices, u not yet solved for."""
+        """(u, h) for heights of all vertices, where u has not been solved for yet."""
         framework = self.framework
         y = np.zeros((len(framework.free), 3))
         above = heights_above_the_pin(framework, heights)
@@ -97,9 +99,10 @@ class DrivenFolds:
         return y.reshape(-1)
 
     def require_independent(self, y: FloatArray) -> None:
-        """Raise where the driven folds do not determine the others, to first order, at y.
+        """Raise `BadDriveError` unless, to first order at y, the driven folds determine all others.
 
-        Of a large sheet with as many folds as it needs that is seen where it is solved for them.
+        On a large sheet with as many driven folds as it needs, this is only discovered when the
+        equations are solved for them.
         """
         freedom = self.problem.sheet.Ve - 3
         if len(self.folds) == freedom and self.framework.size > _LARGEST:
@@ -110,7 +113,7 @@ class DrivenFolds:
         for k in range(1, len(rates) + 1):
             if np.linalg.svd(rates[:k], compute_uv=False)[-1] < _DEPENDENT:
                 raise BadDriveError(
-                    f"fold {fold_text(self.folds[k - 1])} cannot be driven with "
+                    f"fold {fold_text(self.folds[k - 1])} cannot be driven together with "
                     f"{', '.join(map(fold_text, self.folds[: k - 1]))}: to first order its angle "
                     "depends on theirs",
                     [self.folds[k - 1]],
@@ -119,8 +122,8 @@ class DrivenFolds:
             more = ", ".join(map(fold_text, self._others(tangents, rates)))
             raise BadDriveError(
                 f"{counted(len(rates), 'fold')} to drive: this sheet has "
-                f"{counted(freedom, 'degree')} of freedom, and as many folds have to be named; "
-                f"for instance also {more} (a fold without an angle goes along in the ratio that "
+                f"{counted(freedom, 'degree')} of freedom, so name {counted(freedom, 'fold')}, "
+                f"for instance also {more} (a fold without an angle is driven in the ratio that "
                 "it has on the branch)",
                 self.folds,
             )
@@ -132,7 +135,9 @@ class DrivenFolds:
         return np.asarray(np.linalg.svd(jacobian)[2][-freedom:].T)
 
     def _others(self, tangents: FloatArray, rates: FloatArray) -> list[Edge]:
-        """Folds to drive as well, each the one that is farthest from depending on those before."""
+        """Further folds to drive; each is the one that is farthest from depending on the earlier
+        ones.
+        """
         basis = np.linalg.svd(rates, full_matrices=True)[2]
         free = basis[len(rates) :]
         folds, labels, found = self.problem.sheet.folds, self.problem.labels, []
@@ -146,9 +151,9 @@ class DrivenFolds:
         return found
 
     def completed(self, y: FloatArray) -> Drive | None:
-        """The drive, with the angles of the branch at y for folds that have none.
+        """The drive, where folds without an angle get their angle on the branch at y.
 
-        None where a fold is still on that branch, or would go farther than 180 degrees.
+        None if such a fold is at rest on that branch, or would exceed 180 degrees.
         """
         there = self.rows @ y
         given = {fold: a for fold, a in self.angles.items() if a is not None}
@@ -177,7 +182,9 @@ class DrivenFolds:
         return Drive(self.folds, tuple(squares))
 
     def reached(self, y: FloatArray, wanted: FloatArray) -> FloatArray | None:
-        """The solution in which the driven folds are `wanted`, followed from that at y."""
+        """The solution at which the driven folds have the angles `wanted`, followed from
+        that at y.
+        """
         there = self.rows @ y
         factor = np.linalg.norm(wanted) / np.linalg.norm(there)
         y, there = y * factor, there * factor
@@ -231,11 +238,11 @@ class DrivenFolds:
         return [vertex_sign_functional(sheet, v) for v in sheet.interior]
 
     def signs_of(self, signs: Mapping[int, int]) -> tuple[bool, ...]:
-        """The same for signs by vertex of the pattern."""
+        """The same, from signs given by vertex of the pattern."""
         return tuple(signs[self.problem.labels[v]] > 0 for v in self.problem.sheet.interior)
 
     def rim_of(self, y: FloatArray) -> dict[int, Fraction]:
-        """The heights of the border at a solution, rounded, the largest 1."""
+        """The boundary heights of a solution, scaled so that the largest is 1, and rounded."""
         heights = self.framework.displacement(y)[:, 2]
         border = {self.problem.labels[v]: heights[v] for v in self.problem.sheet.boundary}
         largest = max(abs(h) for h in border.values())

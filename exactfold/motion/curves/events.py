@@ -1,4 +1,4 @@
-"""What happens along a motion: contacts, closed folds, creases that turn back, nodes."""
+"""What happens along a motion: contacts, closed folds, creases that turn back, branch points."""
 
 from __future__ import annotations
 
@@ -55,13 +55,13 @@ class EventDocument(TypedDict):
 class Event:
     """Something that happens between two times of a motion.
 
-    `kind`: "contact", two `faces` meet; "flat-fold", a fold reaches 180 degrees; "turning", a fold
-    angle has a critical point, so that the crease turns back; "node", another curve of
-    configurations crosses, often where the stars of `vertices` are flat; "singular", the curve
-    could not be followed further; "return", the sheet is flat again; "angle", the angle that was
-    asked for is reached; "driven", the driven folds have their angles; "dead-point", they turn back
-    before. `time`: of the motion, lower and upper bound. `faces`: by their corners.
-    `detail` says more in words.
+    `kind` is one of the following. "contact": two `faces` meet. "flat-fold": a fold reaches 180
+    degrees. "turning": a fold angle has a critical point, so the crease turns back. "node": another
+    curve of configurations crosses, often where the stars of `vertices` are flat. "singular": the
+    curve could not be followed further. "return": the sheet is flat again. "angle": the requested
+    angle is reached. "driven": the driven folds have their angles. "dead-point": they turn back
+    before. `time` is a lower and an upper bound of the time of the event. `faces` are given by
+    their corners. `detail` says more in words.
     """
 
     kind: str
@@ -72,7 +72,7 @@ class Event:
     detail: str = ""
 
     def to_dict(self) -> EventDocument:
-        """The event as `exactfold fold --json` prints it."""
+        """The object of this event in the output of `exactfold fold --json`."""
         return {
             "kind": self.kind,
             "time": list(self.time),
@@ -85,11 +85,11 @@ class Event:
 
 @dataclass(repr=False)
 class Watch:
-    """Looks for events on one piece of a curve after the other.
+    """Looks for events on the pieces of a curve in turn.
 
     Vertices are those of the framework; times are its arclength. `angles` are the fold angles at
-    the end of the last piece, continued past +-pi. `driven`: folds and the sizes of the angles in
-    radians to which they are driven, all of which are reached at once.
+    the end of the last piece, continued beyond +-pi. `driven` are folds with the sizes, in radians,
+    of the angles to which they are driven; all of them are reached at the same time.
     """
 
     framework: Framework
@@ -104,7 +104,7 @@ class Watch:
         self._before: Piece | None = None
 
     def events(self, piece: Piece) -> list[tuple[float, Event]]:
-        """The events of a piece with their parameters, in order."""
+        """The events of a piece with their parameters, sorted by parameter."""
         grid = np.linspace(0.0, piece.reach, _SAMPLES + 1)
         positions = self.framework.positions(piece.at(grid))
         raw = fold_angles_of(positions, self.framework.hinges)
@@ -127,7 +127,9 @@ class Watch:
         return high, Event(kind, times, **more)  # type: ignore[arg-type]
 
     def _node(self, piece: Piece) -> list[tuple[float, Event]]:
-        """A crossing of curves on the piece before: its orientation changes, or a star is flat."""
+        """A crossing of curves on the previous piece: its orientation changes, or a star
+        is flat.
+        """
         before, self._before = self._before, piece
         if before is None or not before.orientation:
             return []
@@ -149,7 +151,7 @@ class Watch:
         every = list(range(angles.shape[1]))
         watched = [(goal, kind, every) for goal, kind in goals]
         if self.driven:
-            # That of a fold that does not close there has a rate.
+            # Choose a fold that does not close at its goal: there its angle changes at some rate.
             driven, goal = min(self.driven, key=lambda item: abs(item[1] - np.pi / 2))
             watched.append((goal, DRIVEN, [self.framework.sheet.folds.index(driven)]))
         for goal, kind, columns in watched:
@@ -180,7 +182,7 @@ class Watch:
         framework = self.framework
         rates = angle_rates(positions, framework.displacement(piece.speed(grid)), framework.hinges)
         found = []
-        # Folds that stay flat have rates that are rounding errors.
+        # The rates of folds that stay flat are only rounding errors.
         sizes = np.abs(rates)
         moving = np.maximum(sizes[1:], sizes[:-1]) > _STILL * sizes.max(initial=0.0)
         for k, e in np.argwhere((rates[1:] * rates[:-1] < 0) & moving):
@@ -201,7 +203,7 @@ class Watch:
     def _returns(
         self, piece: Piece, grid: FloatArray, raw: FloatArray
     ) -> list[tuple[float, Event]]:
-        """The flat sheet again, where all fold angles have a common zero."""
+        """The return to the flat sheet, where all fold angles vanish at once."""
         if piece.time == 0.0:
             return []
         sizes = np.max(np.abs(raw), axis=1, initial=0.0)
@@ -213,7 +215,7 @@ class Watch:
             positions = self.framework.positions(piece.at(s))
             return float(np.abs(fold_angles_of(positions, self.framework.hinges)).max(initial=0.0))
 
-        # The polynomial is good a little beyond its piece: near the flat sheet pieces are short.
+        # Near the flat sheet pieces are short; the polynomial is accurate slightly beyond its end.
         ends = grid[max(k - 1, 0)], grid[k + 1] if k < _SAMPLES else 2.5 * piece.reach
         s, least = least_of(bend, *ends, within=1e-13)
         if least > _FLAT:
@@ -230,7 +232,7 @@ class Watch:
         k = int(np.argmax(hits))
         low, high = grid[k - 1], grid[k]
         pair = pairs = self._crossings.pairs(positions[k])
-        while len(pairs):  # others may cross before those that cross at the end
+        while len(pairs):  # other pairs may cross earlier than those that cross at the end
             start, pair = low, pairs
             while high - start > 1e-13 * max(piece.reach, 1e-300):
                 middle = 0.5 * (start + high)
@@ -253,17 +255,17 @@ class Watch:
         return [self._event(piece, CONTACT, low, high, faces=faces, detail=detail)]
 
     def _face_at(self, edge: Edge, other: Triangle) -> Triangle:
-        """A face with the edge, if possible one that shares no corner with the other face."""
+        """A face with this edge; a face that shares no corner with the other face is preferred."""
         faces = [t for t in self.framework.sheet.triangles if set(edge) <= set(t)]
         return min(faces, key=lambda t: len(set(t) & set(other)))
 
 
 @dataclass(frozen=True)
 class _FoldOnPiece:
-    """One fold on a piece of a curve, of which only the four corners are computed.
+    """One fold on a piece of a curve; only its four corners are computed.
 
-    `corners`: the piece with their displacements as its twelve unknowns. `flat`: their places in
-    the flat sheet, shape (4, 3).
+    `corners` is the piece with the displacements of the corners as its twelve unknowns. `flat` are
+    their places in the flat sheet, shape (4, 3).
     """
 
     corners: Piece
@@ -271,7 +273,7 @@ class _FoldOnPiece:
 
     @classmethod
     def of(cls, framework: Framework, piece: Piece, fold: int) -> _FoldOnPiece:
-        """The fold with a number of a framework."""
+        """The fold with this number in a framework."""
         hinge = framework.hinges[fold]
         rows = framework.displacement(piece.coefficients)[:, hinge].reshape(-1, 12)
         return cls(
@@ -282,18 +284,18 @@ class _FoldOnPiece:
         return np.asarray(self.corners.at(s).reshape(4, 3) + self.flat)
 
     def angle(self, s: float, near: float) -> float:
-        """The angle of the fold, continued to one that is near."""
+        """The angle of the fold plus the multiple of 2 pi that makes it closest to `near`."""
         raw = float(fold_angles_of(self._positions(s), _HINGE)[0])
         return raw + 2 * np.pi * round((near - raw) / (2 * np.pi))
 
     def rate(self, s: float) -> float:
-        """How fast the angle changes."""
+        """The rate at which the angle changes."""
         speed = self.corners.speed(s).reshape(4, 3)
         return float(angle_rates(self._positions(s), speed, _HINGE)[0])
 
 
 def _bracket(function: Callable[[float], float], low: float, high: float) -> tuple[float, float]:
-    """Two close parameters between which a function changes its sign, from two farther ones."""
+    """Two close parameters between which a function changes its sign, from two distant ones."""
     at_low, at_high = function(low), function(high)
     if at_low * at_high > 0:
         return low, high

@@ -26,21 +26,22 @@ Tie = tuple[tuple[int, int], ...]
 class Framework:
     """The edges of a sheet as bars; one triangle, `pinned`, does not move.
 
-    A configuration is X = U + d, with U the flat sheet and d the displacement, shape (V, 3), zero
-    at the corners of `pinned`. Edge e keeps its length where
+    A configuration is X = U + d, where U is the flat sheet and d the displacement, shape (V, 3),
+    which is zero at the corners of `pinned`. Edge e keeps its length if
 
-        g_e(d) = U_e . d_e + |d_e|^2 / 2 = 0,      a_e = a_i - a_j for e = (i, j):
+        g_e(d) = U_e . d_e + |d_e|^2 / 2 = 0,      a_e = a_i - a_j for e = (i, j).
 
-    half the change of the squared length, without the cancellation of lengths near the flat state.
-    The unknowns are the 3V - 9 coordinates of the `free` vertices, x, y, z of each in turn, and
-    `edges` the edges with a free end. With four boundary vertices there are 3V - 10 of them, so
-    that regular configurations form curves. With more there are 3V - 9 - D, D = Ve - 3; then D - 1
-    linear equations of the heights, the `ties`, cut a curve out (`rim_path.ties_of`), or a
-    `coupling` of the angles of D driven folds (`drive.coupling_of`). `bars` are the edges and the
-    diagonals of the coupling.
+    This is half the change of the squared length; it avoids the cancellation of lengths near the
+    flat state. The unknowns are the 3V - 9 coordinates of the `free` vertices, x, y, z of each in
+    turn. `edges` are the edges with a free end. With four boundary vertices there are 3V - 10 of
+    them, so regular configurations form curves. With more boundary vertices there are 3V - 9 - D
+    edges, D = Ve - 3. Then D - 1 further equations cut out a curve: either linear equations of the
+    heights, the `ties` (`rim_path.ties_of`), or a `coupling` of the angles of D driven folds
+    (`drive.coupling_of`). `bars` are the edges and the diagonals of the coupling.
 
-    The flat coordinates are `points` / 2^`bits`, exact integers from the first pinned corner;
-    `flat` are the nearest floats, and `unit` is the length 1 of these in the unit of `sheet`.
+    The flat coordinates are `points` / 2^`bits`, where `points` are exact integers relative to the
+    first pinned corner. `flat` are the nearest floats, and `unit` is the length 1 of these in the
+    unit of `sheet`.
     """
 
     sheet: CreasePattern
@@ -58,7 +59,8 @@ class Framework:
         ties: tuple[Tie, ...] = (),
         coupling: Coupling = NO_COUPLING,
     ) -> Framework:
-        """The framework of a sheet, by default with its largest triangle pinned, the first such.
+        """The framework of a sheet. By default its largest triangle is pinned, the first if several
+        are.
 
         >>> from exactfold.pattern.families import two_vertex
         >>> framework = Framework.of(two_vertex())
@@ -75,12 +77,12 @@ class Framework:
 
     @cached_property
     def unit(self) -> Fraction:
-        """The length 1 of `flat` in the length unit of the sheet."""
+        """The length 1 of `flat`, in the length unit of the sheet."""
         return Fraction(1 << self.bits, self.sheet.integer_vertices[1])
 
     @cached_property
     def flat(self) -> FloatArray:
-        """U in floats, shape (V, 2): exact if the integers have at most 53 bits."""
+        """U in floats, shape (V, 2); exact if the integers have at most 53 bits."""
         scale = 1 << self.bits
         return np.array([[x / scale, y / scale] for x, y in self.points])
 
@@ -97,7 +99,7 @@ class Framework:
 
     @cached_property
     def bars(self) -> IndexArray:
-        """The edges with a free end, then the diagonals of driven folds, shape (bars, 2)."""
+        """The edges with a free end, followed by the diagonals of driven folds, shape (bars, 2)."""
         if not self.coupling.diagonals:
             return self.edges
         return np.concatenate([self.edges, np.array(self.coupling.diagonals, dtype=np.intp)])
@@ -109,13 +111,15 @@ class Framework:
 
     @cached_property
     def flat_edges(self) -> FloatArray:
-        """U_e of all bars, shape (bars, 3), with a third component of 0."""
+        """U_e of all bars, shape (bars, 3); the third component is 0."""
         i, j = self.bars.T
         return np.column_stack([self.flat[i] - self.flat[j], np.zeros(len(i))])
 
     @cached_property
     def tie_bits(self) -> int:
-        """The ties in floats are over 2^tie_bits, so that their coefficients are at most 1."""
+        """In floats the ties are divided by 2^tie_bits, so that their coefficients are at
+        most 1.
+        """
         return max((abs(c).bit_length() for tie in self.ties for _, c in tie), default=0)
 
     @cached_property
@@ -132,7 +136,7 @@ class Framework:
     # --- displacements ---------------------------------------------------------------------------
 
     def displacement(self, unknowns: FloatArray) -> FloatArray:
-        """d of shape (V, 3) from the unknowns; leading axes are kept."""
+        """The displacement d, shape (V, 3), of these unknowns; leading axes are kept."""
         d = np.zeros((*unknowns.shape[:-1], len(self.points), 3))
         d[..., self.free, :] = unknowns.reshape(*unknowns.shape[:-1], -1, 3)
         return d
@@ -147,12 +151,12 @@ class Framework:
         return np.asarray(d[..., self.bars[:, 0], :] - d[..., self.bars[:, 1], :])
 
     def stretch(self, unknowns: FloatArray) -> FloatArray:
-        """g_e of all bars, shape (bars,): 0 where an edge has its length."""
+        """g_e of all bars, shape (bars,); it is 0 where an edge keeps its length."""
         d = self.along(unknowns)
         return np.asarray(((self.flat_edges + 0.5 * d) * d).sum(axis=-1))
 
     def residual(self, unknowns: FloatArray) -> FloatArray:
-        """The left sides of all equations: `stretch` of edges, the coupling, then the ties."""
+        """The left sides of all equations: `stretch` of the edges, the coupling, then the ties."""
         stretch = self.coupling.combined(self.stretch(unknowns))
         return np.concatenate([stretch, self.tie_rows @ unknowns])
 
@@ -167,7 +171,7 @@ class Framework:
         return self.matrix(self.flat_edges + self.along(unknowns))
 
     def matrix(self, rows: FloatArray) -> csc_array:
-        """The matrix that takes d to rows_e . d_e, coupled, then the ties, sparse.
+        """The sparse matrix that takes d to rows_e . d_e, coupled, followed by the ties.
 
         `rows` has the shape (bars, 3).
         """
@@ -182,17 +186,17 @@ class Framework:
 
     @property
     def _number(self) -> int:
-        """Of equations."""
+        """The number of equations."""
         return len(self.edges) + len(self.coupling.rows) + len(self.ties)
 
     def _entries(self, rows: FloatArray) -> FloatArray:
-        """The entries of `matrix` that may differ from 0, column by column."""
+        """The entries of `matrix` that may be nonzero, column by column."""
         _, _, source, factor = self._structure
         found: FloatArray = factor * np.append(rows.reshape(-1), 1.0)[source]
         return found
 
     def dense(self, rows: FloatArray) -> FloatArray:
-        """The matrix of `matrix`, dense."""
+        """The same matrix as `matrix`, but dense."""
         row, starts, _, _ = self._structure
         found = np.zeros((self._number, self.size))
         columns = np.repeat(np.arange(self.size), np.diff(starts))
@@ -201,9 +205,9 @@ class Framework:
 
     @cached_property
     def _structure(self) -> tuple[IndexArray, IndexArray, IndexArray, FloatArray]:
-        """Row, place in the rows (bars, 3) and factor of every entry, column by column.
+        """Row, place in the rows (bars, 3), and factor of every entry, column by column.
 
-        The place after all of them stands for 1. The second array says where the columns start.
+        The place after all rows stands for 1. The second array says where the columns start.
         """
         place = np.full(len(self.points), -1, dtype=np.intp)
         place[self.free] = np.arange(len(self.free))
@@ -226,13 +230,15 @@ class Framework:
         row, column, source, factor = (np.concatenate(part) for part in zip(*parts, strict=True))
         order = np.lexsort((row, column))
         starts = np.searchsorted(column[order], np.arange(self.size + 1))
-        # 32 bits, as the solver wants them.
+        # The solver needs indices with 32 bits.
         return row[order].astype(np.int32), starts.astype(np.int32), source[order], factor[order]
 
     # --- faces in space --------------------------------------------------------------------------
 
     def positions(self, unknowns: FloatArray) -> FloatArray:
-        """X, shape (..., V, 3), in units of `unit` from the first pinned corner."""
+        """The positions X, shape (..., V, 3), in units of `unit`, relative to the first pinned
+        corner.
+        """
         d = self.displacement(unknowns)
         d[..., :2] += self.flat
         return d

@@ -23,10 +23,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, repr=False)
 class FrameBounds:
-    """What is proved of the frames of a motion, one after the other.
+    """What is proved of the frames of a motion, frame by frame.
 
-    Every coordinate of frame k is within `radii[k]` of that of one true configuration of the
-    branch's motion, which has a time between the two `times[k]`. Both in the unit of the pattern.
+    Every coordinate of frame k is within `radii[k]` of that of a true configuration of the branch's
+    motion, whose time lies between the two `times[k]`. Both are in the unit of the pattern.
     """
 
     radii: tuple[float, ...]
@@ -37,7 +37,7 @@ class FrameBounds:
 
 
 def fixed(motion: SheetInMotion, *names: str) -> None:
-    """Make arrays of a motion such that they cannot be written to, as its other fields."""
+    """Make arrays of a motion read-only."""
     for name in names:
         array = getattr(motion, name).view()
         array.flags.writeable = False
@@ -45,10 +45,10 @@ def fixed(motion: SheetInMotion, *names: str) -> None:
 
 
 class SheetInMotion(Protocol):
-    """A sheet as it folds: `Motion` along a branch, or `PanelMotion` along modes of rigid panels.
+    """A sheet as it folds: a `Motion` along a branch, or a `PanelMotion` of rigid panels.
 
-    `times`, shape (frames,); `coords`, shape (frames, V, 3); `angles`, radians, shape
-    (frames, folds), in the order of `pattern.folds`; `events` in the order of time.
+    `times` has shape (frames,), `coords` has shape (frames, V, 3), and `angles`, in radians, has
+    shape (frames, folds) in the order of `pattern.folds`. `events` are sorted by time.
     """
 
     @property
@@ -57,11 +57,11 @@ class SheetInMotion(Protocol):
 
     @property
     def name(self) -> str:
-        """What the sheet folds along, in a few words."""
+        """A short description of what the sheet folds along."""
 
     @property
     def time_name(self) -> str:
-        """What time is."""
+        """A description of what the time measures."""
 
     @property
     def assignment(self) -> Mapping[Edge, str]:
@@ -73,35 +73,35 @@ class SheetInMotion(Protocol):
 
     @property
     def leading_angles_are(self) -> str:
-        """What these are, in words."""
+        """A description of the leading angles in words."""
 
     @property
     def times(self) -> FloatArray:
-        """Of the frames."""
+        """The times of the frames."""
 
     @property
     def coords(self) -> FloatArray:
-        """Of all vertices in every frame."""
+        """The coordinates of all vertices in every frame."""
 
     @property
     def angles(self) -> FloatArray:
-        """Of all folds in every frame."""
+        """The angles of all folds in every frame."""
 
     @property
     def events(self) -> tuple[Event, ...]:
-        """What happens."""
+        """The events of the motion."""
 
     @property
     def end(self) -> str:
-        """The kind of event at which the motion stops."""
+        """The kind of the event at which the motion stops."""
 
     @property
     def status(self) -> str:
-        """What is known of the motion, in a word."""
+        """What is known of the motion, in one word."""
 
     @property
     def bounds(self) -> FrameBounds | None:
-        """How far the frames are from true configurations, None where that is not proved."""
+        """How far the frames are from true configurations; None if that is not proved."""
 
     @property
     def duration(self) -> float:
@@ -117,17 +117,17 @@ class SheetInMotion(Protocol):
 
     @property
     def largest_angles(self) -> FloatArray:
-        """For each fold its largest angle in any frame in degrees, with its sign."""
+        """For each fold, the angle of largest size in any frame, in degrees with its sign."""
 
     @property
     def facts(self) -> dict[str, Any]:
-        """What files say of the motion, as JSON."""
+        """What files say about the motion, as JSON."""
 
     def at(self, time: float) -> FloatArray:
         """The positions of all vertices at a time, shape (V, 3)."""
 
     def sampled(self, least: int = 200) -> tuple[FloatArray, FloatArray]:
-        """Times and all fold angles in radians at `least` points or more."""
+        """Times, and all fold angles in radians, at `least` points or more."""
 
     def report(
         self, name: str | None = None, written: Sequence[str] = ()
@@ -138,7 +138,7 @@ class SheetInMotion(Protocol):
 def length_error(motion: SheetInMotion) -> float:
     """The largest relative change of the length of an edge in any frame.
 
-    It is 1 where the ends of an edge of the flat sheet have the same coordinates in floats.
+    It is 1 if the two ends of an edge of the flat sheet have the same coordinates in floats.
     """
     i, j = np.array(motion.pattern.edges, dtype=np.intp).T
     edges = motion.coords[:, i] - motion.coords[:, j]
@@ -150,13 +150,13 @@ def length_error(motion: SheetInMotion) -> float:
 
 
 def largest_angles(motion: SheetInMotion) -> FloatArray:
-    """For each fold its largest angle in any frame in degrees, with its sign."""
+    """For each fold, the angle of largest size in any frame, in degrees with its sign."""
     rows = np.argmax(np.abs(motion.angles), axis=0)
     return np.asarray(np.degrees(motion.angles[rows, np.arange(motion.angles.shape[1])]))
 
 
 def table(motion: SheetInMotion) -> tuple[tuple[str, ...], FloatArray]:
-    """Names of the columns, and a row for each frame: time, then fold angles in degrees."""
+    """The names of the columns, and a row for each frame: the time, then fold angles in degrees."""
     names = ("time", *(f"{i}-{j}" for i, j in motion.pattern.folds))
     return names, np.column_stack([motion.times, np.degrees(motion.angles)])
 

@@ -1,4 +1,4 @@
-"""The curve of true configurations that leaves the flat state along a branch, as a series."""
+"""The curve of true configurations that leaves the flat state along a branch, as a power series."""
 
 from __future__ import annotations
 
@@ -19,24 +19,28 @@ if TYPE_CHECKING:  # as in `framework`
 
 _NEWTON = 30
 _DENSE = 60
-"""Unknowns up to which matrices are dense, so that SciPy, which takes a while, is not loaded."""
+"""Matrices are dense for up to this many unknowns, so that SciPy, which is slow to load, is not
+needed.
+"""
 _SINGULAR = 2.0**48
-"""What the largest entries of a matrix and of its inverse may have as a product."""
+"""A matrix is invertible if the largest entries of it and of its inverse have a product
+below this.
+"""
 
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Start:
     """The blown-up series at the flat state: d = (t^2 u_x, t^2 u_y, t h) with u, h series in t^2.
 
-    The equations g_e = 0 of `Framework` divided by t^2,
+    The equations g_e = 0 of `Framework`, divided by t^2, are
 
-        U_e . u_e + h_e^2 / 2 + t^2 |u_e|^2 / 2 = 0,
+        U_e . u_e + h_e^2 / 2 + t^2 |u_e|^2 / 2 = 0.
 
-    together with the coupling and the ties of the framework, and one height held fixed, are
-    regular at t = 0 where the branch is simple. So their
-    solution is an analytic curve in s = t^2, each coefficient of which solves a linear system with
-    the same matrix. `coefficients[k]` is that of s^k, shape (order + 1, unknowns), each unknown
-    triple being (u_x, u_y, h) of one free vertex; `held` is the unknown that is fixed.
+    Together with the coupling and the ties of the framework, and with one height held fixed, they
+    are regular at t = 0 if the branch is simple. So their solution is an analytic curve in s = t^2,
+    and each of its coefficients solves a linear system with the same matrix. `coefficients[k]` is
+    the coefficient of s^k, shape (order + 1, unknowns); each triple of unknowns is (u_x, u_y, h) of
+    one free vertex. `held` is the unknown that is fixed.
     """
 
     framework: Framework
@@ -48,7 +52,7 @@ class Start:
         """The series from approximate heights of all vertices on a branch, shape (V,).
 
         The heights are scaled so that the largest fold angle is t to first order. Raises
-        `NotFollowedError` where Newton's method does not converge: the branch is not simple, or
+        `NotFollowedError` if Newton's method does not converge: then the branch is not simple, or
         the numbers leave the range of floats.
         """
         first = _scaled(framework, heights_above_the_pin(framework, heights))
@@ -77,7 +81,9 @@ class Start:
         return cls(framework, series, held)
 
     def in_t(self) -> FloatArray:
-        """The displacement as a polynomial in t: coefficients of shape (2 order + 3, unknowns)."""
+        """The displacement as a polynomial in t, with coefficients of shape (2 order + 3,
+        unknowns).
+        """
         order = len(self.coefficients) - 1
         whole = np.zeros((2 * order + 3, self.framework.size))
         heights = np.zeros(self.framework.size, dtype=bool)
@@ -93,14 +99,14 @@ class Start:
         same = (self.framework, self.held) == (other.framework, other.held)
         return same and np.array_equal(self.coefficients, other.coefficients)
 
-    __hash__ = None  # type: ignore[assignment]  # arrays have none
+    __hash__ = None  # type: ignore[assignment]  # arrays have no hash
 
     def __repr__(self) -> str:
         return f"<Start: order {len(self.coefficients) - 1}, {self.framework!r}>"
 
 
 def blown_up(framework: Framework, y: FloatArray, s: float = 0.0) -> FloatArray:
-    """The left sides U_e . u_e + h_e^2 / 2 + s |u_e|^2 / 2, then those of the ties."""
+    """The left sides U_e . u_e + h_e^2 / 2 + s |u_e|^2 / 2, followed by those of the ties."""
     e = framework.along(y)
     flat = (framework.flat_edges[:, :2] * e[:, :2]).sum(axis=1)
     bent = flat + 0.5 * e[:, 2] ** 2 + 0.5 * s * (e[:, :2] ** 2).sum(axis=1)
@@ -108,7 +114,7 @@ def blown_up(framework: Framework, y: FloatArray, s: float = 0.0) -> FloatArray:
 
 
 def blown_up_jacobian(framework: Framework, y: FloatArray, s: float = 0.0) -> csc_array:
-    """The derivative of `blown_up` by the unknowns, sparse."""
+    """The derivative of `blown_up` with respect to the unknowns, sparse."""
     return framework.matrix(_blown_up_rows(framework, y, s))
 
 
@@ -119,7 +125,7 @@ def _blown_up_rows(framework: Framework, y: FloatArray, s: float) -> FloatArray:
 
 
 def bordered(jacobian: csc_array, held: int) -> csc_array:
-    """The square matrix of a Jacobian with a last row that holds one unknown."""
+    """The square matrix that consists of a Jacobian and a last row that holds one unknown."""
     rows, columns = jacobian.shape
     end = jacobian.indptr[held + 1]
     starts = jacobian.indptr.copy()
@@ -131,7 +137,7 @@ def bordered(jacobian: csc_array, held: int) -> csc_array:
 
 
 def factorised(matrix: csc_array) -> SuperLU:
-    """The factors of a square matrix; raises `RuntimeError` for a singular one."""
+    """The LU factors of a square matrix; raises `RuntimeError` if it is singular."""
     from scipy.sparse.linalg import splu
 
     return splu(matrix)
@@ -139,7 +145,7 @@ def factorised(matrix: csc_array) -> SuperLU:
 
 @dataclass(frozen=True)
 class _Inverse:
-    """What solves with a dense matrix."""
+    """Solves linear systems with a dense matrix."""
 
     inverse: FloatArray
 
@@ -149,9 +155,9 @@ class _Inverse:
 
 
 def _factors(framework: Framework, y: FloatArray, held: int) -> SuperLU | _Inverse:
-    """What solves with the derivative at t = 0 and a last row that holds one unknown.
+    """A solver for the derivative at t = 0 with a last row that holds one unknown.
 
-    Raises `RuntimeError` or `LinAlgError` where it is singular.
+    Raises `RuntimeError` or `LinAlgError` if the matrix is singular.
     """
     if framework.size > _DENSE:
         return factorised(bordered(blown_up_jacobian(framework, y), held))
@@ -184,8 +190,8 @@ def _newton(
             return y, factors
         last = size
     raise NotFollowedError(
-        "no curve was found that leaves the flat state along this branch: it is not simple, or too "
-        "close to another one for floats"
+        "no curve was found that leaves the flat state along this branch: the branch is not "
+        "simple, or floats cannot distinguish it from another one"
     )
 
 
@@ -204,12 +210,12 @@ def _scaled(framework: Framework, heights: FloatArray) -> FloatArray:
     space = np.column_stack([framework.flat, tiny * heights])
     largest = float(np.max(np.abs(fold_angles_of(space, framework.hinges)), initial=0.0)) / tiny
     if not (np.isfinite(largest) and largest > 0):
-        raise NotFollowedError("no fold of this branch bends in floats")
+        raise NotFollowedError("in floating point, no fold bends on this branch")
     return heights / largest
 
 
 def _with_plane(framework: Framework, y: FloatArray) -> FloatArray:
-    """The unknowns with the u of least squares for their heights."""
+    """The unknowns with the u that solves the equations for their heights in least squares."""
     e = framework.along(y)
     rows = framework.flat_edges
     columns = np.arange(framework.size) % 3 != 2

@@ -1,4 +1,4 @@
-"""Branches that fold a sheet along one straight line: their motion is a rotation about it."""
+"""Branches that fold a sheet along one straight line; their motion is a rotation about the line."""
 
 from __future__ import annotations
 
@@ -7,11 +7,12 @@ from exactfold.pattern.validate import orientation
 
 
 def straight_fold(branch: Branch) -> tuple[int, ...]:
-    """The vertices of the line along which a branch folds its sheet; empty if it does not.
+    """The vertices of the line along which a branch folds its sheet; empty if there is none.
 
-    Its folds that are not proved flat form a straight path from border to border. So all faces on
-    either side of it keep their plane, and turning one side about the line moves all faces rigidly:
-    a motion for every angle, exactly (docs/motions.md). Coordinates are compared exactly.
+    The folds that are not proved flat have to form a straight path from border to border. Then all
+    faces on either side of the path stay in one plane. Turning one side about the line moves all
+    faces rigidly, so there is exactly a motion for every angle (docs/motions.md). Coordinates are
+    compared exactly.
 
     >>> from exactfold.branches.counting.find import find_branch
     >>> [straight_fold(find_branch("flat-vertex", signs)) for signs in ("+0", "-+")]

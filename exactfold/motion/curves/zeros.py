@@ -1,7 +1,7 @@
-"""Zeros and least values of functions of one number, in floats, by SciPy.
+"""Zeros and minima of functions of one variable, in floats, by SciPy.
 
-SciPy's optimisation is loaded where one is first sought: it takes as long to load as a small sheet
-to follow, and most loops are proved without it.
+SciPy's optimisation is loaded when it is first needed. Loading it takes as long as following a
+small sheet, and most loops are proved without it.
 """
 
 from __future__ import annotations
@@ -12,7 +12,9 @@ _WITHIN = 1e-15
 
 
 def zero_of(function: Callable[[float], float], low: float, high: float) -> float:
-    """Where a function is zero that has different signs at two numbers, by Brent's method."""
+    """A zero of a function between two numbers at which it has different signs, by
+    Brent's method.
+    """
     from scipy.optimize import brentq
 
     return float(brentq(function, low, high, xtol=_WITHIN))
@@ -21,7 +23,9 @@ def zero_of(function: Callable[[float], float], low: float, high: float) -> floa
 def least_of(
     function: Callable[[float], float], low: float, high: float, within: float
 ) -> tuple[float, float]:
-    """Where a function is least between two numbers, up to `within`, and its value there."""
+    """The place between two numbers where a function is least, up to `within`, and its
+    value there.
+    """
     from scipy.optimize import minimize_scalar
 
     found = minimize_scalar(

@@ -1,4 +1,4 @@
-"""Certificates of loops: a header, a line for each loop, the claims (docs/motions.md)."""
+"""Certificates of loops: a header, a line for each loop, then the claims (docs/motions.md)."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from collections.abc import Sequence
 from typing import Any
 
 from exactfold.certificates.entries import Document, emptied_evidence, pattern_document
-from exactfold.checker.motion.loops import LOOPS
+from exactfold.checker.motion.loops import LOOPS, LoopsClaims
 from exactfold.pattern.crease_pattern import CreasePattern
 
 OPENING = '{"from":'
-"""How the line of a loop begins."""
+"""The line of a loop begins with this text."""
 
 
 def header_line(pattern: CreasePattern, pinned: Sequence[int], bits: int) -> str:
@@ -31,7 +31,7 @@ def header_line(pattern: CreasePattern, pinned: Sequence[int], bits: int) -> str
 def loop_line(
     source: Document, target: Document, length: str, evidence: Document, provenance: Document
 ) -> str:
-    """The line of a loop."""
+    """The line of one loop."""
     return _text(
         {
             "from": source,
@@ -44,19 +44,16 @@ def loop_line(
 
 
 def claims_line(pattern: CreasePattern, loops: int, matched: int) -> str:
-    """The last line."""
+    """The last line, with the claims."""
     half_branches = 2 << len(pattern.foldable_vertices)
-    return _text(
-        {
-            "claims": {
-                "sha256": pattern.sha256,
-                "loops": loops,
-                "matched": matched,
-                "half_branches": half_branches,
-                "complete": matched == half_branches,
-            }
-        }
-    )
+    claims: LoopsClaims = {
+        "sha256": pattern.sha256,
+        "loops": loops,
+        "matched": matched,
+        "half_branches": half_branches,
+        "complete": matched == half_branches,
+    }
+    return _text({"claims": claims})
 
 
 def _text(data: dict[str, Any]) -> str:

@@ -1,4 +1,4 @@
-"""The graph of true configurations: the flat state, the nodes, and the arcs between them."""
+"""The graph of true configurations: the flat state, the branch points, the arcs between them."""
 
 from __future__ import annotations
 
@@ -107,10 +107,10 @@ class GraphDocument(TypedDict):
 
 @dataclass(frozen=True, order=True)
 class NodeEnd:
-    """One end of an arc at a node: one of the two sides of a line along which curves go through it.
+    """One end of an arc at a branch point: one of the two sides of the line of a curve.
 
-    The straight, that is analytic, continuation of an arc that ends there is the other side of the
-    same line. `side` is 1 or -1.
+    If an arc ends on one side of the line, its straight, that is analytic, continuation begins on
+    the other side. `side` is 1 or -1.
     """
 
     node: int
@@ -119,30 +119,30 @@ class NodeEnd:
 
     @property
     def mirrored(self) -> NodeEnd:
-        """The end of the mirror image: nodes 2k and 2k + 1 are mirror images of each other."""
+        """The end in the mirror image. Nodes 2k and 2k + 1 are mirror images of each other."""
         return NodeEnd(self.node ^ 1, self.line, self.side)
 
     @property
     def opposite(self) -> NodeEnd:
-        """Where the straight continuation begins."""
+        """The end at which the straight continuation begins."""
         return NodeEnd(self.node, self.line, -self.side)
 
     def to_dict(self) -> BranchPointEnd:
-        """The end as JSON shows it."""
+        """The object of this end in JSON."""
         return {"node": self.node, "line": self.line, "side": self.side}
 
 
 End = HalfBranch | NodeEnd
-"""An end of an arc: in the flat state along a half-branch, or at a node."""
+"""An end of an arc: a ray at the flat state, or an end at a branch point."""
 
 
 @dataclass(frozen=True, repr=False)
 class GraphNode:
-    """A configuration in which the stars of the vertices `flat` are flat and curves cross.
+    """A branch point: the stars of the vertices `flat` are flat there, and curves cross.
 
-    `curves`: how many are proved to go through it. `status` is PROVED if no others do. `angles`
-    bound its fold angles in degrees, which tell where it is. `mirror` is the number of its mirror
-    image, and `loops` are the numbers of the loops that pass it or its mirror image.
+    `curves` is the number of curves that are proved to pass through it; `status` is PROVED if there
+    are no others. `angles` are bounds of its fold angles in degrees. `mirror` is the number of its
+    mirror image. `loops` are the numbers of the loops that pass it or its mirror image.
     """
 
     flat: tuple[int, ...]
@@ -153,7 +153,7 @@ class GraphNode:
     loops: tuple[int, ...]
 
     def to_dict(self) -> BranchPointDocument:
-        """The node as `exactfold motions --json` prints it."""
+        """The object of this node in the output of `exactfold motions --json`."""
         return {
             "flat": list(self.flat),
             "curves": self.curves,
@@ -174,9 +174,9 @@ class GraphNode:
 class GraphArc:
     """A curve of regular configurations from one end to another.
 
-    `length` bounds its length in the unit of the sheet. `status` is UNDECIDED where an end is None:
-    for the `reason` given it is not known. `loop` is the number of the loop of which it, or its
-    mirror image, is a part, None if it is on none. `mirror` is the number of its mirror image.
+    `length` are bounds of its length in the unit of the sheet. If an end is None, it is not known,
+    for the given `reason`, and `status` is UNDECIDED. `loop` is the number of the loop of which
+    this arc or its mirror image is a part, or None. `mirror` is the number of its mirror image.
     """
 
     start: End | None
@@ -188,7 +188,7 @@ class GraphArc:
     mirror: int
 
     def to_dict(self) -> ArcOfGraph:
-        """The arc as `exactfold motions --json` prints it."""
+        """The object of this arc in the output of `exactfold motions --json`."""
         return {
             "from": _named(self.start),
             "to": _named(self.end),
@@ -205,14 +205,14 @@ class GraphArc:
 
 @dataclass(frozen=True, repr=False)
 class ConfigurationGraph:
-    """The true configurations that can be reached from the flat state, contact ignored.
+    """The true configurations that can be reached from the flat state when contact is ignored.
 
-    `nodes` are different configurations, mirror images next to each other. At each of them the ends
-    of `arcs` are the sides of the lines in which curves go through it. Nothing is said of curves
-    that cannot be reached. `status` is PROVED if this is the whole connected component of the flat
-    state: all half-branches are matched, no other curve goes through a node, and every arc is
-    followed from end to end. If it is not, `reason` says what is missing; each arc and each node
-    is still proved for itself.
+    `nodes` are different branch points; mirror images are neighbours in the list. The ends of
+    `arcs` at a node are the sides of the lines of the curves through it. Nothing is said about
+    curves that cannot be reached. `status` is PROVED if the graph is the whole connected component
+    of the flat state. This means that all rays are matched, no other curve passes through a node,
+    and every arc is followed from end to end. Otherwise `reason` says what is missing; each arc and
+    each node is still proved.
     """
 
     nodes: tuple[GraphNode, ...]
@@ -221,9 +221,11 @@ class ConfigurationGraph:
     reason: str
 
     def to_networkx(self) -> nx.MultiGraph[int | str]:
-        """The graph, frozen: its vertices are "flat" and the numbers of the nodes.
+        """The graph as a frozen networkx graph.
 
-        Edges are the arcs with two known ends, by their number as key, with `arc`, the `GraphArc`.
+        Its vertices are "flat" and the numbers of the nodes. Its edges are the arcs with two known
+        ends. The key of an edge is the number of the arc, and its attribute `arc` is the
+        `GraphArc`.
 
         >>> from exactfold.motion.loops.matching import find_loops
         >>> graph = find_loops("two-vertex").graph
@@ -244,17 +246,17 @@ class ConfigurationGraph:
 
     @property
     def independent_cycles(self) -> int | None:
-        """The first Betti number of the connected component of the flat state; None if open.
+        """The first Betti number of the connected component of the flat state; None if undecided.
 
-        Its number of arcs less that of its vertices, plus 1.
+        It is the number of arcs minus the number of vertices plus 1.
         """
         return len(self.arcs) - len(self.nodes) if self.status is PROVED else None
 
     @cached_property
     def closed_curves(self) -> tuple[tuple[int, ...], ...]:
-        """The closed curves that pass nodes but not the flat state, each by its arcs in order.
+        """The closed curves that pass branch points but not the flat state; each is a list of arcs.
 
-        They go straight on at every node. A motion reaches them if it turns off at a node.
+        They go straight on at every branch point. A motion reaches them if it turns off at one.
         """
         after = {
             end: (k, other)
@@ -277,7 +279,7 @@ class ConfigurationGraph:
         return tuple(found)
 
     def to_dict(self) -> GraphDocument:
-        """The graph as `exactfold motions --json` prints it."""
+        """The object of the graph in the output of `exactfold motions --json`."""
         return {
             "status": str(self.status),
             "reason": self.reason,

@@ -1,4 +1,4 @@
-"""Files of proved loops, written as they are found and continued after an interruption."""
+"""Files of proved loops, written as loops are found; interrupted runs can be continued."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ from exactfold.rigidity.equations.problem import Problem
 
 @dataclass(repr=False)
 class LoopFile:
-    """A certificate of loops under way: no half-branch is in it twice.
+    """A certificate of loops that is being written; no ray occurs in it twice.
 
-    `known` are the loops that an earlier run has left in it.
+    `known` are the loops that an earlier run has left in the file.
     """
 
     journal: Journal
@@ -45,10 +45,10 @@ class LoopFile:
         *,
         like: StartTube | None = None,
     ) -> LoopFile:
-        """A new file, or with `resume` one that is continued; raises the errors of `Journal`.
+        """A new file, or with `resume` the continuation of a file; raises the errors of `Journal`.
 
-        All loops of a file hold the same triangle and have the same bits: those of `like`, by
-        default those of `LoopFinder`.
+        All loops of a file hold the same triangle and have the same number of bits: those of
+        `like`, or by default those of `LoopFinder`.
         """
         framework = Framework.of(problem.sheet) if like is None else like.framework
         pinned = [problem.labels[v] for v in framework.pinned]
@@ -62,7 +62,7 @@ class LoopFile:
         def refusal(text: str, _: int) -> str | None:
             loop = _loop_of(text, problem, bits)
             if loop is None or not matched.isdisjoint(_ends(loop)):
-                return "it is no loop of this sheet, or the same as one before"
+                return "it is not a loop of this sheet, or it repeats an earlier loop"
             known.append(loop)
             matched.update(_ends(loop))
             return None
@@ -73,7 +73,9 @@ class LoopFile:
         return cls(journal, problem, tuple(known), matched)
 
     def add(self, loop: Loop, line: str) -> None:
-        """Write a loop, unless it is there, perhaps run through backwards or mirrored."""
+        """Write a loop, unless the file already has it, possibly mirrored or run through
+        backwards.
+        """
         ends = _ends(loop)
         if self.matched.isdisjoint(ends):
             self.journal.append(line)
@@ -85,7 +87,7 @@ class LoopFile:
         self.journal.finish(claims_line(pattern, self.journal.blocks, len(self.matched)))
 
     def close(self) -> None:
-        """Close the file; what was written stays."""
+        """Close the file; everything that was written stays."""
         self.journal.close()
 
     def __repr__(self) -> str:
@@ -93,13 +95,13 @@ class LoopFile:
 
 
 def _ends(loop: Loop) -> set[HalfBranch]:
-    """The half-branches that a loop and its mirror image match."""
+    """The rays that a loop and its mirror image match."""
     ends = {loop.source, loop.source.mirrored}
     return ends if loop.target is None else ends | {loop.target, loop.target.mirrored}
 
 
 def _loop_of(text: str, problem: Problem, bits: int) -> Loop | None:
-    """The loop of a line; None if this program did not write it."""
+    """The loop of a line; None if this program did not write the line."""
     try:
         data = json.loads(text)
         source, target = (_half_branch(data[key], problem) for key in ("from", "to"))
@@ -137,5 +139,5 @@ def _half_branch(data: dict[str, Any], problem: Problem) -> HalfBranch:
     signs = dict(zip(problem.pattern.interior, data["vertex_signs"], strict=True))
     side = data["side"]
     if side not in (1, -1) or any(signs[v] not in (1, -1) for v in problem.foldable):
-        raise ValueError("this is no half-branch")
+        raise ValueError("a half-branch needs a side 1 or -1 and a sign for every foldable vertex")
     return HalfBranch(tuple(signs[v] for v in problem.foldable), 1 if side == 1 else -1)

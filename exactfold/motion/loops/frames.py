@@ -14,10 +14,10 @@ from exactfold.motion.tubes.tracks import Frame
 
 
 def frame_of(proof: LoopProof, time: float) -> Frame:
-    """One enclosed configuration of a loop near a time, in the unit of the sheet; as `Track.frame`.
+    """One enclosed configuration of a loop near a time, in the unit of the sheet.
 
-    Close to a node the box has the width of that of the node. Raises `UsageError` for a time that
-    the proved part does not reach.
+    It is like that of `Track.frame`. Close to a branch point the box is as wide as that of the
+    branch point. Raises `UsageError` for a time that the proved part does not reach.
 
     >>> from exactfold.branches.counting.find import find_branch
     >>> from exactfold.motion.loops.loops import LoopFinder
@@ -30,13 +30,16 @@ def frame_of(proof: LoopProof, time: float) -> Frame:
     unit = proof.start.framework.unit
     wanted = Fraction(time) / unit
     if not 0 <= time <= proof.outline.length[1]:
-        raise UsageError(f"the loop does not reach the time {time:g}")
+        raise UsageError(
+            f"the loop does not reach the time {time:g}; give a time from 0 to "
+            f"{float(proof.outline.length[0]):g}"
+        )
     bounds, ball = _at(proof, wanted)
     return Frame((bounds[0] * unit, bounds[1] * unit), ball)
 
 
 def _at(proof: LoopProof, wanted: Fraction) -> tuple[Interval, Ball]:
-    """Bounds of the time, in the unit of the framework, and a box at about that time."""
+    """Bounds of the time, in the unit of the framework, and a box with a configuration near it."""
     landing, last = proof.landing, proof.steps[-1] if proof.steps else None
     if landing is not None and isinstance(last, Link) and wanted >= last.entered[1]:
         landed = _landed(last, landing)
@@ -46,7 +49,7 @@ def _at(proof: LoopProof, wanted: Fraction) -> tuple[Interval, Ball]:
 
 
 def _landed(link: Link, landing: Landing) -> Interval:
-    """Bounds of the time at which the last tube is left for the start tube of the landing."""
+    """Bounds of the time at which the motion passes from the last tube to that of the landing."""
     found = link.tube.located(landing.ball)
     if found is None:
         raise ArithmeticError("the landing is not on the tube")
@@ -54,7 +57,7 @@ def _landed(link: Link, landing: Landing) -> Interval:
 
 
 def _before_the_end(landing: Landing, landed: Interval, wanted: Fraction) -> tuple[Interval, Ball]:
-    """The same on the start tube of the landing, which is run through backwards."""
+    """The same on the start tube of the landing, which the motion runs through backwards."""
     start, first = landing.start, abs(landing.tau)
     shortest, longest = start.length(0, first)
     left = max(float(landed[0] + shortest - wanted), 0.0)

@@ -1,4 +1,4 @@
-"""How the graph of configurations is put together: nodes recognised, arcs followed, all counted."""
+"""How the graph of configurations is built: branch points are recognised and arcs are followed."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ from exactfold.motion.tubes.visits import LocatedNode, Visit
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.rigidity.equations.problem import Problem
 
-_NOT_LEFT = "no arc that leaves the node along this line was enclosed again"
+_NOT_LEFT = "the arc that leaves the node along this line could not be enclosed"
 
 
 def graph_of(
@@ -43,9 +43,9 @@ def graph_of(
     pool: Pool,
     progress: Progress | None = None,
 ) -> ConfigurationGraph:
-    """The graph of the loops of a sheet, and of all arcs that leave their nodes elsewhere.
+    """The graph of the loops of a sheet and of all other arcs that leave their branch points.
 
-    `missing`: why not all half-branches are matched, empty if they are. Raises `WorkerDiedError`,
+    `missing` says why not all rays are matched; it is empty if all are. Raises `WorkerDiedError`,
     and `ArithmeticError` if two proofs contradict each other, which is a defect.
     """
     census = _Census(problem, Framework.of(problem.sheet))
@@ -63,7 +63,9 @@ def graph_of(
 
 @dataclass(frozen=True)
 class _Job:
-    """An end at a node from which an arc is to be followed: about where, and in which direction."""
+    """An end at a branch point whose arc has to be followed: its place and direction,
+    approximately.
+    """
 
     end: NodeEnd
     flat: tuple[int, ...]
@@ -73,12 +75,14 @@ class _Job:
 
 @dataclass(frozen=True)
 class _FollowArc:
-    """Follows an arc from a node in a worker process; None if it is not enclosed at the node."""
+    """Follows an arc from a branch point in a worker process; None if it cannot be
+    enclosed there.
+    """
 
     pattern: CreasePattern
 
     def __call__(self, job: _Job) -> Arc | None:
-        """Follow it to the next node."""
+        """Follow the arc to the next branch point."""
         finder = _finder(self.pattern)
         framework = Framework.of(finder.problem.sheet)
         patch = FlatPatch.of(framework, job.flat)
@@ -96,9 +100,10 @@ def _finder(pattern: CreasePattern) -> LoopFinder:
 
 @dataclass
 class _Census:
-    """The nodes and arcs that are known, with their mirror images: numbers 2k and 2k + 1.
+    """The branch points and arcs that are known; 2k and 2k + 1 are mirror images of each other.
 
-    `at` has the arc of each end, `failed` the ends whose arcs were not followed to an end.
+    `at` gives the arc of each end. `failed` contains the ends whose arcs could not be followed to
+    the other end.
     """
 
     problem: Problem
@@ -111,7 +116,10 @@ class _Census:
     reasons: dict[str, None] = field(default_factory=dict)
 
     def add_loop(self, number: int, loop: Loop) -> None:
-        """The arcs of a loop from node to node; the last is open if it is not proved to its end."""
+        """Add the arcs of a loop from branch point to branch point.
+
+        If the loop is not proved to its end, its last arc is open.
+        """
         begin: End | None = loop.source
         time: Interval = Fraction(0), Fraction(0)
         for visit in loop.visits:
@@ -126,7 +134,7 @@ class _Census:
 
     @property
     def open_ends(self) -> list[NodeEnd]:
-        """Ends at nodes of which no arc is known, one of each pair of mirror images."""
+        """Ends at branch points without a known arc, one of each pair of mirror images."""
         return [
             end
             for k, node in enumerate(self.nodes)
@@ -137,7 +145,7 @@ class _Census:
         ]
 
     def jobs(self, pending: Sequence[NodeEnd], progress: Progress | None) -> Iterator[_Job]:
-        """Ends to be followed, but for those at which an arc has ended in the meantime."""
+        """Jobs for the pending ends, except those at which an arc has ended in the meantime."""
         for k, end in enumerate(pending):
             if progress is not None:
                 progress("arcs", k, len(pending))
@@ -146,7 +154,7 @@ class _Census:
                 yield _Job(end, node.flat, node.point.ball, node.lines[end.line])
 
     def add_followed(self, job: _Job, arc: Arc | None) -> None:
-        """An arc that was followed from an open end, if it is proved to begin there."""
+        """Add an arc that was followed from an open end, if it is proved to begin there."""
         if arc is None or self._side(arc.begin) != job.end:
             self.failed[job.end] = (Fraction(0), Fraction(0)), _NOT_LEFT, None
             return
@@ -159,7 +167,9 @@ class _Census:
         self._add(job.end, end, arc.length, arc.reason, None)
 
     def graph(self, missing: str) -> ConfigurationGraph:
-        """All of it; ends whose arc has come from elsewhere are no longer open."""
+        """The whole graph. An end is no longer open if an arc has reached it from the
+        other side.
+        """
         for end, (length, reason, loop) in self.failed.items():
             if end not in self.at:
                 self._append(end, None, length, reason, loop)
@@ -167,11 +177,11 @@ class _Census:
         reasons = [missing] if missing else []
         if number := sum(node.status is not PROVED for node in nodes):
             reasons.append(
-                f"at {counted(number, 'node')} not all curves that go through are proved"
+                f"at {counted(number, 'node')} not all curves through the node are proved"
             )
         if number := sum(arc.status is not PROVED for arc in self.arcs):
             reasons.append(
-                f"{counted(number, 'arc')} {agreeing(number, 'is')} not proved to an end"
+                f"{counted(number, 'arc')} {agreeing(number, 'is')} not proved from end to end"
             )
         reasons += self.reasons
         status = UNDECIDED if reasons else PROVED
@@ -194,35 +204,41 @@ class _Census:
         )
 
     def _side(self, visit: Visit) -> NodeEnd | None:
-        """The end at which a curve leaves the node it visits; None, with a reason, if not known."""
+        """The end at which a curve leaves the branch point it visits; None if it is not known.
+
+        In that case the reason is recorded.
+        """
         met = [node.meets(visit) for node in self.nodes]
         if True not in met and None in met:
-            self.reasons["whether two nodes are the same is not decided"] = None
+            self.reasons["it is undecided whether two nodes are the same"] = None
             return None
         if True in met:
             k = met.index(True)
         else:
             located = LocatedNode.of(self.framework, visit)
             if located is None or not located.point.ball.misses(located.mirrored.point.ball):
-                self.reasons["a node that is passed is not located"] = None
+                self.reasons["a node on a loop or arc could not be located"] = None
                 return None
             k = len(self.nodes)
             self.nodes += [located, located.mirrored]
             self.passed += [set(), set()]
         side = self.nodes[k].side(visit)
         if side is None:
-            self.reasons["along which line a node is passed is not decided"] = None
+            self.reasons["it is undecided along which line a curve passes a node"] = None
             return None
         return NodeEnd(k, *side)
 
     def _add(
         self, start: End | None, end: End | None, length: Interval, reason: str, loop: int | None
     ) -> None:
-        """An arc and its mirror image, unless they are known; later, if one end is not."""
+        """Add an arc and its mirror image, unless they are known.
+
+        If one end is not known, the arc is recorded as failed.
+        """
         if start is None or end is None:
             for known in (start, end):
                 if known is not None:
-                    why = reason or "the node at the other end is not identified"
+                    why = reason or "the node at the other end could not be identified"
                     self.failed[known] = length, why, loop
             return
         if before := {self.at[e] for e in (start, end) if e in self.at}:
@@ -231,7 +247,9 @@ class _Census:
                 raise ArithmeticError("two proofs contradict each other about an arc")
             return
         if start.mirrored in (start, end):
-            raise ArithmeticError("an arc that is its own mirror image has a flat configuration")
+            raise ArithmeticError(
+                "an arc is its own mirror image, so it would contain a flat configuration"
+            )
         self._append(start, end, length, "", loop)
 
     def _append(

@@ -1,4 +1,4 @@
-"""Loops: from the flat state along a half-branch, and back to the flat state along another."""
+"""Loops: from the flat state along a ray, and back to the flat state along another ray."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ from exactfold.rigidity.equations.problem import Problem
 
 MOST_TUBES = 4000
 _ALIKE = 0.25
-"""How different heights may be, of the largest one, that are taken to be those of a start tube."""
+"""Heights within this share of the largest one are tried as those of a start tube."""
 _NEAR_FLAT = 0.8
-"""Radians of the largest fold angle, below which the start tube of another half-branch is tried."""
+"""Below this largest fold angle, in radians, the start tube of another ray is tried."""
 
 
 @dataclass(frozen=True)
 class LoopFinder:
-    """Follows the half-branches of one sheet; what they share is computed once."""
+    """Follows the rays of one sheet; what they have in common is computed once."""
 
     problem: Problem
 
@@ -48,10 +48,10 @@ class LoopFinder:
         bits: int = 64,
         progress: Progress | None = None,
     ) -> LoopProof:
-        """The loop that leaves the flat state along a half-branch of a simple, proved branch.
+        """The loop that leaves the flat state along a ray of a simple, proved branch.
 
-        `pinned` and `bits` as in `half_branch`, whose errors are raised. `progress` is told how
-        many tubes there are.
+        `pinned` and `bits` are those of `half_branch`, and its errors are raised. `progress` gets
+        the number of tubes.
 
         >>> from exactfold.branches.counting.find import find_branch
         >>> branch = find_branch("two-vertex", "+-")
@@ -61,15 +61,15 @@ class LoopFinder:
         return self._proof(half_branch(branch, side, pinned, bits=bits).start, progress)
 
     def follow_from(self, branch: Branch, source: HalfBranch) -> LoopProof:
-        """The loop that leaves the flat state along `source`, one of the halves of a branch.
+        """The loop that leaves the flat state along `source`, one of the two rays of a branch.
 
-        Raises as `half_branch`, and `NotProvedAtTheFlatStateError` if it is neither half.
+        Raises the errors of `half_branch`, and `NotProvedAtTheFlatStateError` if it is neither ray.
         """
         for side in (1, -1):
             start = half_branch(branch, side).start
             if named(start) == source:
                 return self._proof(start)
-        raise NotProvedAtTheFlatStateError(f"the branch has not the half-branch {source}")
+        raise NotProvedAtTheFlatStateError(f"branch {branch.sign_text} has no half-branch {source}")
 
     def _proof(self, start: StartTube, progress: Progress | None = None) -> LoopProof:
         chain = Chain.from_flat(start, self.problem.labels)
@@ -77,7 +77,7 @@ class LoopFinder:
         return LoopProof(self.problem, start, tuple(steps), landing, reason)
 
     def follow_from_node(self, tube: NodeTube) -> ArcProof:
-        """The arc from a node on, forwards along a tube through it, to the next node."""
+        """The arc that leaves a branch point forwards along a tube, up to the next branch point."""
         chain = Chain.from_node(tube, self.problem.labels)
         steps, landing, reason = self._followed(chain, at_node=True)
         return ArcProof(tube, tuple(steps), landing, reason)
@@ -85,9 +85,9 @@ class LoopFinder:
     def _followed(
         self, chain: Chain, at_node: bool = False, progress: Progress | None = None
     ) -> tuple[list[Step], Landing | None, str]:
-        """The steps of a chain to a landing, or to what stopped the proof.
+        """The steps of a chain up to a landing, or up to the place where the proof stopped.
 
-        With `at_node` the passage of the first node is the last step.
+        With `at_node` the last step is the passage of the first branch point.
         """
         known: StartTube | None = None
         while len(chain.steps) < MOST_TUBES:
@@ -102,19 +102,20 @@ class LoopFinder:
                     return chain.steps, landing, ""
             elif at_node:
                 return chain.steps, None, ""
-        return chain.steps, None, f"{MOST_TUBES} tubes were not enough"
+        return chain.steps, None, f"the limit of {MOST_TUBES} tubes was reached"
 
     def _landing(
         self, link: Link, known: StartTube | None
     ) -> tuple[Landing | None, StartTube | None]:
-        """That a point of the start tube of another half-branch lies on this tube; and that tube.
+        """The landing on this tube, if there is one, and the start tube that was tried.
 
-        `known`: the start tube found on the link before. It is not sought anew where the motion
-        points to it and is still beyond its reach.
+        There is a landing if a point of the start tube of another ray lies on this tube. `known` is
+        the start tube found on the previous link. It is used again while the motion points to it
+        but is still beyond its reach.
         """
         tube = link.tube
         x, velocity = tube.enclosure(link.exit).floats[0], tube.velocity(link.exit).floats[0]
-        if x @ velocity > 0:  # away from the flat state
+        if x @ velocity > 0:  # the motion leads away from the flat state
             return None, None
         framework = tube.framework
         angles = fold_angles_of(framework.positions(x), framework.hinges)
@@ -137,9 +138,10 @@ class LoopFinder:
 
 
 def _tau_at(start: StartTube, x: FloatArray) -> int:
-    """The tau at which a start tube, or for negative ones its mirror image, is next to unknowns x.
+    """The tau at which a start tube is nearest to unknowns x; negative on its mirror image.
 
-    The height that is held is the same along the whole start tube: it gives t, and tau.
+    The height that is held is constant on the start tube before the blow-up is undone, so it gives
+    t, and t gives tau.
     """
     held = start.coefficients[0][start.held] / (1 << start.bits)
     return round(float(x[start.held]) / held * (1 << (ROOT_BITS + start.halvings)))
@@ -154,7 +156,9 @@ def _points_to(start: StartTube, x: FloatArray) -> bool:
 
 
 def _landed(link: Link, start: StartTube, tau: int) -> Landing | None:
-    """That a point of a start tube lies on the tube of a link, which it passes backwards."""
+    """The landing, if a point of a start tube lies on the tube of a link and passes it
+    backwards.
+    """
     tube = link.tube
     if not 0 < abs(tau) <= start.last:
         return None

@@ -1,4 +1,4 @@
-"""`find_loops`: how the half-branches at the flat state are joined by true motions."""
+"""`find_loops`: which rays at the flat state true motions connect with each other."""
 
 from __future__ import annotations
 
@@ -70,14 +70,15 @@ class LoopsDocument(TypedDict):
 class Loops:
     """The loops of true configurations through the flat state of a sheet.
 
-    Ignoring contact, every half-branch is the beginning of a curve that comes back along another
-    one. `loops` holds one loop of each pair of mirror images, in the order of their sources; the
-    same loop run through backwards is not listed again. `skipped`: half-branches that are not
-    simple, by the reason, of which nothing is claimed. Curves that do not pass the flat state are
-    not looked for.
+    If contact is ignored, every ray is the beginning of a curve that comes back along another ray.
+    `loops` contains one loop of each pair of mirror images, in the order of their sources; a loop
+    run through backwards is not listed again. `skipped` gives the reason for each ray that is not
+    simple; nothing is claimed about these. Curves that do not pass the flat state are not looked
+    for.
 
-    `status` is PROVED if all 2^(n + 1) half-branches are matched, with proof. `graph`: the flat
-    state, the nodes that can be reached from it, and all arcs between them, mirror images as well.
+    `status` is PROVED if all 2^(n + 1) rays are matched, with proof. `graph` consists of the flat
+    state, the branch points that can be reached from it, and all arcs between them, including
+    mirror images.
     """
 
     pattern: CreasePattern
@@ -90,9 +91,9 @@ class Loops:
 
     @cached_property
     def matching(self) -> Mapping[HalfBranch, HalfBranch]:
-        """The half-branch that each half-branch is joined with, for all that are proved.
+        """For every ray of a proved loop, the ray with which it is matched.
 
-        Every loop gives four entries: there and back, and the mirror image of both.
+        Every loop gives four entries: there and back, and the mirror images of both.
         """
         found: dict[HalfBranch, HalfBranch] = {}
         for loop in self.loops:
@@ -134,21 +135,23 @@ def find_loops(
     resume: bool = False,
     replace: bool = True,
 ) -> Loops:
-    """Follow every half-branch of a sheet through true configurations back to the flat state.
+    """Follow every ray of a sheet through true configurations back to the flat state.
 
-    Each loop is one analytic curve, proved from end to end by tubes (docs/motion.md), through nodes
-    as well; of mirror images and of the two directions one is followed. Then the arcs that leave
-    the nodes on other lines are followed, likewise proved. Four boundary vertices. `processes`
-    share the work, or one does it, where others would hardly have started before the end.
+    Each loop is one analytic curve. Tubes prove it from end to end (docs/motion.md), also through
+    branch points. Of two mirror images and of the two directions only one is followed. Then the
+    arcs that leave the branch points on other lines are followed and proved in the same way. The
+    sheet needs four boundary vertices. `processes` share the work; on small sheets one process does
+    all of it, because others would hardly have started before the end.
 
-    The file `certificate` takes the proof of each loop as it is found, and at last the claims, for
+    The file `certificate` gets the proof of each loop as it is found, and finally the claims, for
     `exactfold.checker` (docs/motions.md). With `resume`, a file left by an interrupted run is
-    continued: the loops in it are taken over, as far as its digests show that they are whole, and
-    are not verified anew. Otherwise it is replaced, or refused without `replace`.
+    continued: the loops that its digests show to be complete are taken over without being verified
+    again. Otherwise the file is replaced, or refused if `replace` is false.
 
-    Raises `NotCountedError` for sheets that are not counted or have no branches, `ArithmeticError`
-    if two proofs contradict each other, which is a defect; for the file `ForeignJournalError`,
-    `JournalInUseError`, `UnwritableFileError`, `UsageError`; `WorkerDiedError`.
+    Raises `NotCountedError` for sheets that are not counted or have no branches, and
+    `ArithmeticError` if two proofs contradict each other, which is a defect. For the file it raises
+    `ForeignJournalError`, `JournalInUseError`, `UnwritableFileError` and `UsageError`. It raises
+    `WorkerDiedError` if a process dies.
 
     >>> found = find_loops("two-vertex")
     >>> found
@@ -160,7 +163,7 @@ def find_loops(
     problem.require_foldable()
     ways = count_branches(sheet)
     if ways.status is not PROVED:
-        raise NotCountedError(f"the branches are not all proved: {ways.reason}")
+        raise NotCountedError(f"loops need all branches proved, and some are not: {ways.reason}")
     skipped = {
         branch.sign_text: _why_skipped(branch)
         for branch in ways.branches
@@ -177,7 +180,7 @@ def find_loops(
     if many := len(skipped):
         reasons.append(f"{counted(many, 'branch')} {agreeing(many, 'is')} not simple")
     if left := sum(loop.target is None for loop in found):
-        reasons.append(f"{counted(left, 'loop')} {agreeing(left, 'is')} not proved to the end")
+        reasons.append(f"{counted(left, 'loop')} {agreeing(left, 'is')} not proved to its end")
     reason = "; ".join(reasons)
     loops = Loops(
         sheet,
@@ -189,31 +192,34 @@ def find_loops(
         time.perf_counter() - begun,
     )
     if not reasons and len(loops.matching) != 2 ** (len(problem.foldable) + 1):
-        raise ArithmeticError("half-branches are missing from a matching that should be whole")
+        raise ArithmeticError("half-branches are missing from a matching that should be complete")
     return loops
 
 
 def _why_skipped(branch: Branch) -> str:
-    """Why the half-branches of a branch on which a vertex is flat are not followed."""
+    """Why the rays of a branch on which a vertex is flat are not followed."""
     line = straight_fold(branch)
     if not line:
         return "a vertex is flat on it"
     return (
-        "a vertex is flat on it: the sheet turns about the straight line "
-        f"{'-'.join(map(str, line))}, exactly, and at 180 degrees, folded flat, motions may branch"
+        "a vertex is flat on it: the sheet turns exactly about the straight line "
+        f"{'-'.join(map(str, line))}, and at 180 degrees, where it is folded flat, motions may "
+        "branch"
     )
 
 
 _ALONE = 3
-"""With at most so many foldable vertices all is done before other processes would have started."""
+"""With at most this many foldable vertices, one process finishes before others would have
+started.
+"""
 
 Job = tuple[HalfBranch, bool]
-"""A half-branch on which the saddle, or the reflex corner, is positive; and whether to certify."""
+"""A ray on which the saddle or the reflex corner is positive; and whether to certify its loop."""
 
 
 @dataclass(frozen=True)
 class _Follow:
-    """The loop from a half-branch, and its line in a certificate; None if a vertex is flat on it.
+    """The loop from a ray, and its line in a certificate; None if a vertex is flat on the ray.
 
     The line is empty for a loop that is not proved to its end.
     """
@@ -221,7 +227,7 @@ class _Follow:
     pattern: CreasePattern
 
     def __call__(self, job: Job) -> tuple[Loop, str] | None:
-        """Follow it; run in a worker process."""
+        """Follow the loop; this runs in a worker process."""
         (source, certified), (finder, loops) = job, _finders(self.pattern)
         signs = dict(zip(loops.problem.foldable, source.vertex_signs, strict=True))
         try:
@@ -235,10 +241,11 @@ class _Follow:
 
 
 def _turn(signs: tuple[int, ...]) -> tuple[int, tuple[int, ...]]:
-    """When the half-branch with these signs is followed: first those with an even number of `+`.
+    """The sorting key of the ray with these signs: rays with an even number of `+` come first.
 
-    Most loops flip one sign (docs/matching.md). If it is that of a vertex, one end has an even
-    number and the other an odd one; so loops that are followed at one time are seldom the same.
+    Most loops flip one sign (docs/matching.md). If it is the sign of a vertex, one end has an even
+    number of `+` and the other an odd number. So loops that are followed at the same time are
+    seldom equal.
     """
     return signs.count(1) % 2, signs
 
@@ -255,7 +262,7 @@ def _followed(
     progress: Progress | None,
     file: LoopFile | None,
 ) -> Iterator[Loop]:
-    """The loops; a half-branch at which one has ended, or its mirror image, is not followed."""
+    """The loops. A ray is not followed if a loop, or its mirror image, has ended at it."""
     ended: set[HalfBranch] = set() if file is None else set(file.matched)
     number = len(problem.foldable)
 
@@ -281,17 +288,17 @@ def _followed(
 
 
 def _matching(found: Iterable[Loop]) -> list[Loop]:
-    """The loops, each once, in the order of their sources; raises as `_check`."""
+    """The loops, each once, in the order of their sources; raises the errors of `_check`."""
     ordered = sorted(found, key=lambda loop: loop.source)
     _check(ordered)
     return _once(ordered)
 
 
 def _once(found: Iterable[Loop]) -> list[Loop]:
-    """Of loops that are the same, run through backwards or mirrored, the first one."""
+    """The first of several loops that are equal, mirrored, or run through backwards."""
     seen: set[HalfBranch] = set()
     kept = []
-    # First those that are proved: one that is not may be the end of another.
+    # Proved loops come first: the source of an unproved loop may be the target of a proved one.
     for loop in sorted(
         found, key=lambda loop: (loop.target is None, _turn(loop.source.vertex_signs))
     ):
@@ -304,11 +311,11 @@ def _once(found: Iterable[Loop]) -> list[Loop]:
 
 
 def _check(found: Iterable[Loop]) -> None:
-    """Raise `ArithmeticError` unless the proved loops are a matching of half-branches.
+    """Raise `ArithmeticError` unless the proved loops are a matching of rays.
 
-    Loops that were followed from both ends agree, no half-branch is matched with itself, and none
-    with two others: as two curves of a simple half-branch would have to be. Each flips one sign
-    more than stars are flat at its nodes, modulo 2 (docs/matching.md, Theorem 1a).
+    Loops that were followed from both ends have to agree. No ray is matched with itself or with two
+    others, because a simple ray has only one curve. Modulo 2, each loop flips one sign more than
+    the number of stars that are flat at its branch points (docs/matching.md, Theorem 1a).
     """
     partner: dict[HalfBranch, HalfBranch] = {}
     for loop in found:

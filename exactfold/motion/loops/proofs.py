@@ -1,4 +1,4 @@
-"""Loops, and their proofs: from the flat state along a half-branch, and back along another."""
+"""Loops from the flat state along a ray and back along another ray, and their proofs."""
 
 from __future__ import annotations
 
@@ -68,11 +68,11 @@ class LoopDocument(_From):
 
 @dataclass(frozen=True, repr=False)
 class Landing:
-    """Where a motion comes back to the flat state: on the last tube lies a point of `start`.
+    """Where a motion comes back to the flat state: a point of the start tube lies on the last tube.
 
-    At `tau` the start tube of the half-branch `to`, which is that of its mirror image for a
-    negative `tau`, passes the last tube in the opposite direction; so the motion ends in the flat
-    state along `to`.
+    `start` is the start tube of the ray `to`. At `tau` it passes the last tube in the opposite
+    direction, so the motion ends in the flat state along `to`. If `tau` is negative, this is on the
+    mirror image of `start`.
     """
 
     to: HalfBranch
@@ -81,7 +81,7 @@ class Landing:
 
     @property
     def ball(self) -> Ball:
-        """A box of unknowns of the length equations that holds the configuration at `tau`."""
+        """A box of unknowns of the length equations that contains the configuration at `tau`."""
         return self.start.ball(self.tau)
 
     def __repr__(self) -> str:
@@ -90,13 +90,14 @@ class Landing:
 
 @dataclass(frozen=True, repr=False)
 class Loop:
-    """The true configurations from the flat state along `source` back to it along `target`.
+    """The true configurations from the flat state along `source` and back to it along `target`.
 
-    `through`: the vertices that are flat at each node on the way, in order, and `visits` where and
-    when these are passed. `length` bounds the length in the unit of the sheet; where `status` is
-    UNDECIDED that of the part that is proved, `target` is None, and `reason` says what stopped the
-    proof. `tubes`: how many proved it. `folds`: the ranges of the angles of all folds, empty if the
-    status is UNDECIDED or a range was not proved, and in an outline.
+    `through` are the vertices that are flat at each branch point on the way, in order. `visits` say
+    where and when these points are passed. `length` are bounds of the length in the unit of the
+    sheet. If `status` is UNDECIDED, `length` is that of the proved part, `target` is None, and
+    `reason` says what stopped the proof. `tubes` is the number of pieces of the proof. `folds` are
+    the ranges of the angles of all folds; it is empty in an outline, and if the status is UNDECIDED
+    or some range was not proved.
     """
 
     source: HalfBranch
@@ -110,7 +111,7 @@ class Loop:
     folds: tuple[FoldRange, ...] = ()
 
     def to_dict(self) -> LoopDocument:
-        """The loop as `exactfold motions --json` prints it."""
+        """The object of this loop in the output of `exactfold motions --json`."""
         return {
             "from": self.source.to_dict(),
             "to": None if self.target is None else self.target.to_dict(),
@@ -131,9 +132,9 @@ class Loop:
 
 @dataclass(frozen=True, repr=False)
 class LoopProof:
-    """One analytic curve of configurations from `start` through `steps` to `landing`, no gap.
+    """One analytic curve of configurations from `start` through `steps` to `landing`.
 
-    Without `landing` it ends after the last step, and `reason` says why.
+    It has no gap. Without a `landing` it ends after the last step, and `reason` says why.
     """
 
     problem: Problem
@@ -144,12 +145,12 @@ class LoopProof:
 
     @cached_property
     def loop(self) -> Loop:
-        """What is proved."""
+        """The loop that is proved."""
         return replace(self.outline, folds=self._folds())
 
     @cached_property
     def outline(self) -> Loop:
-        """The same without the ranges of the fold angles, which take time."""
+        """The loop without the ranges of the fold angles, which take time to compute."""
         landing, unit = self.landing, self.start.framework.unit
         low, high = self.steps[-1].left if self.steps else self.start.length(0, self.start.last)
         if landing is not None:
@@ -166,7 +167,7 @@ class LoopProof:
         )
 
     def _folds(self) -> tuple[FoldRange, ...]:
-        """The ranges of the fold angles on the loop; none without a landing."""
+        """The ranges of the fold angles on the loop; empty without a landing."""
         if self.landing is None:
             return ()
         chain = [on_start_tube(self.start, 0, self.start.last)]
@@ -175,7 +176,7 @@ class LoopProof:
             if isinstance(step, Passage):
                 chain.append(on_node_tube(step.tube, step.entry, step.exit))
                 continue
-            # To the point that lies on the next piece, which is known but for its box.
+            # The stretch ends at the point that lies on the next piece, known up to its box.
             end = step.exit
             vague = max(vague, step.entry[1] - step.entry[0])
             if not isinstance(after, Link):
@@ -198,8 +199,8 @@ class LoopProof:
     def line(self) -> str:
         """The line of a loop that is proved to its end, for `exactfold.checker` (docs/motions.md).
 
-        It claims a length a little smaller than that of the loop, as far as straight chords show
-        it. Raises `NotCountedError` for a loop without a landing.
+        It claims a length slightly smaller than that of the loop, namely what straight chords show.
+        Raises `NotCountedError` for a loop without a landing.
         """
         if self.landing is None:
             raise NotCountedError(f"the loop is not proved to its end: {self.reason}")
@@ -218,10 +219,10 @@ class LoopProof:
         )
 
     def certificate(self, rim: Mapping[int, Fraction]) -> Document:
-        """The proof of a motion along the rim path of `rim`, there and back (docs/motion.md, 9).
+        """The proof of a motion there and back along the path of the boundary heights `rim`.
 
-        Unlike a loop it is a motion of its own kind, not one of those that all half-branches of the
-        sheet are matched by. Raises `NotCountedError` as `line`.
+        See docs/motion.md, 9. This is a single motion, not one of the loops that match all rays of
+        a sheet. Raises `NotCountedError` as `line` does.
         """
         if self.landing is None:
             raise NotCountedError(f"the motion is not proved to its end: {self.reason}")
@@ -244,7 +245,7 @@ class LoopProof:
         )
 
     def _named(self, half_branch: HalfBranch) -> Document:
-        """A half-branch by the signs of all interior vertices of the pattern."""
+        """A ray, given by the signs of all interior vertices of the pattern."""
         signs = dict(zip(self.problem.foldable, half_branch.vertex_signs, strict=True))
         interior = self.problem.pattern.interior
         return {"vertex_signs": [signs.get(v, 0) for v in interior], "side": half_branch.saddle}
@@ -264,11 +265,12 @@ class LoopProof:
 
 @dataclass(frozen=True, repr=False)
 class Arc:
-    """A curve of regular configurations from a node to the next one, or to the flat state.
+    """A curve of regular configurations from a branch point to the next one, or to the flat state.
 
-    It leaves the node of `begin` in the direction of this visit, and ends with the visit `end` of
-    another node, or in the flat state along the half-branch `end`; None if it is proved as far as
-    `length` only, for the `reason` given. `length` is in the unit of the sheet.
+    It leaves the branch point of the visit `begin` in the direction of this visit. It ends with the
+    visit `end` of another branch point, or in the flat state along the ray `end`. If `end` is None,
+    it is proved only as far as `length`, for the given `reason`. `length` is in the unit of the
+    sheet.
     """
 
     begin: Visit
@@ -283,9 +285,10 @@ class Arc:
 
 @dataclass(frozen=True, repr=False)
 class ArcProof:
-    """One analytic curve of configurations from the middle of `begin` through `steps`, no gap.
+    """One analytic curve of configurations from the middle of `begin` through `steps`.
 
-    It ends in the flat state with `landing`, at the node of the last step, or for `reason`.
+    It has no gap. It ends in the flat state with `landing`, or at the branch point of the last
+    step, or for `reason`.
     """
 
     begin: NodeTube
@@ -295,7 +298,7 @@ class ArcProof:
 
     @property
     def arc(self) -> Arc:
-        """What is proved."""
+        """The arc that is proved."""
         unit, last = self.begin.framework.unit, self.steps[-1] if self.steps else None
         begin = Visit.of(self.begin, (Fraction(0), Fraction(0)))
         end: Visit | HalfBranch | None = None
@@ -315,7 +318,7 @@ class ArcProof:
 
 
 def provenance_of(loop: Loop) -> Document:
-    """What the line of a loop keeps for a run that is continued; it is not verified."""
+    """What the line of a loop keeps for a run that continues the file; it is not verified."""
     return {
         "length": _texts(loop.length),
         "nodes": [
@@ -338,13 +341,13 @@ def _texts(interval: Interval) -> list[str]:
 
 
 def named(start: StartTube, side: int = 1) -> HalfBranch:
-    """The half-branch of a start tube, or of its mirror image."""
+    """The ray of a start tube; if `side` is negative, that of its mirror image."""
     named = HalfBranch(start.vertex_signs, start.side)
     return named if side > 0 else named.mirrored
 
 
 def whole_length(step: Step, landing: Landing) -> Interval:
-    """Bounds of the length of a loop, whose last tube is met by the start tube of the landing."""
+    """Bounds of the length of a loop whose last step meets the start tube of the landing."""
     found = step.tube.located(landing.ball) if isinstance(step, Link) else None
     if not isinstance(step, Link) or found is None or found[0] < step.entry[1]:
         raise ArithmeticError("the landing is not on the tube")

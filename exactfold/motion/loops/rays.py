@@ -1,4 +1,4 @@
-"""The two halves of every branch: the directions in which a sheet leaves the flat state."""
+"""The two rays of every branch: the directions in which a sheet leaves the flat state."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from exactfold.motion.curves.motion_document import RayDocument
 class HalfBranch:
     """One of the two rays of a branch, named by what the moving sheet itself shows.
 
-    `vertex_signs`: of the foldable vertices in order, 1 popped up and -1 popped down. `saddle`: the
-    sign of the boundary saddle. On a sheet with four boundary vertices and n foldable ones there
-    are 2^(n + 1) of them, if all branches are simple.
+    `vertex_signs` are those of the foldable vertices in order: 1 popped up, -1 popped down.
+    `saddle` is the sign of the boundary saddle. A sheet with four boundary vertices and n foldable
+    ones has 2^(n + 1) rays, if all branches are simple.
     """
 
     vertex_signs: tuple[int, ...]
@@ -22,16 +22,16 @@ class HalfBranch:
 
     @property
     def mirrored(self) -> HalfBranch:
-        """The half-branch of the mirror image."""
+        """The ray of the mirror image."""
         return HalfBranch(tuple(-s for s in self.vertex_signs), -self.saddle)
 
     @property
     def sign_text(self) -> str:
-        """The vertex signs as in "+-"."""
+        """The vertex signs as a text such as "+-"."""
         return "".join(SIGNS[s] for s in self.vertex_signs)
 
     def to_dict(self) -> RayDocument:
-        """The half-branch as JSON shows it."""
+        """The object of this ray in JSON."""
         return {"vertex_signs": self.sign_text, "saddle": self.saddle}
 
     def __str__(self) -> str:

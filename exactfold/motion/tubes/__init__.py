@@ -1,1 +1,1 @@
-"""Proofs of curves: tubes with exactly one configuration for each parameter, and their links."""
+"""Proofs of curves: tubes, which hold one configuration for each parameter, and their links."""

@@ -1,4 +1,4 @@
-"""Proved bounds of the length of a piece of a curve that is near a polynomial one."""
+"""Proved bounds of the length of a piece of a curve that is near a polynomial curve."""
 
 from __future__ import annotations
 
@@ -29,15 +29,16 @@ def length_between(
     high: int,
     depth: int = 5,
 ) -> Interval:
-    """Bounds of the length of x(s) for low <= s <= high, integers over 2^`places`.
+    """Bounds of the length of x(s) for low <= s <= high, where these are integers over 2^`places`.
 
-    `velocity` are the coefficients of p'(s) over 2^bits, `error` bounds of |x_i'(s) - p_i'(s)| over
-    2^bits for all s between. With a polynomial S near |p'|,
+    `velocity` are the coefficients of p'(s) over 2^bits. `error` are bounds of |x_i'(s) - p_i'(s)|
+    over 2^bits for all these s. For a polynomial S near |p'|,
 
-        | |p'| - S | <= max | |p'|^2 - S^2 | / min S,
+        | |p'| - S | <= max | |p'|^2 - S^2 | / min S.
 
-    both from the absolute values of the coefficients, and the integral of S is exact. Where the
-    speed changes much the interval is halved, up to `depth` times.
+    Both the maximum and the minimum are bounded by the absolute values of the coefficients, and the
+    integral of S is exact. Where the speed changes a lot, the interval is halved, up to `depth`
+    times.
 
     >>> [float(x) for x in length_between([(3, 4)], 0, (0, 0), 1, 0, 1)]
     [2.5, 2.5]
@@ -59,7 +60,7 @@ def length_between(
     off = isqrt(sum(r * r for r in error)) + 1 if any(error) else 0
     span = Fraction(high - low, 1 << places)
     poor = 2 * least < root[0] or -(-largest(misfit) // least) > root[0] >> _CLOSE
-    if poor and depth:  # the speed changes much: both halves from their middles
+    if poor and depth:  # the speed changes a lot: treat both halves, expanded at their middles
         total = [Fraction(0), Fraction(0)]
         middle = (low + high) // 2
         for begin, end in ((low, middle), (middle, high)):
@@ -76,7 +77,7 @@ def length_between(
             )
             total = [x + y for x, y in zip(total, part, strict=True)]
         return total[0], total[1]
-    if least <= 0:  # only bounds of the speed are left
+    if least <= 0:  # S may vanish: only an upper bound of the speed is left
         fast = largest([isqrt(sum(x * x for x in row)) + 1 for row in velocity])
         return Fraction(0), rounded(Fraction(fast + off, 1 << bits) * span, 1)
     slack = (Fraction(off, 1 << bits) + Fraction(-(-largest(misfit) // least), 1 << unit)) * span
@@ -90,10 +91,10 @@ def length_between(
 
 @lru_cache(maxsize=64)
 def _speed(velocity: tuple[Row, ...]) -> tuple[list[int], list[int], int]:
-    """The polynomial S near |p'|, and S^2 - |p'|^2, and how many bits more S has than p'."""
+    """The polynomial S near |p'|, the difference S^2 - |p'|^2, and the extra bits that S has."""
     curve = np.array(velocity, dtype=object)[:, None, :]
     speed = [int(x[0]) for x in squared(curve)]
-    # Places after the point for S, so that slow curves keep their digits.
+    # S gets extra binary places, so that slow curves keep their digits.
     extra = max(0, 64 - speed[0].bit_length() // 2)
     speed = [x << 2 * extra for x in speed]
     root = [isqrt(speed[0]) or 1]
@@ -110,9 +111,10 @@ def _speed(velocity: tuple[Row, ...]) -> tuple[list[int], list[int], int]:
 
 
 def parameter_after(velocity: FloatArray, length: float, places: int, low: int, high: int) -> int:
-    """A parameter nearly `length` after `low`, over 2^`places`, in floats: nothing is proved.
+    """A parameter, over 2^`places`, that is approximately `length` after `low`.
 
-    `velocity` are the coefficients of p'(s), shape (coefficients, unknowns).
+    The computation is in floats and proves nothing. `velocity` are the coefficients of p'(s), shape
+    (coefficients, unknowns).
 
     >>> parameter_after(np.array([[3.0, 4.0]]), 2.5, 1, 0, 4)
     1
@@ -135,13 +137,15 @@ def parameter_after(velocity: FloatArray, length: float, places: int, low: int, 
 
 @cache
 def _gauss(count: int) -> tuple[FloatArray, FloatArray]:
-    """The nodes and weights of Gauss's quadrature on [-1, 1]."""
+    """The nodes and weights of Gaussian quadrature on [-1, 1]."""
     nodes, weights = np.polynomial.legendre.leggauss(count)
     return nodes, weights
 
 
 def shifted(curve: Sequence[Row], at: int, places: int) -> tuple[list[Row], int]:
-    """The polynomials in s - `at` / 2^places, exactly, and how many bits more they have."""
+    """The polynomials in s - `at` / 2^places, exactly, and the number of additional bits
+    they have.
+    """
     more = places * (len(curve) - 1)
     columns = []
     for column in zip(*curve, strict=True):
@@ -154,14 +158,14 @@ def shifted(curve: Sequence[Row], at: int, places: int) -> tuple[list[Row], int]
 
 
 def rounded(value: Fraction, direction: int) -> Fraction:
-    """A dyadic number near a rational one, not below it (1) or not above it (-1)."""
+    """A dyadic number near a rational one: at least (1) or at most (-1) the rational number."""
     scaled = value.numerator << _ROUND
     whole = -(-scaled // value.denominator) if direction > 0 else scaled // value.denominator
     return Fraction(whole, 1 << _ROUND)
 
 
 def in_floats(bounds: Interval) -> tuple[float, float]:
-    """Bounds of a length as floats, rounded outwards, the lower one not below 0.
+    """Bounds of a length as floats, rounded outwards; the lower bound is at least 0.
 
     >>> low, high = in_floats((Fraction(1, 3), Fraction(1, 3)))
     >>> Fraction(low) < Fraction(1, 3) < Fraction(high), in_floats((Fraction(0), Fraction(0)))[0]

@@ -1,4 +1,4 @@
-"""Wheel stresses at a node, and the directions in which arcs seem to go through it."""
+"""Wheel stresses at a branch point, and the directions in which arcs seem to pass through it."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ _STARTS, _NEWTON, _CLOSE, _SAME = 16, 40, 1e-13, 1e-9
 
 @dataclass(frozen=True, repr=False)
 class Stresses:
-    """The wheel stresses of the flat vertices on the edges: integers over 2^`bits`, one row each.
+    """The wheel stresses of the flat vertices on the edges, one row each, integers over 2^`bits`.
 
-    Row k takes the place of edge `replaced[k]`; the stresses on these edges are independent.
+    Row k replaces the equation of edge `replaced[k]`. The stresses on these edges are independent.
     """
 
     rows: BigArray
@@ -30,7 +30,7 @@ class Stresses:
 
     @classmethod
     def of(cls, equations: LengthEquations, patch: FlatPatch) -> Stresses:
-        """Those of the flat vertices of a patch."""
+        """The wheel stresses of the flat vertices of a patch."""
         framework = equations.framework
         place = {(int(i), int(j)): k for k, (i, j) in enumerate(framework.edges)}
         rows = np.zeros((len(patch.flat), len(place)), dtype=object)
@@ -51,7 +51,7 @@ class Stresses:
 
 
 def _independent(rows: BigArray) -> tuple[int, ...]:
-    """Columns on which the rows are independent, by exact elimination."""
+    """Columns in which the rows are independent, found by exact elimination."""
     left = [[Fraction(int(x)) for x in row] for row in rows]
     chosen: list[int] = []
     for k, row in enumerate(left):
@@ -67,10 +67,11 @@ def _independent(rows: BigArray) -> tuple[int, ...]:
 
 
 def directions_at(framework: Framework, patch: FlatPatch, near: FloatArray) -> list[FloatArray]:
-    """Directions in which arcs seem to go through the node near `near`: floats that prove nothing.
+    """Directions in which arcs seem to pass through the branch point near `near`.
 
-    They are the lines in the kernel of the Jacobian, of dimension |flat| + 1, on which
-    sum_e w_v,e |y_e|^2 = 0 for every flat v: at most 2^|flat|, if they are finitely many.
+    They are floats and prove nothing. The kernel of the Jacobian has dimension |flat| + 1. The
+    directions are the lines in it on which sum_e w_v,e |y_e|^2 = 0 for every flat v. There are at
+    most 2^|flat| of them, if they are finitely many.
     """
     equations = LengthEquations.of(framework)
     w, number = Stresses.of(equations, patch).floats, len(patch.flat)

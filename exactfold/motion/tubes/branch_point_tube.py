@@ -1,4 +1,4 @@
-"""Arcs through a node: a configuration with a flat patch, where several curves cross."""
+"""Arcs through a branch point: a configuration with a flat patch, where several curves cross."""
 
 from __future__ import annotations
 
@@ -20,21 +20,24 @@ from exactfold.motion.tubes.tube import longest
 
 ROW_BITS = 20
 _BITS = 30
-"""P is rounded to multiples of 2^-_BITS."""
+"""The matrix P is rounded to multiples of 2^-_BITS."""
 
 
 @dataclass(frozen=True, repr=False)
 class NodeTube(Piece):
-    """The curve x* + s y(s) through a node x*, the one configuration in `node` with a flat patch.
+    """The curve x* + s y(s) through a branch point x*.
 
-    y solves, with the edge vectors X_e of x* and the wheel stresses w_v of the flat vertices v,
+    x* is the only configuration in `node` with this flat patch. Let X_e be the edge vectors of x*,
+    and w_v the wheel stresses of the flat vertices v. The curve y solves three kinds of equations:
 
-        X_e . y_e + (s / 2) |y_e|^2 = 0 for edges e, except one for each v, in place of which
-        sum_e w_v,e |y_e|^2 / 2 = 0,   the ties of the framework, and T . y = 1:
+        X_e . y_e + (s / 2) |y_e|^2 = 0 for all edges e except one for each v,
+        sum_e w_v,e |y_e|^2 / 2 = 0 for each v, in place of that edge,
+        the ties of the framework, and T . y = 1.
 
-    at x* the wheel stresses balance, so that the sum of w_v,e times the equations of the edges is s
-    times the second line. So for s = 0, too, these are N regular equations (docs/motions.md), and
-    x* + s y(s) is an analytic curve that crosses the others at the node.
+    The wheel stresses balance at x*. So the sum of w_v,e times the equations of the edges is s
+    times the equation of v. Therefore these are N regular equations for s = 0, too
+    (docs/motions.md), and x* + s y(s) is an analytic curve that crosses the others at the branch
+    point.
     """
 
     patch: FlatPatch
@@ -42,15 +45,15 @@ class NodeTube(Piece):
     row: Row
 
     def ball(self, parameter: int) -> Ball:
-        """A box of unknowns of the length equations that holds the configuration at s."""
+        """A box of unknowns of the length equations that contains the configuration at s."""
         return self._along(self.node.finer(self.bits), self.enclosure(parameter), parameter)
 
     def ball_velocity(self, parameter: int) -> Ball:
-        """A box that holds the derivative by s of these unknowns: y + s y'."""
+        """A box that contains the derivative of these unknowns with respect to s: y + s y'."""
         return self._along(self.enclosure(parameter), self.velocity(parameter), parameter)
 
     def _along(self, base: Ball, step: Ball, parameter: int) -> Ball:
-        """A box that holds x + s y for all x in one box and y in another, rounded outwards."""
+        """A box that contains x + s y for all x in `base` and all y in `step`, rounded outwards."""
         pairs = zip(base.centre, step.centre, strict=True)
         centre = tuple(x + (parameter * y >> PARAMETER_BITS) for x, y in pairs)
         pairs = zip(base.radii, step.radii, strict=True)
@@ -70,7 +73,7 @@ class NodeTube(Piece):
         return length_between(rows, self.bits, error, PARAMETER_BITS, low, high)
 
     def near(self, length: float, low: int, high: int) -> int:
-        """A parameter between `low` and `high` that is nearly this length after `low`."""
+        """A parameter between `low` and `high` that is approximately this length after `low`."""
         rows = np.array([self._floats(row) for row in self._slope_of_displacements])
         return parameter_after(rows, length, PARAMETER_BITS, low, high)
 
@@ -90,10 +93,10 @@ def prove_node_tube(
     bits: int = 64,
     thickness: float = 1e-8,
 ) -> NodeTube | None:
-    """The arc through the node near the unknowns `near`, about in the direction `along`.
+    """The arc through the branch point near the unknowns `near`, roughly in the direction `along`.
 
-    None proves nothing. Floats choose the direction, series and P; the rest is verified in
-    integers, with every configuration of the box of the node in the place of x*.
+    None proves nothing. Floats choose the direction, the series and P. Everything else is verified
+    in integers, for every configuration in the box of the branch point in place of x*.
     """
     equations = LengthEquations.of(framework, bits)
     node = patch.enclosed(near, equations.bits)
@@ -114,7 +117,7 @@ def prove_node_tube(
 def _series(
     equations: LengthEquations, stresses: Stresses, node: Ball, along: FloatArray, order: int
 ) -> tuple[Curve, Row, FloatArray, Row] | None:
-    """The series of y in s, T, P and the weights, all from floats."""
+    """The series of y in s, the row T, the matrix P, and the weights, all computed in floats."""
     framework, w = equations.framework, stresses.floats
     kept = np.ones(len(framework.edges), dtype=bool)
     kept[list(stresses.replaced)] = False
@@ -144,7 +147,7 @@ def _series(
     series = _taylor(equations, stresses, kept, linear, row, y, order)
     if series is None:
         return None
-    # The unit of s is chosen so that the coefficients fall by about a half.
+    # The unit of s is chosen so that each coefficient is about half as large as the previous one.
     sizes = np.abs(series).max(axis=1)
     growth = max(
         ((sizes[k] / sizes[0]) ** (1 / k) for k in range(1, order + 1) if sizes[k] > 0),
@@ -189,8 +192,9 @@ def _derivative(
 ) -> Any:
     """The coefficient of s^k of the derivative of the equations, without the ties and the row T.
 
-    X_e for k = 0 and else the y_e of the coefficient before, times `kept_factor`; the rows that are
-    replaced hold the sum of w_v,e times those of the coefficient k.
+    The rows of the edges are X_e for k = 0, and otherwise the y_e of coefficient k - 1, times
+    `kept_factor`. The rows that are replaced contain the sums of w_v,e times the y_e of coefficient
+    k.
     """
     dense, none = equations.places.dense, np.zeros_like(x)
     before = x if k == 0 else parts[k - 1] if k - 1 < len(parts) else none
@@ -296,7 +300,7 @@ def _bounds(
     inverse: FloatArray,
     weights: Row,
 ) -> Contraction:
-    """The contraction of the equations of y for every node in its box; all is rounded upwards."""
+    """The contraction of the equations of y for every point of the box `node`, rounded upwards."""
     framework, bits, more = equations.framework, equations.bits, stresses.bits
     p, n = _whole(inverse), framework.size
     size = abs(p)
@@ -304,7 +308,7 @@ def _bounds(
     box = node.finer(bits)
     x = equations.flat_edges + equations.along([box.centre])[0]
     parts = equations.along(curve)
-    # How far X_e may be from x_e, shape (edges, 3).
+    # `spread` bounds the distance of X_e from x_e, shape (edges, 3).
     spread = np.zeros((len(framework.points), 3), dtype=object)
     spread[framework.free] = np.array(box.radii, dtype=object).reshape(-1, 3)
     i, j = framework.edges.T
@@ -313,7 +317,7 @@ def _bounds(
     w = np.array(weights, dtype=object)
 
     def norm(rows: BigArray, places: int) -> int:
-        """The largest rows_i / w_i over 2^SCALE, for rows over 2^places, w over 2^WEIGHT_BITS."""
+        """The maximum of rows_i / w_i over 2^SCALE; rows over 2^places, w over 2^WEIGHT_BITS."""
         shift = SCALE + WEIGHT_BITS - places
         return max(
             -(-(int(r) << max(shift, 0)) // (v << max(-shift, 0)))

@@ -1,4 +1,4 @@
-"""Chains: tubes, and arcs through nodes, that follow one curve one after the other."""
+"""Chains of tubes, and of arcs through branch points, that follow one curve step by step."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ from exactfold.motion.tubes.tube import sharpened
 from exactfold.motion.tubes.tube_start import StartTube
 
 Step = Link | Passage
-"""A tube, or an arc through a node."""
+"""A tube, or an arc through a branch point."""
 
 
 @dataclass
 class Chain:
-    """The steps of a motion as they are proved, each linked with the one before.
+    """The steps of a motion as they are proved, each linked with the previous one.
 
-    `labels[v]`: the vertex of the pattern that vertex v of the framework is.
+    Vertex v of the framework is vertex `labels[v]` of the pattern.
     """
 
     equations: LengthEquations
@@ -39,7 +39,7 @@ class Chain:
 
     @classmethod
     def from_flat(cls, start: StartTube, labels: Sequence[int]) -> Chain:
-        """The chain that goes on from the end of a start tube."""
+        """The chain that continues from the end of a start tube."""
         equations, last = LengthEquations.of(start.framework, start.bits), start.last
         time = start.length(0, last)
         point, velocity = start.ball(last), start.ball_velocity(last)
@@ -47,16 +47,16 @@ class Chain:
 
     @classmethod
     def from_node(cls, tube: NodeTube, labels: Sequence[int]) -> Chain:
-        """The chain that leaves a node forwards along an arc through it; its time begins there."""
+        """The chain that leaves a branch point forwards along an arc; its time begins there."""
         equations, at = LengthEquations.of(tube.framework), tube.longest * 3 // 4
         left = tube.length(0, at)
         return cls(equations, labels, _after(equations, tube, at, left, left))
 
     def extend(self) -> Step | str:
-        """Prove and return one more step, or say why there is none.
+        """Prove one more step and return it, or return the reason why there is none.
 
-        After the passage of a node, which takes the place of the last tubes before it, the chain
-        goes on along the same arc.
+        The passage of a branch point replaces the last tubes before it. After it the chain
+        continues along the same arc.
         """
         link = next(self.ahead)
         if isinstance(link, Link):
@@ -75,15 +75,15 @@ class Chain:
 def _after(
     equations: LengthEquations, tube: NodeTube, at: int, time: Interval, length: Interval
 ) -> Iterator[Link | str]:
-    """The links from a point of an arc on; the first one is about as long as `length`."""
+    """The links that follow a point of an arc; the first one is about as long as `length`."""
     return onwards(equations, tube.ball(at), tube.ball_velocity(at), time, float(length[0]))
 
 
 def point_near(start: StartTube, steps: Sequence[Step], time: Fraction) -> tuple[Interval, Ball]:
-    """Bounds of the time of a point near a given time, and a box that holds it.
+    """Bounds of the time of a point near a given time, and a box that contains it.
 
-    Times are in the unit of the framework. Close to a node the box has the width of that of the
-    node.
+    Times are in the unit of the framework. Close to a branch point, the box is as wide as that of
+    the branch point.
     """
     begun = bisect_right([step.entered[1] for step in steps], time)
     if not begun:
@@ -97,7 +97,7 @@ def point_near(start: StartTube, steps: Sequence[Step], time: Fraction) -> tuple
 
 
 def step_documents(steps: Sequence[Step], leaves: bool) -> list[Document]:
-    """The steps as certificates have them; `leaves`: whether the last tube is left at its exit."""
+    """The steps in the form of certificates; `leaves` says whether the last tube has an exit."""
     found = []
     for step, after in zip_longest(steps, steps[1:]):
         tube = step.tube
@@ -119,10 +119,11 @@ def step_documents(steps: Sequence[Step], leaves: bool) -> list[Document]:
 def chords(
     start: StartTube, steps: Sequence[Step], leaves: bool, landing: Ball | None = None
 ) -> Fraction:
-    """A little less than the lengths of the chords between points on the way.
+    """Slightly less than the total length of the chords between points on the way.
 
-    From the flat state to the last of them, or through that in the box `landing` back to it. These
-    are the points where pieces meet, nodes, and the centres of tubes that are passed.
+    The way leads from the flat state to the last of these points, or through the point in the box
+    `landing` back to the flat state. The points are those where pieces meet, branch points, and
+    centres of tubes that are passed.
     """
     balls = [start.ball(start.last)]
     for step, after in zip_longest(steps, steps[1:]):
@@ -134,7 +135,7 @@ def chords(
             at = after.met[0]
         elif not leaving and landing is not None:
             at = (step.tube.located(landing) or (0, 0))[0]
-        # Clearly on the way: the bounds of the checker are its own.
+        # The centre has to be clearly on the way, because the checker's bounds may be different.
         if step.entry[1] < -step.tube.longest // 8 and at > step.tube.longest // 8:
             balls.append(step.tube.enclosure(0))
         if leaving:

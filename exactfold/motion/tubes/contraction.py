@@ -1,7 +1,7 @@
-"""A curve of zeros near a polynomial curve: the numbers that prove it, exact and rounded upwards.
+"""The numbers that prove a curve of zeros near a polynomial curve, exact or rounded upwards.
 
-For equations H(x, s) = 0, quadratic in x, a predictor p(s) and any matrix P, the map
-y -> y - P H(p(s) + y, s) is studied in a weighted maximum norm (docs/motion.md, Theorem 1).
+The equations H(x, s) = 0 are quadratic in x. Let p(s) be a predictor and P any matrix. The map y ->
+y - P H(p(s) + y, s) is studied in a weighted maximum norm (docs/motion.md, Theorem 1).
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from exactfold._support.arrays import BigArray, FloatArray, IndexArray, IntArray
 from exactfold.motion.curves.coupling import Coupling
 
 SCALE = 128
-"""Numbers of a `Contraction`, and all arguments, are integers over 2^SCALE."""
+"""The numbers of a `Contraction`, and all arguments of it, are integers over 2^SCALE."""
 
 ONE = 1 << SCALE
 INVERSE_BITS = 40
-"""P is rounded to a multiple of 2^-INVERSE_BITS."""
+"""The matrix P is rounded to multiples of 2^-INVERSE_BITS."""
 
-_COARSE = 16  # bits of P that products with small matrices do without
+_COARSE = 16  # products with small matrices drop this many bits of P
 
 WEIGHT_BITS = 16
 _WORD = 62
@@ -35,10 +35,10 @@ _SHORTEST = 14
 class Contraction:
     """Bounds for |s| <= h: residual b(h), slope q(h), quadratic part kappa(h), polynomials in h.
 
-    b(h) >= |P H(p(s), s)|, q(h) >= |1 - P DH(p(s), s)|, kappa(h) >= |P D2H(s)|, in the norm
-    |y| = max |y_i| / w_i. Theorem 1: if b + q r + kappa r^2 / 2 < r and q + kappa r < 1, then for
-    every |s| <= h there is exactly one zero x(s) with |x(s) - p(s)| <= r; it is regular and depends
-    analytically on s. Two zeros within R of p(s), q + kappa R < 1, are equal.
+    In the norm |y| = max |y_i| / w_i they satisfy b(h) >= |P H(p(s), s)|, q(h) >= |1 - P DH(p(s),
+    s)| and kappa(h) >= |P D2H(s)|. Theorem 1: if b + q r + kappa r^2 / 2 < r and q + kappa r < 1,
+    then for every |s| <= h there is exactly one zero x(s) with |x(s) - p(s)| <= r. It is regular
+    and depends analytically on s. If q + kappa R < 1, two zeros within R of p(s) are equal.
     """
 
     residual: tuple[int, ...]
@@ -46,7 +46,7 @@ class Contraction:
     quadratic: tuple[int, ...]
 
     def radius(self, reach: int) -> int | None:
-        """An r with which Theorem 1 holds, nearly the smallest; None if none was found.
+        """A radius r that satisfies Theorem 1 and is nearly the smallest; None if none is found.
 
         >>> half = ONE >> 1
         >>> Contraction((1,), (half,), (0,)).radius(ONE)
@@ -57,21 +57,21 @@ class Contraction:
         b, q, kappa = (polynomial(c, reach) for c in (self.residual, self.slope, self.quadratic))
         if q >= ONE:
             return None
-        # The smaller root of b - (1 - q) r + kappa r^2 / 2, and a little more.
+        # r is the smaller root of b - (1 - q) r + kappa r^2 / 2, slightly enlarged.
         room = ONE - q
         square = room * room - 2 * kappa * b
         if square <= 0:
             return None
         r = (2 * b << SCALE) // (room + isqrt(square))
         r += (r >> 16) + 2
-        # Integers: b + q r + kappa r^2 / 2 < r and q + kappa r < 1, nothing rounded.
+        # Check b + q r + kappa r^2 / 2 < r and q + kappa r < 1 in exact integers.
         quadratic = kappa * r
         if ((b - r) << (SCALE + 1)) + 2 * q * r + (quadratic * r >> SCALE) + 1 >= 0:
             return None
         return r if (q << SCALE) + quadratic < 1 << 2 * SCALE else None
 
     def uniqueness(self, reach: int) -> int:
-        """An R within which zeros are unique for |s| <= reach; 0 if none is known."""
+        """A radius R within which zeros are unique for |s| <= reach; 0 if none is known."""
         q, kappa = polynomial(self.slope, reach), polynomial(self.quadratic, reach)
         room = ONE - q - (ONE >> 6)
         return (room << SCALE) // kappa if room > 0 and kappa else 0
@@ -79,7 +79,7 @@ class Contraction:
     def velocity(self, reach: int, radius: int) -> int:
         """A bound of |x'(s) - p'(s)| for |s| <= reach, where x(s) is within `radius` of p(s).
 
-        (b' + q' r + kappa' r^2 / 2) / (1 - q - kappa r).
+        The bound is (b' + q' r + kappa' r^2 / 2) / (1 - q - kappa r).
         """
         b, q, kappa = (
             polynomial(derivative(c), reach) for c in (self.residual, self.slope, self.quadratic)
@@ -87,10 +87,10 @@ class Contraction:
         return self._over(b, q, kappa, reach, radius)
 
     def drift(self, reach: int, radius: int) -> int:
-        """A bound of the integral of |x'(s) - p'(s)| over 0 <= s <= reach; `radius` as before.
+        """A bound of the integral of |x'(s) - p'(s)| over 0 <= s <= reach.
 
-        That of the numerator of `velocity` is its polynomials at the reach, less those at 0; the
-        denominator is least at the reach.
+        `radius` is that of `velocity`. The integral of the numerator of `velocity` is the
+        difference of its polynomials at the reach and at 0. The denominator is least at the reach.
         """
         b, q, kappa = (
             polynomial((0, *c[1:]), reach) for c in (self.residual, self.slope, self.quadratic)
@@ -115,7 +115,9 @@ def up(value: int, shift: int) -> int:
 
 
 def polynomial(coefficients: Sequence[int], at: int) -> int:
-    """A polynomial with coefficients >= 0 at a number >= 0, rounded up."""
+    """The value of a polynomial with nonnegative coefficients at a nonnegative number,
+    rounded up.
+    """
     total = 0
     for c in reversed(coefficients):
         total = up(total * at, SCALE) + c
@@ -123,7 +125,7 @@ def polynomial(coefficients: Sequence[int], at: int) -> int:
 
 
 def derivative(coefficients: Sequence[int]) -> list[int]:
-    """The coefficients of the derivative."""
+    """The coefficients of the derivative of a polynomial."""
     return [k * c for k, c in enumerate(coefficients)][1:]
 
 
@@ -132,9 +134,9 @@ Whole = IntArray | BigArray
 
 @dataclass(frozen=True, repr=False)
 class Places:
-    """The ends of the edges at the free vertices, sorted by vertex: signs of +-1 in the equations.
+    """The ends of the edges at free vertices, sorted by vertex, with their signs +-1.
 
-    A row v_e for every edge stands for the matrix that takes y to v_e . (y_i - y_j).
+    Given a row v_e for every edge, they describe the matrix that takes y to v_e . (y_i - y_j).
     """
 
     size: int
@@ -143,14 +145,14 @@ class Places:
     sign: IndexArray
 
     def dense(self, rows: Any) -> Any:
-        """The matrix of the rows, shape (edges, size)."""
+        """The matrix that the rows describe, shape (edges, size)."""
         found = np.zeros((len(rows), self.size), dtype=rows.dtype)
         columns = 3 * self.vertex[:, None] + np.arange(3)
         found[self.edge[:, None], columns] = self.sign[:, None] * rows[self.edge]
         return found
 
     def product(self, left: Any, rows: Any) -> Any:
-        """left @ dense(rows), without the zeros; of many rows at once, shape (..., edges, 3)."""
+        """left @ dense(rows), computed without the zeros; `rows` may have shape (..., edges, 3)."""
         weighted = self.sign[:, None] * rows[..., self.edge, :]
         taken = left[:, self.edge]
         found = np.empty((*rows.shape[:-2], len(left), self.size), dtype=np.result_type(left, rows))
@@ -187,12 +189,12 @@ def contraction(
 ) -> Contraction:
     """The bounds for P, which is `inverse` rounded. Everything is exact or rounded upwards.
 
-    `residuals[k]` is the coefficient of s^k of H(p(s), s), integers over 2^`residual_bits`.
-    `rows[k]` are the vectors of the bars of that of DH(p(s), s), of which the `coupling` makes
-    equations, and `linear` its rows after these, for k = 0 only, integers over 2^`row_bits`. With
-    the positive `weights` over 2^WEIGHT_BITS, `sums` holds w_i + w_j for the three places of every
-    bar (i, j), shape (bars, 3), and `squares[k]` bounds the coefficient of s^k of D2H(y, z) for
-    |y|, |z| <= 1, over 2^(2 WEIGHT_BITS).
+    `residuals[k]` is the coefficient of s^k of H(p(s), s), in integers over 2^`residual_bits`.
+    `rows[k]` are the vectors of the bars in the coefficient of s^k of DH(p(s), s); the `coupling`
+    turns them into equations. `linear` are the rows of DH after these, for k = 0 only. Both are
+    integers over 2^`row_bits`. The positive `weights` are over 2^WEIGHT_BITS. `sums` contains w_i +
+    w_j for the three coordinates of every bar (i, j), shape (bars, 3). `squares[k]` bounds the
+    coefficient of s^k of D2H(y, z) for |y|, |z| <= 1, over 2^(2 WEIGHT_BITS).
     """
     n = len(weights)
     p = _whole(inverse)
@@ -201,13 +203,14 @@ def contraction(
     size[:, len(sums) - len(coupling.diagonals) :] += 1
 
     def norm(rows: Sequence[int], bits: int) -> int:
-        """max rows_i / w_i, where the rows are over 2^bits, over 2^SCALE."""
+        """The maximum of rows_i / w_i over 2^SCALE, for rows over 2^bits."""
         shift = SCALE + WEIGHT_BITS - bits
         left, right = max(shift, 0), max(-shift, 0)
         return max(-(-(row << left) // (w << right)) for row, w in zip(rows, weights, strict=True))
 
-    # The first product nearly cancels and is exact. In the others P and the rows are rounded to
-    # what machine words hold; `off` and `spread` are what half a unit in the rows, and in P, does.
+    # The first product nearly cancels and is exact. In the other products P and the rows are
+    # rounded so that they fit machine words; `off` and `spread` bound the effect of half a unit in
+    # the rows and in P.
     coarse = _coarse(on_bars)
     off = _above(size, [int(x) for x in sums.sum(axis=1)])
     room = _WORD - _largest(coarse).bit_length() - places.most.bit_length()
@@ -227,7 +230,7 @@ def contraction(
             [(v + (1 << drop >> 1)) >> drop for v, drop in zip(rows, drops, strict=True)][1:]
         )
         images = np.asarray(abs(_product(coarse, places, nearest)))
-        # Not by an array: of integers on both sides of 2^63 that would be one of floats.
+        # No array here: numpy turns integers on both sides of 2^63 into floats.
         whole = _above(images.reshape(-1, n), weights)
         above = [whole[k : k + n] for k in range(0, len(whole), n)]
         spreads = (abs(nearest) * sums).sum(axis=(1, 2)).tolist()
@@ -245,10 +248,11 @@ def contraction(
 
 
 def _twice_images(p: Whole, residuals: Sequence[Sequence[int]]) -> Iterator[list[int]]:
-    """Twice the upper bounds of |P g| for each of the residuals.
+    """Twice the upper bounds of |P g| for each residual g.
 
-    Exactly for one alone, that of a point, which may be next to a node, where P is large. Of many
-    the floor is taken instead of the nearest, and P to _COARSE bits less.
+    A single residual, that of a point, is treated exactly, because the point may be next to a
+    branch point, where P is large. For several residuals, P is rounded by _COARSE bits, and floors
+    replace nearest integers.
     """
     if len(residuals) == 1:
         exact = abs(p.astype(object) @ np.array([int(x) for x in residuals[0]], dtype=object))
@@ -269,9 +273,9 @@ def _twice_images(p: Whole, residuals: Sequence[Sequence[int]]) -> Iterator[list
 
 
 def _on_bars(p: Whole, coupling: Coupling, bars: int) -> Whole:
-    """The columns of P for the bars: those of edges, and of diagonals through the coupling.
+    """The columns of P for the bars: those of edges, and through the coupling those of diagonals.
 
-    The latter are off by less than a unit, as they are rounded.
+    The columns of diagonals are rounded, with errors of less than one unit.
     """
     if not coupling.diagonals:
         return p[:, :bars]
@@ -284,7 +288,9 @@ def _on_bars(p: Whole, coupling: Coupling, bars: int) -> Whole:
 
 
 def _of_diagonals(coupling: Coupling, rows: Sequence[BigArray], sums: BigArray) -> list[int]:
-    """What a unit in the columns of P for diagonals does to the product, one for each of `rows`."""
+    """The effect on the product of one unit in the columns of P for diagonals, for each
+    of `rows`.
+    """
     at = len(sums) - len(coupling.diagonals)
     return [int((abs(row[at:]) * sums[at:]).sum()) for row in rows]
 
@@ -306,14 +312,14 @@ def _largest(array: Whole) -> int:
 
 
 def _dot(a: Whole, b: Whole) -> Whole:
-    """The product, exact: in machine words where they hold all sums."""
+    """The exact product, in machine words if these can hold all sums."""
     if _largest(a) * _largest(b) * a.shape[1] < 1 << _WORD:
         return np.asarray(a.astype(np.int64) @ b.astype(np.int64))
     return np.asarray(a.astype(object) @ b.astype(object))
 
 
 def _product(p: Whole, places: Places, rows: Whole) -> Whole:
-    """P times the matrix of the rows, exact as `_dot`."""
+    """The exact product of P and the matrix of the rows, computed as in `_dot`."""
     p = p[:, : rows.shape[-2]]
     if _largest(p) * _largest(rows) * places.most < 1 << _WORD:
         return np.asarray(places.product(p.astype(np.int64), rows.astype(np.int64)))
@@ -321,12 +327,12 @@ def _product(p: Whole, places: Places, rows: Whole) -> Whole:
 
 
 def _above(a: Whole, v: Sequence[int]) -> list[int]:
-    """Upper bounds of a @ v for entries >= 0."""
+    """Upper bounds of a @ v for nonnegative entries."""
     largest = _largest(a)
     excess = (largest * sum(v)).bit_length() - _WORD
     if excess <= 0:
         found = a.astype(np.int64) @ np.array(v, dtype=np.int64)
         return [int(x) for x in found]
-    if largest >> (excess + 2):  # then what is left fits
+    if largest >> (excess + 2):  # the shifted entries fit
         return [x << (excess + 2) for x in _above((a >> (excess + 2)) + 1, v)]
     return [int(x) for x in a.astype(object) @ np.array(v, dtype=object)]

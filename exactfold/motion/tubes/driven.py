@@ -28,12 +28,12 @@ from exactfold.rigidity.equations.boundary_heights import saddle_rims
 from exactfold.rigidity.equations.problem import Problem
 
 _TRIED = 8
-"""Vertices up to which all signs are tried where none are given."""
+"""If no signs are given, all signs are tried on sheets with up to this many vertices."""
 _SMALL = 200
-"""Unknowns up to which several starts are tried."""
+"""Several starts are tried on sheets with up to this many unknowns."""
 _SAME = 1e-6
 _OFF = 1e-6
-"""How far first-order angles of a branch may be from the ratio of a drive, of the largest."""
+"""The first-order angles of a branch may miss the ratio of a drive by this share of the largest."""
 
 
 class DriveDocument(TypedDict):
@@ -58,9 +58,10 @@ class DrivenBranchDocument(BranchDocument):
 class Driven:
     """A branch on which driven folds start in their ratio, and the side on which they do.
 
-    `branch` is proved. With more than four corners its border has the heights of the way the driven
-    motion starts, rounded to nine places: it shows this start, nearly. `others`: how many
-    more with the same signs were found, on which folds bend more.
+    `branch` is proved. With more than four corners, its boundary heights are those with which the
+    driven motion starts, rounded to nine places; so the branch shows this start approximately.
+    `others` is the number of further solutions that were found with the same signs; their folds
+    bend more.
     """
 
     branch: Branch
@@ -70,9 +71,9 @@ class Driven:
 
     @cached_property
     def status(self) -> Verdict:
-        """Whether a solution with exactly this ratio is proved, with these vertex signs.
+        """Whether a solution with exactly this ratio and these vertex signs is proved.
 
-        It is the one that `branch` shows, as far as floats see.
+        Floating point says that this solution is the one that `branch` approximates.
         """
         branch = self.branch
         if branch.status is not PROVED or len(self.drive.folds) == 1:
@@ -116,19 +117,21 @@ def find_driven(
 ) -> Driven:
     """The branch with given vertex signs on which chosen folds start to fold in a given ratio.
 
-    `angles`: by fold the angle in degrees to which it is driven, positive for a valley; D = Ve - 3
-    folds of a sheet with Ve boundary vertices. To first order their angles are in the ratio of the
-    sines of half of these (`Drive`). None for an angle: the one that the fold has beside the others
-    on the branch with the border heights `rim`, by default those of `find_branch`. `signs`: as in
-    `find_branch`, of the branch as it is driven; if not given, the first found. With more than four
-    corners the branch is found from that with the rim, by Newton's method. There may be several
-    with these signs and this ratio, as a line meets a cone in two points: without a `rim` (and up
-    to 200 unknowns) they are looked for from eight, and that is taken on which all folds together
-    bend least, by the sum of squares. With four corners there is one fold to drive, and `side` may
-    be asked for as in `follow`.
+    `angles` gives, for each of D = Ve - 3 folds of a sheet with Ve boundary vertices, the angle in
+    degrees to which it is driven, positive for a valley. To first order the angles of the folds are
+    in the ratio of the sines of half of these angles (`Drive`). If an angle is None, it is the
+    angle that the fold has, relative to the other folds, on the branch with the boundary heights
+    `rim`, by default those of `find_branch`. `signs` are given as in `find_branch`, for the branch
+    as it is driven; without them, the first branch found is taken.
 
-    Raises `BadDriveError` for folds or angles that cannot be driven, `NotFollowedError` where no
-    branch is found, which does not say that there is none, and the errors of `find_branch`.
+    With more than four corners, Newton's method finds the branch from the branch over `rim`. There
+    may be several branches with these signs and this ratio, because a line meets a cone in two
+    points. Without a `rim`, and with up to 200 unknowns, eight starts are used. Among the branches
+    found, the one whose folds together bend least, by the sum of squares, is taken. With four
+    corners a single fold is driven, and `side` may be prescribed as in `follow`.
+
+    Raises `BadDriveError` for folds or angles that cannot be driven, `NotFollowedError` if no
+    branch is found (which does not show that there is none), and the errors of `find_branch`.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> driven = find_driven(single_vertex(5), {(0, 5): 90, (2, 5): 60})
@@ -148,9 +151,9 @@ def find_driven(
 
 
 def off_the_ratio(branch: Branch, side: int, drive: Drive) -> float:
-    """How far first-order fold angles of a branch are from the ratio of a drive, of the largest.
+    """How far the first-order fold angles of a branch miss the ratio of a drive, over the largest.
 
-    0 if they are, 1 or more if some fold goes the other way.
+    The result is 0 if they have the ratio, and 1 or more if some fold goes the other way.
     """
     angles = branch.fold_angles.degrees(1.0)
     there = side * np.array([angles[fold] for fold in drive.folds])
@@ -162,22 +165,22 @@ def off_the_ratio(branch: Branch, side: int, drive: Drive) -> float:
 
 
 def require_driven(branch: Branch, side: int, drive: Drive) -> None:
-    """Raise `BadDriveError` unless the folds of a drive start in its ratio on a half-branch."""
+    """Raise `BadDriveError` unless the folds of a drive start in its ratio on a ray."""
     unknown = [fold for fold in drive.folds if fold not in branch.pattern.folds]
     if unknown:
         raise BadDriveError(not_a_fold(branch.pattern.edges, unknown[0], "to drive"), unknown)
     number = problem_of(branch).sheet.Ve - 3
     if len(drive.folds) != number or not off_the_ratio(branch, side, drive) < _OFF:
         raise BadDriveError(
-            f"the folds {', '.join(map(fold_text, drive.folds))} do not start in the ratio of "
-            "their angles on this branch, or are not as many as can be driven: find one by "
-            "`find_driven`",
+            f"the folds {', '.join(map(fold_text, drive.folds))} cannot be driven on this branch: "
+            f"this sheet needs {counted(number, 'driven fold')}, and they have to start in the "
+            "ratio of their angles; `find_driven` finds a branch on which they do",
             drive.folds,
         )
 
 
 def _all_signs(finder: BranchFinder) -> Iterator[dict[int, int]]:
-    """All up first, then all down; for few vertices all others after them."""
+    """All vertices up, then all down; with few vertices, all other signs after these."""
     names = finder.poppable
     first = [(1,) * len(names), (-1,) * len(names)]
     others = product((1, -1), repeat=len(names)) if len(names) <= _TRIED else iter(())
@@ -210,7 +213,7 @@ class _Search:
         return tuple(self.angles)
 
     def check(self) -> None:
-        """Raise `BadDriveError` for folds that are not there, or cannot be driven."""
+        """Raise `BadDriveError` for folds that do not exist or cannot be driven."""
         sheet = self.problem.sheet
         own = {tuple(sorted(self.problem.labels[v] for v in fold)) for fold in sheet.folds}
         for fold in self.folds:
@@ -218,7 +221,7 @@ class _Search:
                 raise BadDriveError(not_a_fold(self.pattern.edges, fold, "to drive"), [fold])
             if fold not in own:
                 raise BadDriveError(
-                    f"fold {fold_text(fold)} lies in a triangulated triangle, which stays flat",
+                    f"fold {fold_text(fold)} lies inside a triangulated triangle and stays flat",
                     [fold],
                 )
         given = {fold: angle for fold, angle in self.angles.items() if angle is not None}
@@ -226,13 +229,13 @@ class _Search:
         freedom = sheet.Ve - 3
         if len(self.folds) > freedom:
             raise BadDriveError(
-                f"{counted(len(self.folds), 'fold')} to drive: this sheet has {sheet.Ve} border "
-                f"vertices, and {counted(freedom, 'fold')} can be driven at once",
+                f"{counted(len(self.folds), 'fold')} cannot be driven at once: this sheet has "
+                f"{sheet.Ve} border vertices, so give at most {counted(freedom, 'fold')}",
                 self.folds[freedom:],
             )
 
     def found(self, signs: Mapping[int, int]) -> Driven | None:
-        """The branch with these signs, if it is found."""
+        """The driven branch with these signs, or None if it is not found."""
         if self.problem.sheet.Ve == 4:
             return self._of_two_sides(signs)
         solutions: list[FloatArray] = []
@@ -263,7 +266,7 @@ class _Search:
 
     @cached_property
     def _starts(self) -> list[BranchFinder]:
-        """With the rim that is given; else with the default one, and others."""
+        """Finders with the given boundary heights; if none are given, with several choices."""
         if self.rim_given:
             return [self.finder]
         return [self.finder] + [
@@ -273,7 +276,10 @@ class _Search:
     def _from(
         self, finder: BranchFinder, signs: Mapping[int, int], drive: Drive | None
     ) -> tuple[Drive, FloatArray] | None:
-        """The drive, if it is not known, and a solution found from the branch of a finder."""
+        """The drive, and a solution that Newton's method finds from the branch of a finder.
+
+        `drive` is completed if it is not known yet.
+        """
         branch = finder.find(signs, progress=self.progress)
         if not branch.approx_heights:
             return None
@@ -296,7 +302,7 @@ class _Search:
         if signs is not None and self.on.farthest is not None:
             largest = np.abs(self.on.farthest).max()
             there = ", ".join(f"{x:.4g}" for x in (self.on.farthest / largest).tolist())
-            text += f"; the nearest that was met is {there}"
+            text += f"; the nearest ratio that was found is {there}"
         elif signs is not None and self.problem.sheet.Ve == 4:
             text += ": the fold goes the other way, or stays flat"
         return NotFollowedError(text, self.folds)
@@ -304,9 +310,10 @@ class _Search:
     # --- four corners ----------------------------------------------------------------------------
 
     def _of_two_sides(self, signs: Mapping[int, int]) -> Driven | None:
-        """The half-branch with these signs on which the one fold goes the right way.
+        """The ray with these signs on which the single fold goes the right way.
 
-        There are two: that of the branch with these signs, and the mirror image of the opposite.
+        There are two candidates: a ray of the branch with these signs, and the mirror image of a
+        ray of the branch with the opposite signs.
         """
         if not self.folds:
             raise BadDriveError("name a fold to drive")

@@ -1,4 +1,4 @@
-"""Configurations in which the stars of some vertices are flat, proved to exist."""
+"""Configurations in which the stars of some vertices are flat, and the proof that they exist."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ _MATRIX_BITS = 40
 
 @dataclass(frozen=True, repr=False)
 class FlatPatch:
-    """The faces at some vertices of a framework, kept flat: a rigid panel.
+    """The faces at some vertices of a framework, kept flat as one rigid panel.
 
-    `flat` are the vertices. The framework whose patch is rigid has as unknowns the displacements
-    of `moving`, which are the free vertices outside of the patch and up to three of it, `base`; the
-    other vertices of the patch are affine combinations of the base, with rational `weights`. Its
-    equations are the lengths of `bars`: the edges that leave the patch, and the sides of the base;
-    then the ties of the framework.
+    `flat` are the vertices. The unknowns of the framework with a rigid patch are the displacements
+    of `moving`: the free vertices outside the patch, and up to three vertices of the patch, the
+    `base`. The other vertices of the patch are affine combinations of the base with rational
+    `weights`. The equations are the lengths of `bars`, which are the edges that leave the patch and
+    the sides of the base, followed by the ties of the framework.
     """
 
     framework: Framework
@@ -38,13 +38,14 @@ class FlatPatch:
     def of(cls, framework: Framework, flat: Iterable[int]) -> FlatPatch | None:
         """The patch of these vertices; None unless there are as many equations as unknowns.
 
-        That is so where the patch is a disk with four corners: the folds at its inner vertices are
-        three for each of them, and one more. Other patches with as many are taken as well: that
-        the equations have one solution in a box is proved in any case.
+        There are if the patch is a disk with four corners: the number of folds at its inner
+        vertices is three times the number of these vertices, plus one. Other patches with as many
+        equations as unknowns are accepted, too, because it is always proved that the equations have
+        exactly one solution in a box.
         """
         patch = cls(framework, tuple(sorted(flat)))
         if not patch.flat or len(patch.base) != 3 or not patch.moving:
-            return None  # without a vertex that moves it is the flat sheet
+            return None  # if no vertex moves, the patch is the whole flat sheet
         equations = len(patch.bars) + len(framework.ties)
         return patch if equations == 3 * len(patch.moving) else None
 
@@ -57,7 +58,7 @@ class FlatPatch:
 
     @cached_property
     def base(self) -> tuple[int, ...]:
-        """Three vertices of the patch that span it, those that are pinned first."""
+        """Three vertices that span the patch; pinned vertices are preferred."""
         points, held = self.framework.points, set(self.framework.pinned)
 
         def rank(triple: tuple[int, ...]) -> tuple[int, int]:
@@ -69,7 +70,7 @@ class FlatPatch:
 
     @cached_property
     def weights(self) -> Mapping[int, tuple[Fraction, ...]]:
-        """The vertices of the patch that are not in the base, with their affine coordinates."""
+        """The affine coordinates of the patch's vertices that are not in the base."""
         points = self.framework.points
         (ax, ay), (bx, by), (cx, cy) = (points[v] for v in self.base)
         whole = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
@@ -88,7 +89,7 @@ class FlatPatch:
 
     @cached_property
     def bars(self) -> IndexArray:
-        """Pairs of vertices whose distances are the equations, shape (bars, 2)."""
+        """Pairs of vertices whose distances give the equations, shape (bars, 2)."""
         inside, held = self.vertices, set(self.framework.pinned)
         edges = [e for e in self.framework.edges.tolist() if not inside.issuperset(e)]
         sides = [p for p in combinations(self.base, 2) if not held.issuperset(p)]
@@ -100,7 +101,9 @@ class FlatPatch:
 
     @cached_property
     def _rows(self) -> BigArray:
-        """Each vertex by the moving ones, integers over the denominator: shape (V, moving)."""
+        """Each vertex in terms of the moving ones: integers over the denominator, shape (V,
+        moving).
+        """
         place = {v: k for k, v in enumerate(self.moving)}
         rows = np.zeros((len(self.framework.points), len(self.moving)), dtype=object)
         for v, k in place.items():
@@ -130,10 +133,10 @@ class FlatPatch:
         return None if point is None else point.ball
 
     def point(self, near: FloatArray, bits: int) -> FlatPoint | None:
-        """The one configuration with a flat patch that has nearly the unknowns `near`.
+        """The only configuration with a flat patch whose unknowns are approximately `near`.
 
-        Newton's method with exact residuals, then the test of Kantorovich in the form of
-        `Contraction`, in integers. None proves nothing.
+        Newton's method uses exact residuals. Then the test of Kantorovich, in the form of
+        `Contraction`, is done in integers. None proves nothing.
         """
         framework = self.framework
         bits = max(bits, framework.bits)
@@ -151,12 +154,12 @@ class FlatPatch:
         for _ in range(4):
             step = p @ self._stretch(z, bits)
             z = z - (step >> (_MATRIX_BITS + bits + 1)).reshape(-1, 3)
-        # Each residual is off by less than a unit.
+        # The rounding error of each residual is less than one unit.
         residual = int(max(abs(p @ self._stretch(z, bits)) + abs(p).sum(axis=1)))
         jacobian = self._jacobian(z, bits)
         slope = p @ jacobian
         slope[np.diag_indices(len(p))] -= 1 << 2 * _MATRIX_BITS
-        # Each entry of the Jacobian is off by at most one unit.
+        # The rounding error of each entry of the Jacobian is at most one unit.
         q = _largest_row(abs(slope) + abs(p).sum(axis=1)[:, None])
         proof = Contraction(
             (up(residual << SCALE, _MATRIX_BITS + 2 * bits + 1) + 1,),
@@ -179,12 +182,12 @@ class FlatPatch:
 
     @cached_property
     def places(self) -> tuple[int, ...]:
-        """The places of the displacements of `moving` in the unknowns of the framework."""
+        """The positions of the displacements of `moving` among the unknowns of the framework."""
         free = {int(v): k for k, v in enumerate(self.framework.free)}
         return tuple(3 * free[v] + a for v in self.moving for a in range(3))
 
     def _edges(self, z: BigArray, bits: int) -> tuple[BigArray, BigArray]:
-        """d_e and U_e of the bars, times the denominator, over 2^bits: shape (bars, 3)."""
+        """d_e and U_e of the bars, times the denominator, over 2^bits, shape (bars, 3)."""
         framework = self.framework
         d = self._rows @ z
         shift = bits - framework.bits
@@ -193,7 +196,9 @@ class FlatPatch:
         return d[i] - d[j], (flat[i] - flat[j]) * self._denominator
 
     def _stretch(self, z: BigArray, bits: int) -> BigArray:
-        """Twice the equations, over 2^(2 bits), rounded by less than a unit."""
+        """Twice the values of the equations over 2^(2 bits), with rounding errors of less than a
+        unit.
+        """
         d, flat = self._edges(z, bits)
         exact = ((d + 2 * flat) * d).sum(axis=1)
         square = self._denominator**2
@@ -214,7 +219,7 @@ class FlatPatch:
 
     @cached_property
     def _second(self) -> BigArray:
-        """For each equation a bound of its second derivative in the maximum norm, rounded up."""
+        """For each equation, an upper bound of its second derivative in the maximum norm."""
         i, j = self.bars.T
         spread = abs(self._rows[i] - self._rows[j]).sum(axis=1)
         square = self._denominator**2
@@ -229,9 +234,9 @@ class FlatPatch:
 class FlatPoint:
     """A configuration whose patch is flat: the only one in `ball`.
 
-    Its displacements of `patch.moving` are near `centre`, integers over 2^bits of the ball, and
-    configurations whose patch is flat with displacements within `room`, over 2^SCALE, of `centre`
-    in the maximum norm are equal.
+    Its displacements of `patch.moving` are near `centre`, integers over 2^bits of the ball. All
+    configurations with a flat patch whose displacements are within `room`, over 2^SCALE, of
+    `centre` in the maximum norm are equal.
     """
 
     patch: FlatPatch
@@ -240,9 +245,9 @@ class FlatPoint:
     room: int
 
     def is_in(self, box: Ball) -> bool:
-        """Whether the configuration with this flat patch that a box is known to hold is this one.
+        """Whether this is the configuration with this flat patch that a box is known to contain.
 
-        False says nothing.
+        False proves nothing.
         """
         bits = max(box.bits, self.ball.bits)
         box, shift = box.finer(bits), bits - self.ball.bits
@@ -260,5 +265,5 @@ def _whole(matrix: FloatArray, bits: int) -> BigArray:
 
 
 def _largest_row(matrix: BigArray) -> int:
-    """The largest sum of a row of entries >= 0."""
+    """The largest row sum of a matrix with nonnegative entries."""
     return int(max(matrix.sum(axis=1)))

@@ -1,4 +1,4 @@
-"""Polynomial curves put into the length equations, in integers over a power of two."""
+"""The length equations along polynomial curves, in integers over a power of two."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from exactfold.motion.tubes.contraction import WEIGHT_BITS, Places
 Row = tuple[int, ...]
 _LEAST = (1 << WEIGHT_BITS) // 100
 Curve = tuple[Row, ...]
-"""sum_k a_k s^k: row k is a_k, integers over a power of two, one for each unknown."""
+"""The curve sum_k a_k s^k: row k is a_k, with an integer over a power of two for each unknown."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -27,7 +27,8 @@ class LengthEquations:
 
     @classmethod
     def of(cls, framework: Framework, bits: int = 64) -> LengthEquations:
-        """With `bits` or more, as many as the flat coordinates and the ties need.
+        """The equations with at least `bits` bits, and as many as the flat coordinates and the ties
+        need.
 
         >>> from exactfold.pattern.families import two_vertex
         >>> LengthEquations.of(Framework.of(two_vertex()))
@@ -37,7 +38,7 @@ class LengthEquations:
 
     @cached_property
     def flat_edges(self) -> BigArray:
-        """U_e of all bars over 2^bits, shape (bars, 3)."""
+        """The vectors U_e of all bars in the flat state, over 2^bits, shape (bars, 3)."""
         shift, points = self.bits - self.framework.bits, self.framework.points
         rows = [
             [(a - b) << shift for a, b in zip(points[i], points[j], strict=True)] + [0]
@@ -60,29 +61,37 @@ class LengthEquations:
         return tuple(found)
 
     def tied(self, unknowns: Sequence[int]) -> list[int]:
-        """The left sides of the ties for unknowns over 2^bits, over 2^(2 bits)."""
+        """The left sides of the ties over 2^(2 bits), for unknowns over 2^bits."""
         return [sum(c * x for c, x in zip(row, unknowns, strict=True) if c) for row in self.ties]
 
     def stacked(self, bars: Sequence[int], linear: Sequence[int]) -> list[int]:
-        """Values of bars, and of linear equations, as values of all equations times 2^`more`."""
+        """The values of all equations, times 2^`more`, from those of the bars and the linear
+        equations.
+        """
         return self.framework.coupling.stacked(bars, linear)
 
     @property
     def more(self) -> int:
-        """So many more bits have the values of the equations: those of the coupling."""
+        """The number of additional bits that the values of the equations have: those of the
+        coupling.
+        """
         return self.framework.coupling.bits
 
     def matrix(self, rows: FloatArray, last: FloatArray) -> FloatArray:
-        """The square matrix of edge vectors, then the ties and one more row, in floats."""
+        """The square matrix of the edge vectors, followed by the ties and one more row,
+        in floats.
+        """
         coupled = self.framework.coupling.combined(self.places.dense(rows))
         return np.vstack([coupled, self.framework.tie_rows, last])
 
     def inverse(self, rows: FloatArray, last: FloatArray) -> FloatArray:
-        """The inverse of `matrix`; raises `numpy.linalg.LinAlgError`."""
+        """The inverse of `matrix`; raises `numpy.linalg.LinAlgError` if it is singular."""
         return np.asarray(np.linalg.inv(self.matrix(rows, last)), dtype=np.float64)
 
     def along(self, curve: Sequence[Sequence[int]]) -> BigArray:
-        """a_k,e for all coefficients of a curve, shape (coefficients, bars, 3)."""
+        """The vectors a_k,e of the bars for all coefficients of a curve, shape (coefficients, bars,
+        3).
+        """
         framework = self.framework
         d = np.zeros((len(curve), len(framework.points), 3), dtype=object)
         d[:, framework.free, :] = np.array(curve, dtype=object).reshape(len(curve), -1, 3)
@@ -90,7 +99,7 @@ class LengthEquations:
 
     @cached_property
     def places(self) -> Places:
-        """Where the bars meet the unknowns."""
+        """The positions of the ends of the bars among the unknowns."""
         framework = self.framework
         place = {int(v): k for k, v in enumerate(framework.free)}
         ends = sorted(
@@ -103,14 +112,14 @@ class LengthEquations:
         return Places(framework.size, vertex, edge, signs)
 
     def weight_sums(self, weights: Sequence[int]) -> BigArray:
-        """w_i + w_j in the three places of every bar, shape (bars, 3)."""
+        """w_i + w_j for the three coordinates of every bar, shape (bars, 3)."""
         framework = self.framework
         w = np.zeros((len(framework.points), 3), dtype=object)
         w[framework.free] = np.array(weights, dtype=object).reshape(-1, 3)
         return np.asarray(w[framework.bars[:, 0]] + w[framework.bars[:, 1]])
 
     def nearest(self, vector: FloatArray) -> Row:
-        """Floats as integers over 2^bits."""
+        """Floats as the nearest integers over 2^bits."""
         shift = self.bits - 60
         return tuple(int(x) << shift for x in np.rint(vector * 2.0**60))
 
@@ -124,10 +133,10 @@ class LengthEquations:
 
 
 def squared(e: BigArray) -> list[BigArray]:
-    """The coefficients of |e|^2, e = sum_k e_k s^k of shape (coefficients, edges, axes).
+    """The coefficients of |e|^2, where e = sum_k e_k s^k has the shape (coefficients, edges, axes).
 
-    By Kronecker's substitution: for s a power of two so large that coefficients of the square do
-    not overlap, each square of a polynomial is one of an integer.
+    This uses Kronecker's substitution: s is a power of two so large that the coefficients of the
+    square do not overlap. So the square of a polynomial is the square of an integer.
 
     >>> [int(x[0]) for x in squared(np.array([[[1, 2]], [[-3, 0]], [[0, 1]]], dtype=object))]
     [5, -6, 13, 0, 1]
@@ -153,9 +162,9 @@ def corrected(
     residuals: Sequence[Sequence[int]],
     extra: int,
 ) -> Curve:
-    """a_k - P H_k, rounded: one step of Newton's method with the same P for all coefficients.
+    """The rounded a_k - P H_k: one step of Newton's method with the same P for all coefficients.
 
-    The residuals are integers over 2^(bits + extra), the curve over 2^bits.
+    The residuals are integers over 2^(bits + extra), and the curve is over 2^bits.
     """
     found = []
     for row, g in zip(curve, residuals, strict=False):
@@ -168,9 +177,10 @@ def corrected(
 
 
 def weights_of(matrix: FloatArray) -> Row:
-    """Positive weights over 2^WEIGHT_BITS, near the Perron vector of a matrix with entries >= 0.
+    """Positive weights over 2^WEIGHT_BITS, near the Perron vector of a nonnegative matrix.
 
-    None is below 1/100: where the motion leaves an unknown at rest, its room must not vanish.
+    No weight is below 1/100: even if the motion leaves an unknown at rest, its weight must not
+    vanish.
     """
     vector = np.ones(len(matrix))
     for _ in range(30):

@@ -1,4 +1,4 @@
-"""Links: tubes that follow a curve of configurations one after the other."""
+"""Links: consecutive tubes that follow a curve of configurations."""
 
 from __future__ import annotations
 
@@ -13,24 +13,24 @@ from exactfold.motion.tubes.length_equations import LengthEquations
 from exactfold.motion.tubes.piece import Ball, evaluated
 from exactfold.motion.tubes.tube import Tube, prove_tube
 
-_LEAST = 1e-7  # of a step, in the unit of the framework
-_EXIT = 3, 4  # the part of the reach at which the next tube is entered
-_AHEAD = 0.7  # of the reach: about how far beyond the exit the next tube has its centre
-_GROWTH = 0.5, 1.2  # of the reach from tube to tube, as far as it is relied on
+_LEAST = 1e-7  # the shortest step, in the unit of the framework
+_EXIT = 3, 4  # the motion enters the next tube at this fraction of the reach
+_AHEAD = 0.7  # the next tube has its centre about this share of the reach beyond the exit
+_GROWTH = 0.5, 1.2  # the expected growth of the reach from tube to tube lies between these
 _THICKNESS, _OF_STEP, _THINNEST, _SHORT = 1e-8, 1e-7, 1e-10, 1e-5
-"""The most radius of a tube, also of its length, by which the ends of tubes are known; but not of
-short ones: where curves nearly cross, thin tubes would become shorter and shorter."""
-_FAR = 64.0  # unknowns beyond it, in the unit of the framework, are not those of the sheet
+"""The largest radius of a tube: absolutely, and as a share of its length. It limits the error with
+which the ends of tubes are known. It is not reduced for short tubes: where curves nearly cross,
+thin tubes would become shorter and shorter."""
+_FAR = 64.0  # larger unknowns, in the unit of the framework, cannot be those of the sheet
 
 
 @dataclass(frozen=True, repr=False)
 class Link:
     """A tube of a track, with the part of it that belongs to the track.
 
-    The motion enters at some parameter in `entry` = (low, high) and leaves at `exit`, exactly, at
-    a time between `left` of the track before and itself: `entered` and `left` bound the time, the
-    length of the motion from the flat state, in the unit of the framework. Parameters are over
-    2^PARAMETER_BITS.
+    The motion enters at some parameter in `entry` = (low, high) and leaves at exactly `exit`.
+    Parameters are over 2^PARAMETER_BITS. `entered` and `left` bound the time at which it enters and
+    leaves. The time is the length of the motion from the flat state, in the unit of the framework.
     """
 
     tube: Tube
@@ -53,9 +53,9 @@ class Link:
 def onwards(
     equations: LengthEquations, ball: Ball, velocity: Ball, time: Interval, step: float
 ) -> Iterator[Link | str]:
-    """The links from a configuration in a box on, which is passed with a velocity in a box.
+    """The links that follow a configuration in a box; its velocity lies in the box `velocity`.
 
-    The first tube is about `step` long. Ends with the reason if there is no next link.
+    The first tube is about `step` long. If there is no next link, the last value is the reason.
     """
     place: _Place | None = None
     while True:
@@ -77,14 +77,16 @@ def onwards(
 
 
 _Place = tuple[FloatArray, FloatArray]
-"""The centre of a tube that is to be proved, and the direction of the motion there, in floats."""
+"""The centre of a tube that is to be proved next, and the direction of the motion there,
+in floats.
+"""
 
 
 def _place(equations: LengthEquations, tube: Tube, parameter: int) -> _Place | None:
-    """A point of the curve beyond the end of a tube: by its series, and a step of Newton's method.
+    """A point of the curve beyond the end of a tube, by its series and a step of Newton's method.
 
-    The tube about a point ahead holds the curve on both sides of it, where that about the end of
-    the last tube would hold half of it anew.
+    A tube about a point ahead contains the curve on both sides of it. Half of a tube about the end
+    of the last tube would only repeat that tube.
     """
     framework = equations.framework
     x, along = (
@@ -101,9 +103,10 @@ def _place(equations: LengthEquations, tube: Tube, parameter: int) -> _Place | N
 def _next(
     equations: LengthEquations, ball: Ball, velocity: Ball, step: float, place: _Place | None
 ) -> tuple[Tube | None, tuple[int, int] | None]:
-    """A tube on which the configuration in a box lies, which the motion passes forwards.
+    """A tube that contains the configuration in a box and that the motion passes forwards.
 
-    About a place ahead, or if that does not reach back to the box, about the middle of the box.
+    First a tube about a place ahead is tried. If it does not reach back to the box, the tube is
+    about the centre of the box.
     """
     if place is not None and step > _LEAST:
         tube = prove_tube(equations, *place, step, thickness=_thickness(step))
@@ -121,14 +124,14 @@ def _next(
 
 
 def _thickness(step: float) -> float:
-    """The most radius of a tube that is about `step` long."""
+    """The largest radius of a tube that is about `step` long."""
     return _THICKNESS if step < _SHORT else min(_THICKNESS, max(_OF_STEP * step, _THINNEST))
 
 
 def _entered(tube: Tube, ball: Ball, velocity: Ball) -> tuple[int, int] | None:
-    """The parameters at which the motion enters a tube, if it is proved to do so before the exit.
+    """The parameters at which the motion enters a tube, if it is proved to enter before the exit.
 
-    It is at a configuration in a box, with a velocity in a box.
+    The motion enters at a configuration in the box `ball`, with a velocity in the box `velocity`.
     """
     entry = tube.located(ball)
     if entry is None or tube.goes_along(velocity) != 1:

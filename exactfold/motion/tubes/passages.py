@@ -1,4 +1,4 @@
-"""Passages of nodes: where a chain of tubes leads to a node, and an arc leads through it."""
+"""Passages of branch points: a chain of tubes leads to one, and an arc leads through it."""
 
 from __future__ import annotations
 
@@ -20,20 +20,22 @@ from exactfold.motion.tubes.tube import prove_tube, sharpened
 from exactfold.motion.tubes.visits import Visit
 
 _NEAREST, _FARTHEST = 1e-4, 0.2
-"""How long before the end of the last link a node ahead is looked for, in the framework's unit."""
+"""A branch point is looked for this long before the end of the last link, in the
+framework's unit.
+"""
 _PART = 1 / 8
-"""Of the way to the node: about how far a tube reaches beside it."""
+"""A tube beside a branch point reaches about this share of the way to it."""
 _LEAST = 1e-7
 
 
 @dataclass(frozen=True, repr=False)
 class Passage:
-    """How a motion passes a node: on an arc `tube` through it, from one parameter to another.
+    """How a motion passes a branch point: along the arc `tube`, from one parameter to another.
 
-    The configuration at `entry` lies on the link `before`, between its parameters `met`; both go
-    the same way there. The next link begins at `exit`; of a motion that ends at the node `exit` is
-    0. `entered` and `left` bound the time as in `Link`. `vertices` are flat at the node, by the
-    numbers of the pattern.
+    The configuration at `entry` lies on the link `before`, between its parameters `met`, and both
+    curves go the same way there. The next link begins at `exit`. If the motion ends at the branch
+    point, `exit` is 0. `entered` and `left` bound the time as in `Link`. `vertices` are flat at the
+    branch point, by the numbers of the pattern.
     """
 
     tube: NodeTube
@@ -47,15 +49,15 @@ class Passage:
 
     @property
     def to_the_node(self) -> Passage:
-        """The part of it that ends at the node."""
+        """The part of the passage that ends at the branch point."""
         return replace(self, exit=0, left=self.time(0))
 
     @property
     def what(self) -> str:
-        """What the node is, in words.
+        """A description of the branch point in words.
 
-        With one flat vertex the directions of the curves are the zeros of a quadratic form in two
-        variables. One of them is real and simple, so that there are two, and another curve crosses.
+        If one vertex is flat, the directions of the curves are the zeros of a quadratic form in two
+        variables. One of them is real and simple, so there are two, and another curve crosses.
         """
         if len(self.vertices) == 1:
             return f"vertex {self.vertices[0]} is flat and another curve crosses"
@@ -63,15 +65,16 @@ class Passage:
         return f"the vertices {names} are flat and other curves may cross"
 
     def visit(self, unit: Fraction) -> Visit:
-        """Where and when the node is passed, with times in the unit of the sheet."""
+        """Where and when the branch point is passed, with times in the unit of the sheet."""
         low, high = self.time(0)
         return Visit.of(self.tube, (low * unit, high * unit))
 
     def near(self, time: Fraction) -> tuple[Interval, Ball]:
-        """Bounds of the time of a point of the arc near a given time, and a box that holds it.
+        """Bounds of the time of a point of the arc near a given time, and a box that contains it.
 
-        In the unit of the framework. Close to the node it has the width of the box of the node. Of
-        an arc that ends at its node a time as near to that of the node as this is known is its.
+        Times are in the unit of the framework. Close to the branch point, the box is as wide as
+        that of the branch point. If the arc ends at the branch point and the given time is as close
+        to its end as that end is known, the result is the branch point.
         """
         at = self.exit
         last = self.left[0] if at else 2 * self.left[0] - self.left[1]
@@ -91,12 +94,13 @@ class Passage:
 def passage_ahead(
     labels: Sequence[int], steps: Sequence[Link | Passage]
 ) -> tuple[int, Passage] | None:
-    """The passage of a node shortly ahead of the last link, and how many steps lead up to it.
+    """The passage of a branch point shortly ahead of the last link; None proves nothing.
 
-    `labels[v]`: the vertex of the pattern that vertex v of the framework is. None proves nothing.
+    The result also has the number of steps before the passage. Vertex v of the framework is vertex
+    `labels[v]` of the pattern.
     """
     if steps and steps[-1].tube.framework.coupling.rows:
-        return None  # the equations of a node have no driven folds
+        return None  # the equations of a branch point cannot include driven folds
     for link in _far_enough(steps):
         point, velocity = link.tube.enclosure(link.exit), link.tube.velocity(link.exit)
         crossing = crossing_ahead(link.tube.framework, point.floats[0], velocity.floats[0])
@@ -106,7 +110,10 @@ def passage_ahead(
 
 
 def _far_enough(steps: Sequence[Link | Passage]) -> Iterator[Link]:
-    """The last links, those near the end first; those next to a node are too close for floats."""
+    """The last links, beginning at the end.
+
+    Links next to a branch point are left out, because there floats are too inaccurate.
+    """
     end = steps[-1].left[0]
     for step in reversed(steps):
         away = float(end - step.left[0])
@@ -122,14 +129,14 @@ def _passage_at(
     point: FloatArray,
     tangent: FloatArray,
 ) -> tuple[int, Passage] | None:
-    """The passage of the node near the unknowns `point`, from one of the last links."""
+    """The passage, from one of the last links, of the branch point near the unknowns `point`."""
     framework, bits = steps[-1].tube.framework, steps[-1].tube.bits
     flat = flat_vertices(framework, point)
     patch = FlatPatch.of(framework, flat)
     tube = None if patch is None else prove_node_tube(framework, patch, point, tangent, bits=bits)
     if tube is None:
         return None
-    # The first link that reaches into the tube, so that the short ones before the node go.
+    # Take the first link that reaches into the tube; the short ones after it are dropped.
     first = len(steps)
     while first and isinstance(steps[first - 1], Link):
         first -= 1
@@ -157,11 +164,12 @@ def _passage_at(
 
 
 def _refined(arc: NodeTube, at: int, bounds: Interval) -> tuple[Interval, Ball]:
-    """A point of a tube of its own, next to one of an arc, in a smaller box.
+    """A point of a separate tube next to a point of an arc, in a smaller box.
 
-    The configuration in the box of the arc lies on the tube between two parameters; that in their
-    middle is on the same curve, at a time that is no more than the length between them off. Near
-    the node no tube is found, and the answer is the box of the arc.
+    The configuration in the box of the arc lies on the tube between two parameters. The
+    configuration at their middle lies on the same curve, and its time differs by no more than the
+    length between the two. Close to the branch point no tube is found, and the result is the box of
+    the arc.
     """
     ball, velocity = arc.ball(at), arc.ball_velocity(at)
     equations = LengthEquations.of(arc.framework, arc.bits)

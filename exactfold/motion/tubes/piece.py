@@ -1,4 +1,4 @@
-"""Pieces of a curve with a proof, and boxes on them."""
+"""Pieces of a curve that are proved, and boxes on them."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Ball:
     radii: Row
 
     def contains(self, other: Ball) -> bool:
-        """Whether a box lies in this one.
+        """Whether another box lies in this one.
 
         >>> Ball(1, (2,), (2,)).contains(Ball(0, (1,), (1,)))
         True
@@ -43,7 +43,7 @@ class Ball:
         )
 
     def finer(self, bits: int) -> Ball:
-        """The same box over 2^bits, if these are more."""
+        """The same box over 2^bits, if `bits` is larger than the number of bits it has."""
         shift = max(0, bits - self.bits)
         return Ball(
             self.bits + shift,
@@ -66,13 +66,13 @@ class Ball:
 
     @property
     def mirrored(self) -> Ball:
-        """The box of the mirror images: every third unknown, z, has its sign reversed."""
+        """The box of the mirror images: the sign of z, every third unknown, is reversed."""
         signs = (1, 1, -1) * (len(self.centre) // 3)
         return replace(self, centre=tuple(s * x for s, x in zip(signs, self.centre, strict=True)))
 
     @property
     def floats(self) -> FloatArray:
-        """The centre, and the radii, nearly: shape (2, unknowns)."""
+        """The centre and the radii in floats, shape (2, unknowns)."""
         one = 1 << self.bits
         return np.array([[x / one for x in row] for row in (self.centre, self.radii)])
 
@@ -83,11 +83,12 @@ class Ball:
 
 @dataclass(frozen=True, repr=False)
 class Piece:
-    """Zeros x(s), one for every |s| <= `reach`, near p(s) = sum_k a_k s^k.
+    """Zeros x(s), exactly one for every |s| <= `reach`, near p(s) = sum_k a_k s^k.
 
-    `coefficients` are the a_k over 2^`bits`; near: within `radius` of the maximum norm with
+    `coefficients` are the a_k over 2^`bits`. Near means within `radius` in the maximum norm with
     `weights` over 2^WEIGHT_BITS. x(s) is regular and depends analytically on s (docs/motion.md,
-    Theorem 1). `reach` is an integer over 2^REACH_BITS, `radius` and `uniqueness` over 2^SCALE.
+    Theorem 1). `reach` is an integer over 2^REACH_BITS; `radius` and `uniqueness` are integers over
+    2^SCALE.
     """
 
     framework: Framework
@@ -108,7 +109,7 @@ class Piece:
         return self.radius_within(self.longest)
 
     def radius_within(self, most: int) -> int:
-        """A radius for the parameters |s| <= most, over 2^PARAMETER_BITS."""
+        """A radius that is proved for the parameters |s| <= most, over 2^PARAMETER_BITS."""
         found = self._radii.get(most)
         if found is None and most <= self.longest:
             found = self.contraction.radius(most << (SCALE - PARAMETER_BITS))
@@ -119,16 +120,16 @@ class Piece:
 
     @cached_property
     def _radii(self) -> dict[int, int]:
-        """Those that were asked for: each is, for several boxes."""
+        """The radii that were computed so far; each is used for several boxes."""
         return {}
 
     @cached_property
     def uniqueness(self) -> int:
-        """Zeros within this radius of p(s) are equal, over 2^SCALE: more than `radius`."""
+        """Zeros within this radius of p(s) are equal, over 2^SCALE; it is larger than `radius`."""
         return self.contraction.uniqueness(self.reach << (SCALE - REACH_BITS))
 
     def enclosure(self, parameter: int) -> Ball:
-        """A box that holds x(s), s over 2^PARAMETER_BITS, and no other zero for this s.
+        """A box that contains x(s) and no other zero for this s; s is over 2^PARAMETER_BITS.
 
         Raises `ArithmeticError` beyond the reach.
         """
@@ -136,7 +137,7 @@ class Piece:
         return Ball(self.bits, centre, self.lengths(self.radius_within(abs(parameter))))
 
     def velocity(self, parameter: int) -> Ball:
-        """A box that holds x'(s)."""
+        """A box that contains x'(s)."""
         most = abs(parameter)
         error = self.contraction.velocity(
             most << (SCALE - PARAMETER_BITS), self.radius_within(most)
@@ -144,7 +145,7 @@ class Piece:
         return Ball(self.bits, evaluated(self.slope, parameter), self.lengths(error))
 
     def unique_near(self, point: Row, radius: int, middle: Row) -> bool:
-        """Whether the ball about a point lies where zeros are unique for the parameter of `middle`.
+        """Whether a ball about a point lies where zeros are unique for the parameter of `middle`.
 
         `middle` is p(s), rounded down.
         """
@@ -165,7 +166,7 @@ class Piece:
         return np.array([x / one for x in row])
 
     def lengths(self, radius: int) -> Row:
-        """radius w_i over 2^bits, and one unit for the centre that was rounded."""
+        """radius w_i over 2^bits, plus one unit for the rounding of the centre."""
         down = SCALE + WEIGHT_BITS - self.bits
         left, right = max(-down, 0), max(down, 0)
         return tuple(up(radius * w << left, right) + 1 for w in self.weights)

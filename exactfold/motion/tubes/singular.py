@@ -1,4 +1,4 @@
-"""Singular configurations that are no nodes: what they are, in words (docs/motions.md)."""
+"""Singular configurations that are no branch points, described in words (docs/motions.md)."""
 
 from __future__ import annotations
 
@@ -16,19 +16,23 @@ from exactfold.motion.tubes.links import Link
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 
 _FOLDED_FLAT = 1e-2
-"""Radians that fold angles may be off 0 or pi where the sheet is said to come to be folded flat."""
+"""A sheet counts as folded flat if its fold angles differ from 0 or pi by less than this, in
+radians.
+"""
 _DEPENDENT = 1e-3
-"""How much smaller the least singular value is than the next where lengths are said to depend."""
+"""Lengths count as dependent if the least singular value is less than this share of the
+next one.
+"""
 _STRESSED = 1e-4
-"""Of the largest stress of an edge: less is none."""
+"""Stresses of edges below this share of the largest stress count as 0."""
 _LARGEST = 600
-"""Unknowns, beyond which stresses are not looked for."""
+"""Stresses are looked for only if there are at most this many unknowns."""
 
 
 def singular_at(labels: Sequence[int], steps: Sequence[object], reason: str) -> str:
-    """Why tubes end after the last of `steps`, for short `reason`: what is singular there.
+    """Why tubes end after the last of `steps`: a description of the singular configuration there.
 
-    `labels` as in `singular_name`. The reason is kept where nothing is recognised.
+    `labels` are those of `singular_name`. If nothing is recognised, the given `reason` is returned.
     """
     if not steps or not isinstance(link := steps[-1], Link):
         return reason
@@ -38,10 +42,10 @@ def singular_at(labels: Sequence[int], steps: Sequence[object], reason: str) -> 
 
 
 def singular_name(framework: Framework, labels: Sequence[int], unknowns: FloatArray) -> str:
-    """What is singular near a configuration, as floats show it; empty if it is of no kind known.
+    """What is singular near a configuration, as floats show it; empty if the kind is unknown.
 
-    `labels[v]`: the vertex of the pattern that vertex v of the framework is. That a sheet folded
-    flat at the folds named exists is exact (`folds_flat`).
+    Vertex v of the framework is vertex `labels[v]` of the pattern. It is exact that a sheet folded
+    flat at the named folds exists (`folds_flat`).
 
     >>> from exactfold.pattern.families import two_vertex
     >>> framework = Framework.of(two_vertex())
@@ -63,11 +67,12 @@ def singular_name(framework: Framework, labels: Sequence[int], unknowns: FloatAr
 
 
 def folds_flat(sheet: CreasePattern, closed: Iterable[Edge]) -> bool:
-    """Whether the sheet with these folds at 180 degrees and all others at 0 closes, exactly.
+    """Whether the sheet closes exactly with these folds at 180 degrees and all others at 0.
 
-    It does where at each interior vertex the reflections in its closed folds have the product 1:
-    their number is even, and with the directions u of the folds in their order, as complex numbers,
-    u_1 conj(u_2) u_3 conj(u_4) ... is real (Kawasaki). Layers may lie in any order.
+    It closes if, at each interior vertex, the reflections in its closed folds have the product 1.
+    This means that their number is even and that u_1 conj(u_2) u_3 conj(u_4) ... is real, where the
+    u are the directions of these folds, in their order, as complex numbers (Kawasaki). Layers may
+    lie in any order.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> star = single_vertex()
@@ -92,7 +97,7 @@ def folds_flat(sheet: CreasePattern, closed: Iterable[Edge]) -> bool:
 
 
 def _dependent(framework: Framework, labels: Sequence[int], unknowns: FloatArray) -> str:
-    """The vertices between which a self-stress acts, if there is one up to its size."""
+    """A sentence that names the vertices of a self-stress, if there is one up to its size."""
     if framework.size > _LARGEST:
         return ""
     left, sizes, _ = np.linalg.svd(framework.jacobian(unknowns).toarray())
@@ -113,7 +118,8 @@ def _dependent(framework: Framework, labels: Sequence[int], unknowns: FloatArray
 
 
 def half_turn(sheet: CreasePattern, vertices: Iterable[int]) -> bool:
-    """Whether a half-turn of the plane maps these vertices, and the edges between, to themselves.
+    """Whether a half-turn of the plane maps these vertices and the edges between them to
+    themselves.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> star = single_vertex()
@@ -135,6 +141,6 @@ def _edge(labels: Sequence[int], edge: Edge) -> str:
 
 
 def _listed(noun: str, names: Sequence[str]) -> str:
-    """A noun with its names."""
+    """A noun followed by its names."""
     *first, last = names
     return f"{plural(noun)} {', '.join(first)} and {last}" if first else f"{noun} {last}"

@@ -1,4 +1,4 @@
-"""Tracks: the motion along a branch from the flat state on, as a chain of linked tubes."""
+"""Tracks: the motion along a branch from the flat state, proved by a chain of linked tubes."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _FAR_ENOUGH = "the length that was asked for"
 
 @dataclass(frozen=True, repr=False)
 class Frame:
-    """One configuration of a track: the only one in its box with this value of T(x - c).
+    """One configuration of a track: the only one in its box with its value of T(x - c).
 
     `time` bounds the length of the motion from the flat state, in the unit of the sheet.
     """
@@ -47,23 +47,26 @@ class Frame:
 
 @dataclass(frozen=True, repr=False)
 class Track:
-    """The motion from the flat state along a half-branch, proved without a gap.
+    """The motion from the flat state along a ray, proved without a gap.
 
-    `start` and `steps` hold pieces of one analytic curve of configurations, in its order: the exit
-    of each lies on the next, and both go the same way there (docs/motion.md, Theorem 4). Steps are
-    tubes (`links`) and arcs through nodes: configurations in which other curves cross, where the
-    track goes straight on (docs/motions.md, Nodes). With `node` it ends at one: the last step is
-    the part of this passage up to there.
-    `vertex_signs` are those on the half-branch itself, by foldable vertex of `pattern`; `side` is
-    1 or -1, the sign of the boundary saddle or, if `corner` is not None, the vertex sign of this
+    `start` and `steps` contain pieces of one analytic curve of configurations, in the order of the
+    curve. The exit of each piece lies on the next, and both go the same way there (docs/motion.md,
+    Theorem 4). A step is a tube (`links`) or an arc through a branch point, a configuration in
+    which other curves cross; there the track goes straight on (docs/motions.md, Nodes). If `node`
+    is not None, the track ends at a branch point, and the last step is the part of this passage up
+    to the point.
+
+    `vertex_signs` are those on the ray itself, by foldable vertex of `pattern`. `side` is 1 or -1.
+    It is the sign of the boundary saddle or, if `corner` is not None, the vertex sign of this
     reflex corner in the sheet with its notch closed. With more than four corners the border stays
-    in the ratio of the heights `rim`, and `side` is the sign of the factor (`rim_path`); or it is
-    driven, and `side` is 1: the folds of the `drive` go the way it says.
-    `labels[v]` is the vertex of `pattern` that vertex v of the framework is: what lies in
-    triangulated triangles moves with them.
+    in the ratio of the boundary heights `rim`, and `side` is the sign of the factor (`rim_path`).
+    If the sheet is driven instead, `side` is 1, and the folds of the `drive` bend the way it
+    prescribes.
 
-    `status` is PROVED if the track goes as far as asked, else UNDECIDED; what there is is proved in
-    any case. `reason` says where it ended and why.
+    Vertex v of the framework is vertex `labels[v]` of `pattern`. Vertices and folds inside
+    triangulated triangles move with these triangles. `status` is PROVED if the track goes as far as
+    asked, and UNDECIDED otherwise; the existing part is proved in any case. `reason` says where the
+    track ended and why.
     """
 
     pattern: CreasePattern
@@ -78,7 +81,7 @@ class Track:
 
     @property
     def framework(self) -> Framework:
-        """The sheet that moves, without what stays flat, and its pinned triangle."""
+        """The sheet that moves, with its pinned triangle, without the parts that stay flat."""
         return self.start.framework
 
     @property
@@ -88,19 +91,19 @@ class Track:
 
     @property
     def through(self) -> tuple[Passage, ...]:
-        """The passages of the nodes on the way."""
+        """The passages of the branch points on the way."""
         steps = self.steps if self.node is None else self.steps[:-1]
         return tuple(step for step in steps if isinstance(step, Passage))
 
     @property
     def node(self) -> Passage | None:
-        """The way to the node at which the track ends, None if it ends elsewhere."""
+        """The way to the branch point at which the track ends; None if it ends elsewhere."""
         last = self.steps[-1] if self.steps else None
         return last if isinstance(last, Passage) and last.exit == 0 else None
 
     @property
     def vertex_signs(self) -> dict[int, int]:
-        """The signs of the half-branch by foldable vertex of the pattern."""
+        """The signs of the ray, by foldable vertex of the pattern."""
         interior = self.framework.sheet.interior
         return {self.labels[v]: s for v, s in zip(interior, self.start.vertex_signs, strict=True)}
 
@@ -122,10 +125,10 @@ class Track:
 
     @cached_property
     def reached(self) -> bool:
-        """Whether driven folds are proved to be at the angles of the drive or beyond, at the end.
+        """Whether driven folds are proved to be at the end at the angles of the drive, or beyond.
 
-        So at some configuration of the track all these angles have exactly their sizes. On which
-        side the folds are bent there is not said (docs/motion.md, 10).
+        Then some configuration of the track has all these angles with exactly their sizes. Nothing
+        is said about the side on which the folds are bent there (docs/motion.md, 10).
         """
         last = self.steps[-1] if self.steps else None
         if self.drive is None or isinstance(last, Passage):
@@ -141,7 +144,7 @@ class Track:
 
     @property
     def tubes(self) -> int:
-        """How many pieces prove it."""
+        """The number of pieces that prove the track."""
         return 1 + len(self.steps)
 
     @cached_property
@@ -152,7 +155,7 @@ class Track:
     def certificate(self) -> Document:
         """The proof as a JSON object for `exactfold.checker` (docs/motion.md, The certificate).
 
-        It claims a length a little smaller than `length`, as far as straight chords show it.
+        It claims a length that is slightly smaller than `length`, namely what straight chords show.
 
         >>> from exactfold import checker
         >>> from exactfold.branches.counting.find import find_branch
@@ -187,17 +190,21 @@ class Track:
     def frames(self, times: FloatArray | list[float]) -> list[Frame]:
         """Enclosed configurations near given times, in the unit of the sheet.
 
-        Each is one point of the curve, in a box of about 14 digits, at a time near the one asked
-        for, which `Frame.time` bounds. Raises `UsageError` for times that the track does not reach.
+        Each is one point of the curve in a box of about 14 digits, at a time near the one asked
+        for; `Frame.time` bounds this time. Raises `UsageError` for times that the track does not
+        reach.
         """
         return [self.frame(float(time)) for time in times]
 
     def frame(self, time: float) -> Frame:
-        """One enclosed configuration near a time; as `frames`."""
+        """One enclosed configuration near a time, as in `frames`."""
         unit = self.framework.unit
         wanted = Fraction(time) / unit
         if not 0 <= wanted <= self._left[1]:
-            raise UsageError(f"the track does not reach the time {time:g}")
+            raise UsageError(
+                f"the track does not reach the time {time:g}; give a time from 0 to "
+                f"{float(self.length[0]):g}"
+            )
         (low, high), ball = point_near(self.start, self.steps, wanted)
         return Frame((Fraction(low * unit), Fraction(high * unit)), ball)
 
@@ -211,7 +218,7 @@ class Track:
 
 
 Stop = Callable[[Step], "str | None"]
-"""Called with each proved step; a text, why the track ends here, or None to go on."""
+"""A function that gets each proved step. It returns why the track ends here, or None to go on."""
 
 
 def half_branch(
@@ -222,20 +229,23 @@ def half_branch(
     bits: int = 64,
     drive: Drive | None = None,
 ) -> Track:
-    """The track of a half-branch as far as its start tube.
+    """The track of a ray up to the end of its start tube.
 
-    `branch`: simple and proved; `side` 1 is the half-branch with its heights, -1 the opposite one.
-    `pinned`: the triangle that does not move, by vertices of the sheet without rigid parts.
-    `drive`: with more than four corners, folds that are driven; the branch is one on which they
-    start in their ratio (`find_driven`).
+    `branch` has to be simple and proved. `side` 1 is its ray with the heights of the branch, -1 the
+    opposite ray. `pinned` is the triangle that does not move, by vertices of the sheet without
+    rigid parts. `drive` are the driven folds of a sheet with more than four corners; on the branch
+    they start in their ratio (`find_driven`).
 
-    Raises `FlatVertexError` if a vertex is proved flat on the branch, `UsageError` if the branch
-    is not proved, `NotProvedAtTheFlatStateError` where the curve is not enclosed.
+    Raises `FlatVertexError` if a vertex is proved flat on the branch, `UsageError` if the branch is
+    not proved, and `NotProvedAtTheFlatStateError` if the curve cannot be enclosed.
     """
     if side not in (1, -1):
-        raise UsageError(f"the side is {side!r}, not 1 or -1")
+        raise UsageError(f"the side is {side!r}; give 1 or -1")
     if branch.status is not PROVED or branch.root is None:
-        raise UsageError("a motion is proved from a branch that is proved")
+        raise UsageError(
+            f"branch {branch.sign_text} is {branch.status}; a motion can only be proved from a "
+            "proved branch"
+        )
     problem = problem_of(branch)
     problem.require_foldable()
     flat = [v for v in problem.foldable if branch.vertex_signs[v] == 0]
@@ -244,10 +254,10 @@ def half_branch(
         raise FlatVertexError(
             f"vertex {flat[0]} stays flat on this branch, which is a multiple root: "
             + (
-                f"it goes on as the sheet turns about the straight line {'-'.join(map(str, line))}"
-                ", which is not followed"
+                f"it continues as a rotation about the straight line {'-'.join(map(str, line))}, "
+                "and exactfold does not follow such motions"
                 if line
-                else "whether and how it continues is not decided"
+                else "it is undecided whether and how it continues"
             )
         )
     heights = branch.approx_heights
@@ -279,14 +289,16 @@ def follow_proved(
     bits: int = 64,
     drive: Drive | None = None,
 ) -> Track:
-    """The proved motion along a branch, until a time, or until `stop` says so.
+    """The proved motion along a branch, until a time, or until `stop` ends it.
 
     The time is the length of the curve in the unknowns of the framework, in the unit of the sheet.
-    `side`, `pinned` and `drive` as in `half_branch`, whose errors are raised. Where tubes become
-    shorter than 1e-7 of the sheet, and a node ahead is proved, the track goes straight on
-    `through_nodes`, and else ends at it (`Track.node`): PROVED if no time was asked for. It is
-    UNDECIDED if it ends before what was asked for: at a node, near another configuration where
-    several curves meet, or after `most` tubes.
+    `side`, `pinned` and `drive` are those of `half_branch`, and its errors are raised. Where tubes
+    become shorter than 1e-7 of the sheet, a branch point may be proved ahead. With `through_nodes`
+    the track then goes straight on. Otherwise it ends at the branch point (`Track.node`) and is
+    PROVED if no time was asked for.
+
+    The status is UNDECIDED if the track ends before what was asked for: at a branch point, near
+    another configuration where several curves meet, or after `most` tubes.
 
     >>> from exactfold.branches.counting.find import find_branch
     >>> from exactfold.pattern.random_squares import random_square
@@ -320,6 +332,6 @@ def follow_proved(
             status, reason = PROVED, _FAR_ENOUGH
             break
         if len(chain.steps) >= most:
-            reason = f"{most} tubes were not enough"
+            reason = f"the limit of {most} tubes was reached"
             break
     return replace(track, steps=tuple(chain.steps), status=status, reason=reason)

@@ -1,4 +1,4 @@
-"""Tubes: pieces of a curve of configurations, each with the proof that nothing else is near."""
+"""Tubes: pieces of a curve of configurations, with a proof that no other configuration is near."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from exactfold.motion.tubes.length_equations import (
 from exactfold.motion.tubes.piece import PARAMETER_BITS, REACH_BITS, Ball, Piece, evaluated
 
 ROW_BITS = 20
-"""The row T is in integers over 2^ROW_BITS."""
+"""The row T consists of integers over 2^ROW_BITS."""
 
 _MOST_REACH = 4 << REACH_BITS
 _STEEPEST = 7 << SCALE >> 3
@@ -40,9 +40,10 @@ _STEEPEST = 7 << SCALE >> 3
 
 @dataclass(frozen=True, repr=False)
 class Tube(Piece):
-    """A piece of a curve of configurations: T(x(s) - c) = s with T = `row` over 2^ROW_BITS.
+    """A piece of a curve of configurations on which T(x(s) - c) = s.
 
-    The unknowns are those of the length equations of the framework; c = a_0.
+    T is `row` over 2^ROW_BITS. The unknowns are those of the length equations of the framework; c =
+    a_0.
     """
 
     row: Row
@@ -50,8 +51,8 @@ class Tube(Piece):
     def located(self, ball: Ball) -> tuple[int, int] | None:
         """The parameters of the configuration in a box, if it is proved to lie on this tube.
 
-        The box holds some configuration x. Where this returns (low, high), over 2^PARAMETER_BITS,
-        x = x(s) for some low <= s <= high. None says nothing.
+        The box contains some configuration x. If the result is (low, high), over 2^PARAMETER_BITS,
+        then x = x(s) for some s with low <= s <= high. None proves nothing.
         """
         ball = ball.finer(self.bits)
         bits, finer = ball.bits, ball.bits - self.bits
@@ -73,9 +74,10 @@ class Tube(Piece):
         return middle - spread, middle + spread
 
     def length(self, entry: tuple[int, int], end: int) -> Interval:
-        """Bounds of the length of the curve from a parameter in `entry` to `end`, exactly.
+        """Exact bounds of the length of the curve from a parameter in `entry` to `end`.
 
-        In the framework's unit; parameters over 2^PARAMETER_BITS, `entry[1]` <= `end`.
+        The length is in the framework's unit. Parameters are over 2^PARAMETER_BITS, and `entry[1]`
+        <= `end`.
         """
         rows = self.slope
         middle = (entry[0] + entry[1]) // 2
@@ -94,20 +96,21 @@ class Tube(Piece):
         return max(low - slack, Fraction(0)), high + slack
 
     def near(self, length: float, low: int, high: int) -> int:
-        """A parameter between `low` and `high` that is nearly this length after `low`."""
+        """A parameter between `low` and `high` that is approximately this length after `low`."""
         rows = np.array([self._floats(row) for row in self.slope])
         return parameter_after(rows, length, PARAMETER_BITS, low, high)
 
     @cached_property
     def _fastest(self) -> int:
-        """A bound of |x'(s)| over the whole reach, over 2^bits."""
+        """An upper bound of |x'(s)| on the whole tube, over 2^bits."""
         error = self.velocity(self.longest).radii
         return isqrt(sum((v + r) ** 2 for v, r in zip(self._speeds, error, strict=True))) + 1
 
     def candidates(self, points: FloatArray) -> IndexArray:
-        """Which of many points, shape (points, unknowns), `located` may find here: by floats.
+        """The numbers of those points that `located` may find on this tube.
 
-        A proposal, to be proved by `located`: other points lie outside but for rounding errors.
+        The points have shape (points, unknowns). Floats propose them, and `located` proves them.
+        Other points lie outside, up to rounding errors.
         """
         curve = np.array([self._floats(row) for row in self.coefficients])
         row = np.array([t / (1 << ROW_BITS) for t in self.row])
@@ -123,10 +126,10 @@ class Tube(Piece):
         return self.located(ball) is not None
 
     def goes_along(self, velocity: Ball) -> int:
-        """The sign of T v for all v in a box, 0 if it is not certain.
+        """The sign of T v for all v in a box; 0 if it is uncertain.
 
-        For the velocity of another parametrisation of the same curve at a point of this tube: 1 if
-        both go the same way.
+        Let v be the velocity of another parametrisation of the same curve at a point of this tube.
+        The result is 1 if both parametrisations go the same way.
         """
         middle = sum(t * x for t, x in zip(self.row, velocity.centre, strict=True))
         spread = sum(abs(t) * r for t, r in zip(self.row, velocity.radii, strict=True))
@@ -134,7 +137,7 @@ class Tube(Piece):
 
     @cached_property
     def _speeds(self) -> Row:
-        """Bounds of |p_i'(s)| over the whole reach, over 2^bits."""
+        """Upper bounds of |p_i'(s)| on the whole tube, over 2^bits."""
         reach, k = self.reach, len(self.coefficients) - 1
         return tuple(
             1
@@ -177,7 +180,7 @@ def _bounds(
     weights: Row,
     inverse: FloatArray,
 ) -> Contraction:
-    """The contraction of the equations along a curve, with the row T(x - c) - s below."""
+    """The contraction of the equations along a curve; the last row is T(x - c) - s."""
     e = equations.along(curve)
     sums = equations.weight_sums(weights)
     return contraction(
@@ -204,11 +207,11 @@ def prove_tube(
     order: int = 8,
     thickness: float = 1e-8,
 ) -> Tube | None:
-    """A tube round the curve at the point of it nearest to `near`; None if none is proved.
+    """A tube round the curve at its point nearest to `near`; None if none is proved.
 
-    `towards`: unknowns along which the parameter increases. `step`: about the length that the tube
-    should reach. Its radius is at most `thickness`. Floats choose the centre, the row T, P, the
-    coefficients and weights; then everything is verified in integers.
+    The parameter increases along the vector `towards`. The tube should reach a length of about
+    `step`. Its radius is at most `thickness`. Floats choose the centre, the row T, the matrix P,
+    the coefficients and the weights; then everything is verified in integers.
     """
     framework, bits = equations.framework, equations.bits
     more = bits + equations.more + 1
@@ -245,7 +248,7 @@ def prove_tube(
 
 
 def longest(proof: Contraction, thickness: float, most: int = _MOST_REACH) -> int:
-    """The largest reach with room to spare, over 2^REACH_BITS; 0 if there is none."""
+    """The largest reach for which the proof works with room to spare, over 2^REACH_BITS; or 0."""
     thin = int(thickness * (1 << 60)) << (SCALE - 60)
 
     def works(reach: int) -> bool:
@@ -263,11 +266,11 @@ def longest(proof: Contraction, thickness: float, most: int = _MOST_REACH) -> in
 
 
 def sharpened(tube: Tube, parameter: int) -> Ball:
-    """A box of about 14 digits that holds x(s), s over 2^PARAMETER_BITS.
+    """A box of about 14 digits that contains x(s), where s is over 2^PARAMETER_BITS.
 
-    A step of Newton's method from p(s), and the test of Theorem 1 there, for this s alone. The zero
-    it proves is that of the tube, because it lies where zeros are unique. Where that fails, the
-    answer is `Tube.enclosure`.
+    The method is a step of Newton's method from p(s), followed by the test of Theorem 1 for this s
+    alone. The zero that is proved is that of the tube, because it lies where zeros are unique. If
+    the test fails, the result is `Tube.enclosure`.
     """
     equations = LengthEquations(tube.framework, tube.bits)
     framework, bits, whole = tube.framework, tube.bits, tube.enclosure(parameter)
@@ -295,7 +298,7 @@ def sharpened(tube: Tube, parameter: int) -> Ball:
 
 
 def _stretch(equations: LengthEquations, centre: Row, last: int) -> list[int]:
-    """2 g_e(c), then twice the ties, and one more, over 2^(2 bits + `more`)."""
+    """2 g_e(c), then twice the ties, then `last`, over 2^(2 bits + `more`)."""
     e = equations.along([centre])[0]
     stretch = [int(x) for x in ((e + 2 * equations.flat_edges) * e).sum(axis=1)]
     return equations.stacked(stretch, [*(2 * x for x in equations.tied(centre)), last])

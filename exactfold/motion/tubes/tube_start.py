@@ -1,4 +1,6 @@
-"""The first piece of a motion, from the flat state, in blown-up coordinates where it is regular."""
+"""The first piece of a motion, from the flat state, in blown-up coordinates in which it
+is regular.
+"""
 
 from __future__ import annotations
 
@@ -40,20 +42,22 @@ from exactfold.rigidity.functionals import (
 )
 
 ROOT_BITS = PARAMETER_BITS // 2
-"""The parameter tau of a start tube, whose square is s, is an integer over 2^ROOT_BITS."""
+"""The parameter tau of a start tube is an integer over 2^ROOT_BITS; its square is s."""
 
 
 @dataclass(frozen=True, repr=False)
 class StartTube(Piece):
-    """The curve near the flat state: d = (t^2 u, t h), t = tau / 2^`halvings`, s = tau^2.
+    """The curve near the flat state: d = (t^2 u, t h) with t = tau / 2^`halvings` and s = tau^2.
 
-    The unknowns are (u_x, u_y, h) of each free vertex; they solve U_e . u_e + h_e^2 / 2 +
-    t^2 |u_e|^2 / 2 = 0, and the ties for h, with the height at `held` fixed. For tau < 0 the curve
-    is the mirror image: the half-branch in the opposite direction. `gauge` and `vertex_signs` name
-    the half-branch tau > 0 (docs/motion.md, Theorem 3): the proved signs of the heights at tau = 0
-    at every interior vertex of the sheet of the framework, and the sign `side` of the boundary
-    saddle or, with a reflex corner, of this corner in the closed sheet, or, with more than four
-    corners, of the factor of the rim; 1 with driven folds, which go the way they are driven.
+    The unknowns (u_x, u_y, h) of each free vertex solve U_e . u_e + h_e^2 / 2 + t^2 |u_e|^2 / 2 = 0
+    and the ties for h, while the height at `held` is fixed. For tau < 0 the curve is the mirror
+    image, which is the opposite ray.
+
+    The gauge, `vertex_signs` and `side` name the ray tau > 0 (docs/motion.md, Theorem 3).
+    `vertex_signs` are the proved signs of the heights at tau = 0 at every interior vertex of the
+    sheet of the framework. `side` is the sign of the boundary saddle. With a reflex corner it is
+    the sign of this corner in the closed sheet. With more than four corners it is the sign of the
+    factor of the boundary heights. With driven folds, which bend the way they are driven, it is 1.
     """
 
     halvings: int
@@ -63,22 +67,22 @@ class StartTube(Piece):
 
     @property
     def last(self) -> int:
-        """The tau at which the motion goes over to tubes, over 2^ROOT_BITS."""
+        """The tau, over 2^ROOT_BITS, at which the motion passes to the first tube."""
         coarse = ROOT_BITS - 8
         return isqrt(self.longest * 2 // 3) >> coarse << coarse
 
     def ball(self, tau: int) -> Ball:
-        """A box of unknowns of the length equations that holds the configuration at tau.
+        """A box of unknowns of the length equations that contains the configuration at tau.
 
-        `tau` is over 2^ROOT_BITS, its square at most the reach.
+        `tau` is over 2^ROOT_BITS, and its square is at most the reach.
         """
         return self._blown_down(self.enclosure(tau * tau), tau)
 
     def sharpened(self, tau: int) -> Ball:
-        """`ball` with about 14 digits: a step of Newton's method for this tau, and Theorem 1 there.
+        """`ball` with about 14 digits, by a step of Newton's method and Theorem 1 for this tau.
 
-        The zero is that of the tube, because it lies where zeros are unique. Where that fails, the
-        answer is `ball`.
+        The zero is that of the tube, because it lies where zeros are unique. If the test of Theorem
+        1 fails, the result is `ball`.
         """
         whole, up_to = self.enclosure(tau * tau), PARAMETER_BITS + 2 * self.halvings
         equations = LengthEquations(self.framework, self.bits)
@@ -86,7 +90,7 @@ class StartTube(Piece):
         finer = self.bits + up_to + equations.more + 1
 
         def terms() -> tuple[BigArray, list[int]]:
-            """U + (s u, h) over 2^(bits + up_to), and the residual over 2^(bits + finer)."""
+            """Return U + (s u, h) over 2^(bits + up_to), and the residual over 2^(bits + finer)."""
             e = equations.along([point])[0]
             flat = equations.flat_edges
             bent = np.concatenate([s * e[:, :2], e[:, 2:] * (1 << up_to)], axis=1)
@@ -139,7 +143,7 @@ class StartTube(Piece):
         return Ball(self.bits, tuple(centre), tuple(radii))
 
     def ball_velocity(self, tau: int) -> Ball:
-        """A box that holds the derivative by tau of these unknowns."""
+        """A box that contains the derivative of these unknowns with respect to tau."""
         point, rate = self.enclosure(tau * tau), self.velocity(tau * tau)
         m = self.halvings
         centre, radii = [], []
@@ -166,7 +170,9 @@ class StartTube(Piece):
 
     @cached_property
     def _slope_in_tau(self) -> list[Row]:
-        """The coefficients of the derivative of d by tau, over 2^(bits + 2 halvings)."""
+        """The coefficients of the derivative of d with respect to tau, over 2^(bits + 2
+        halvings).
+        """
         m = self.halvings
         rows = []
         for k, row in enumerate(self.coefficients):
@@ -176,7 +182,7 @@ class StartTube(Piece):
         return rows
 
     def near(self, length: float, low: int, high: int) -> int:
-        """A tau between `low` and `high` that is nearly this length after `low`."""
+        """A tau between `low` and `high` that is approximately this length after `low`."""
         scale = 2.0 ** (-2 * self.halvings)
         rows = np.array([self._floats(row) for row in self._slope_in_tau]) * scale
         return parameter_after(rows, length, ROOT_BITS, low, high)
@@ -192,11 +198,11 @@ def prove_start(
     thickness: float = 1e-8,
     ways: Sequence[tuple[Edge, int]] = (),
 ) -> StartTube:
-    """The start tube of the half-branch with these approximate heights of the framework's sheet.
+    """The start tube of the ray with these approximate heights of the framework's sheet.
 
-    `ways`: with a coupling the folds that are driven, each with 1 if it is to be a valley, else -1.
-
-    Raises `NotProvedAtTheFlatStateError`, which does not say that there is no such motion.
+    With a coupling, `ways` are the driven folds, each with 1 if it has to be a valley and -1 if it
+    has to be a mountain. Raises `NotProvedAtTheFlatStateError`; this does not mean that there is no
+    such motion.
     """
     try:
         start = Start.of(framework, heights, order=order)
@@ -219,7 +225,9 @@ def prove_start(
     except np.linalg.LinAlgError:
         inverse = np.full((framework.size, framework.size), np.inf)
     if not np.abs(inverse).max() < 2.0**40:
-        raise NotProvedAtTheFlatStateError("the branch is not simple, or floats do not show it")
+        raise NotProvedAtTheFlatStateError(
+            "the branch is not simple, or floating point cannot show that it is"
+        )
     for _ in range(2):
         finer = equations.bits + equations.more + 2 * m + 1
         curve = corrected(inverse, curve, _residuals(equations, curve, m), finer)
@@ -236,8 +244,8 @@ def prove_start(
     reach = longest(proof, thickness)
     if not reach:
         raise NotProvedAtTheFlatStateError(
-            "the curve that leaves the flat state along this branch was not enclosed: it is not "
-            "simple, or ill-conditioned"
+            "the curve that leaves the flat state along this branch could not be enclosed: the "
+            "branch is not simple, or it is ill-conditioned"
         )
     found = StartTube(framework, equations.bits, curve, weights, proof, reach, m, held, (), 0)
     signs, side = names_at(gauge, framework, found.enclosure(0), ways)
@@ -249,8 +257,8 @@ def names_at(
 ) -> tuple[tuple[int, ...], int]:
     """The signs of all interior vertices on a box of (u, h), and the side of the gauge.
 
-    With driven folds the side is 1: all of them go the way they are to. Raises
-    `NotProvedAtTheFlatStateError` where one is not certain.
+    With driven folds the side is 1, and all of them bend the way they have to. Raises
+    `NotProvedAtTheFlatStateError` if some sign is uncertain.
     """
     rows = {int(v): 3 * k + 2 for k, v in enumerate(framework.free)}
 
@@ -258,7 +266,7 @@ def names_at(
         terms = [(Fraction(c), rows[v]) for v, c in functional.items() if v in rows]
         middle = sum((c * box.centre[i] for c, i in terms), Fraction(0))
         if abs(middle) <= sum(abs(c) * box.radii[i] for c, i in terms):
-            raise NotProvedAtTheFlatStateError(f"{what} may be flat to within the error")
+            raise NotProvedAtTheFlatStateError(f"{what} may be flat within the error bounds")
         return 1 if middle > 0 else -1
 
     sheet = framework.sheet
@@ -266,7 +274,9 @@ def names_at(
     if ways:
         for fold, way in ways:
             if sign(fold_functional(sheet, fold), f"fold {fold[0]}-{fold[1]}") != way:
-                raise NotProvedAtTheFlatStateError("a driven fold starts the other way")
+                raise NotProvedAtTheFlatStateError(
+                    f"the driven fold {fold[0]}-{fold[1]} starts to bend the other way"
+                )
         return signs, 1
     if gauge.kind == RIM:
         return signs, sign(factor_functional(sheet, gauge.rim), "the border")
@@ -277,12 +287,12 @@ def names_at(
 
 
 def _holding(curve: Curve, held: int) -> Curve:
-    """The curve with one unknown the same everywhere."""
+    """The curve on which one unknown is held constant."""
     return curve[0], *((*row[:held], 0, *row[held + 1 :]) for row in curve[1:])
 
 
 def _halvings(series: FloatArray) -> int:
-    """m so that the series in s / 4^m has coefficients that fall by about 1/4."""
+    """The m for which the coefficients of the series in s / 4^m fall by a factor of about 1/4."""
     sizes = [float(np.abs(row).max()) for row in series]
     growth = max(
         ((x / sizes[0]) ** (1 / k) for k, x in enumerate(sizes) if k and x > 0), default=1.0
@@ -293,7 +303,7 @@ def _halvings(series: FloatArray) -> int:
 def _residuals(equations: LengthEquations, curve: Sequence[Row], m: int) -> list[list[int]]:
     """The coefficients of 2 [U . u + h^2 / 2 + s |u|^2 / 2; ties; 0].
 
-    Over 2^(2 bits + 2 m + `more`).
+    They are integers over 2^(2 bits + 2 m + `more`).
     """
     e = equations.along(curve)
     heights, plane = squared(e[:, :, 2:]), squared(e[:, :, :2])

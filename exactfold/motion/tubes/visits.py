@@ -1,4 +1,4 @@
-"""Where curves pass nodes, and which of them pass the same one along the same line."""
+"""Where curves pass branch points, and which of them pass the same one along the same line."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from exactfold.motion.tubes.flat_patches import FlatPatch, FlatPoint
 from exactfold.motion.tubes.piece import Ball
 
 Side = tuple[int, int]
-"""One of the two halves of an arc that goes through a node: the number of its line, and 1 or -1."""
+"""A half of an arc through a branch point: the number of the arc's line there, and 1 or -1."""
 
 
 @dataclass(frozen=True, repr=False)
 class Visit:
-    """That a curve passes a node.
+    """The fact that a curve passes a branch point (node).
 
-    In the box `node` lies a configuration at which the stars of `flat`, vertices of the framework,
-    are flat; the curve goes through it in a direction that is a multiple > 0 of one in the box
-    `direction`. `time` bounds when, in the unit of the framework.
+    The box `node` contains a configuration at which the stars of `flat`, vertices of the framework,
+    are flat. The curve passes through it in a direction that is a positive multiple of a vector in
+    the box `direction`. `time` bounds when, in the unit of the framework.
     """
 
     flat: tuple[int, ...]
@@ -38,7 +38,7 @@ class Visit:
 
     @property
     def mirrored(self) -> Visit:
-        """The visit of the mirror image."""
+        """The visit of the mirror image of the curve."""
         return replace(self, node=self.node.mirrored, direction=self.direction.mirrored)
 
     def __repr__(self) -> str:
@@ -47,12 +47,13 @@ class Visit:
 
 @dataclass(frozen=True, repr=False)
 class LocatedNode:
-    """A node in its box, with the lines along which curves go through it, one for each.
+    """A branch point in its box, and the lines along which curves pass through it.
 
-    There is exactly one configuration with this flat patch in the box of `point`. `lines` are boxes
-    of directions that are proved to be no multiples of each other, each with its curve. If they are
-    2^|flat|, they are all: the directions are zeros of |flat| quadrics in a projective space of
-    this dimension, and these are simple (docs/motions.md, The graph).
+    Each curve has one line. The box of `point` contains exactly one configuration with this flat
+    patch. `lines` are boxes of directions; it is proved that none is a multiple of another, and
+    that a curve belongs to each. If there are 2^|flat| lines, there are no others: the directions
+    are zeros of |flat| quadrics in a projective space of this dimension, and these zeros are simple
+    (docs/motions.md, The graph).
     """
 
     point: FlatPoint
@@ -60,7 +61,9 @@ class LocatedNode:
 
     @classmethod
     def of(cls, framework: Framework, visit: Visit) -> LocatedNode | None:
-        """The node of a visit; None if it is not proved to be the one that is found."""
+        """The branch point of a visit; None if the point found is not proved to be that of the
+        visit.
+        """
         patch = FlatPatch.of(framework, visit.flat)
         near = visit.node.floats[0]
         point = None if patch is None else patch.point(near, visit.node.bits)
@@ -83,12 +86,12 @@ class LocatedNode:
 
     @property
     def has_all_lines(self) -> bool:
-        """Whether no other curves go through the node."""
+        """Whether it is proved that no other curves pass through the branch point."""
         return len(self.lines) == 1 << len(self.flat)
 
     @property
     def mirrored(self) -> LocatedNode:
-        """The mirror image."""
+        """The mirror image of the branch point."""
         point = self.point
         signs = (1, 1, -1) * (len(point.centre) // 3)
         centre = tuple(s * x for s, x in zip(signs, point.centre, strict=True))
@@ -96,15 +99,16 @@ class LocatedNode:
         return LocatedNode(image, tuple(line.mirrored for line in self.lines))
 
     def meets(self, visit: Visit) -> bool | None:
-        """Whether a visit is one of this node; None if that is not decided."""
+        """Whether a visit is a visit of this branch point; None if that is undecided."""
         if self.point.ball.misses(visit.node):
             return False
         return True if visit.flat == self.flat and self.point.is_in(visit.node) else None
 
     def side(self, visit: Visit) -> Side | None:
-        """Along which line a visit of this node leaves it, and to which side; None if open.
+        """The line along which a visit leaves this branch point, and the direction on it.
 
-        All lines are known, so it is the one that is not proved to be another.
+        None if that is undecided. All lines are known. So the line is the only one of which the
+        visit's direction is not proved to be different.
         """
         if not self.has_all_lines:
             return None
@@ -127,7 +131,7 @@ def crosses(one: Ball, two: Ball) -> bool:
     a, b = one.floats[0], two.floats[0]
     i = int(np.argmax(np.abs(a)))
     j = int(np.argmax(np.abs(a[i] * b - b[i] * a)))
-    # |a_i b_j - a_j b_i| less what the radii can change it by, exactly.
+    # |a_i b_j - a_j b_i| has to exceed the most by which the radii can change it; all is exact.
     minor = one.centre[i] * two.centre[j] - one.centre[j] * two.centre[i]
     off = sum(
         abs(one.centre[k]) * two.radii[m]
@@ -139,7 +143,7 @@ def crosses(one: Ball, two: Ball) -> bool:
 
 
 def _sign(one: Ball, two: Ball) -> int:
-    """The sign of the scalar product of all vectors in two boxes, 0 if it is not certain."""
+    """The sign of the scalar products of all vectors in two boxes; 0 if it is uncertain."""
     rows = zip(one.centre, one.radii, two.centre, two.radii, strict=True)
     middle, off = 0, 0
     for x, r, y, s in rows:

@@ -22,7 +22,7 @@ SHEETS: Final = (
     "waterbomb",
     "random-8",
 )
-"""Triangulated sheets, which `load` takes."""
+"""Triangulated sheets. `load` accepts these names."""
 
 BY_OTHERS: Final = MappingProxyType(
     {
@@ -30,7 +30,7 @@ BY_OTHERS: Final = MappingProxyType(
         for name in ("pinwheel-base", "flapping-bird", "map-fold")
     }
 )
-"""Drawings from other projects, by name; the licence stands beside each file."""
+"""Drawings from other projects, by name; each licence lies beside its file."""
 
 DRAWINGS: Final = MappingProxyType(
     {
@@ -47,10 +47,13 @@ DRAWINGS: Final = MappingProxyType(
     }
     | dict(BY_OTHERS)
 )
-"""Files as people draw them, by name: sheets of panels, whose points are found by reading."""
+"""Drawings as people draw them, by name: sheets of panels without exact points.
+
+exactfold finds the exact points when it reads such a file.
+"""
 
 EXAMPLES: Final = (*DRAWINGS, *SHEETS)
-"""All names that stand for files."""
+"""All names of shipped files."""
 
 
 def example_path(name: str) -> Path:
@@ -60,14 +63,14 @@ def example_path(name: str) -> Path:
     'two-vertex.fold'
     """
     if name not in EXAMPLES:
-        raise UsageError(f"no example {name!r}; there are: {', '.join(EXAMPLES)}")
+        raise UsageError(f"there is no example {name!r}; the examples are: {', '.join(EXAMPLES)}")
     return Path(__file__).parent / DRAWINGS.get(name, f"{name}.fold")
 
 
 def examples() -> dict[str, str]:
-    """The shipped patterns, in the order of `EXAMPLES`: what each is, in one line, by name.
+    """A description of each shipped pattern in one line, by name, in the order of `EXAMPLES`.
 
-    Counts take these names, and `load` takes those in `SHEETS`.
+    Counts accept all these names, `load` only those in `SHEETS`.
 
     >>> examples()["single-vertex-4"]
     'One interior vertex with four folds: two ways to start folding.'
@@ -76,7 +79,7 @@ def examples() -> dict[str, str]:
 
 
 def _described(path: Path) -> str:
-    """What a file says of itself: the title of a FOLD file, the `desc` of an SVG drawing."""
+    """The description inside a file: the title of a FOLD file, the `desc` of an SVG drawing."""
     text = path.read_text(encoding="utf-8")
     if path.suffix == ".fold":
         return str(json.loads(text)["file_description"])

@@ -1,1 +1,1 @@
-"""Drawings of crease patterns as people have them: formats, repair, exact coordinates."""
+"""Crease patterns as people draw them: file formats, repair, exact coordinates."""

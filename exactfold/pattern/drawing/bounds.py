@@ -1,4 +1,4 @@
-"""Whether a file stays within the limits of `checker.core.limits`, and how it is refused."""
+"""Refuses files and drawings that exceed the limits of `checker.core.limits`."""
 
 from __future__ import annotations
 
@@ -33,7 +33,10 @@ _ROUND: Final = "round the coordinates"
 
 
 def read_bytes(path: str | PathLike[str]) -> bytes:
-    """All of a file; raises `UnreadableFileError`, and `TooLargeError` for more than 1 GiB."""
+    """The whole content of a file.
+
+    Raises `UnreadableFileError`, and `TooLargeError` for more than 1 GiB.
+    """
     try:
         with open(path, "rb") as stream:
             content = stream.read(MOST_BYTES + 1)
@@ -41,12 +44,12 @@ def read_bytes(path: str | PathLike[str]) -> bytes:
         reason = getattr(error, "strerror", None) or str(error)
         raise UnreadableFileError(f"cannot read {path}: {reason}") from None
     if len(content) > MOST_BYTES:
-        raise TooLargeError(f"{path} has more than {MOST_BYTES} bytes, the most that are read")
+        raise TooLargeError(f"{path} has more than {MOST_BYTES} bytes: larger files are not read")
     return content
 
 
 def read_text(path: str | PathLike[str]) -> str:
-    """All of a UTF-8 text; raises the errors of `read_bytes`."""
+    """The whole text of a UTF-8 file; raises the errors of `read_bytes`."""
     try:
         return read_bytes(path).decode("utf-8")
     except UnicodeDecodeError:
@@ -54,14 +57,15 @@ def read_text(path: str | PathLike[str]) -> str:
 
 
 def check_coordinates(points: Iterable[Sequence[Number]]) -> None:
-    """Raise `TooLargeError` for coordinates that take too long to compute with.
+    """Raises `TooLargeError` for coordinates that take too long to compute with.
 
-    A coordinate has at most 10,000 digits; a few may be as long as that, and many may be short.
+    A coordinate has at most 10,000 digits. A few coordinates may have that many, and many
+    coordinates may have a few digits.
 
     >>> check_coordinates([(Fraction(1, 3), Fraction(10**12000))])
     Traceback (most recent call last):
-    exactfold.errors.TooLargeError: vertex 0 has a coordinate of 12001 digits, and 10000 are the
-    most that are read: round the coordinates
+    exactfold.errors.TooLargeError: vertex 0 has a coordinate of 12001 digits, but at most 10000 are
+    read: round the coordinates
     """
     products = 0
     for vertex, point in enumerate(points):
@@ -70,21 +74,21 @@ def check_coordinates(points: Iterable[Sequence[Number]]) -> None:
             longest = max(above, below)
             if longest > MOST_COORDINATE:
                 raise TooLargeError(
-                    f"vertex {vertex} has a coordinate of {longest} digits, and {MOST_COORDINATE} "
-                    f"are the most that are read: {_ROUND}"
+                    f"vertex {vertex} has a coordinate of {longest} digits, but at most "
+                    f"{MOST_COORDINATE} are read: {_ROUND}"
                 )
             if longest > LONG_COORDINATE:
                 products += above * below
     if products > MOST_PRODUCTS:
         raise TooLargeError(
-            f"the coordinates of more than {LONG_COORDINATE} digits are too many: the digits of "
-            f"their numerators times those of their denominators are {products}, and "
-            f"{MOST_PRODUCTS} are the most that are read: {_ROUND}"
+            f"too many coordinates have more than {LONG_COORDINATE} digits: the products of the "
+            f"digits of their numerators and denominators add up to {products}, but at most "
+            f"{MOST_PRODUCTS} are read: {_ROUND}"
         )
 
 
 def check_common_denominator(points: Iterable[Sequence[Fraction]]) -> None:
-    """Raise `TooLargeError` for coordinates that are too long as multiples of one fraction."""
+    """Raises `TooLargeError` for coordinates that are too long over one common denominator."""
     common, largest = 1, 0
     for number, part in enumerate((part for point in points for part in point), 1):
         largest = max(largest, part.numerator.bit_length() - part.denominator.bit_length() + 1)
@@ -93,21 +97,21 @@ def check_common_denominator(points: Iterable[Sequence[Fraction]]) -> None:
         bits = common.bit_length() + largest
         if number * (bits // _WORD + 1) ** 2 > MOST_COMMON:
             raise TooLargeError(
-                f"the first {number} coordinates have {_digits(common)} digits each over their "
-                f"common denominator, and {isqrt(MOST_COMMON // number) * 19} are the most that "
-                f"are read of so many: {_ROUND}"
+                f"over their common denominator, the first {number} coordinates have "
+                f"{_digits(common)} digits each, but for so many coordinates at most "
+                f"{isqrt(MOST_COMMON // number) * 19} digits are read: {_ROUND}"
             )
 
 
 def check_drawing(drawing: Drawing) -> None:
-    """Raise `TooLargeError` for a drawing that floats cannot hold, or with too many lines.
+    """Raises `TooLargeError` for a drawing with too many lines, or one that floats cannot hold.
 
-    What meets in a drawing is found in floats: its size is from 1e-50 to 1e50.
+    Floats are used to find which lines meet, so the size of a drawing must be from 1e-50 to 1e50.
     """
     if len(drawing.lines) > MOST_LINES:
         raise TooLargeError(
-            f"the drawing has {len(drawing.lines)} lines, and {MOST_LINES} are the most that are "
-            "read: leave out what is no crease, or give a part of it"
+            f"the drawing has {len(drawing.lines)} lines, but at most {MOST_LINES} are read: leave "
+            "out lines that are not creases, or give a part of the drawing"
         )
     check_coordinates(drawing.points)
     for vertex, point in enumerate(drawing.points):
@@ -117,26 +121,26 @@ def check_drawing(drawing: Drawing) -> None:
             for part in _parts(number)
         ):
             raise TooLargeError(
-                f"point {vertex} is farther than 1e{LARGEST} from the origin, the largest size of "
-                "a drawing that is read: scale it down"
+                f"point {vertex} is farther than 1e{LARGEST} from the origin, and larger drawings "
+                "are not read: scale the drawing down"
             )
     spots = {(float(x), float(y)) for x, y in drawing.points}
     size = max((max(column) - min(column) for column in zip(*spots, strict=True)), default=0.0)
     if size < 10.0**-SMALLEST and len(set(drawing.points)) > 1:
         raise TooLargeError(
-            f"the drawing is smaller than 1e-{SMALLEST}, the smallest size that is read: scale it "
-            "up"
+            f"the drawing is smaller than 1e-{SMALLEST}, and smaller drawings are not read: scale "
+            "the drawing up"
         )
 
 
 def check_compared(boxes: Sequence[Sequence[Any]]) -> None:
-    """Raise `TooLargeError` if too many intervals (low, high, ...), sorted, share a number."""
+    """Raises `TooLargeError` if too many of the sorted intervals (low, high, ...) overlap."""
     lows = [box[0] for box in boxes]
     pairs = sum(bisect_right(lows, box[1], k + 1) - k - 1 for k, box in enumerate(boxes))
     if pairs > MOST_COMPARED:
         raise TooLargeError(
-            f"{pairs} pairs of edges lie above one another, and {MOST_COMPARED} are the most that "
-            "are compared: give the pattern in parts"
+            f"{pairs} pairs of edges have overlapping x-ranges, but at most {MOST_COMPARED} are "
+            "compared: split the pattern into parts"
         )
 
 
@@ -145,5 +149,5 @@ def _parts(number: Number) -> Sequence[Fraction]:
 
 
 def _digits(number: int) -> int:
-    """Decimal digits, to within one."""
+    """The number of decimal digits, correct up to one."""
     return int(number.bit_length() * _DIGITS_A_BIT) + 1

@@ -1,4 +1,4 @@
-"""Small numbers near a decimal: which (a + b sqrt d)/q was meant, and how likely that is chance."""
+"""Finds the number (a + b sqrt d)/q that a decimal was meant to be, and the odds against chance."""
 
 from __future__ import annotations
 
@@ -17,23 +17,24 @@ from exactfold.exact.surds import RATIONALS, Number, Surd, SurdField, simple
 RADICANDS: Final = (1, 2, 3, 5)
 """The fields that are tried: Q, Q(sqrt 2), Q(sqrt 3), Q(sqrt 5)."""
 _LARGEST: Final = {1: 360_000, 2: 100_000, 3: 100_000, 5: 100_000}
-"""The bound on q^2 (2|b| + 1)."""
+"""Candidates have size q^2 (2|b| + 1) up to this bound, by d."""
 _CHANCE: Final = 2.0**-6
-"""A match is believed only if a random number would have one as small with this probability."""
+"""A candidate is believed only if chance gives one as small with at most this probability."""
 _BITS: Final = 10.0
-"""The same for numbers beyond the table, of which there are more."""
+"""By so many bits, numbers beyond the table must beat chance; there are many more of them."""
 
 
 def field_of(radicand: int) -> SurdField:
-    """Q for 1, else Q(sqrt radicand)."""
+    """Q for the radicand 1, else Q(sqrt radicand)."""
     return RATIONALS if radicand == 1 else RATIONALS.adjoined(radicand)
 
 
 @dataclass(frozen=True)
 class Candidates:
-    """The numbers (a + b sqrt d)/q modulo 1, sorted by value; `rank` counts those no larger.
+    """The numbers (a + b sqrt d)/q modulo 1, sorted by value.
 
-    The size of a candidate is q^2 (2|b| + 1): so many numbers, up to a constant, are as small.
+    The size of a candidate is q^2 (2|b| + 1). `rank` counts the candidates of at most its size; up
+    to a constant, this count is the size itself.
     """
 
     values: FloatArray
@@ -45,7 +46,7 @@ class Candidates:
 
 @dataclass(frozen=True)
 class Match:
-    """An exact number that was matched, and the bits by which it beats chance."""
+    """An exact number that matches a decimal, and the bits by which the match beats chance."""
 
     value: Number
     bits: float
@@ -75,10 +76,10 @@ def candidates(radicand: int) -> Candidates:
 
 
 def matches(values: FloatArray, within: float, radicand: int) -> list[Match | None]:
-    """The smallest candidate within a distance of each value, None where chance would do as well.
+    """For each value the smallest candidate within a distance, or None if chance explains it.
 
-    The probability that a random number lies within `within` of one of the `rank` smallest
-    candidates modulo 1 is at most 2 * within * rank; `bits` is minus its logarithm.
+    A random number lies within `within` of one of the `rank` smallest candidates modulo 1 with
+    probability at most 2 * within * rank; `bits` is minus the binary logarithm of this.
     """
     table = candidates(radicand)
     small = table.rank <= _CHANCE / (2 * within)
@@ -110,12 +111,13 @@ def matches(values: FloatArray, within: float, radicand: int) -> list[Match | No
 def reduced_match(
     value: Fraction, within: Fraction, field: SurdField, least: float = _BITS
 ) -> Match | None:
-    """A number of a field, of any size, within a small distance; None if chance would do as well.
+    """A number of a field, of any size, within a small distance; None if chance explains it.
 
-    Numbers are (a + b_1 w_1 + ... + b_m w_m)/q with the products w_i of roots. LLL finds a short
-    vector of the lattice of (q, a, b_1, ..., b_m, (q value + a + b_1 w_1 + ...) / within). Those of
-    size q^2 (2|b_1| + 1) ... (2|b_m| + 1) at most S are fewer than S (1 + log S)^max(m, 1) in a
-    unit interval. `least` is how many bits a match must beat chance by.
+    The number is (a + b_1 w_1 + ... + b_m w_m)/q, where w_i are the products of the roots. LLL
+    finds a short vector of the lattice of (q, a, b_1, ..., b_m, (q value + a + b_1 w_1 + ...) /
+    within). The size of a number is q^2 (2|b_1| + 1) ... (2|b_m| + 1). In a unit interval, fewer
+    than S (1 + log S)^max(m, 1) numbers have a size of at most S. A match must beat chance by
+    `least` bits.
 
     >>> reduced_match(Fraction("0.10236012565087"), Fraction(1, 10**13), field_of(2)).value
     17/97 + -5/97*r1

@@ -1,4 +1,4 @@
-"""Vertices that no small number fits, as crossings of straight lines through those that fit."""
+"""Finds vertices that fit no small numbers, as crossings of straight lines through other ones."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ from exactfold.pattern.drawing.candidates import field_of
 from exactfold.pattern.drawing.drawing import Line, Point
 
 _AT_ONCE: Final = 10**6
-"""Pairs of lines that are compared at once."""
+"""So many pairs of lines are compared at once."""
 _FLATTEST: Final = 0.05
-"""The least sine of the angle at which two lines fix a point."""
+"""Two lines fix a point only if the sine of the angle between them is larger than this."""
 
 ExactLine: TypeAlias = tuple[Point, Point]
-"""A point of a line and its direction."""
+"""A point of a line, and the direction of the line."""
 Exact: TypeAlias = Surd | Fraction
 
 
 def plain(number: Number) -> Number:
-    """A number without roots as a fraction.
+    """The number as a fraction if it has no roots, else unchanged.
 
     >>> plain(field_of(2).number(3))
     Fraction(3, 1)
@@ -38,7 +38,7 @@ def plain(number: Number) -> Number:
 
 
 def crossing(first: ExactLine, second: ExactLine) -> Point:
-    """The point on two lines that are not parallel, exactly."""
+    """The exact crossing point of two lines that are not parallel."""
     (px, py), (dx, dy) = _numbers(first)
     (qx, qy), (ex, ey) = _numbers(second)
     t = ((qx - px) * ey - (qy - py) * ex) / (dx * ey - dy * ex)
@@ -51,12 +51,12 @@ def _numbers(line: ExactLine) -> tuple[tuple[Exact, Exact], tuple[Exact, Exact]]
 
 
 def _divisible(number: Number) -> Exact:
-    """A whole number as a fraction, as whole numbers would be divided in floats."""
+    """The number in a type with exact division: an integer becomes a fraction."""
     return number if isinstance(number, Surd) else Fraction(number)
 
 
 def directions(radicand: int) -> list[Point]:
-    """Directions at equal angles with slopes in Q(sqrt radicand), from 0 to half a turn.
+    """Directions at equal angles from 0 to half a turn, with slopes in Q(sqrt radicand).
 
     >>> [(float(x), round(float(y), 3)) for x, y in directions(2)][:4]
     [(1.0, 0.0), (1.0, 0.414), (1.0, 1.0), (1.0, 2.414)]
@@ -79,7 +79,7 @@ class Run:
 
 
 def runs(places: FloatArray, lines: Sequence[Line], within: float) -> list[Run]:
-    """The straight runs of a drawing, with every line in exactly one."""
+    """The straight runs of a drawing; each line belongs to exactly one run."""
     around: dict[int, list[int]] = {}
     for k, line in enumerate(lines):
         around.setdefault(line.start, []).append(k)
@@ -109,11 +109,12 @@ def constructed(
     radicand: int,
     within: float,
 ) -> Mapping[int, Point]:
-    """Exact points for vertices that lack a coordinate, where two known straight lines meet.
+    """Exact points for vertices that lack a coordinate but lie where two known lines meet.
 
-    A run is known through two known vertices, or through one if its direction is a multiple of
-    22.5 degrees in Q(sqrt 2), of 15 in Q(sqrt 3), of 45 else; a known coordinate is a line too.
-    The point must lie within `within` (divided by the sine of the angle) of the drawn one.
+    The line of a run is known if two of its vertices are known. It is also known if one vertex is
+    known and the direction is a multiple of 22.5 degrees (in Q(sqrt 2)), 15 degrees (in Q(sqrt 3))
+    or 45 degrees (in other fields). A known coordinate gives a line, too. The coordinates of the
+    point may differ from the drawn ones by twice `within`, divided by the sine of the angle.
     """
     points: dict[int, Point] = {
         v: (x, y) for v, (x, y) in enumerate(known) if x is not None and y is not None
@@ -204,7 +205,7 @@ def _unit(line: ExactLine) -> tuple[float, float]:
 
 
 def _straight(spokes: FloatArray, within: float) -> Iterator[tuple[int, int]]:
-    """The pairs of spokes of which one continues the other straight."""
+    """Yields the pairs of spokes that continue each other straight."""
     step = 1 + _AT_ONCE // len(spokes)
     x, y = spokes.T
     for start in range(0, len(spokes), step):

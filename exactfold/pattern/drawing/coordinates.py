@@ -1,4 +1,4 @@
-"""Exact coordinates of a drawing: the smallest field on which its decimals lie."""
+"""Finds the exact coordinates of a drawing: the smallest field that its decimals fit."""
 
 from __future__ import annotations
 
@@ -26,26 +26,27 @@ from exactfold.pattern.drawing.fitting import (
 )
 
 _FINEST: Final = Fraction(1, 10**9)
-"""No closer than this to a number, in units of the size."""
+"""No tolerance is finer than this, in units of the size."""
 _COARSER: Final = (Fraction(1, 10**8), Fraction(1, 10**7), Fraction(1, 10**6))
-"""What is tried where the digits of the file are more than its precision."""
+"""These tolerances are tried, too, as a file can have more digits than its precision."""
 _WRITTEN: Final = 1024
-"""Steps of a grid across the drawing up to which decimals on it are what was meant."""
+"""Decimals on a grid of at most so many steps across the drawing count as exact."""
 _LEAST_BITS: Final = 20.0
-"""What beats chance for a whole drawing."""
+"""By so many bits the fit of a whole drawing must beat chance."""
 _MOST_KEPT: Final = 0.5
-"""The share of vertices without a number beyond which a field is not believed."""
+"""A field is not believed if a larger share of the vertices fits no number."""
 
 
 @dataclass(frozen=True)
 class Exact:
-    """A drawing with exact coordinates, and what became of its decimals.
+    """A drawing with exact coordinates, and how they were found.
 
-    `drawing` has points in Q (fractions) or in Q(sqrt `radicand`), or that with one more root, in
-    units of `unit` from `origin`, as `snap` found them. `largest_move` and `tolerance` are in units
-    of the larger side of the drawing; `bits` is minus the logarithm of the probability that random
-    decimals fit as well. `constructed` counts the vertices found as crossings of straight lines,
-    `kept` lists those of which a coordinate fits nothing and keeps its decimals.
+    `drawing` has points in Q (fractions), in Q(sqrt `radicand`), or in a field with one more root.
+    If `snap` found them, they are in units of `unit` from `origin`. `largest_move` and `tolerance`
+    are in units of the larger side of the drawing. `bits` is minus the binary logarithm of the
+    probability that random decimals fit as well. `constructed` counts the vertices that were found
+    as crossings of straight lines. `kept` lists the vertices with a coordinate that fits no number
+    and keeps its decimals.
     """
 
     drawing: Drawing
@@ -65,7 +66,7 @@ class Exact:
 
     @property
     def points(self) -> tuple[Point, ...]:
-        """The exact points."""
+        """The exact points of the drawing."""
         return self.drawing.points
 
     @property
@@ -75,9 +76,9 @@ class Exact:
 
     @property
     def text(self) -> str:
-        """What was done, in one line."""
+        """One line on how the coordinates were made exact."""
         if self.reason:
-            return f"coordinates kept as they are written: {self.reason}"
+            return f"coordinates kept as written: {self.reason}"
         parts = [f"coordinates in {self.field_name}, {_denominators(self.denominator)}"]
         if self.unit != 1:
             x, y = (float(c) for c in self.origin)
@@ -101,21 +102,23 @@ class Exact:
 def exact_coordinates(
     drawing: Drawing, snap: Snap = "auto", *, tolerance: Fraction | None = None
 ) -> Exact:
-    """The drawing on the smallest of Q, Q(sqrt 2), Q(sqrt 3), Q(sqrt 5) that its decimals fit.
+    """The drawing in the smallest of Q, Q(sqrt 2), Q(sqrt 3), Q(sqrt 5) that its decimals fit.
 
-    With `snap="auto"` each coordinate becomes the smallest number (a + b sqrt d)/q within the
-    tolerance, if a random number would hardly have one so small (decimals on a grid of at most
-    1,024 steps across the drawing are what was meant); first as written, then with the
-    width or the height of the drawing as unit. Other vertices become crossings of straight lines
-    of the drawing where two are known; coordinates that are left are numbers with one more root,
-    such as sqrt (2 + sqrt 2) for lengths at 22.5 degrees, if half of them are. `tolerance` is in
-    units of the larger side; without it, it is the last digit the file has, at least 1e-9, and up
-    to 1e-6 where the digits hold noise. With `snap=n` coordinates become the nearest multiples of
-    1/n, and with "exact" they stay.
+    With `snap="auto"` the coordinates become exact in these steps. Decimals on a grid of at most
+    1,024 steps across the drawing count as exact. Otherwise each coordinate becomes the smallest
+    number (a + b sqrt d)/q within the tolerance, if a random number would hardly have one so small.
+    This is tried as written, then with the width or the height of the drawing as unit. Remaining
+    vertices become crossings of two known straight lines of the drawing. Coordinates that are still
+    left become numbers with one more root, such as sqrt (2 + sqrt 2) for lengths at 22.5 degrees,
+    if this fits half of them.
 
-    Raises `MalformedPatternError` for a drawing without extent and `UsageError` for another `snap`,
-    a tolerance that is not positive or coordinates that are irrational already. That no field was
-    found does not mean that there is none.
+    `tolerance` is in units of the larger side. By default it is the last digit of the file, at
+    least 1e-9, and up to 1e-6 if the digits contain noise. With `snap=n` coordinates become the
+    nearest multiples of 1/n, and with "exact" they stay unchanged.
+
+    Raises `MalformedPatternError` for a drawing without extent, and `UsageError` for another
+    `snap`, a tolerance that is not positive, or coordinates that are irrational already. If no
+    field is found, there may be one all the same.
 
     >>> from exactfold.pattern.drawing.drawing import Line
     >>> points = [(0, 0), (1, 0), (1, 1), (0, 1), (Fraction("0.707106781"), 0)]
@@ -126,7 +129,10 @@ def exact_coordinates(
     coordinates in Q(sqrt 2), denominators up to 2; largest move 2e-10 of the size, tolerance 1e-09
     """
     if snap == "exact":
-        return Exact(drawing, reason="the file has exact ones" if drawing.exact else "as asked for")
+        return Exact(
+            drawing,
+            reason="the file states exact coordinates" if drawing.exact else "as requested",
+        )
     written = _fractions(drawing)
     size = _size(written)
     if isinstance(snap, int) and not isinstance(snap, bool):
@@ -143,9 +149,9 @@ def exact_coordinates(
             largest_move=float(move / size),
         )
     if snap != "auto":
-        raise UsageError(f'snap is "auto", "exact" or a denominator, not {snap!r}')
+        raise UsageError(f'snap must be "auto", "exact" or a denominator, not {snap!r}')
     if tolerance is not None and tolerance <= 0:
-        raise UsageError(f"the tolerance {tolerance} is not positive")
+        raise UsageError(f"the tolerance must be positive, not {tolerance}")
     common = _common(written)
     if tolerance is None and common * size <= _WRITTEN:
         return Exact(drawing, denominator=common)
@@ -153,7 +159,7 @@ def exact_coordinates(
     seen = frames(written)
     for within in [tolerance] if tolerance is not None else _tolerances(written, size):
         found = _fitted(drawing, written, seen, size, within)
-        # A coarser tolerance fits more by chance: it must explain far more.
+        # Chance fits more at a coarser tolerance, so the fit must be far better to be believed.
         if found is not None and (best is None or 2 * len(found.kept) < len(best.kept)):
             best = found
         if best is not None and not best.kept:
@@ -165,7 +171,7 @@ def exact_coordinates(
 
 def _unfit(best: Exact | None) -> str:
     if best is None:
-        return "they fit no small numbers of Q or Q(sqrt 2, 3 or 5)"
+        return "they do not fit small numbers of Q, Q(sqrt 2), Q(sqrt 3) or Q(sqrt 5)"
     fit = len(best.points) - len(best.kept)
     return f"only {fit} of {counted(len(best.points), 'vertex')} fit numbers of {best.field_name}"
 
@@ -173,7 +179,7 @@ def _unfit(best: Exact | None) -> str:
 def resolution(drawing: Drawing) -> Fraction:
     """The last decimal digit of the coordinates, in units of the larger side, at least 1e-9.
 
-    Coordinates that are already on a field, and fractions that no decimals end, count as exact.
+    Coordinates with square roots, and fractions without a finite decimal, count as exact.
 
     >>> resolution(Drawing(((Fraction("0.333"), 2), (0, 0)), (), "two points"))
     Fraction(1, 2000)
@@ -252,9 +258,10 @@ def _tolerances(written: Written, size: Fraction) -> list[Fraction]:
 
 
 def _last_digit(written: Written, size: Fraction) -> Fraction:
-    """10^-k over the size, with k the most decimals of a coordinate that is not noise about zero.
+    """10^-k over the size, where k is the largest number of decimals of a coordinate.
 
-    Zero if the decimals lie on a grid coarse enough to be what was meant.
+    Coordinates that are noise about zero are ignored. The result is zero if the decimals lie on a
+    grid so coarse that they count as exact.
     """
     values = {c for point in written for c in point if abs(c) > _FINEST * size}
     if lcm(*(value.denominator for value in values)) * size <= _WRITTEN:
@@ -279,7 +286,7 @@ def _fractions(drawing: Drawing) -> list[tuple[Fraction, Fraction]]:
     found = []
     for x, y in drawing.points:
         if isinstance(x, Surd) or isinstance(y, Surd):
-            raise UsageError("the coordinates of this drawing are irrational, and exact already")
+            raise UsageError("the coordinates of this drawing are irrational and already exact")
         found.append((Fraction(x), Fraction(y)))
     return found
 
@@ -290,7 +297,7 @@ def _size(written: Written) -> Fraction:
     xs, ys = [x for x, _ in written], [y for _, y in written]
     size = max(max(xs) - min(xs), max(ys) - min(ys))
     if not size:
-        raise MalformedPatternError("all points of the drawing are the same")
+        raise MalformedPatternError("all points of the drawing coincide")
     return size
 
 

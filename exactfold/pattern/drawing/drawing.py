@@ -1,4 +1,4 @@
-"""A crease pattern as it was drawn: points and lines, before anything is believed of them."""
+"""A crease pattern as it was drawn: points and lines, before any check or repair."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from exactfold._support.plurals import counted
 
 Point: TypeAlias = "tuple[Number, Number]"
 Snap: TypeAlias = "Literal['auto', 'exact'] | int"
-"""How coordinates become exact: found, as written, or multiples of 1/Snap."""
+"""How coordinates become exact: recognised, kept as written, or multiples of 1/Snap."""
 LETTERS: Final = "BMVFUCJ"
-"""FOLD's letters: border, mountain, valley, flat, unassigned, cut, join."""
+"""FOLD's letters: boundary, mountain, valley, flat, unassigned, cut, join."""
 
 
 class Line(NamedTuple):
@@ -27,13 +27,13 @@ class Line(NamedTuple):
 
 @dataclass(frozen=True)
 class Drawing(Picture):
-    """Points in the plane, y upwards, exactly as the file states them, and lines between them.
+    """Points in the plane, exactly as the file states them, and lines between them; y upwards.
 
     A reader gives fractions; `exact_coordinates` may turn them into numbers with square roots.
-    `source` says in a few words what was read ("SVG of 1200 x 800, colours of Origami Simulator");
-    `remarks` is what the reader left out or took for something, one sentence each. Points may
-    coincide nearly, lines may cross or repeat: `repaired` mends that. `exact` says that the file
-    states exact coordinates beside its decimals, which then nothing has to find.
+    `source` says in a few words what was read ("SVG of 1200 x 800, colours of Origami Simulator").
+    `remarks` has a sentence for each thing that the reader left out or interpreted. Points may
+    nearly coincide, and lines may cross or repeat; `repaired` mends that. `exact` says that the
+    file states exact coordinates beside its decimals, so that they need not be found.
     """
 
     points: tuple[Point, ...]

@@ -1,4 +1,4 @@
-"""A frame and a field for a drawing: what each coordinate is in it, and against what odds."""
+"""Fits the coordinates of a drawing with numbers of a field, and weighs each fit against chance."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from exactfold.exact.surds import Number
 from exactfold.pattern.drawing.candidates import Match, field_of, matches, reduced_match
 
 Written: TypeAlias = Sequence[tuple[Fraction, Fraction]]
-"""Points as the file states them."""
+"""The points as the file states them."""
 
 _EXTENSIONS: Final = {
     1: [field_of(2), field_of(3), field_of(5)],
@@ -27,17 +27,20 @@ _EXTENSIONS: Final = {
     3: [field_of(3).adjoined(2)],
     5: [field_of(5).adjoined(10 + 2 * field_of(5).root), field_of(5).adjoined(2)],
 }
-"""Fields with one more root, by the radicand of the field: 22.5, 15 and 18 degrees among them."""
+"""Fields with one more root, by the radicand of the field; some are for 22.5, 15, 18 degrees."""
 _SURE: Final = 12.0
-"""Bits by which a number with one more root must beat chance."""
+"""By so many bits a number with one more root must beat chance."""
 _SAMPLE: Final = 24
 _NOISE: Final = Fraction(1, 2**46)
-"""The least noise that is expected in coordinates computed in floats."""
+"""The least noise that coordinates from float computations are assumed to have."""
 
 
 @dataclass(frozen=True)
 class Frame:
-    """The points of a drawing from an origin, in a unit of length: exactly, and in floats."""
+    """The points of a drawing, measured from an origin in a unit of length: exactly and as floats.
+
+    `points` holds the exact coordinates, `places` the floats.
+    """
 
     origin: tuple[Fraction, Fraction]
     unit: Fraction
@@ -47,11 +50,12 @@ class Frame:
 
 @dataclass(frozen=True)
 class Model:
-    """A frame, a field and what each coordinate is there.
+    """A frame, a field, and the numbers of the field that the coordinates fit.
 
-    `known` are the coordinates of the points in the field, None where nothing fits; `groups`, for
-    x and for y, the points of which the decimals agree; `within` the tolerance in the frame, `bits`
-    minus the logarithm of the probability of such a fit by chance.
+    `known` holds the coordinates of the points in the field; a coordinate that fits no number is
+    None. `groups` holds, for x and for y, the groups of points whose decimals agree. `within` is
+    the tolerance in the frame. `bits` is minus the binary logarithm of the probability that chance
+    gives such a fit.
     """
 
     frame: Frame
@@ -63,12 +67,12 @@ class Model:
 
     @property
     def open(self) -> int:
-        """How many points lack a coordinate."""
+        """The number of points that lack a coordinate."""
         return sum(x is None or y is None for x, y in self.known)
 
     @cached_property
     def representatives(self) -> list[tuple[Fraction, Fraction]]:
-        """For each coordinate the shortest of the decimals that agree."""
+        """For each coordinate, the shortest decimal among those that agree with it."""
         columns = []
         for axis, groups in enumerate(self.groups):
             column = [point[axis] for point in self.frame.points]
@@ -81,16 +85,16 @@ class Model:
 
 
 def refined(model: Model) -> Model:
-    """Larger numbers for what fits none, within four times the noise of those that fit."""
+    """Fits larger numbers to the rest, within four times the noise of the coordinates that fit."""
     within, field = _noise(model), field_of(model.radicand)
     tried = {r: reduced_match(r, within, field) for r in _left(model)}
     return _with(model, {r: match for r, match in tried.items() if match is not None})
 
 
 def extended(model: Model, made: Mapping[int, tuple[Number, Number]]) -> Model:
-    """With the points that were `made`, and one more root if half of what is left fits with it.
+    """Adds the points that were `made`, and one more root if half of the rest fits with it.
 
-    So are 22.5-degree designs drawn with lengths along slanted lines: most coordinates lie in
+    22.5-degree designs with lengths along slanted lines are an example: most coordinates lie in
     Q(sqrt 2), others in Q(sqrt 2, sqrt (2 + sqrt 2)).
     """
     within = _noise(model)
@@ -110,13 +114,13 @@ def extended(model: Model, made: Mapping[int, tuple[Number, Number]]) -> Model:
 
 
 def _noise(model: Model) -> Fraction:
-    """Four times the largest distance of a coordinate that fits from its decimals."""
+    """Four times the largest distance between a fitting coordinate and its decimals."""
     noise = [abs(float(c - r)) for c, r in _paired(model) if c is not None]
     return min(model.within, max(_NOISE, 4 * Fraction(max(noise, default=1.0))))
 
 
 def _left(model: Model) -> list[Fraction]:
-    """The decimals that fit no number."""
+    """The decimals that do not fit any number."""
     return list(dict.fromkeys(r for c, r in _paired(model) if c is None))
 
 
@@ -127,13 +131,13 @@ def _with(model: Model, found: Mapping[Fraction, Match]) -> Model:
 
 
 def _paired(model: Model) -> Iterator[tuple[Number | None, Fraction]]:
-    """Each coordinate, x before y, with its decimals."""
+    """Yields each coordinate with its decimals, x before y."""
     for known, decimals in zip(model.known, model.representatives, strict=True):
         yield from zip(known, decimals, strict=True)
 
 
 def fitted_model(frame: Frame, radicand: int, within: Fraction) -> Model:
-    """Match the coordinates with small numbers; decimals that agree are matched together."""
+    """Matches the coordinates with small numbers; decimals that agree are matched together."""
     columns: list[list[Number | None]] = []
     groups = (
         _groups(frame.places[:, 0], float(within)),
@@ -153,7 +157,7 @@ def fitted_model(frame: Frame, radicand: int, within: Fraction) -> Model:
 
 
 def _groups(values: FloatArray, within: float) -> list[list[int]]:
-    """Indices of values that agree to within the tolerance, none further apart."""
+    """Groups of indices; the values in a group differ by at most the tolerance."""
     floats = values.tolist()
     groups: list[list[int]] = []
     for v in np.argsort(values, kind="stable").tolist():
@@ -166,7 +170,7 @@ def _groups(values: FloatArray, within: float) -> list[list[int]]:
 
 
 def frames(written: Written) -> list[Frame]:
-    """As written; from the lower left corner in units of the width; and of the height."""
+    """The frames to try: as written, then from the lower left corner in widths, then in heights."""
     xs, ys = zip(*written, strict=True)
     corner = (min(xs), min(ys))
     zero = (Fraction(0), Fraction(0))

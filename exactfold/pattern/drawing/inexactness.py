@@ -1,4 +1,4 @@
-"""How inexact a drawing is: the distances at which points and lines miss each other."""
+"""Measures how inexact a drawing is: the distances by which points and lines miss each other."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from exactfold.pattern.drawing.mending import floats, near_pairs, used
 from exactfold.pattern.drawing.splitting import check_pairs, crossing_pairs
 
 GAP: Final = 4.0
-"""A distance is clear if no other is between it and this many times it."""
+"""A distance d is clear if no other distance lies between d and this many times d."""
 _SLACK: Final = 1 + 1e-6
 
 
 def clear_distances(drawing: Drawing, least: float, most: float, gap: float = GAP) -> list[float]:
-    """Distances from `least` to `most` that separate what was meant to meet from the design.
+    """Distances from `least` to `most` that separate drawing errors from details of the design.
 
-    Ends of lines, and crossings of lines with all ends well away, miss each other and other lines
-    by distances d. One of them is clear if no other lies in (d, `gap` d]: then an error of d is far
-    smaller than what was meant to be apart. `least` itself is the first if it is clear. Sorted;
-    empty if the sizes run into each other. By floats, which only propose at what distance points
-    are merged.
+    Ends of lines, and crossings of lines whose ends are all well away, miss each other and other
+    lines by distances d. Such a distance is clear if no other one lies in (d, `gap` d]. Then d, as
+    an error, is far smaller than any distance that was meant. If `least` itself is clear, it comes
+    first. The distances are sorted; the list is empty if errors and details overlap in size. All
+    this uses floats, as it only proposes at what distance points are merged.
 
     >>> from exactfold.pattern.drawing.drawing import Line
     >>> points = [(0, 0), (10, 0), (10, 10), (0, 10), (5, 0.02), (5, 10)]
@@ -41,7 +41,7 @@ def clear_distances(drawing: Drawing, least: float, most: float, gap: float = GA
 
 
 def _misses(drawing: Drawing, within: float) -> FloatArray:
-    """The distances up to `within` of points and lines that do not meet."""
+    """The distances up to `within` between points and lines that do not meet."""
     places, lines = floats(drawing.points), [line for line in drawing.lines if line[0] != line[1]]
     members = np.array(used(lines), dtype=np.intp)
     ends = places[members]
@@ -69,7 +69,7 @@ def _misses(drawing: Drawing, within: float) -> FloatArray:
 def _beside(
     spots: FloatArray, places: FloatArray, lines: Sequence[Line], within: float
 ) -> tuple[IntArray, FloatArray]:
-    """Spots and lines, of shape (2, n), that are near, beside the inside; and their distances."""
+    """Pairs of a spot and a line beside whose inside it lies, of shape (2, n); their distances."""
     near: list[IntArray] = [np.empty((2, 0), dtype=np.int64)]
     distances: list[FloatArray] = [np.empty(0)]
     if not len(spots) or not lines:
@@ -77,7 +77,7 @@ def _beside(
     order = np.argsort(spots[:, 0], kind="stable")
     xs, ys = spots[order].T
     ends = places[[line[:2] for line in lines]]
-    reach = within * _SLACK  # a spot that is near lies in the box of the line, widened by this
+    reach = within * _SLACK  # a spot near a line lies in the bounding box widened by this
     low, high = ends.min(axis=1) - reach, ends.max(axis=1) + reach
     check_pairs(xs, low[:, 0], high[:, 0])
     first, last = np.searchsorted(xs, low[:, 0]), np.searchsorted(xs, high[:, 0], side="right")

@@ -1,4 +1,4 @@
-"""What a repair is, and the small steps: merge, drop, dissolve; nothing here moves a vertex."""
+"""Defines a repair, and the small steps: merge, drop, dissolve. None of them moves a vertex."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _SHOWN: Final = 5
 
 
 class Place(NamedTuple):
-    """A point of the drawing by its index, and roughly where it is."""
+    """A point of the drawing by its index, and its approximate coordinates."""
 
     point: int
     x: float
@@ -29,9 +29,9 @@ class Place(NamedTuple):
 
 @dataclass(frozen=True)
 class Repair:
-    """One thing that was mended: the step, how often, the first few places, and a sentence.
+    """One kind of repair: the step, how often it was done, its first few places, and a sentence.
 
-    Indices are those of the drawing that was given; points that were added follow them.
+    Indices are those of the given drawing; points that were added follow them.
     """
 
     step: str
@@ -56,7 +56,7 @@ def floats(points: Sequence[Point]) -> FloatArray:
 def repair(
     step: str, count: int, at: Iterable[int], points: Sequence[Point], sentence: str
 ) -> list[Repair]:
-    """The repair as a list, empty if there was none."""
+    """A list with the repair; empty if `count` is 0."""
     if not count:
         return []
     first = list(dict.fromkeys(at))[:_SHOWN]
@@ -65,17 +65,17 @@ def repair(
 
 
 def with_lines(drawing: Drawing, lines: Iterable[Line]) -> Drawing:
-    """The same points with other lines."""
+    """A drawing with the same points and other lines."""
     return replace(drawing, lines=tuple(lines))
 
 
 def used(lines: Iterable[Line]) -> list[int]:
-    """The points that are on a line, in increasing order."""
+    """The points that lie on a line, in increasing order."""
     return sorted({v for line in lines for v in line[:2]})
 
 
 def groups_within(places: FloatArray, members: Sequence[int], within: float) -> list[list[int]]:
-    """Sets of two or more of the members that hang together by distances up to `within`."""
+    """Groups of two or more members; steps of at most `within` connect the members of a group."""
     if len(members) < 2:
         return []
     tree = cKDTree(places[list(members)])
@@ -88,20 +88,20 @@ def groups_within(places: FloatArray, members: Sequence[int], within: float) -> 
 def near_pairs(tree: cKDTree, within: float) -> IntArray:
     """The pairs of points of a tree at distances up to `within`, of shape (n, 2).
 
-    Raises `TooLargeError` for too many of them.
+    Raises `TooLargeError` if there are too many.
     """
     count = (tree.count_neighbors(tree, within) - tree.n) // 2
     if count > MOST_NEAR:
         raise TooLargeError(
-            f"{count} pairs of points of the drawing nearly coincide, and {MOST_NEAR} are the most "
-            "that are looked at: leave out what is no crease, or give a part of the drawing"
+            f"{count} pairs of points of the drawing nearly coincide, but at most {MOST_NEAR} are "
+            "merged: leave out lines that are not creases, or give a part of the drawing"
         )
     pairs: IntArray = tree.query_pairs(within, output_type="ndarray")
     return pairs
 
 
 def merged(drawing: Drawing, within: float) -> tuple[Drawing, list[Repair]]:
-    """Points closer than `within` become one: the one with most lines, then the first."""
+    """Merges points closer than `within`; the one with the most lines stays, else the first."""
     places = floats(drawing.points)
     weight = [0] * len(drawing.points)
     for line in drawing.lines:
@@ -130,7 +130,7 @@ def merged(drawing: Drawing, within: float) -> tuple[Drawing, list[Repair]]:
 
 
 def coinciding(drawing: Drawing) -> tuple[Drawing, list[Repair]]:
-    """Points at exactly the same place become the first of them."""
+    """Merges points at exactly the same place into the first of them."""
     first: dict[Point, int] = {}
     members = used(drawing.lines)
     stands_for = {v: first.setdefault(drawing.points[v], v) for v in members}
@@ -143,11 +143,11 @@ def coinciding(drawing: Drawing) -> tuple[Drawing, list[Repair]]:
 
 
 def without_duplicates(drawing: Drawing) -> tuple[Drawing, list[Repair]]:
-    """Lines without length and lines drawn more than once are dropped.
+    """Drops lines without length, and all but one of several lines between the same points.
 
-    Among different letters the border wins over all, a cut over creases, a mountain or a valley
-    over a line without direction, U over F and F over J. A line that is both mountain and valley
-    becomes U: neither drawing can be preferred, and U claims nothing.
+    If their letters differ, the boundary wins over all, a cut over creases, a mountain or a valley
+    over a line without direction, U over F, and F over J. A line that is both mountain and valley
+    becomes U, since neither can be preferred and U claims nothing.
     """
     letters: dict[tuple[int, int], list[str]] = {}
     short = []
@@ -198,7 +198,7 @@ def _winner(letters: Sequence[str]) -> str:
 
 
 def without_flat_lines(drawing: Drawing) -> tuple[Drawing, list[Repair]]:
-    """Lines F (flat) and J (join) are no folds: the panels on both sides become one."""
+    """Drops lines F (flat) and J (join), which are not folds, so that panels are joined."""
     flat = [line for line in drawing.lines if line.letter in "FJ"]
     sentence = (
         f"{counted(len(flat), 'flat line')} (F or J) dropped, so that panels are joined across "
@@ -210,9 +210,9 @@ def without_flat_lines(drawing: Drawing) -> tuple[Drawing, list[Repair]]:
 
 
 def without_dangling(drawing: Drawing) -> tuple[Drawing, list[Repair]]:
-    """Lines with the same panel on both sides are dropped: bridges, such as lines that end inside.
+    """Drops lines with the same panel on both sides: bridges, such as lines that end inside.
 
-    No such line can fold, as one rigid panel lies on both its sides.
+    No such line can fold, as the same rigid panel lies on both its sides.
     """
     graph = nx.Graph((line.start, line.end) for line in drawing.lines if line.start != line.end)
     dropped = {frozenset(pair) for pair in nx.bridges(graph)}
@@ -228,10 +228,10 @@ def without_dangling(drawing: Drawing) -> tuple[Drawing, list[Repair]]:
 
 
 def dissolved(drawing: Drawing, within: float) -> tuple[Drawing, list[Repair]]:
-    """Vertices on exactly two lines of one letter that continue each other straight disappear.
+    """Removes vertices on exactly two lines, if these have one letter and continue straight.
 
-    Straight means that the vertex, and all that disappeared before on the two lines, is within
-    `within` of the new line. So corners of a polygon that stands for a curve stay.
+    Straight means that the vertex, and all vertices that were removed from the two lines before,
+    are within `within` of the new line. So the corners of a polygon that stands for a curve stay.
     """
     places = floats(drawing.points)
     around: dict[int, dict[int, str]] = {}
@@ -256,7 +256,7 @@ def dissolved(drawing: Drawing, within: float) -> tuple[Drawing, list[Repair]]:
     lines = [Line(a, b, letter) for a in sorted(around) for b, letter in around[a].items() if a < b]
     sentence = (
         f"{counted(len(gone), 'vertex')} on a straight line without other lines "
-        f"{agreeing(len(gone), 'is')} no vertex"
+        f"{agreeing(len(gone), 'is')} removed"
     )
     if not gone:
         return drawing, []

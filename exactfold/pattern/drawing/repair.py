@@ -1,4 +1,4 @@
-"""Repair of drawings: each step can be left out, and says what it did and where."""
+"""Repairs drawings; each step can be left out, and reports what it did and where."""
 
 from __future__ import annotations
 
@@ -27,29 +27,31 @@ from exactfold.pattern.drawing.sheets import bordered, sheets
 from exactfold.pattern.drawing.splitting import split
 
 STEPS: Final = ("merge", "duplicates", "split", "join", "dangling", "dissolve", "border")
-"""The steps in their order."""
+"""The steps of repair, in their order."""
 _NEAR: Final = Fraction(1, 10**6)
 _COARSEST: Final = Fraction(1, 300)
-"""No automatic merging beyond this share of the size."""
+"""Points are never merged automatically at a larger share of the size."""
 _ADVISED: Final = Fraction(1, 100)
-"""No merging beyond this share of the size is advised."""
+"""Merging at a larger share of the size is never advised."""
 _TRIALS: Final = 3
 
 
 def repaired(
     drawing: Drawing, *, merge: Fraction | None = None, steps: Collection[str] = STEPS
 ) -> tuple[Drawing, tuple[Repair, ...]]:
-    """The drawing after the given steps, and what they did.
+    """The drawing after the given steps, and a report of what they did.
 
-    `merge` merges near-duplicate points, `duplicates` drops lines without length and lines drawn
-    twice, `split` cuts lines at T-junctions and crossings, `join` drops lines F and J, `dangling`
-    drops lines that end inside a panel, `dissolve` removes vertices on straight lines without
-    other lines, `border` gives the letter B to the lines round the sheet. `merge` is the distance,
-    in units of the larger side, at which points coincide and a point lies on a line; without it,
-    1e-6 or two units of the last decimal of the file, whichever is larger. Coordinates stay exact:
-    crossings are solved in the field of the points, so `exact_sheets` snaps them before `split`.
+    The step `merge` merges near-duplicate points. `duplicates` drops lines without length and lines
+    that are drawn twice. `split` cuts lines at T-junctions and crossings. `join` drops lines F and
+    J. `dangling` drops lines that end inside a panel. `dissolve` removes vertices on straight lines
+    without other lines. `border` gives the letter B to the lines round the sheet.
 
-    Points keep their indices; those on no line are not removed. Raises `UsageError` for a step
+    The argument `merge` is the distance, in units of the larger side, up to which points coincide
+    and a point lies on a line. By default it is 1e-6, or two units of the last decimal of the file
+    if that is larger. Coordinates stay exact: crossings are solved in the field of the points. So
+    `exact_sheets` snaps the points before `split`.
+
+    Points keep their indices; points on no line are not removed. Raises `UsageError` for a step
     that does not exist or a distance that is not positive, and `MalformedPatternError` for a
     drawing without lines.
 
@@ -72,7 +74,7 @@ def repaired(
         drawing, found = _step(drawing, step, near)
         repairs += found
         if step == "split" and found and "merge" in steps:
-            drawing, found = coinciding(drawing)  # crossings can meet in one point
+            drawing, found = coinciding(drawing)  # several crossings can be the same point
             repairs += found
         if step == "split" and "duplicates" in steps:
             drawing, found = without_duplicates(drawing)
@@ -82,7 +84,7 @@ def repaired(
 
 @dataclass(frozen=True)
 class Sheets:
-    """The sheets of a drawing with exact coordinates, and how they came about."""
+    """The sheets of a drawing, with exact coordinates, and how they were found."""
 
     sheets: tuple[Drawing, ...]
     coordinates: Exact
@@ -101,18 +103,19 @@ def exact_sheets(
     merge: Fraction | None = None,
     steps: Collection[str] = STEPS,
 ) -> Sheets:
-    """From a drawing to its sheets: merge, exact coordinates, the other steps, sheet by sheet.
+    """Makes sheets of a drawing: merges points, makes coordinates exact, then does the other steps.
 
-    The order matters. Points that nearly coincide are one number; coordinates are recognised as
-    they were drawn; crossings and T-junctions are then computed in the field that was found, so
-    that three creases through a point of the design meet there exactly.
+    The order matters. Points that nearly coincide become one point. Coordinates are recognised as
+    they were drawn. Only then are crossings and T-junctions computed, in the field that was found,
+    so that three creases through a point of the design meet there exactly.
 
-    Without `merge` the distance is the finest that is clear (`clear_distances`), up to 1/300 of the
-    size; where the sheet then has holes or loose ends, the next two are tried. A distance larger
-    than that of `repaired` is said first among the repairs. Where nothing is read, coarser ones are
-    tried, up to 1/100, only to name in the refusal the first that would do.
+    Without `merge`, the merging distance is the finest clear one (`clear_distances`) up to 1/300 of
+    the size. If the sheet then has holes or loose ends, the next two are tried. The first of the
+    repairs says so if the distance is larger than that of `repaired`. If nothing can be read,
+    coarser distances up to 1/100 are tried, but only to name in the error message the first one
+    that would work.
 
-    Raises what `repaired`, `exact_coordinates` and `sheets` raise.
+    Raises the errors of `repaired`, `exact_coordinates` and `sheets`.
 
     >>> from exactfold.pattern.drawing.drawing import Line
     >>> third = Fraction("0.333333333333")
@@ -129,7 +132,7 @@ def exact_sheets(
     first = [step for step in STEPS[:2] if step in steps]
     before, begun = repaired(drawing, merge=distances[0], steps=first)
     found = exact_coordinates(_used_only(before), snap, tolerance=tolerance)
-    # Snapping can bring points together that were further apart than the merging distance.
+    # Snapping can make points coincide that were further apart than the merging distance.
     least = 2 * found.tolerance if merge is None else Fraction(0)
 
     def made(distance: Fraction) -> Sheets:
@@ -140,8 +143,8 @@ def exact_sheets(
             dropped = sum(repair.count for repair in ended if repair.step == "dangling")
             if after.lines and 2 * dropped > (whole := dropped + len(after.lines)):
                 error.args = (
-                    f"{error}; {dropped} of {whole} lines had been dropped, as one panel lies on "
-                    "both their sides: do the lines meet?",
+                    f"{error}; {dropped} of {whole} lines had been dropped because the same panel "
+                    "lies on both their sides: do the lines meet?",
                     *error.args[1:],
                 )
             raise
@@ -154,15 +157,15 @@ def exact_sheets(
         round_ones = [Fraction(f"{1.05 * float(distance):.2g}") for distance in coarser]
         for distance in list(_until_whole(made, round_ones)[0])[:1]:
             refusals[0].args = (
-                f"{refusals[0]}; `exactfold convert --merge {float(distance):g}` would read it, "
-                "taking what misses by up to that share of the size to meet",
+                f"{refusals[0]}; `exactfold convert --merge {float(distance):g}` would read it: "
+                "lines that miss each other by up to that share of the size then meet",
                 *refusals[0].args[1:],
             )
     raise refusals[0]
 
 
 def _clear(drawing: Drawing, near: Fraction, most: Fraction, gap: float) -> list[Fraction]:
-    """Distances to merge at, as shares of the size, the finest first."""
+    """Distances at which to merge, as shares of the size, the finest first."""
     clean, _ = repaired(drawing, merge=near, steps=STEPS[:2])
     if not (size := _extent(clean)):
         return []
@@ -173,7 +176,7 @@ def _clear(drawing: Drawing, near: Fraction, most: Fraction, gap: float) -> list
 def _until_whole(
     made: Callable[[Fraction], Sheets], distances: Iterable[Fraction]
 ) -> tuple[dict[Fraction, Sheets], list[FoldError | PatternError]]:
-    """The sheets by distance, up to the first that has no loose ends; and the refusals."""
+    """The sheets by distance, up to the first without loose ends; and the errors."""
     done: dict[Fraction, Sheets] = {}
     refusals: list[FoldError | PatternError] = []
     for distance in distances:
@@ -188,7 +191,7 @@ def _until_whole(
 
 
 def _loose(sheets: Sheets) -> int:
-    """How many lines were dropped because one panel lies on both their sides."""
+    """The number of lines that were dropped because one panel lies on both their sides."""
     return sum(repair.count for repair in sheets.repairs if repair.step == "dangling")
 
 
@@ -196,8 +199,9 @@ def _noted(distance: Fraction, near: Fraction) -> list[Repair]:
     if distance <= near * Fraction(101, 100):
         return []
     sentence = (
-        f"the drawing is inexact: what misses by up to {float(distance):.1e} of the size is "
-        f"taken to meet, as nothing misses by more, up to {GAP:g} times that"
+        "the drawing is inexact: points and lines that miss each other by up to "
+        f"{float(distance):.1e} of the size are taken to meet; no others miss by up to {GAP:g} "
+        "times that"
     )
     return [Repair("merge", 1, (), sentence)]
 
@@ -219,7 +223,7 @@ def _distance(drawing: Drawing, merge: Fraction | None) -> Fraction:
     if merge is None:
         return max(_NEAR, 2 * resolution(drawing))
     if merge <= 0:
-        raise UsageError(f"points are merged at a positive distance, not {merge}")
+        raise UsageError(f"the distance at which points are merged must be positive, not {merge}")
     return Fraction(merge)
 
 
@@ -231,7 +235,7 @@ def _extent(drawing: Drawing) -> float:
 
 
 def _used_only(drawing: Drawing) -> Drawing:
-    """Points on no line do not decide which numbers fit: they move to the first point."""
+    """Moves points on no line to the first point, so that they do not decide the field."""
     members = set(used(drawing.lines))
     if not members:
         raise MalformedPatternError("the drawing has no lines")

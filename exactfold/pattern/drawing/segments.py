@@ -1,4 +1,4 @@
-"""From loose straight lines to a drawing, and a drawing in one line of words."""
+"""Makes a drawing of loose straight lines, and describes a drawing in one line."""
 
 from __future__ import annotations
 
@@ -26,9 +26,10 @@ _WORDS: Final = {
 
 
 def drawing_of(segments: Iterable[Segment], source: str, remarks: Sequence[str] = ()) -> Drawing:
-    """The drawing of straight lines between places; equal places are one point.
+    """The drawing of straight lines between places; equal places become one point.
 
-    Lines of length zero are left out with a remark. Raises `MalformedDrawingError` if none is left.
+    Lines of length zero are left out with a remark. Raises `MalformedDrawingError` if no line
+    remains.
 
     >>> zero, one = Fraction(0), Fraction(1)
     >>> drawing_of([((zero, zero), (one, zero), "B"), ((one, zero), (one, one), "M")], "CP").lines
@@ -51,7 +52,7 @@ def drawing_of(segments: Iterable[Segment], source: str, remarks: Sequence[str] 
 
 
 def left_out(number: int, noun: str) -> list[str]:
-    """The remark that things were left out, if any were.
+    """A list with the remark that some things were left out; empty if `number` is 0.
 
     >>> left_out(2, "auxiliary line"), left_out(0, "auxiliary line")
     (['left out 2 auxiliary lines'], [])
@@ -60,7 +61,7 @@ def left_out(number: int, noun: str) -> list[str]:
 
 
 def summary(drawing: Drawing) -> str:
-    """How many lines of which kinds a drawing has.
+    """The number of lines of a drawing, by kind, in words.
 
     >>> zero, one = Fraction(0), Fraction(1)
     >>> summary(Drawing(((zero, zero), (one, one)), (Line(0, 1, "M"), Line(0, 1, "B")), ""))

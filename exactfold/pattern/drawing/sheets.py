@@ -1,4 +1,4 @@
-"""The border of a drawing, and its sheets one by one."""
+"""Finds the boundary of a drawing, and separates its sheets."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from exactfold.pattern.drawing.mending import Repair, floats, repair, used, with
 
 @dataclass(frozen=True)
 class _Part:
-    """Lines that hang together: the cycles of their faces, and the one round them all."""
+    """A connected set of lines: the cycles of their faces, and the outline around all of them."""
 
     lines: tuple[Line, ...]
     outline: tuple[int, ...]
@@ -25,9 +25,9 @@ class _Part:
 
 
 def bordered(drawing: Drawing) -> tuple[Drawing, list[Repair]]:
-    """The lines round each sheet of the drawing are border (B), whatever letters they have.
+    """Gives the letter B to the lines round each sheet of the drawing, whatever letters they have.
 
-    Creases that lie inside a panel keep their letters: they are round no sheet.
+    Creases that lie inside a panel keep their letters, as they are not round a sheet.
     """
     parts, places = _parts(drawing), floats(drawing.points)
     outer = [part for part in parts if not any(_nested(part, other, places) for other in parts)]
@@ -48,14 +48,14 @@ def bordered(drawing: Drawing) -> tuple[Drawing, list[Repair]]:
 
 
 def sheets(drawing: Drawing) -> tuple[Drawing, ...]:
-    """Each sheet of a drawing on its own, with the points that are on its lines.
+    """Each sheet of a drawing on its own, with the points that lie on its lines.
 
-    The drawing is one that `repaired` returned: lines meet in common ends, and the border is B.
+    The drawing must come from `repaired`: lines meet only in common ends, and the boundary is B.
 
     Raises `MalformedPatternError` if the lines enclose nothing, `NotADiskError` for a sheet with a
-    hole, `FoldError` for a line B or C between two panels, and `DisconnectedError` for creases
-    inside a panel that no line joins to the rest, and for lines that enclose nothing: none is
-    dropped here.
+    hole, and `FoldError` for a line B or C between two panels. Raises `DisconnectedError` for
+    creases inside a panel that no line joins to the rest, and for lines that enclose nothing; such
+    lines are not dropped here.
     """
     parts = _parts(drawing)
     if not parts:
@@ -84,9 +84,9 @@ def _parts(drawing: Drawing) -> list[_Part]:
 
 
 def _cycles(places: FloatArray, lines: Sequence[Line]) -> list[tuple[int, ...]]:
-    """The cycles of all faces, the outer one clockwise; by angles in floats.
+    """The cycles of all faces, the outer one clockwise; angles in floats order the lines.
 
-    The exact faces are traced, and checked, by the pattern that is made of the sheet.
+    The pattern that is made of the sheet traces and checks the exact faces.
     """
     around: dict[int, set[int]] = {}
     for a, b, _ in lines:
@@ -129,7 +129,7 @@ def _check_all(drawing: Drawing, parts: Sequence[_Part], places: FloatArray) -> 
         x, y = places[left[0].start]
         raise DisconnectedError(
             f"{counted(len(left), 'line')} {agreeing(len(left), 'is')} joined to no panel, the "
-            f"first near ({x:.6g}, {y:.6g}): lines are to meet in common ends",
+            f"first near ({x:.6g}, {y:.6g}): let lines meet in common ends",
             vertices=[left[0].start],
         )
 
@@ -144,7 +144,7 @@ def _check_nested(part: _Part, parts: Sequence[_Part], places: FloatArray) -> No
         if all(line.letter in "BC" for line in part.lines if frozenset(line[:2]) in rim):
             raise NotADiskError(f"the sheet has a hole {where}", vertices=part.outline)
         raise DisconnectedError(
-            f"creases {where} lie inside a panel and are joined to the rest by no line",
+            f"creases {where} lie inside a panel, and no line joins them to the rest",
             vertices=[v],
         )
 
@@ -163,7 +163,7 @@ def _check_inside(part: _Part, places: FloatArray) -> None:
         if {frozenset(pair) for pair in _sides(face)} <= cut:
             x, y = places[list(face)].mean(axis=0)
             raise NotADiskError(
-                f"the sheet has a hole near ({x:.6g}, {y:.6g}): border lines surround it",
+                f"the sheet has a hole near ({x:.6g}, {y:.6g}): boundary lines surround it",
                 vertices=face,
             )
     a, b, letter = inside[0]

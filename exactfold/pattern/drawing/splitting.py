@@ -1,4 +1,4 @@
-"""T-junctions and crossings: every point where lines meet becomes a vertex, exactly on them."""
+"""Splits lines at T-junctions and crossings, so that lines meet exactly in vertices."""
 
 from __future__ import annotations
 
@@ -18,21 +18,22 @@ from exactfold.pattern.drawing.drawing import Drawing, Line, Point
 from exactfold.pattern.drawing.mending import Repair, floats, groups_within, repair, used
 
 Junctions: TypeAlias = dict[int, list[int]]
-"""For each vertex inside lines, those lines."""
+"""For each vertex inside lines, these lines."""
 
 _FLATTEST: Final = 0.05
-"""The least sine of an angle at which a crossing fixes a point."""
+"""A crossing fixes a point only if the sine of its angle is larger than this."""
 _LONGEST: Final = 1024
-"""Bits of a coordinate beyond which a vertex is not moved onto its line."""
+"""A vertex is not moved onto its line if a coordinate would then have more bits."""
 
 
 def split(drawing: Drawing, within: float) -> tuple[Drawing, list[Repair]]:
-    """Lines are cut where they cross and where a vertex lies within `within` of their inside.
+    """Cuts lines where they cross and where a vertex lies within `within` of their inside.
 
     Crossings are computed exactly, in the field of the coordinates. A vertex near the inside of a
     line moves onto it: to the crossing of two such lines, or to the crossing with the only line
-    that ends there, or to the foot of the perpendicular. Where three lines nearly meet, only two
-    can do so exactly; the third then bends at the vertex, by less than `within`, and this is said.
+    that ends there, or to the foot of the perpendicular. If three lines nearly meet, only two can
+    meet exactly. The third line then bends at the vertex by less than `within`, and a repair says
+    so.
     """
     points, lines = list(drawing.points), drawing.lines
     junctions = _junctions(floats(points), lines, within)
@@ -60,8 +61,8 @@ def split(drawing: Drawing, within: float) -> tuple[Drawing, list[Repair]]:
     met = f"{counted(len(junctions), 'vertex')} inside of lines: {counted(cuts, 'line')} cut there"
     crossed = f"{counted(len(added), 'crossing')} of lines {agreeing(len(added), 'is')} a vertex"
     bend = (
-        f"at {counted(len(bent), 'vertex')} a line bends by less than {within:.2g}, "
-        "as more than two lines do not quite meet there"
+        f"at {counted(len(bent), 'vertex')} a line bends by less than {within:.2g}, because more "
+        "than two lines do not quite meet there"
     )
     found = (
         repair("split", len(junctions), sorted(junctions), points, met)
@@ -100,7 +101,7 @@ def _junctions(places: FloatArray, lines: Sequence[Line], within: float) -> Junc
 def _moved_onto_lines(
     points: list[Point], lines: Sequence[Line], junctions: Mapping[int, Sequence[int]]
 ) -> list[Repair]:
-    """Move each vertex onto its lines, those first whose lines no longer move."""
+    """Moves each vertex onto its lines, starting with vertices whose lines no longer move."""
     ending: dict[int, list[int]] = {v: [] for v in junctions}
     for k, line in enumerate(lines):
         for v in line[:2]:
@@ -132,8 +133,8 @@ def _moved_onto_lines(
         f"{counted(len(moved), 'vertex')} moved exactly onto a line, by at most {farthest:.2g}"
     )
     kept = (
-        f"{counted(len(bent), 'vertex')} stayed beside a line, which bends there: the crossing has "
-        "too many digits"
+        f"{counted(len(bent), 'vertex')} stayed beside a line, which bends there, because the "
+        "crossing has too many digits"
     )
     return repair("split", len(moved), sorted(moved), points, sentence) + repair(
         "split", len(bent), sorted(bent), points, kept
@@ -141,7 +142,7 @@ def _moved_onto_lines(
 
 
 def _length(point: Point) -> int:
-    """Bits of the longest numerator or denominator."""
+    """The number of bits of the longest numerator or denominator."""
     parts = [x for c in point for x in (c.coefficients if isinstance(c, Surd) else (c,))]
     return max(max(x.numerator.bit_length(), x.denominator.bit_length()) for x in parts)
 
@@ -176,7 +177,7 @@ def _crossings(
     junctions: Mapping[int, Sequence[int]],
     within: float,
 ) -> Junctions:
-    """Append the crossings to `points`; returns the lines through each."""
+    """Appends the crossings to `points`, and returns the lines through each."""
     meets: list[set[int]] = [set(line[:2]) for line in lines]
     for v, hosts in junctions.items():
         for k in hosts:
@@ -196,9 +197,9 @@ def _crossings(
 
 
 def crossing_pairs(places: FloatArray, lines: Sequence[Line]) -> list[tuple[int, int]]:
-    """Pairs of lines whose insides cross, by floats: each end well off the other line.
+    """Pairs of lines whose insides cross, by floats; each end lies well off the other line.
 
-    Raises `TooLargeError` for too many of them.
+    Raises `TooLargeError` if there are too many.
     """
     if not lines:
         return []
@@ -222,19 +223,19 @@ def crossing_pairs(places: FloatArray, lines: Sequence[Line]) -> list[tuple[int,
         pairs += [(int(k), int(m)) for m in near[hit]]
         if len(pairs) > MOST_CROSSINGS:
             raise TooLargeError(
-                f"the lines of the drawing cross each other more than {MOST_CROSSINGS} times, the "
-                "most that are read: give a part of it"
+                f"the lines of the drawing cross each other more than {MOST_CROSSINGS} times, "
+                "which is too much to read: give a part of the drawing"
             )
     return pairs
 
 
 def check_pairs(spots: FloatArray, low: FloatArray, high: FloatArray) -> None:
-    """Raise `TooLargeError` if intervals hold too many of the sorted spots together."""
+    """Raises `TooLargeError` if the intervals together contain too many of the sorted spots."""
     held = np.searchsorted(spots, high, side="right") - np.searchsorted(spots, low, side="left")
     if (pairs := int(held.sum())) > MOST_PAIRS:
         raise TooLargeError(
-            f"too many lines of the drawing lie above one another to be compared: {pairs} pairs, "
-            f"and {MOST_PAIRS} are the most: give a part of it"
+            f"too many lines of the drawing lie above one another: {pairs} pairs would be "
+            f"compared, but at most {MOST_PAIRS} are: give a part of the drawing"
         )
 
 

@@ -1,1 +1,1 @@
-"""The exact equations of a sheet, with its gauge written down."""
+"""The exact equations of a sheet, and the gauge in which they are written."""

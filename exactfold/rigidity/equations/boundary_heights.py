@@ -1,4 +1,4 @@
-"""Heights of the border: checked, and chosen where none are given; and angle deficits, checked."""
+"""Checks given boundary heights and angle deficits, and chooses boundary heights by default."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from exactfold.exact.numbers import RationalLike, as_rational
 from exactfold.pattern.crease_pattern import CreasePattern
 
 _FORMS = ((1, 1, -1), (1, 0, -1), (0, 1, 0))
-"""Coefficients of x^2, x y and y^2 that `default_rim` tries, one after the other."""
+"""Coefficients of x^2, x y and y^2 that `default_rim` tries in this order."""
 
 
 def straight_vertices(pattern: CreasePattern) -> tuple[int, ...]:
-    """The boundary vertices with the angle pi: where the border is straight and may still bend.
+    """The boundary vertices with the angle pi: the boundary is straight there and may still bend.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> straight_vertices(single_vertex(5))
@@ -30,16 +30,16 @@ def straight_vertices(pattern: CreasePattern) -> tuple[int, ...]:
 
 
 def default_rim(pattern: CreasePattern) -> dict[int, Fraction]:
-    """Heights of the boundary vertices that depend on the pattern alone: those of a saddle.
+    """Boundary heights of a saddle, which depend on the pattern alone.
 
-    h = x^2 + x y - y^2 at every boundary vertex, less the plane through three of them, where x and
-    y run from -1 to 1 over the bounding box; scaled so that the largest is 1 or -1, and rounded to
-    hundredths. Such a saddle rises along one diameter and falls along another, so that vertices
-    popped up and popped down both have room, and it is oblique, so that no fold of a sheet in a
-    regular polygon is flat by symmetry. Where these heights lie in one plane, x^2 - y^2 and x y are
-    tried.
+    The heights are h = x^2 + x y - y^2 minus the plane through three boundary vertices, where x and
+    y run from -1 to 1 over the bounding box. They are scaled so that the largest is 1 or -1, and
+    rounded to hundredths. Such a saddle rises along one diameter and falls along another, so that
+    both vertices that pop up and vertices that pop down have room. It is oblique, so that symmetry
+    makes no fold flat if the boundary is a regular polygon. If these heights lie in one plane,
+    x^2 - y^2 and then x y are tried.
 
-    Raises `NotApplicableError` for fewer than four boundary vertices and for a border that is not
+    Raises `NotApplicableError` for fewer than four boundary vertices and for a boundary that is not
     convex.
 
     >>> from exactfold.pattern.families import single_vertex
@@ -48,19 +48,23 @@ def default_rim(pattern: CreasePattern) -> dict[int, Fraction]:
     """
     _require_convex(pattern)
     if len(pattern.boundary) < 4:
-        raise NotApplicableError("three boundary vertices lie in one plane: there is no other rim")
+        raise NotApplicableError(
+            "three boundary vertices always lie in one plane: their heights cannot be chosen"
+        )
     for form in _FORMS:
         heights = _saddle(pattern, form)
         if any(heights.values()):
             return heights
-    raise NotApplicableError("no saddle was found that is not flat on the border")
+    raise NotApplicableError(
+        "no saddle gives boundary heights that do not lie in one plane: give heights (`rim=`)"
+    )
 
 
 def saddle_rims(pattern: CreasePattern) -> list[dict[int, Fraction]]:
-    """Several rims as different as saddles are: the default one is the first.
+    """Several choices of boundary heights, all from saddles; the first is `default_rim`.
 
-    Those of x^2 + x y - y^2, its mirror image, x^2 - y^2 and x y, as `default_rim` takes them, each
-    up and down. Raises as `default_rim`.
+    The saddles are x^2 + x y - y^2, its mirror image, x^2 - y^2 and x y, each of them and its
+    negative, with heights made as in `default_rim`. Raises the errors of `default_rim`.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> rims = saddle_rims(single_vertex(5))
@@ -78,7 +82,7 @@ def saddle_rims(pattern: CreasePattern) -> list[dict[int, Fraction]]:
 
 
 def _saddle(pattern: CreasePattern, form: tuple[int, int, int]) -> dict[int, Fraction]:
-    """The heights of a form above a plane, rounded; all 0 if they lie in one."""
+    """The rounded heights of a form above a plane; all are 0 if the heights lie in one plane."""
     boundary, (a, b, c) = pattern.boundary, form
     middle, half = [], []
     for axis in (0, 1):
@@ -95,9 +99,10 @@ def _saddle(pattern: CreasePattern, form: tuple[int, int, int]) -> dict[int, Fra
 
 
 def above_plane(pattern: CreasePattern, heights: Mapping[int, Fraction]) -> dict[int, Fraction]:
-    """Heights of the boundary vertices above the plane through three of them: 0 if all are in one.
+    """Heights of the boundary vertices above the plane through three of them.
 
-    The three are two neighbours and the vertex farthest from the side between them.
+    All are 0 if all boundary vertices lie in one plane. The three vertices are two neighbours and
+    the vertex farthest from the side between them.
     """
     a, b = pattern.boundary[:2]
     (ax, ay), (bx, by) = pattern.vertices[a], pattern.vertices[b]
@@ -118,20 +123,20 @@ def above_plane(pattern: CreasePattern, heights: Mapping[int, Fraction]) -> dict
 def given_rim(
     pattern: CreasePattern, rim: Mapping[int, RationalLike], *, may_be_flat: bool = False
 ) -> dict[int, Fraction]:
-    """Heights of the boundary vertices, checked, in the order of the boundary.
+    """The given heights of the boundary vertices, checked, in the order of the boundary.
 
-    Raises `BadRimError`, whose `vertices` are to blame, for a missing height, a height of another
-    vertex, one that is no number and heights in one plane, and `NotApplicableError` for a border
-    that is not convex.
+    Raises `BadRimError` if a height is missing, belongs to another vertex or is not a number, or if
+    all heights lie in one plane; its `vertices` are to blame. Raises `NotApplicableError` for a
+    boundary that is not convex.
     """
     boundary = pattern.boundary
     wanted = f"give a height for each boundary vertex: {', '.join(map(str, boundary))}"
     for v in rim:
         if v not in boundary:
-            raise BadRimError(f"{v} is no vertex of the border; {wanted}", (v,))
+            raise BadRimError(f"{v} is not a boundary vertex; {wanted}", (v,))
     missing = [v for v in boundary if v not in rim]
     if missing:
-        raise BadRimError(f"vertex {missing[0]} of the border has no height; {wanted}", missing)
+        raise BadRimError(f"boundary vertex {missing[0]} has no height; {wanted}", missing)
     _require_convex(pattern)
     heights = {}
     for v in boundary:
@@ -141,8 +146,8 @@ def given_rim(
             raise BadRimError(f"the height of vertex {v}: {error}", (v,)) from None
     if not may_be_flat and not any(above_plane(pattern, heights).values()):
         raise BadRimError(
-            f"the rim is flat: the heights of vertices {', '.join(map(str, boundary))} lie in one "
-            "plane, and the only solution with such a border is the flat sheet",
+            f"the boundary is flat: the heights of vertices {', '.join(map(str, boundary))} lie in "
+            "one plane, and then the flat sheet is the only solution; change a height",
             boundary,
         )
     return heights
@@ -153,14 +158,16 @@ def given_deficits(
 ) -> dict[int, Fraction]:
     """The angle deficits of interior vertices that are not 0, checked.
 
-    Vertices that are not named have the deficit 0. Raises `BadCurvatureError` for what is no
-    interior vertex or no number, and for a negative deficit.
+    A vertex without a given deficit has the deficit 0. Raises `BadCurvatureError` for a vertex that
+    is not interior, and for a deficit that is not a number or is negative.
     """
     interior = set(pattern.interior)
     found = {}
     for v, value in curvature.items():
         if v not in interior:
-            raise BadCurvatureError(f"{v} is no interior vertex, so it has no angle deficit", (v,))
+            raise BadCurvatureError(
+                f"{v} is not an interior vertex, so it has no angle deficit", (v,)
+            )
         try:
             deficit = as_rational(value)
         except NumberError as error:
@@ -168,7 +175,7 @@ def given_deficits(
         if deficit < 0:
             raise BadCurvatureError(
                 f"the angle deficit of vertex {v} is negative: a vertex with an angle excess is a "
-                "saddle, which is neither up nor down, and a shape need not exist",
+                "saddle, which pops neither up nor down, and a shape need not exist",
                 (v,),
             )
         if deficit:
@@ -180,5 +187,5 @@ def _require_convex(pattern: CreasePattern) -> None:
     if not pattern.is_convex:
         corner = pattern.reflex_corner
         raise NotApplicableError(
-            f"heights of the border need a convex border; vertex {corner} is reflex"
+            f"boundary heights can be given for a convex boundary only; vertex {corner} is reflex"
         )

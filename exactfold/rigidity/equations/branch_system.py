@@ -1,4 +1,4 @@
-"""The branch system of a pattern: pinned homogeneous quadrics, and its affine charts."""
+"""The branch system of a pattern: homogeneous quadrics in a gauge, and their affine charts."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ from exactfold.rigidity.functionals import saddle_functional, vertex_sign_functi
 class BranchSystem:
     """K_v(h) = 0 for every interior vertex v, with three non-collinear vertices pinned at h = 0.
 
-    Vi homogeneous quadrics in the Vi + D heights of `variables` (docs/mathematics.md, Branch
-    system). Pinning removes the affine functions, on which all curvature forms vanish. By default
-    the pinned vertices lie on the boundary; for D = 1 they are the boundary vertices but the one
-    whose height the chart `saddle = 1` then fixes to 1.
+    These are Vi homogeneous quadrics in the Vi + D heights of `variables` (docs/mathematics.md,
+    Branch system). Pinning removes the affine functions, on which all curvature forms vanish. By
+    default the pinned vertices lie on the boundary. For D = 1 they are all boundary vertices but
+    one; the chart `saddle = 1` fixes the height of this one to 1.
 
-    Raises `MalformedPatternError` if the pinned vertices are collinear, `UsageError` if they are
-    not three different vertices.
+    Raises `MalformedPatternError` if the pinned vertices are collinear, and `UsageError` if they
+    are not three different vertices.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> system = BranchSystem(single_vertex(4))
@@ -74,9 +74,9 @@ class BranchSystem:
 
     @cached_property
     def chart(self) -> Chart:
-        """For D = 1: the affine chart `boundary saddle = 1` (`saddle_functional`).
+        """For D = 1: the affine chart in which the boundary saddle (`saddle_functional`) is 1.
 
-        Raises `NotApplicableError` if D is not 1: the solutions are then not isolated points.
+        Raises `NotApplicableError` if D is not 1, as the solutions are then not isolated points.
         """
         if self.pattern.degrees_of_freedom != 1:
             raise NotApplicableError(
@@ -91,15 +91,15 @@ class BranchSystem:
 def notch_chart(pattern: CreasePattern) -> Chart:
     """For a quadrilateral with a reflex corner r: the chart `K_r(t, h) = 1` of the closed sheet.
 
-    With the notch closed by a triangle, K_r > 0 on every solution (docs/theorem.md, Four boundary
-    vertices), so the sign functional of r vanishes on none: unlike the saddle, it leaves no branch
-    at infinity. Pinned are the other three corners. Raises `NotApplicableError` for other
-    boundaries.
+    If a triangle closes the notch, K_r > 0 on every solution (docs/theorem.md, Four boundary
+    vertices). So the sign functional of r vanishes on no solution: unlike the chart of the saddle,
+    this chart has no branch at infinity. The other three corners are pinned. Raises
+    `NotApplicableError` for other boundaries.
     """
     corner = pattern.reflex_corner
     if corner is None or pattern.Ve != 4:
         raise NotApplicableError(
-            "only a boundary of four vertices, one of them reflex, has a notch"
+            "only a boundary of four vertices with a reflex corner has a notch"
         )
     system = BranchSystem(pattern, [v for v in pattern.boundary if v != corner])
     signs = vertex_sign_functional(pattern.with_notch_closed(), corner)
@@ -108,11 +108,11 @@ def notch_chart(pattern: CreasePattern) -> Chart:
 
 
 def chamber_chart(pattern: CreasePattern) -> Chart:
-    """The chart in which each branch is named by its vertex signs alone (docs/theorem.md, Four
-    boundary vertices).
+    """The chart in which its vertex signs alone name each branch.
 
-    `saddle = 1` for a convex boundary, the chart of the closed notch for one with a reflex corner:
-    neither leaves a branch at infinity. Raises `NotApplicableError` unless Ve = 4.
+    (docs/theorem.md, Four boundary vertices.) For a convex boundary it is `saddle = 1`, for one
+    with a reflex corner the chart of the closed notch. Neither has a branch at infinity. Raises
+    `NotApplicableError` unless Ve = 4.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> chamber_chart(single_vertex(4)).system.bezout_number
@@ -120,18 +120,19 @@ def chamber_chart(pattern: CreasePattern) -> Chart:
     """
     if pattern.Ve != 4:
         raise NotApplicableError(
-            f"branches are named by signs for four boundary vertices, not {pattern.Ve}"
+            f"signs name branches of sheets with four boundary vertices, not {pattern.Ve}"
         )
     return BranchSystem(pattern).chart if pattern.is_convex else notch_chart(pattern)
 
 
 @dataclass(frozen=True)
 class Chart:
-    """The part of projective space where a linear functional of the heights is 1.
+    """The part of projective space in which a linear functional of the heights is 1.
 
-    `eliminated` is the vertex whose height that equation expresses by the others; `variables` are
-    the remaining unknowns, and `system` the Vi affine quadrics in them (docs/conventions.md,
-    Heights). Zeros at infinity of the chart are the branches on which the functional vanishes.
+    The equation functional = 1 expresses the height of the vertex `eliminated` by the others.
+    `variables` are the remaining unknowns, and `system` holds the Vi affine quadrics in them
+    (docs/conventions.md, Heights). Zeros at infinity of the chart are the branches on which the
+    functional vanishes.
     """
 
     branch_system: BranchSystem
@@ -154,19 +155,19 @@ class Chart:
 
     @cached_property
     def eliminated_row(self) -> tuple[Fraction, ...]:
-        """(a_1, ..., a_n, b): the eliminated height is sum a_k x_k + b."""
+        """The coefficients (a_1, ..., a_n, b) of the eliminated height sum a_k x_k + b."""
         lead = self.functional[self.eliminated]
         slope = tuple(-self.functional.get(v, Fraction(0)) / lead for v in self.variables)
         return (*slope, 1 / lead)
 
     @cached_property
     def system(self) -> QuadraticSystem:
-        """The quadrics K_v in the chart, for D = 1 as many as there are unknowns."""
+        """The quadrics K_v in the chart; for D = 1 there are as many as unknowns."""
         return QuadraticSystem.from_rational(self.matrices)
 
     @cached_property
     def matrices(self) -> tuple[IntMatrix, ...]:
-        """The quadrics K_v in the chart as matrices over (x, 1), by interior vertices in order."""
+        """The quadrics K_v in the chart, as matrices over (x, 1), in the order of `interior`."""
         matrices = []
         for form in self.branch_system.quadrics.values():
             lifts = [self._integer_rows[v].items() for v in form.labels]
@@ -184,7 +185,7 @@ class Chart:
 
     @cached_property
     def _unit(self) -> int:
-        """The least d > 0 for which d times each row of `row` has integer coefficients."""
+        """The least d > 0 such that d times each row of `row` has integer coefficients."""
         return lcm(*(a.denominator for a in self.eliminated_row))
 
     @cached_property
@@ -197,11 +198,11 @@ class Chart:
         return rows | {self.eliminated: {k: int(a * unit) for k, a in row if a}}
 
     def row(self, vertex: int) -> dict[int, Fraction]:
-        """Height of a vertex as an affine function of x: coefficient by position, n for 1."""
+        """The height of a vertex as an affine function of x: coefficients by position, n for 1."""
         return {k: Fraction(a, self._unit) for k, a in self._integer_rows[vertex].items()}
 
     def heights(self, x: Sequence[Fraction]) -> dict[int, Fraction]:
-        """Heights of all vertices at a point of the chart."""
+        """The heights of all vertices at a point of the chart."""
         z = [*x, Fraction(1)]
         return {
             v: sum((a * z[k] for k, a in self.row(v).items()), Fraction(0))
@@ -209,17 +210,17 @@ class Chart:
         }
 
     def restrict(self, functional: Mapping[int, int | Fraction]) -> list[Fraction]:
-        """A linear functional of the heights as (c_1, ..., c_n, c_0) on (x, 1)."""
+        """A linear functional of the heights, as coefficients (c_1, ..., c_n, c_0) of (x, 1)."""
         return [Fraction(value) / self._unit for value in self._in_units(functional)]
 
     def integer_row(self, functional: Mapping[int, int]) -> tuple[int, ...]:
-        """A positive multiple of `restrict` of an integer functional, the least with integers."""
+        """The least positive multiple with integers of `restrict` of an integer functional."""
         row = self._in_units(functional)
         common = gcd(self._unit, *row)
         return tuple(value // common for value in row)
 
     def _in_units(self, functional: Mapping[int, Any]) -> list[Any]:
-        """`restrict` times `_unit`: integers where the functional has integers."""
+        """`restrict` times `_unit`; an integer functional gives integers."""
         row: list[Any] = [0] * (len(self.variables) + 1)
         for v, weight in functional.items():
             for k, a in self._integer_rows[v].items():

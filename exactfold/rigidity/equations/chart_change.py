@@ -1,4 +1,4 @@
-"""Approximate heights of a sheet, and the same sheets as points of a chart."""
+"""Converts approximate heights of sheets to points of a chart, and back."""
 
 from __future__ import annotations
 
@@ -12,10 +12,11 @@ _INFINITY = 1e-12
 
 
 def to_chart(chart: Chart, heights: FloatArray) -> FloatArray:
-    """Sheets given by heights of all vertices, shape (m, V), as points of the chart, shape (m, n).
+    """Points of the chart, shape (m, n), for sheets given by all heights, shape (m, V).
 
-    Pinned vertices are brought to height 0, the functional to 1. Sheets at infinity of the chart,
-    on which the functional vanishes, are left out.
+    Each sheet is tilted so that the pinned vertices have height 0, and scaled so that the
+    functional is 1. Sheets at infinity of the chart, on which the functional vanishes, are left
+    out.
     """
     pattern = chart.branch_system.pattern
     size, (x0, y0) = pattern_size(pattern), pattern.vertices[0]
@@ -34,12 +35,15 @@ def to_chart(chart: Chart, heights: FloatArray) -> FloatArray:
 
 
 def between(start: Chart, end: Chart, points: FloatArray) -> FloatArray:
-    """Points of one chart as points of another of the same sheet; some may be at infinity there."""
+    """Converts points of one chart to another chart of the same sheet.
+
+    Points at infinity of the other chart are left out.
+    """
     return points if start == end else to_chart(end, from_chart(start, points))
 
 
 def from_chart(chart: Chart, points: FloatArray) -> FloatArray:
-    """Heights of all vertices, shape (m, V), at points of the chart, shape (m, n)."""
+    """The heights of all vertices, shape (m, V), at points of the chart, shape (m, n)."""
     count, n = len(chart.branch_system.pattern.vertices), points.shape[1]
     rows = np.zeros((count, n + 1))
     for v in range(count):

@@ -1,8 +1,8 @@
 """The sheets of a chart on which given folds are flat: a linear section of the branch system.
 
-Where vertex stars are flat the system degenerates, but its zeros lie in a known linear subspace. On
-it the quadrics of the flat vertices vanish, others come to depend on each other, and what is left
-is a small system with regular zeros.
+If vertex stars are flat, the system is degenerate, but its zeros lie in a known linear subspace. On
+this subspace the quadrics of the flat vertices vanish, other quadrics become linearly dependent,
+and the rest is a small system with regular zeros.
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ Row = tuple[Fraction, ...]
 
 @dataclass(frozen=True)
 class FlatSheets:
-    """The points of a chart at which `folds` are flat: x = A (y, 1).
+    """The points x = A (y, 1) of a chart at which `folds` are flat.
 
-    `rows[i]` holds the coefficients of x_i, the constant last. The unknowns y are those x_i that
-    are not pivots of the reduced echelon form of the equations "fold flat": y_k is number `free[k]`
-    of the x_i.
+    `rows[i]` holds the coefficients of x_i, the constant last. The unknowns y are the x_i that are
+    not pivots of the reduced echelon form of the equations "this fold is flat"; y_k is x_i for i =
+    `free[k]`.
     """
 
     chart: Chart
@@ -40,13 +40,13 @@ class FlatSheets:
 
     @cached_property
     def vertices(self) -> frozenset[int]:
-        """The interior vertices whose stars are flat, as all their folds are among `folds`."""
+        """The interior vertices with flat stars: all their folds are among `folds`."""
         pattern = self.chart.branch_system.pattern
         bent = {v for fold in pattern.folds if fold not in self.folds for v in fold}
         return frozenset(pattern.interior) - bent
 
     def restrict(self, row: Sequence[Fraction | int]) -> list[Fraction]:
-        """A functional (c_1, ..., c_n, c_0) on (x, 1) as one on (y, 1)."""
+        """Converts a functional (c_1, ..., c_n, c_0) on (x, 1) to a functional on (y, 1)."""
         *slopes, constant = row
         total = [Fraction(0)] * len(self.free) + [Fraction(constant)]
         for c, line in zip(slopes, self.rows, strict=True):
@@ -68,7 +68,7 @@ class FlatSheets:
 
     @cached_property
     def system(self) -> QuadraticSystem | None:
-        """These quadrics as a square system, None if they are more (or fewer) than the unknowns."""
+        """These quadrics as a square system; None unless they are as many as the unknowns."""
         if not self.free or len(self.quadrics) != len(self.free):
             return None
         return QuadraticSystem.from_rational(
@@ -79,10 +79,10 @@ class FlatSheets:
 def flat_sheets(
     chart: Chart, vertices: Iterable[int] = (), *, folds: Iterable[Edge] = ()
 ) -> FlatSheets | None:
-    """Solve "these folds are flat, and all folds at these vertices" for the heights.
+    """Solves the equations "these folds, and all folds at these vertices, are flat".
 
-    None if no sheet of the chart is that flat. Raises `UsageError` unless the vertices are interior
-    and the folds are folds of the pattern.
+    The result is None if no sheet of the chart is so flat. Raises `UsageError` unless the vertices
+    are interior and the folds are folds of the pattern.
 
     >>> from exactfold.pattern.families import flat_vertex_square
     >>> from exactfold.rigidity.equations.branch_system import BranchSystem
@@ -96,17 +96,21 @@ def flat_sheets(
     pattern = chart.branch_system.pattern
     chosen = frozenset(vertices)
     if not chosen <= set(pattern.interior):
-        raise UsageError(f"not interior vertices: {sorted(chosen - set(pattern.interior))}")
+        raise UsageError(
+            f"these are not interior vertices: {sorted(chosen - set(pattern.interior))}"
+        )
     asked = frozenset((min(fold), max(fold)) for fold in folds)
     if not asked <= set(pattern.folds):
-        raise UsageError(f"not folds of the pattern: {sorted(asked - set(pattern.folds))}")
+        raise UsageError(
+            f"these are not folds of the pattern: {sorted(asked - set(pattern.folds))}"
+        )
     flat = [fold for fold in pattern.folds if fold in asked or chosen & set(fold)]
     size = len(chart.variables)
     equations = [chart.restrict(fold_functional(pattern, fold)) for fold in flat]
     columns = nullspace(equations or [[0] * (size + 1)])
-    # In a column of the null space the last entry is the 1 at its free unknown.
+    # The last nonzero entry of a column of the null space is the 1 at its free unknown.
     free = [max(k for k, c in enumerate(column) if c) for column in columns]
-    if not free or free.pop() != size:  # the equations say 1 = 0
+    if not free or free.pop() != size:  # otherwise the equations contain 1 = 0
         return None
     rows = tuple(tuple(column[i] for column in columns) for i in range(size))
     return FlatSheets(chart, frozenset(flat), rows, tuple(free))

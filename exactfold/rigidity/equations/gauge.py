@@ -1,4 +1,4 @@
-"""The gauge: which heights are given, so that every branch is a point and not a ray."""
+"""The gauge: it fixes some heights, so that every branch is a point and not a ray."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ SADDLE, CORNER, RIM = "saddle", "corner", "rim"
 
 @dataclass(frozen=True, repr=False)
 class Gauge:
-    """Given heights of the rim of `sheet`, and the one vertex, if any, with a given curvature.
+    """The given boundary heights of `sheet`, and the given curvatures of its vertices.
 
     `kind` is one of three (docs/conventions.md, Heights):
 
-    - "saddle": a convex quadrilateral. One boundary vertex has height 1, the others 0, so that the
-      boundary saddle (`saddle_functional`) is +1.
-    - "corner": a quadrilateral with a reflex corner. In `sheet` its notch is closed by a triangle,
-      the other three corners have height 0, and the corner, now an interior vertex, pops up with
-      K = `corner_curvature`.
-    - "rim": a convex boundary of any length, with heights that were given. `curvature` holds the
-      angle deficits K_v of interior vertices that are not 0; then the heights of the rim are 0 if
+    - "saddle": a convex quadrilateral. One boundary vertex has height 1, the others have height 0,
+      so that the boundary saddle (`saddle_functional`) is +1.
+    - "corner": a quadrilateral with a reflex corner. In `sheet` a triangle closes its notch. The
+      other three corners have height 0. The reflex corner, which is now an interior vertex, pops up
+      with K = `corner_curvature`.
+    - "rim": a convex boundary of any length with given heights. `curvature` holds the angle
+      deficits K_v of interior vertices that are not 0; with deficits, the boundary heights are 0 if
       none are given.
 
-    In all three there is exactly one solution in the closed nappes of each sign vector
+    In all three cases there is exactly one solution in the closed nappes of each sign vector
     (docs/theorem.md, Four boundary vertices; docs/branch.md, Angle deficits). `sheet` has the
-    vertices of the sheet that was given, and no others.
+    vertices of the given sheet and no others.
     """
 
     kind: str
@@ -49,7 +49,7 @@ class Gauge:
         rim: Mapping[int, RationalLike] | None = None,
         curvature: Mapping[int, RationalLike] | None = None,
     ) -> Gauge:
-        """The gauge of a sheet with four boundary vertices, or with given rim heights or deficits.
+        """The gauge of a sheet with four boundary vertices, or with given heights or deficits.
 
         Raises `NotCountedError` for another number of boundary vertices without `rim`, and the
         errors of `given_rim` and `given_deficits`.
@@ -70,10 +70,10 @@ class Gauge:
             raise NotCountedError(
                 "the sheet has three boundary vertices: it is rigid and has no branches"
                 if sheet.Ve == 3
-                else f"vertex signs name a branch of a sheet with four boundary vertices; this one "
-                f"has {sheet.Ve}, so its ways to fold form continuous families, with one way for "
-                "each choice of the heights of the border (`exactfold branch` with --rim; in "
-                "Python find_branch with rim=)"
+                else f"vertex signs name a branch of a sheet with four boundary vertices, but this "
+                f"sheet has {sheet.Ve}. Its ways to fold form continuous families, with one way "
+                "for each choice of the boundary heights: give them (`exactfold branch` with "
+                "--rim; in Python find_branch with rim=)"
             )
         corner = sheet.reflex_corner
         if corner is not None:
@@ -85,25 +85,25 @@ class Gauge:
 
     @cached_property
     def unknowns(self) -> tuple[int, ...]:
-        """The vertices whose heights are unknown: those that a sign vector names, then the corner.
+        """The vertices with unknown heights: first those that a sign vector names, then the corner.
 
-        One equation each: K_v = 0, and K = `corner_curvature` at the corner.
+        Each has one equation: K_v = 0, or K = `corner_curvature` at the corner.
         """
         named = tuple(v for v in self.sheet.interior if v != self.corner)
         return named if self.corner is None else (*named, self.corner)
 
     def __repr__(self) -> str:
         where = "" if self.corner is None else f" {self.corner}"
-        return f"<Gauge: {self.kind}{where}, {len(self.rim)} vertices on the rim>"
+        return f"<Gauge: {self.kind}{where}, {len(self.rim)} boundary vertices>"
 
     @cached_property
     def corner_curvature(self) -> Fraction:
-        """1 / size^2, with the larger side of the bounding box as the size of the sheet."""
+        """The curvature 1 / size^2, where size is the larger side of the bounding box."""
         return 1 / pattern_size(self.sheet) ** 2
 
     @cached_property
     def targets(self) -> Mapping[int, Fraction]:
-        """K_v of the vertices of `sheet` at which it is not 0."""
+        """The curvatures K_v that are not 0, by vertex of `sheet`."""
         if self.corner is not None:
             return {self.corner: self.corner_curvature}
         return self.curvature

@@ -1,4 +1,4 @@
-"""Systems of quadrics that no longer come from a crease pattern: the control experiment."""
+"""Control experiment: systems of quadrics that no longer come from a crease pattern."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ _STEPS = 1 << 10
 def perturbed(system: QuadraticSystem, size: RationalLike, seed: int) -> QuadraticSystem:
     """The system with every coefficient multiplied by a random factor in [1 - size, 1 + size].
 
-    The factors 1 + size k / 1024 are rational, with integers k uniform in [-1024, 1024] from
-    `random.Random(seed)`; coefficients that are zero stay zero, so that the pattern of who meets
-    whom is kept. This is the paper's test (section "Vertex sign patterns") of whether real
-    solutions are a matter of course: the quadrics of a pattern have real zeros only
-    (docs/theorem.md), perturbed ones in general do not. Factors are exact, so that all zeros of
-    the perturbed system, real or not, can be proved by `isolate`. Size 0 gives the same system.
+    The factors are 1 + size k / 1024, where `random.Random(seed)` draws the integers k uniformly
+    from [-1024, 1024]. Coefficients that are zero stay zero, so that the same unknowns meet in each
+    equation. This is the paper's test (section "Vertex sign patterns") of whether real solutions
+    are to be expected anyway: the quadrics of a pattern have real zeros only (docs/theorem.md), but
+    perturbed quadrics in general do not. As the factors are rational, `isolate` can prove all zeros
+    of the perturbed system, real or not. Size 0 gives the same system.
 
-    Raises `UsageError` for a negative size or seed, `FloatRefusedError` for a float.
+    Raises `UsageError` for a negative size or seed, and `FloatRefusedError` for a float.
 
     >>> circle_and_line_pair = QuadraticSystem.from_rational(
     ...     [[[1, 0, 0], [0, 1, 0], [0, 0, -1]], [[0, 1, 0], [1, 0, 0], [0, 0, 0]]])

@@ -1,4 +1,4 @@
-"""The problem that all solvers and certifiers work on: a sheet, its gauge, its exact equations."""
+"""The problem that all solvers and certifiers share: a sheet, its gauge, its exact equations."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from exactfold.rigidity.equations.sign_rows import Functionals
 
 @dataclass(frozen=True, repr=False)
 class Problem:
-    """The equations K_v(h) = 0 of a pattern, reduced to what can fold, in one gauge.
+    """The equations K_v(h) = 0 of the part of a pattern that can fold, in one gauge.
 
-    `sheet` is the pattern with every triangulated triangle made a single face: what lies inside
-    stays flat. `labels[k]` is the vertex of `pattern` that vertex k of `sheet` is. Everything that
-    follows works on `sheet`; `labels`, `all_heights` and `heights_by_vertex` lead back.
+    In `sheet` each triangulated triangle of the pattern is a single face, as its inside stays flat.
+    Vertex k of `sheet` is vertex `labels[k]` of `pattern`. Solvers and certifiers work on `sheet`;
+    `labels`, `all_heights` and `height_rows` lead back to the pattern.
 
     >>> from exactfold.pattern.families import two_vertex
     >>> problem = Problem.of(two_vertex())
@@ -47,13 +47,14 @@ class Problem:
         rim: Mapping[int, RationalLike] | None = None,
         curvature: Mapping[int, RationalLike] | None = None,
     ) -> Problem:
-        """The problem of a pattern with four boundary vertices, or with given rim heights.
+        """The problem of a pattern with four boundary vertices, or with given boundary heights.
 
-        `curvature`: angle deficits by interior vertex, 0 where none is given; a triangulated
-        triangle with a deficit inside does not stay flat. Raises as `Gauge.of`.
+        `curvature` maps interior vertices to angle deficits; other vertices have the deficit 0. A
+        triangulated triangle with a deficit inside does not stay flat. Raises the errors of
+        `Gauge.of`.
         """
         deficits = None if curvature is None else given_deficits(pattern, curvature)
-        if rim is not None:  # named here by the vertices of the pattern
+        if rim is not None:  # checked here, so that messages name vertices of the pattern
             rim = given_rim(pattern, rim, may_be_flat=bool(deficits))
         sheet, labels = pattern.without_rigid_parts(deficits or ())
         place = {v: k for k, v in enumerate(labels)}
@@ -63,22 +64,22 @@ class Problem:
 
     @cached_property
     def rigid(self) -> frozenset[int]:
-        """The vertices of the pattern that are not in the sheet, as they stay flat."""
+        """The vertices of the pattern that are not in the sheet, because they stay flat."""
         return frozenset(range(len(self.pattern.vertices))) - set(self.labels)
 
     @property
     def size(self) -> int:
-        """n, the number of foldable vertices, which a sign vector names."""
+        """The number n of foldable vertices; a sign vector names these."""
         return self.sheet.Vi
 
     def require_foldable(self) -> None:
-        """Raise `NotCountedError` if all interior vertices stay flat, or there are none."""
+        """Raises `NotCountedError` if all interior vertices stay flat or there is none."""
         if not self.pattern.interior:
             raise NotCountedError("no vertex can pop: the pattern has no interior vertex")
         if not self.sheet.interior:
             raise NotCountedError(
                 "no vertex can pop: all interior vertices lie in triangulated triangles and stay "
-                "flat, so signs name no branch; `exactfold count` lists what there is"
+                "flat, so no branch has vertex signs; `exactfold count` lists the branches"
             )
 
     @cached_property
@@ -88,23 +89,23 @@ class Problem:
 
     @cached_property
     def triangles(self) -> tuple[RigidTriangle, ...] | None:
-        """The triangulated triangles with the proof that they stay flat, None if one is missing."""
+        """The triangulated triangles with proofs that they stay flat; None if one is missing."""
         from exactfold.rigidity.rigid_triangles import certify_rigid_triangles  # loads FLINT
 
         return certify_rigid_triangles(self.pattern)
 
     @cached_property
     def chart(self) -> Chart:
-        """The chart in which each of the 2^n branches is named by its vertex signs alone."""
+        """The chart in which its vertex signs alone name each of the 2^n branches."""
         return chamber_chart(self.sheet)
 
     @cached_property
     def functionals(self) -> Functionals:
-        """The functionals on `chart` whose signs are vertex signs and letters."""
+        """The functionals on `chart` whose signs are the vertex signs and the letters."""
         return Functionals(self.chart)
 
     def all_heights(self, known: Mapping[int, Fraction]) -> dict[int, Fraction]:
-        """Heights of all vertices of the pattern, from those of the vertices of the sheet."""
+        """The heights of all vertices of the pattern, from those of the vertices of the sheet."""
         heights = {self.labels[v]: height for v, height in known.items()}
         for vertex, cycle, weights in self.flat_inside:
             heights[vertex] = sum(
@@ -113,9 +114,9 @@ class Problem:
         return dict(sorted(heights.items()))
 
     def height_rows(self, chart: Chart) -> dict[int, tuple[Fraction, ...]]:
-        """The height of every vertex of the pattern as a row on (x, 1), x in a chart of `sheet`.
+        """The heights of all vertices of the pattern, as rows on (x, 1), x in a chart of `sheet`.
 
-        The sheet is tilted so that the boundary vertices pinned in the chart `saddle = 1` are at 0.
+        The sheet is tilted so that the vertices pinned in the chart `saddle = 1` have height 0.
         """
         pinned = BranchSystem(self.sheet).pinned
         rows = {self.labels[v]: row for v, row in Functionals(chart).heights.items()}
@@ -144,7 +145,7 @@ class Problem:
 
     @cached_property
     def flat_inside(self) -> list[tuple[int, tuple[int, ...], tuple[Fraction, ...]]]:
-        """Rigid vertices with their 3-cycle and their barycentric coordinates in it."""
+        """The rigid vertices, with their 3-cycles and their barycentric coordinates in these."""
         return [
             (v, cycle, barycentric(self.pattern, cycle, v))
             for cycle, inside in self.pattern.triangulated_triangles
@@ -156,7 +157,7 @@ class Problem:
 def barycentric(
     pattern: CreasePattern, cycle: Sequence[int], vertex: int
 ) -> tuple[Fraction, Fraction, Fraction]:
-    """Barycentric coordinates of a vertex by three others, exactly."""
+    """The barycentric coordinates of a vertex with respect to three others, exactly."""
     (ax, ay), (bx, by), (cx, cy) = (pattern.vertices[v] for v in cycle)
     x, y = pattern.vertices[vertex]
     whole = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)

@@ -40,9 +40,9 @@ def primitive_matrices(
 class QuadraticSystem:
     """n quadrics F_p(x) = (1/2) z^T S_p z in n unknowns, z = (x_1, ..., x_n, 1).
 
-    `matrices` holds the symmetric integer (n+1) x (n+1) matrices S_p, so that the Hessian of F_p is
-    the leading n x n block and every entry of its gradient is a row of S_p times z. Each S_p may be
-    scaled by a positive rational without changing the zeros; `from_rational` makes it primitive.
+    `matrices` holds the symmetric integer (n+1) x (n+1) matrices S_p. So the Hessian of F_p is the
+    leading n x n block of S_p, and each entry of the gradient is a row of S_p times z. Scaling S_p
+    by a positive rational does not change the zeros; `from_rational` makes each S_p primitive.
 
     >>> circle_and_line_pair = QuadraticSystem.from_rational(
     ...     [[[1, 0, 0], [0, 1, 0], [0, 0, -1]], [[0, 1, 0], [1, 0, 0], [0, 0, 0]]])
@@ -56,7 +56,7 @@ class QuadraticSystem:
     def from_rational(
         cls, matrices: Sequence[Sequence[Sequence[Fraction | int]]]
     ) -> QuadraticSystem:
-        """From symmetric rational matrices of the forms (any positive multiple)."""
+        """The system with symmetric rational matrices, given up to positive multiples."""
         primitive = primitive_matrices(matrices)
         if any(len(matrix) != len(primitive) + 1 for matrix in primitive):
             raise ValueError("a square system of n quadrics needs matrices of size n + 1")
@@ -64,7 +64,7 @@ class QuadraticSystem:
 
     @property
     def size(self) -> int:
-        """Number n of unknowns and of equations."""
+        """The number n of unknowns and of equations."""
         return len(self.matrices)
 
     def __repr__(self) -> str:
@@ -72,11 +72,11 @@ class QuadraticSystem:
 
     @property
     def bezout_number(self) -> int:
-        """2^n, the number of complex zeros in projective space if finite, with multiplicity."""
+        """2^n: the number of complex projective zeros, with multiplicity, if it is finite."""
         return 1 << self.size
 
     def values_at(self, x: Sequence[Fraction]) -> list[Fraction]:
-        """z^T S_p z = 2 F_p(x), exactly."""
+        """The exact values z^T S_p z = 2 F_p(x)."""
         z = [*x, Fraction(1)]
         return [
             sum(
@@ -88,7 +88,7 @@ class QuadraticSystem:
 
     @cached_property
     def realification(self) -> QuadraticSystem:
-        """The 2n real quadrics Re F_p(a + ib), Im F_p(a + ib) in the 2n unknowns (a, b)."""
+        """The 2n real quadrics Re F_p(a + ib) and Im F_p(a + ib) in the 2n unknowns (a, b)."""
         n = self.size
         real_parts, imaginary_parts = [], []
         for matrix in self.matrices:
@@ -107,7 +107,7 @@ class QuadraticSystem:
 
     @cached_property
     def float_tensor(self) -> FloatArray:
-        """S as floats of shape (n, n+1, n+1), each S_p scaled to largest entry 1."""
+        """S as floats of shape (n, n+1, n+1); each S_p is scaled to the largest entry 1."""
         tensor = np.empty((self.size, self.size + 1, self.size + 1))
         for p, matrix in enumerate(self.matrices):
             largest = max((abs(x) for row in matrix for x in row), default=0) or 1

@@ -1,4 +1,4 @@
-"""A problem in integers: exact fold data, the rim, and the targets of the curvatures."""
+"""A problem in integers: exact fold data, boundary heights, and target curvatures."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.rigidity.equations.gauge import pattern_size
 from exactfold.rigidity.equations.problem import Problem
 
-"""Python integers of any size, as an object array."""
+"""`BigArray`: an object array of Python integers of any size."""
 
 
 @dataclass(frozen=True)
 class Sheet:
-    """A problem in integers, fold by fold: what the sparse solver and the enclosure work on.
+    """A problem in integers, fold by fold, for the sparse solver and the enclosure.
 
-    `pattern` is the sheet that the equations live on, for a reflex quadrilateral with the notch
-    closed. Lengths are integers: the coordinates are `pattern.integer_vertices`. Heights of the rim
-    are integers over `rim_denominator`, in multiples of `height_unit`, a power of two.
+    `pattern` is the sheet of the equations; for a reflex quadrilateral its notch is closed. Lengths
+    are integers, as the coordinates are `pattern.integer_vertices`. Boundary heights are integers
+    over `rim_denominator`, in multiples of `height_unit`, a power of two.
     """
 
     problem: Problem
@@ -37,41 +37,47 @@ class Sheet:
 
     @property
     def labels(self) -> tuple[int, ...]:
-        """`labels[v]` is the vertex of the given pattern that vertex v of `pattern` is."""
+        """Vertex v of `pattern` is vertex `labels[v]` of the given pattern."""
         return self.problem.labels
 
     @property
     def corner(self) -> int | None:
-        """The reflex corner, whose target is k_v = 1 / size^2."""
+        """The reflex corner, whose target curvature is k_v = 1 / size^2."""
         return self.problem.gauge.corner
 
     @cached_property
     def targets(self) -> Mapping[int, Fraction]:
-        """k_v > 0, where K_v is not to be 0, for integer lengths and heights in `height_unit`."""
+        """The target curvatures k_v > 0, for integer lengths and heights in `height_unit`.
+
+        The target of all other vertices is 0.
+        """
         scale = (self.height_unit * self.pattern.integer_vertices[1]) ** 2
         return {v: k / scale for v, k in self.problem.gauge.targets.items()}
 
     @property
     def unclosed(self) -> CreasePattern:
-        """`pattern` without the triangle that closes a notch; the same vertices."""
+        """`pattern` without the triangle that closes a notch; it has the same vertices."""
         return self.problem.sheet
 
     @property
     def unknowns(self) -> tuple[int, ...]:
-        """The interior vertices of `pattern`, one equation each."""
+        """The interior vertices of `pattern`; each has one equation."""
         return self.pattern.interior
 
     @property
     def poppable(self) -> tuple[int, ...]:
-        """The vertices of `pattern` that a sign vector names: all unknowns but the corner."""
+        """The vertices of `pattern` that a sign vector names: all unknowns except the corner."""
         return self.problem.sheet.interior
 
     @cached_property
     def height_unit(self) -> Fraction:
-        """A power of two near the largest height of the rim, or that deficits ask for, or 1."""
+        """A power of two near the largest boundary height, or near the height due to deficits.
+
+        It is 1 if all boundary heights and deficits are 0.
+        """
         gauge = self.problem.gauge
         largest = max(map(abs, gauge.rim.values()))
-        if gauge.curvature:  # a deficit k lifts its vertex by about the size times the root of k
+        if gauge.curvature:  # a deficit k lifts its vertex by about size * sqrt(k)
             square = max(gauge.curvature.values()) * pattern_size(gauge.sheet) ** 2
             largest = max(largest, _root_of_power(power_of_two(square)))
         return power_of_two(largest) if largest else Fraction(1)
@@ -84,28 +90,28 @@ class Sheet:
 
     @property
     def rim(self) -> Mapping[int, int]:
-        """Heights of the boundary vertices, times `rim_denominator` / `height_unit`."""
+        """The boundary heights, times `rim_denominator` / `height_unit`."""
         return self._scaled[0]
 
     @property
     def rim_denominator(self) -> int:
-        """The common denominator of the heights of the rim."""
+        """The common denominator of the boundary heights, in `height_unit`."""
         return self._scaled[1]
 
     @cached_property
     def size(self) -> int:
-        """The larger side of the bounding box, in integer lengths."""
+        """The larger side of the bounding box, as an integer length."""
         points = self.pattern.integer_vertices[0]
         return max(max(p[a] for p in points) - min(p[a] for p in points) for a in (0, 1))
 
     @cached_property
     def folds(self) -> Folds:
-        """The folds of `pattern` in its order."""
+        """The exact data of the folds of `pattern`, in its order."""
         return Folds.of(self.pattern)
 
 
 def _root_of_power(power: Fraction) -> Fraction:
-    """The root of a power of two, rounded to one."""
+    """The square root of a power of two, rounded down to a power of two."""
     exponent = power.numerator.bit_length() - power.denominator.bit_length()
     half = exponent // 2
     return Fraction(1 << half) if half >= 0 else Fraction(1, 1 << -half)
@@ -123,15 +129,15 @@ def power_of_two(value: Fraction) -> Fraction:
 
 @dataclass(frozen=True)
 class Folds:
-    """Exact data of all folds: fold e = (i, j) with the faces (i, j, left) and (j, i, right).
+    """Exact data of all folds: fold e = (i, j) has the faces (i, j, left) and (j, i, right).
 
-    With c, c' twice the areas of these faces, the fold functional (`fold_functional`) is
-    f_e(h) = w . (h_i, h_j, h_left, h_right), and omega_e = f_e / (c c') is the jump of the slope
-    across the fold divided by its length. Then, for all interior v and w,
+    Let c and c' be twice the areas of these faces. The fold functional (`fold_functional`) is
+    f_e(h) = w . (h_i, h_j, h_left, h_right). Then omega_e = f_e / (c c') is the jump of the slope
+    across the fold, divided by its length. For all interior v and w,
 
         2 K_v(h) = sum_w omega_vw(h) (h_w - h_v),      dK_v/dh_w = omega_vw(h).
 
-    Shapes: `corners` and `weights` (E, 4), the others (E,). All are integers.
+    All entries are integers; `corners` and `weights` have the shape (E, 4), the others (E,).
     """
 
     corners: IndexArray
@@ -142,7 +148,7 @@ class Folds:
 
     @classmethod
     def of(cls, pattern: CreasePattern) -> Folds:
-        """Fold data in the integer coordinates of a pattern."""
+        """The fold data of a pattern, in its integer coordinates."""
         rows = [(i, j, *pattern.opposite((i, j))) for i, j in pattern.folds]
         corners = np.array(rows, dtype=np.intp).reshape(-1, 4)
         points = np.array(pattern.integer_vertices[0], dtype=object)
@@ -154,7 +160,7 @@ class Folds:
         return cls(corners, weights, left, right, d[:, 0] * d[:, 0] + d[:, 1] * d[:, 1])
 
     def bends(self, heights: BigArray) -> BigArray:
-        """f_e of integer heights, shape (E,): positive for a valley."""
+        """The values f_e at integer heights, shape (E,); f_e is positive for a valley."""
         total: Any = self.weights[:, 0] * heights[self.corners[:, 0]]
         for k in range(1, 4):
             total = total + self.weights[:, k] * heights[self.corners[:, k]]

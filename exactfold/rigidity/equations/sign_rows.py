@@ -1,4 +1,4 @@
-"""The linear functionals whose signs are vertex signs and folds, as rows on (x, 1)."""
+"""The linear functionals whose signs are vertex signs and letters of folds, as rows on (x, 1)."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ Row = tuple[int, ...]
 
 @dataclass(frozen=True)
 class Functionals:
-    """Sign functionals of a chart, of every interior vertex and every fold (docs/conventions.md).
+    """The sign functionals of a chart, for every interior vertex and fold (docs/conventions.md).
 
-    A row (c_1, ..., c_n, c_0) takes the value c . x + c_0 at the point x of the chart.
+    A row (c_1, ..., c_n, c_0) has the value c . x + c_0 at the point x of the chart.
     """
 
     chart: Chart
 
     @cached_property
     def vertices(self) -> Mapping[int, Row]:
-        """Positive where the vertex is popped up, negative where down, zero where it is flat."""
+        """Rows that are positive if the vertex pops up, negative if down, zero if it is flat."""
         pattern = self.chart.branch_system.pattern
         return {
             v: self.chart.integer_row(vertex_sign_functional(pattern, v)) for v in pattern.interior
@@ -38,7 +38,7 @@ class Functionals:
 
     @cached_property
     def folds(self) -> Mapping[Edge, Row]:
-        """Positive for a valley, negative for a mountain, zero where the fold is flat."""
+        """Rows that are positive for a valley, negative for a mountain, zero for a flat fold."""
         pattern = self.chart.branch_system.pattern
         return {
             fold: self.chart.integer_row(fold_functional(pattern, fold)) for fold in pattern.folds
@@ -46,12 +46,12 @@ class Functionals:
 
     @cached_property
     def saddle(self) -> Row:
-        """The boundary saddle of a sheet with four boundary vertices."""
+        """The row of the boundary saddle of a sheet with four boundary vertices."""
         pattern = self.chart.branch_system.pattern
         return integer_row(self.chart.restrict(saddle_functional(pattern)))
 
     @cached_property
     def heights(self) -> Mapping[int, tuple[Fraction, ...]]:
-        """The height of every vertex."""
+        """The row of the height of every vertex."""
         pattern = self.chart.branch_system.pattern
         return {v: tuple(self.chart.restrict({v: 1})) for v in range(len(pattern.vertices))}

@@ -1,1 +1,1 @@
-"""Exact engines: quotient algebras, parametrisations, lifting, linear factors, an oracle."""
+"""Exact engines: quotient algebras, parametrisations, lifting, linear factors, msolve."""

@@ -1,4 +1,4 @@
-"""Multiplicities proved by ranks: a zero with a Jacobian of corank c counts at least 2^c times."""
+"""Proves multiplicities by ranks: a zero with a Jacobian of corank c counts at least 2^c times."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from exactfold.solve.algebraic.residues import ResidueRing
 
 
 def jacobian_corank(system: QuadraticSystem, root_class: RootClass) -> int:
-    """n minus the rank of the Jacobian at the zeros of a class, exactly, over Q[T]/p.
+    """The corank of the Jacobian (n minus its rank) at the zeros of a class, exactly, over Q[T]/p.
 
-    The polynomial of the class must be irreducible.
+    The polynomial p of the class must be irreducible.
 
     >>> from fractions import Fraction
     >>> origin = RootClass.from_coordinates((0, 1), [(), ()], 1, (0, 1))
@@ -34,7 +34,7 @@ def jacobian_corank(system: QuadraticSystem, root_class: RootClass) -> int:
 
 
 def _is_regular(root_class: RootClass, rows: Sequence[Sequence[fmpq_poly]]) -> bool:
-    """Whether the matrix is invertible modulo p and a prime; then it is so modulo p."""
+    """Whether the matrix is invertible modulo p and a prime; then it is invertible modulo p."""
     lead = root_class.polynomial[-1]
     if lead % PRIMES[0] == 0 or any(int(x.denom()) % PRIMES[0] == 0 for row in rows for x in row):
         return False
@@ -51,12 +51,12 @@ def _is_regular(root_class: RootClass, rows: Sequence[Sequence[fmpq_poly]]) -> b
 
 
 def _zero_rows(system: QuadraticSystem, root_class: RootClass) -> int:
-    """The quadrics that are singular at the zeros: a lower bound of the corank."""
+    """The number of quadrics that are singular at the zeros: a lower bound of the corank."""
     return sum(all(x == 0 for x in row) for row in _jacobian(system, root_class))
 
 
 def _jacobian(system: QuadraticSystem, root_class: RootClass) -> list[list[fmpq_poly]]:
-    """p' times the gradients S_p z, modulo p."""
+    """The gradients S_p z, multiplied by p' and reduced modulo p."""
     modulus = fmpq_poly(list(root_class.polynomial))
     point = [to_rational_poly(w) for w in root_class.numerators] + [modulus.derivative()]
     return [
@@ -71,15 +71,15 @@ def _jacobian(system: QuadraticSystem, root_class: RootClass) -> list[list[fmpq_
 def with_proved_multiplicities(
     system: QuadraticSystem, classes: Sequence[RootClass]
 ) -> tuple[RootClass, ...] | None:
-    """The classes with multiplicities proved exact, and proved to be all; None if unproved.
+    """The classes with proved multiplicities, and the proof that no zero is missing; or None.
 
-    For classes of zeros by irreducible polynomials, of a system with isolated zeros only. Where the
-    Jacobian has corank c, c of the equations have order at least 2 in local coordinates of the
-    others' common zeros, so that the multiplicity is at least 2^c. By refined Bezout all
-    multiplicities add up to at most 2^n: where the bounds reach it they are exact, and no zero is
-    missing. For the branches of a convex sheet they do (multiplicity 2^(number of flat vertices)).
-    None says that some multiplicity is not 2^corank or that zeros are missing or at infinity, not
-    which of these.
+    The polynomials of the classes must be irreducible, and the system must have isolated zeros
+    only. Where the Jacobian has corank c, c of the equations have order at least 2 in local
+    coordinates of the common zeros of the others. So the multiplicity is at least 2^c. By refined
+    Bezout, all multiplicities add up to at most 2^n. If the lower bounds reach 2^n, they are exact
+    and no zero is missing. For the branches of a convex sheet they do (a multiplicity is 2^(number
+    of flat vertices)). The result None means that some multiplicity is not 2^corank, or that zeros
+    are missing or at infinity; it does not say which.
     """
     for corank in (lambda *_: 0, _zero_rows, jacobian_corank):
         proved = [replace(c, multiplicity=1 << corank(system, c)) for c in classes]

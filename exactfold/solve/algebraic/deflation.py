@@ -1,4 +1,4 @@
-"""Equations of which the multiple zeros of a system are simple zeros."""
+"""Equations that have the multiple zeros of a system as simple zeros."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ IntRows = Sequence[Sequence[int]]
 
 @dataclass(frozen=True)
 class Coordinates:
-    """x = B y with a unimodular integer matrix B."""
+    """The change of coordinates x = B y with a unimodular integer matrix B."""
 
     matrix: IntRows
     inverse: IntRows
 
     @classmethod
     def generic(cls, size: int, seed: int = 1) -> Coordinates:
-        """B a product of a lower and an upper triangular matrix with small random entries."""
+        """B is the product of a lower and an upper triangular matrix with small random entries."""
         source = random.Random(seed)
         lower, upper = _identity(size), _identity(size)
         for i in range(size):
@@ -34,24 +34,26 @@ class Coordinates:
 
     @classmethod
     def same(cls, size: int) -> Coordinates:
-        """x = y."""
+        """The identity x = y."""
         return cls(_identity(size), _identity(size))
 
 
 @dataclass(frozen=True)
 class Deflation:
-    """n equations G in coordinates y, regular at the zeros of a system F with corank c.
+    """n equations G in coordinates y that are regular at the zeros of corank c of a system F.
 
-    At a zero of corank c, in generic coordinates y and for generic integer combinations of F, the
-    leading block J_1 of size n - c of the Jacobian J is invertible, and J has rank n - c iff
-    Schur's complement S = J_22 - J_21 J_1^-1 J_12 is zero. With L = (-J_21 J_1^-1, 1) and
+    Take generic coordinates y and generic integer combinations of F. At a zero of corank c the
+    leading block J_1 of size n - c of the Jacobian J is then invertible, and J has rank n - c iff
+    the Schur complement S = J_22 - J_21 J_1^-1 J_12 is zero. With L = (-J_21 J_1^-1, 1) and
     R = (-J_1^-1 J_12; 1), S = L J R and dS = L dJ R. G consists of the first n - c quadrics and of
-    c generic combinations of the c^2 entries of S. Where the quadratic forms that L F'' induces on
-    the kernel of J have no common zero but 0 (multiplicity 2^c), dG is invertible: a common kernel
-    vector w lies in the kernel of J and L F''(w, R) = 0, so all forms vanish at w.
-    With c = 0, G is F. (The deflation of Leykin, Verschelde and Zhao 2006, without new unknowns.)
+    c generic combinations of the c^2 entries of S. Suppose that the quadratic forms that L F''
+    induces on the kernel of J have no common zero but 0 (multiplicity 2^c). Then dG is invertible:
+    a vector w in its kernel lies in the kernel of J and satisfies L F''(w, R) = 0, so that all
+    forms vanish at w. With c = 0, G is F. (This is the deflation of Leykin, Verschelde and Zhao
+    2006, without new unknowns.)
 
-    The double zero of x^2 = 0, whose Jacobian is (2 x), is a simple one of a multiple of it:
+    The equation x^2 = 0 has a double zero. The Jacobian (2 x) gives an equation for which this zero
+    is simple:
 
     >>> equations = Deflation.of(QuadraticSystem((((1, 0), (0, 0)),)), 1)
     >>> ring = ResidueRing.over(101, [0, 1])
@@ -60,16 +62,16 @@ class Deflation:
     ([0], False)
     """
 
-    system: QuadraticSystem  # in the coordinates y, equations mixed
+    system: QuadraticSystem  # in the coordinates y, with mixed equations
     coordinates: Coordinates
     corank: int
-    weights: tuple[tuple[tuple[int, ...], ...], ...]  # of the entries of S, for each combination
+    weights: tuple[tuple[tuple[int, ...], ...], ...]  # one table for the entries of S per equation
 
     @classmethod
     def of(cls, system: QuadraticSystem, corank: int, seed: int = 1) -> Deflation:
         """The equations for zeros of the given corank, with pseudo-random small coefficients.
 
-        For some seeds the coefficients may be too special for dG to be invertible: try another.
+        For some seeds the coefficients are too special, and dG is not invertible: try another seed.
         """
         if corank == 0:
             return cls(system, Coordinates.same(system.size), 0, ())
@@ -84,11 +86,11 @@ class Deflation:
 
     @property
     def rank(self) -> int:
-        """n - c."""
+        """The rank n - c of the Jacobian at the zeros."""
         return self.system.size - self.corank
 
     def gradients(self, ring: ResidueRing, values: Vector) -> Matrix:
-        """S_p z, z = (y, 1), for each quadric z^T S_p z of the mixed system."""
+        """The vectors S_p z, z = (y, 1), for the quadrics z^T S_p z of the mixed system."""
         point = [*values, ring.element([1])]
         zero = ring.element([])
         return [
@@ -97,12 +99,12 @@ class Deflation:
         ]
 
     def block(self, ring: ResidueRing, values: Vector) -> Matrix:
-        """J_1; its inverse is wanted by `evaluate`."""
+        """The block J_1, whose inverse `evaluate` needs."""
         rows = self.gradients(ring, values)[: self.rank]
         return [[2 * x for x in row[: self.rank]] for row in rows] if self.corank else []
 
     def evaluate(self, ring: ResidueRing, values: Vector, block: Matrix) -> tuple[Vector, Matrix]:
-        """G and dG at a point; `block` is the inverse of J_1 there (empty if there is none)."""
+        """G and dG at a point; `block` is the inverse of J_1 there (empty if J_1 is empty)."""
         rows = self.gradients(ring, values)
         size, rank = self.system.size, self.rank
         point = [*values, ring.element([1])]
@@ -130,7 +132,7 @@ class Deflation:
         return residues, slopes
 
     def _slope(self, ring: ResidueRing, table: Matrix) -> Vector:
-        """sum_pi table_pi dJ_pi, with dJ_pi / dy_m = 2 (S_p)_im."""
+        """The vector sum_pi table_pi dJ_pi, where dJ_pi / dy_m = 2 (S_p)_im."""
         size = self.system.size
         slope = [ring.element([])] * size
         for matrix, line in zip(self.system.matrices, table, strict=True):
@@ -141,11 +143,11 @@ class Deflation:
         return slope
 
     def pulled_back(self, ring: ResidueRing, values: Vector) -> Vector:
-        """y from x."""
+        """Converts x to y."""
         return [ring.dot(ring.integers(row), values) for row in self.coordinates.inverse]
 
     def pushed_forward(self, ring: ResidueRing, values: Vector) -> Vector:
-        """x from y."""
+        """Converts y to x."""
         return [ring.dot(ring.integers(row), values) for row in self.coordinates.matrix]
 
 

@@ -33,10 +33,10 @@ _MOST_BITS = 1 << 10
 class RootClass:
     """d conjugate zeros of a system, one for each root t of an irreducible polynomial p.
 
-    `polynomial` is p: primitive integer coefficients, constant term first, positive leading one.
-    The zero that belongs to t has the coordinates x_i = w_i(t) / p'(t) with `numerators` w_i of
-    degree < d over Q (the rational univariate representation of Rouillier 1999, whose
-    coefficients are much shorter than those of `coordinates`). The root itself is
+    `polynomial` is p with primitive integer coefficients, constant term first, and a positive
+    leading coefficient. The zero of the root t has the coordinates x_i = w_i(t) / p'(t), where the
+    `numerators` w_i have degree < d over Q. This is the rational univariate representation
+    (Rouillier 1999), with much shorter coefficients than `coordinates`. The root itself is
     t = sum separating_i x_i. `multiplicity` is the dimension of the local ring at each zero.
 
     >>> pair = RootClass.from_coordinates((-2, 0, 1), [(Fraction(0), Fraction(1))], 1, (1,))
@@ -59,7 +59,7 @@ class RootClass:
         multiplicity: int,
         separating: Sequence[int],
     ) -> RootClass:
-        """The class with x_i = g_i(t), the polynomials g_i constant term first."""
+        """The class with x_i = g_i(t); each polynomial g_i has its constant term first."""
         modulus = fmpq_poly(list(polynomial))
         slope = modulus.derivative()
         numerators = tuple(
@@ -74,7 +74,7 @@ class RootClass:
         numerators: Sequence[Sequence[Fraction]],
         separating: Sequence[int],
     ) -> RootClass:
-        """The simple zeros x_i = w_i(t) / q'(t) of a monic q over Q, with q made primitive."""
+        """The simple zeros x_i = w_i(t) / q'(t) of a monic q over Q; q is made primitive."""
         integers, _ = over_common_denominator(monic)
         content = gcd(*integers)
         polynomial = tuple(c // content for c in integers)
@@ -82,9 +82,9 @@ class RootClass:
         return cls(polynomial, scaled, 1, tuple(separating))
 
     def factors(self) -> list[RootClass]:
-        """One class for each irreducible factor of the (squarefree) polynomial.
+        """One class for each irreducible factor of the polynomial, which must be squarefree.
 
-        With q = p r, q' = p' r modulo p: w_i is divided by r modulo p.
+        If q = p r, then q' = p' r modulo p, so that w_i is divided by r modulo p.
         """
         if irreducibility_primes(self.polynomial) is not None:
             return [self]
@@ -101,7 +101,7 @@ class RootClass:
         return sorted(classes, key=lambda c: (c.degree, c.polynomial))
 
     def with_parameter(self, form: Sequence[int]) -> RootClass | None:
-        """The same zeros by t = sum form_i x_i; None if two of them agree in that form.
+        """The same zeros with the parameter t = sum form_i x_i; None if it is equal at two zeros.
 
         >>> pair = RootClass.from_coordinates((-2, 0, 1), [(Fraction(0), Fraction(1))], 1, (1,))
         >>> pair.with_parameter((3,)).polynomial
@@ -136,12 +136,15 @@ class RootClass:
 
     @property
     def degree(self) -> int:
-        """Number d of conjugate zeros, real and complex."""
+        """The number d of conjugate zeros, real and complex."""
         return len(self.polynomial) - 1
 
     @cached_property
     def coordinates(self) -> tuple[tuple[Fraction, ...], ...]:
-        """g_i with x_i = g_i(t), degree < d, constant term first: w_i / p' modulo p."""
+        """The polynomials g_i = w_i / p' modulo p with x_i = g_i(t), constant term first.
+
+        They have degree < d.
+        """
         modulus = fmpq_poly(list(self.polynomial))
         _, inverse, _ = modulus.derivative().xgcd(modulus)
         return tuple(
@@ -151,21 +154,21 @@ class RootClass:
     def real_roots(self, bits: int) -> list[Interval]:
         """An isolating interval of width at most 2^-bits for each real root t, ascending.
 
-        See `isolate_real_roots` for what is proved about them.
+        `isolate_real_roots` says what is proved about them.
         """
         return isolate_real_roots(self.polynomial, bits)
 
     def enclose(self, interval: Interval) -> tuple[Interval, ...] | None:
-        """Intervals that hold the coordinates for every root t in the given interval.
+        """Intervals that contain the coordinates for every root t in the given interval.
 
-        None if the interval is too wide to keep p' away from zero: refine it. See
+        The result is None if p' may be zero on the interval; then refine the interval. See
         `quotients_on_interval`.
         """
         slope = tuple(k * c for k, c in enumerate(self.polynomial))[1:]
         return quotients_on_interval(self.numerators, slope, interval)
 
     def _value(self, row: Sequence[Fraction | int]) -> fmpq_poly:
-        """p'(t) times the value of c_1 x_1 + ... + c_n x_n + c_0, modulo p."""
+        """The value of c_1 x_1 + ... + c_n x_n + c_0 times p'(t), modulo p."""
         modulus = fmpq_poly(list(self.polynomial))
         *slopes, constant = (fmpq(c.numerator, c.denominator) for c in row)
         value = constant * modulus.derivative()
@@ -180,14 +183,14 @@ class RootClass:
     def value_on(self, row: Sequence[Fraction | int], interval: Interval) -> Interval | None:
         """Bounds of c_1 x_1 + ... + c_n x_n + c_0 for every root t in the interval.
 
-        None if the interval is too wide to keep p' away from zero: refine it.
+        The result is None if p' may be zero on the interval; then refine the interval.
         """
         slope = tuple(k * c for k, c in enumerate(self.polynomial))[1:]
         found = quotients_on_interval([from_rational_poly(self._value(row))], slope, interval)
         return None if found is None else found[0]
 
     def real_points(self, bits: int) -> list[tuple[Interval, ...]]:
-        """Boxes of width at most 2^-bits, one about each real zero of the class.
+        """Boxes of width at most 2^-bits, each of which contains one real zero of the class.
 
         >>> pair = RootClass.from_coordinates((-2, 0, 1), [(Fraction(0), Fraction(1))], 1, (1,))
         >>> [[round(float(low), 3) for low, _ in box] for box in pair.real_points(20)]
@@ -202,9 +205,9 @@ class RootClass:
             precision *= 2
 
     def approx_points(self) -> ComplexArray:
-        """Floating-point coordinates of all d zeros, shape (d, n); real zeros are exactly real.
+        """The coordinates of all d zeros as floats, shape (d, n); real zeros are exactly real.
 
-        Raises `OverflowError` where zeros are beyond the range or the reach of floats.
+        Raises `OverflowError` if zeros are out of range or too close to each other for floats.
         """
         before = ctx.prec
         modulus = fmpz_poly(list(self.polynomial))
@@ -219,14 +222,14 @@ class RootClass:
                     return np.array(found, dtype=np.complex128).reshape(self.degree, -1)
                 precision *= 2
                 if precision > _MOST_BITS + modulus.height_bits():
-                    raise OverflowError("zeros too close or too far off for floating point")
+                    raise OverflowError("zeros are too close or too large for floating point")
         finally:
             ctx.prec = before
 
     def _root_balls(self, bits: int) -> list[acb]:
-        """All roots t: the real ones from `real_roots`, the others, if there are any, from FLINT.
+        """All roots t: the real ones from `real_roots`, others (if there are any) from FLINT.
 
-        FLINT finds all of them, but takes up to minutes where some are very close.
+        FLINT could find all of them, but takes minutes if some are very close.
         """
         real = [
             acb(arb(fmpq(a.numerator, a.denominator)).union(fmpq(b.numerator, b.denominator)))
@@ -238,7 +241,7 @@ class RootClass:
         return [*real, *(root for root in found if root.imag != 0)]
 
     def _approx_point(self, root: acb) -> list[complex] | None:
-        """Coordinates at one root by ball arithmetic; None if the balls are too wide."""
+        """The coordinates at one root by ball arithmetic; None if the balls are too wide."""
         slope = fmpz_poly(list(self.polynomial)).derivative()
         below = acb_poly(slope)(root)
         values = [acb_poly(to_rational_poly(w))(root) / below for w in self.numerators]
@@ -250,15 +253,15 @@ class RootClass:
         return [complex(float(v.real.mid()), float(v.imag.mid())) for v in values]
 
     def verify(self, system: QuadraticSystem) -> None:
-        """Substitute the parametrisation in every quadric: all must vanish modulo p, exactly.
+        """Checks by substitution, exactly, that every quadric vanishes at the parametrisation.
 
         Also checks that t is the stated linear form of the coordinates, so that different roots t
-        belong to different zeros. Raises `SolverError` if anything fails.
+        belong to different zeros. Raises `SolverError` if a check fails.
         """
         modulus = fmpz_poly(list(self.polynomial))
         if modulus.degree() < 1 or not is_squarefree(modulus):
             raise SolverError("the polynomial of a root class is not squarefree")
-        # Over one denominator: substitution and division are then over Z.
+        # One common denominator: substitution and division then work over Z.
         scale = lcm(*(c.denominator for w in self.numerators for c in w))
         slope = modulus.derivative() * scale
         lifted = [
@@ -282,7 +285,7 @@ class RootClass:
         if not all(fine):
             raise SolverError(f"quadric {fine.index(False)} does not vanish on the root class")
         if not agrees:
-            raise SolverError("the parameter is not the stated form of the coordinates")
+            raise SolverError("the parameter is not the stated linear form of the coordinates")
 
 
 def _width(box: Sequence[Interval]) -> Fraction:
@@ -293,16 +296,17 @@ def _width(box: Sequence[Interval]) -> Fraction:
 class ExactSolution:
     """Every zero of a system in affine space, in classes of conjugate algebraic points.
 
-    `dimension` is dim_Q Q[x]/I, the number of complex zeros with multiplicity: 0 for a system
-    without zeros, None if there are infinitely many (then `classes` is empty). Every class was
-    checked by substitution; that none is missing rests on the Groebner basis unless
-    `at_infinity` is 0, when Bezout's bound 2^n on the total gives a second argument as soon as the
-    multiplicities are proved (see `dual_space`).
+    `dimension` is dim_Q Q[x]/I, the number of complex zeros with multiplicity. It is 0 for a system
+    without zeros, and None if there are infinitely many (then `classes` is empty). Every class was
+    checked by substitution. That no class is missing rests on the Groebner basis. There is a second
+    argument if `at_infinity` is 0 and the multiplicities are proved (see
+    `with_proved_multiplicities`): the total then reaches Bezout's bound 2^n.
 
-    `krull_dimension` is the dimension of the zero set over C, -1 if it is empty, and `degree` its
-    degree: the number of zeros with multiplicity if they are finitely many, else the sum of the
-    degrees of the components of that dimension with multiplicity (see `dimension_and_degree`).
-    `guesses` are approximate zeros, if the engine started from some: shape (m, n).
+    `krull_dimension` is the dimension of the zero set over C, -1 if it is empty. `degree` is the
+    degree of the zero set. For finitely many zeros it is their number with multiplicity. Otherwise
+    it is the sum of the degrees, with multiplicity, of the components of the highest dimension (see
+    `dimension_and_degree`). `guesses` are the approximate zeros with which the engine started, if
+    any, with the shape (m, n).
     """
 
     system: QuadraticSystem
@@ -320,45 +324,45 @@ class ExactSolution:
 
     @property
     def factor_degrees(self) -> tuple[int, ...]:
-        """Degrees of the irreducible factors of the branch polynomial over Q, ascending.
+        """The degrees of the irreducible factors of the branch polynomial over Q, ascending.
 
         The branch polynomial is the squarefree polynomial of a linear form that separates the
-        zeros; its factors belong to the Galois orbits of the zeros, so that their degrees do not
+        zeros. Its factors belong to the Galois orbits of the zeros, so that their degrees do not
         depend on the form.
         """
         return tuple(sorted(c.degree for c in self.classes))
 
     @property
     def is_irreducible(self) -> bool:
-        """Whether all zeros are conjugate: the branch polynomial is irreducible over Q."""
+        """Whether all zeros are conjugate, that is, the branch polynomial is irreducible over Q."""
         return len(self.classes) == 1
 
     @property
     def at_infinity(self) -> int | None:
-        """2^n - dimension: the zeros at infinity with multiplicity if those are isolated.
+        """2^n - dimension: if the zeros at infinity are isolated, their number with multiplicity.
 
-        None if the system has infinitely many affine zeros. A system whose zeros at infinity are
-        not isolated also has a positive number here.
+        The value is None if the system has infinitely many affine zeros. It is also positive for a
+        system with zeros at infinity that are not isolated.
         """
         return None if self.dimension is None else self.system.bezout_number - self.dimension
 
     @property
     def distinct(self) -> int:
-        """Number of different complex zeros."""
+        """The number of different complex zeros."""
         return sum(c.degree for c in self.classes)
 
     def real_points(self, bits: int) -> list[tuple[tuple[Interval, ...], int]]:
-        """A box of width at most 2^-bits about each real zero, with its multiplicity."""
+        """A box of width at most 2^-bits around each real zero, with its multiplicity."""
         return [(box, c.multiplicity) for c in self.classes for box in c.real_points(bits)]
 
     def approx_points(self) -> ComplexArray:
-        """Floating-point coordinates of all different zeros, shape (distinct, n)."""
+        """The coordinates of all different zeros as floats, shape (distinct, n)."""
         rows = [c.approx_points() for c in self.classes]
         empty = np.empty((0, self.system.size), dtype=np.complex128)
         return np.concatenate([empty, *rows])
 
     @cached_property
     def candidates(self) -> Candidates:
-        """The zeros as untrusted candidates, for a certifier of isolated regular zeros."""
+        """The zeros as untrusted candidates for a certifier of isolated regular zeros."""
         points = self.approx_points() if self.guesses is None else self.guesses
         return Candidates("groebner", points, settings=dict(self.settings))

@@ -1,4 +1,4 @@
-"""Zeros with flat vertices, exactly: the branch system on the sheets that are flat there."""
+"""Finds zeros with flat vertices exactly: it solves the branch system on the flat sheets."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ from exactfold.solve.algebraic.exact_solution import RootClass
 from exactfold.solve.algebraic.groebner_bases import classes_of_ideal
 from exactfold.solve.algebraic.quotient import Exponent, separating_forms
 
-_ONE_POINT = RootClass((0, 1), (), 1, ())  # the point of a space of dimension 0
+_ONE_POINT = RootClass((0, 1), (), 1, ())  # the only point of a space of dimension 0
 
 
 def zeros_flat_at(sheets: FlatSheets) -> list[RootClass]:
-    """The zeros of the chart's system on these sheets with no flat stars but `sheets.vertices`.
+    """The zeros of the chart's system on these sheets that are flat exactly at `sheets.vertices`.
 
-    By a Groebner basis on the flat sheets. Each class is verified by substitution, and has
+    A Groebner basis on the flat sheets finds them. Each class is verified by substitution, and has
     multiplicity 2^(number of flat vertices) (docs/theorem.md, Theorem 3). Raises
-    `SolverError` if there are infinitely many, which no definite stress allows.
+    `SolverError` if there are infinitely many, which a definite stress rules out.
 
     >>> from exactfold.pattern.families import flat_vertex_square
     >>> from exactfold.rigidity.equations.branch_system import BranchSystem
@@ -40,7 +40,9 @@ def zeros_flat_at(sheets: FlatSheets) -> list[RootClass]:
     else:
         classes = classes_of_ideal(quadrics, len(sheets.free))
     if classes is None:
-        raise SolverError(f"infinitely many zeros with flat stars at {sorted(sheets.vertices)}")
+        raise SolverError(
+            f"there are infinitely many zeros with flat stars at {sorted(sheets.vertices)}"
+        )
     found = []
     for inner in classes:
         lifted = lift(sheets, inner)
@@ -51,9 +53,9 @@ def zeros_flat_at(sheets: FlatSheets) -> list[RootClass]:
 
 
 def lift(sheets: FlatSheets, inner: RootClass) -> RootClass:
-    """A class of zeros in the unknowns y of flat sheets as one in the unknowns x of the chart.
+    """Converts a class of zeros in the unknowns y of flat sheets to the unknowns x of the chart.
 
-    With x = A (y, 1) and y_k = w_k(t) / p'(t) the numerators of x are A (w, p'). The multiplicity
+    With x = A (y, 1) and y_k = w_k(t) / p'(t), the numerators of x are A (w, p'). The multiplicity
     is 2^f for f flat vertices (docs/theorem.md, Theorem 3). Nothing is verified here.
     """
     slope = tuple(Fraction(k * c) for k, c in enumerate(inner.polynomial))[1:]
@@ -72,7 +74,7 @@ def lift(sheets: FlatSheets, inner: RootClass) -> RootClass:
 
 
 def flat_equations(chart: Chart, root_class: RootClass) -> tuple[int, ...]:
-    """The vertices whose stars are flat at the zeros: their quadrics have order 2 or more there."""
+    """The vertices with flat stars at the zeros; their quadrics have order 2 or more there."""
     pattern = chart.branch_system.pattern
     return tuple(
         v
@@ -86,7 +88,7 @@ def flat_equations(chart: Chart, root_class: RootClass) -> tuple[int, ...]:
 
 
 def common_parameter(classes: Sequence[RootClass], size: int) -> list[RootClass]:
-    """The same classes, all by one linear form that takes different values at all their zeros."""
+    """The same classes, all with one linear form as parameter, which separates all their zeros."""
     for form in separating_forms(size):
         again = [c.with_parameter(form) for c in classes]
         found = [c for c in again if c is not None]
@@ -96,7 +98,7 @@ def common_parameter(classes: Sequence[RootClass], size: int) -> list[RootClass]
 
 
 def _sparse(form: fmpq_mat) -> dict[Exponent, int]:
-    """The quadric z^T S z, z = (y, 1), with integer coefficients by exponent."""
+    """The quadric z^T S z, z = (y, 1), as integer coefficients by exponent."""
     size = form.nrows() - 1
     units = [tuple(int(i == k) for i in range(size)) for k in range(size + 1)]
     terms: dict[Exponent, Fraction] = {}

@@ -1,8 +1,8 @@
-"""Exact solution of a system with 2^n simple zeros from approximations of all of them.
+"""Solves a system with 2^n simple zeros exactly, from approximations of all of them.
 
-Newton's method gives the zeros to any length, products over them the rational univariate
-representation as real numbers, and lattice reduction the common denominator of its coefficients.
-All of that is a proposal; exact substitution proves it (docs/mathematics.md, Exact
+Newton's method computes the zeros to any length. Products over the zeros give the rational
+univariate representation as real numbers. Lattice reduction finds the common denominator of its
+coefficients. All this is a proposal, which exact substitution proves (docs/mathematics.md, Exact
 parametrisation).
 """
 
@@ -31,9 +31,9 @@ from exactfold.solve.algebraic.refine_roots import (
 from exactfold.solve.numeric.candidates import Candidates
 
 _FORMS_TRIED = 12
-_APART = 128  # values of a form closer than 2^-128 are taken to be equal
-_VALUES = 6  # of q, for its common denominator
-_SURE = 64  # bits by which a denominator must be shorter than one of random numbers
+_APART = 128  # values of a form closer than 2^-128 count as equal
+_VALUES = 6  # the common denominator of q is found from so many values of q
+_SURE = 64  # a denominator must be shorter by so many bits than one of random numbers
 
 Node: TypeAlias = "tuple[arb_poly, list[arb_poly]]"
 Item = TypeVar("Item")
@@ -42,19 +42,19 @@ Item = TypeVar("Item")
 def parametrisation_from_roots(
     system: QuadraticSystem, roots: Candidates | Iterable[Centre]
 ) -> RootClass | None:
-    """One parametrisation of all 2^n zeros, by a squarefree, in general reducible polynomial.
+    """One parametrisation of all 2^n zeros, by a squarefree polynomial, in general reducible.
 
-    `roots` are approximations of all zeros, real or not: `Candidates`, or isolating boxes. With
-    T = l(x) for a linear form l that separates them, q = c prod (T - l(x_i)) and
+    `roots` are approximations of all zeros, real or not: `Candidates`, or isolating boxes. Let
+    T = l(x) for a linear form l that separates the zeros. Then q = c prod (T - l(x_i)) and
     w_j = c sum_i x_ij prod_{k != i} (T - l(x_k)) have rational coefficients for a rational c, and
-    x_j = w_j / q' at the zeros (Rouillier 1999). What is returned passed `RootClass.verify`: q
-    is squarefree of degree 2^n, so by Bezout there are no other zeros, all are simple and none is
-    at infinity, whatever the approximations were worth (docs/mathematics.md, Exact
-    parametrisation).
+    x_j = w_j / q' at the zeros (Rouillier 1999). The result has passed `RootClass.verify`. As its q
+    is squarefree of degree 2^n, Bezout's theorem shows that there are no other zeros, that all are
+    simple and that none is at infinity, however bad the approximations were (docs/mathematics.md,
+    Exact parametrisation).
 
-    None if there are not 2^n different points, if Newton's method does not converge at each, or if
-    none of the first few forms separates them. That says nothing about the zeros. Random squares
-    take about 0.2 s at n = 6, 1 s at 7, 5 s at 8 and 35 s at 9.
+    The result is None if there are not 2^n different points, if Newton's method does not converge
+    at one of them, or if none of the first few forms separates them. This says nothing about the
+    zeros. Random squares take about 0.2 s at n = 6, 1 s at 7, 5 s at 8 and 35 s at 9.
 
     >>> import numpy as np
     >>> system = QuadraticSystem((((1, 0), (0, -2)),))
@@ -70,12 +70,12 @@ def parametrisation_from_roots(
 def parametrisation_of_some(
     system: QuadraticSystem, roots: Candidates | Iterable[Centre]
 ) -> RootClass | None:
-    """One parametrisation of some of the zeros: all that satisfy further rational equations.
+    """One parametrisation of some zeros, such as all that satisfy further rational equations.
 
-    The same for any set of zeros that is closed under conjugation over Q, given by approximations.
-    What is returned passed `RootClass.verify`: each root of its polynomial belongs to a zero of the
-    system; which ones is for the caller to see. None as above, or if the coefficients are not
-    rational.
+    This works like `parametrisation_from_roots` for any set of zeros that is closed under
+    conjugation over Q. The result has passed `RootClass.verify`: each root of its polynomial
+    belongs to a zero of the system. The caller must check to which zeros. The result is None in the
+    same cases, and if the coefficients are not rational.
 
     >>> import numpy as np
     >>> system = QuadraticSystem((((1, 0, 0), (0, 0, 0), (0, 0, -2)),  # x^2 = 2, y^2 = 4
@@ -89,13 +89,13 @@ def parametrisation_of_some(
 
 
 def _parametrised(system: QuadraticSystem, refined: RefinedRoots) -> RootClass | None:
-    """Rising precision until a proposal passes the proof."""
+    """Raises the precision until a proposal passes the proof; None if none does."""
     form = _separating_form(refined)
     if form is None:
         return None
     count = len(refined.real) + 2 * len(refined.upper)
     bezout = max(_bezout_bits(system, form) * count // system.bezout_number, 1)
-    # A third is enough for most branch systems; random quadrics need all of it.
+    # A third of this is enough for most branch systems; random quadrics need all of it.
     height = bezout // 3
     while height < 4 * bezout:
         if not refined.refine(height + height // _VALUES + _magnitude(refined, form) + 8 * _SURE):
@@ -105,7 +105,7 @@ def _parametrised(system: QuadraticSystem, refined: RefinedRoots) -> RootClass |
             try:
                 found.verify(system)
             except SolverError:
-                pass  # too little precision: the numbers found are not the true ones
+                pass  # too little precision: these are not the true coefficients
             else:
                 return found
         height += height // 2 + 1
@@ -113,7 +113,7 @@ def _parametrised(system: QuadraticSystem, refined: RefinedRoots) -> RootClass |
 
 
 def _separating_form(roots: RefinedRoots) -> tuple[int, ...] | None:
-    """A form with different values at all zeros, as far as their accuracy shows."""
+    """A form whose values differ at all zeros, as far as their accuracy shows."""
     for form in islice(separating_forms(roots.system.size), _FORMS_TRIED):
         with ctx.workprec(roots.accuracy + _magnitude(roots, form)):
             values = [acb(_value(form, row)) for row in (*roots.real, *roots.upper)]
@@ -136,7 +136,10 @@ def _rounded(value: arb, bits: int) -> int:
 
 
 def _bezout_bits(system: QuadraticSystem, form: Sequence[int]) -> int:
-    """About the length of the coefficients of q: it has degree 2^(n-1) in those of a quadric."""
+    """The approximate length of the coefficients of q, in bits.
+
+    The degree of q in the coefficients of one quadric is 2^(n-1).
+    """
     heights = [max(abs(x) for row in m for x in row).bit_length() for m in system.matrices]
     height = sum(heights) + system.size * max(abs(c) for c in form).bit_length()
     return (system.bezout_number // 2) * (height + system.size)
@@ -145,8 +148,8 @@ def _bezout_bits(system: QuadraticSystem, form: Sequence[int]) -> int:
 def _proposal(roots: RefinedRoots, form: Sequence[int]) -> RootClass | None:
     """The parametrisation with the coefficients that the zeros suggest, if they suggest any.
 
-    The common denominator comes from a few values of q, which is cheap; then all coefficients are
-    found at little more than its length.
+    A few values of q give the common denominator, which is cheap. Then all coefficients are
+    computed with little more precision than its length.
     """
     error = arb(0, arb(2) ** -roots.accuracy)
     spread = error * (2 * sum(abs(c) for c in form))
@@ -180,12 +183,12 @@ def _rows(roots: RefinedRoots) -> list[list[Value]]:
 
 
 def _ball(like: Value, error: arb) -> Value:
-    """Zero with the given error, as a complex ball for complex numbers."""
+    """Zero with the given error; a complex ball if `like` is complex."""
     return acb(error, error) if isinstance(like, acb) else error
 
 
 def _magnitude(roots: RefinedRoots, form: Sequence[int]) -> int:
-    """A bound in bits of all coefficients of the monic q and its w_j."""
+    """A bound, in bits, of all coefficients of the monic q and its w_j."""
     total, largest = 0, 0
     for row in _rows(roots):
         conjugates = 2 if isinstance(row[0], acb) else 1
@@ -195,7 +198,7 @@ def _magnitude(roots: RefinedRoots, form: Sequence[int]) -> int:
 
 
 def _values_of_q(parameters: Sequence[Value]) -> list[arb]:
-    """prod (s - t) over all values t of the form, at a few small integers s."""
+    """The values prod (s - t) over all values t of the form, at a few small integers s."""
     return [
         _tree([abs(s - t) ** 2 if isinstance(t, acb) else s - t for t in parameters], mul)
         for s in range(-(_VALUES // 2), _VALUES - _VALUES // 2)
@@ -203,12 +206,12 @@ def _values_of_q(parameters: Sequence[Value]) -> list[arb]:
 
 
 def _common_denominator(values: Sequence[arb]) -> int | None:
-    """The only common denominator of numbers in the balls that their width allows, if there is one.
+    """The common denominator of numbers in the balls, if their width allows only one; else None.
 
-    With b bits after the point for the r_i, i = 1..m, the lattice spanned by (1, 2^b r_1, ...,
-    2^b r_m) and 2^b times the other unit vectors has shortest vectors of length about
-    2^(b m/(m + 1)) for random r_i. A common denominator d gives one of length about d, which
-    stands out as soon as b is a little over (1 + 1/m) log2(d).
+    Suppose the numbers r_i, i = 1..m, are known to b bits after the point. Consider the lattice
+    spanned by (1, 2^b r_1, ..., 2^b r_m) and 2^b times the other unit vectors. For random r_i its
+    shortest vectors have a length of about 2^(b m/(m + 1)). A common denominator d gives a vector
+    of length about d, which stands out if b is slightly larger than (1 + 1/m) log2(d).
     """
     bits = min(_bits_known(x) for x in values)
     if bits <= _SURE:
@@ -223,13 +226,13 @@ def _common_denominator(values: Sequence[arb]) -> int | None:
 
 
 def _bits_known(value: arb) -> int:
-    """The number of bits after the point that the radius of a ball leaves."""
+    """The number of bits after the point that the radius of a ball leaves known."""
     mantissa, exponent = (int(x) for x in value.rad().man_exp())
     return -exponent - mantissa.bit_length()
 
 
 def _leaf(t: Value, row: Sequence[Value]) -> Node:
-    """q and w_j of one real zero, or of two conjugate zeros together."""
+    """The polynomials q and w_j of one real zero, or of two conjugate zeros together."""
     if isinstance(t, acb):
         opposite = t.conjugate()
         q = arb_poly([t.real**2 + t.imag**2, -2 * t.real, 1])
@@ -243,7 +246,7 @@ def _union(left: Node, right: Node) -> Node:
 
 
 def _tree(items: list[Item], join: Callable[[Item, Item], Item]) -> Item:
-    """The items joined in pairs, the results again, and so on."""
+    """Joins the items in pairs, then the results in pairs, and so on, until one is left."""
     while len(items) > 1:
         odd = items[-1:] if len(items) % 2 else []
         items = [join(a, b) for a, b in zip(items[::2], items[1::2], strict=False)] + odd
@@ -251,7 +254,10 @@ def _tree(items: list[Item], join: Callable[[Item, Item], Item]) -> Item:
 
 
 def _integers(polynomials: Sequence[arb_poly], common: int) -> list[list[int]] | None:
-    """The polynomials times the least multiple of `common` that makes all of them integral."""
+    """The polynomials times the least multiple of `common` that makes all of them integral.
+
+    The result is None if the balls are too wide.
+    """
     lines: list[list[tuple[int, int]]] = []
     for polynomial in polynomials:
         line = []
@@ -273,7 +279,7 @@ def _integers(polynomials: Sequence[arb_poly], common: int) -> list[list[int]] |
 
 
 def _without_zeros(line: list[int]) -> list[int]:
-    """The coefficients without leading zeros, which come last."""
+    """The coefficients without zeros at the end, where the leading ones stand."""
     length = len(line)
     while length and line[length - 1] == 0:
         length -= 1

@@ -26,32 +26,37 @@ from exactfold.solve.algebraic.quotient import (
 from exactfold.solve.numeric.homotopy import homotopy
 
 ENGINES = ("roots", "lifting", "flint", "sympy", "msolve")
-_SMALL = 4  # up to here a basis over Q is as fast as lifting
+_SMALL = 4  # up to this size a basis over Q is as fast as lifting
 
 
 def groebner(system: QuadraticSystem, *, engine: str = "auto") -> ExactSolution:
     """All complex zeros of a system of quadrics with their multiplicities, over Q.
 
-    Engines "flint" and "sympy": a reduced grevlex Groebner basis gives the quotient algebra, and
-    its trace form the algebra of the radical. There the characteristic polynomial of a linear form
-    that separates the zeros, factored over Q, and the rational univariate representation (Rouillier
-    1999) describe the zeros. Multiplicities are exponents of the characteristic polynomial in the
-    full algebra. Engine "lifting" does the same modulo a prime and lifts the result to Q; it
-    applies for n <= 7 to systems without zeros at infinity in which a zero with a Jacobian of
-    corank c counts 2^c times (all convex sheets), and proves these multiplicities by exact ranks
-    (`lifted_classes`). Random squares take it 0.3 s at n = 5, 3 s at 6, 45 s at 7; with multiple
-    zeros it is faster. Engine "roots" rebuilds the parametrisation from approximate zeros of the
-    complex homotopy (`parametrisation_from_roots`); it applies to 2^n different zeros: 0.2 s at
-    n = 6, 1 s at 7, 5 s at 8. Engine "msolve" asks that program, if installed, and proves its
-    answer as lifting does, under the same conditions but n <= 7 (15 s at n = 7). "auto" takes the
-    first that applies of FLINT up to n = 4, roots, lifting, and FLINT. Every class is verified by
-    exact substitution.
+    The engines "flint" and "sympy" compute a reduced grevlex Groebner basis. It gives the quotient
+    algebra, and the trace form of the quotient algebra gives the algebra of the radical. In this
+    algebra, the characteristic polynomial of a separating linear form, factored over Q, and the
+    rational univariate representation (Rouillier 1999) describe the zeros. Multiplicities are
+    exponents of the characteristic polynomial in the full algebra.
 
-    A system with infinitely many zeros gives `dimension` None, and the dimension and degree of its
-    zero set as `krull_dimension` and `degree`; an inconsistent one has `dimension` 0. Raises
-    `UsageError` for an unknown engine, `NotApplicableError` if an engine was asked for that does
-    not apply, `PackageMissingError` without msolve, `SolverError` if msolve fails
-    or a check fails (an internal error, or a wrong answer of msolve).
+    The engine "lifting" does the same modulo a prime and lifts the result to Q. It applies for
+    n <= 7 to systems without zeros at infinity in which a zero with a Jacobian of corank c counts
+    2^c times (all convex sheets). It proves these multiplicities by exact ranks (`lifted_classes`).
+    Random squares take 0.3 s at n = 5, 3 s at 6 and 45 s at 7; multiple zeros make it faster.
+
+    The engine "roots" rebuilds the parametrisation from approximate zeros of the complex homotopy
+    (`parametrisation_from_roots`). It applies if there are 2^n different zeros, and takes 0.2 s at
+    n = 6, 1 s at 7 and 5 s at 8.
+
+    The engine "msolve" runs that program, if it is installed, and proves its answer like lifting,
+    under the same conditions except n <= 7 (15 s at n = 7). "auto" takes FLINT up to n = 4, and
+    above the first that applies of roots, lifting, and FLINT. Every class is verified by exact
+    substitution.
+
+    A system with infinitely many zeros has the `dimension` None; the dimension and the degree of
+    its zero set are `krull_dimension` and `degree`. An inconsistent system has the `dimension` 0.
+    Raises `UsageError` for an unknown engine, `NotApplicableError` if the given engine does not
+    apply, `PackageMissingError` without msolve, and `SolverError` if msolve fails or a check
+    fails (an internal error, or a wrong answer of msolve).
 
     >>> circle = [[1, 0, 0], [0, 1, 0], [0, 0, -2]]
     >>> axes = [[0, 1, 0], [1, 0, 0], [0, 0, 0]]
@@ -73,7 +78,7 @@ def groebner(system: QuadraticSystem, *, engine: str = "auto") -> ExactSolution:
             return replace(solution, guesses=ends.points)
         if engine == "roots":
             raise NotApplicableError(
-                "2^n different zeros are needed, none at infinity: take another engine"
+                "this engine needs 2^n different zeros, none at infinity: take another engine"
             )
     if engine == "lifting" or large:
         lifted = lifted_classes(system)
@@ -81,7 +86,7 @@ def groebner(system: QuadraticSystem, *, engine: str = "auto") -> ExactSolution:
             return _verified(system, system.bezout_number, lifted, "lifting")
         if engine == "lifting":
             raise NotApplicableError(
-                "lifting needs 2^n zeros, none at infinity, of multiplicities 2^corank: "
+                "lifting needs 2^n zeros of multiplicities 2^corank, none at infinity: "
                 "take another engine"
             )
     if engine == "msolve":
@@ -99,7 +104,7 @@ def groebner(system: QuadraticSystem, *, engine: str = "auto") -> ExactSolution:
 def quotient_algebra(system: QuadraticSystem, *, engine: str = "flint") -> QuotientAlgebra | None:
     """The quotient algebra Q[x]/I of a system, from its Groebner basis; None if it is infinite.
 
-    `engine` is "flint" or "sympy". Raises `UsageError` for another one.
+    `engine` is "flint" or "sympy". Raises `UsageError` for any other engine.
 
     >>> axes, circle = ((0, 1, 0), (1, 0, 0), (0, 0, 0)), ((1, 0, 0), (0, 1, 0), (0, 0, -2))
     >>> quotient_algebra(QuadraticSystem((axes, circle))).dimension
@@ -113,9 +118,9 @@ def quotient_algebra(system: QuadraticSystem, *, engine: str = "flint") -> Quoti
 def classes_of_ideal(
     polynomials: Sequence[SparsePolynomial], size: int
 ) -> tuple[RootClass, ...] | None:
-    """The zeros in `size` unknowns of any number of polynomials; None if there are infinitely many.
+    """The zeros of any number of polynomials in `size` unknowns; None if there are infinitely many.
 
-    Multiplicities are those of the ideal. Not verified by substitution: the caller does that.
+    Multiplicities are those of the ideal. The caller must verify the zeros by substitution.
 
     >>> circle, line = {(2, 0): 1, (0, 2): 1, (0, 0): -2}, {(1, 0): 1, (0, 1): -1}
     >>> [c.polynomial for c in classes_of_ideal([circle, line, {(2, 0): 1, (0, 0): -1}], 2)]
@@ -129,7 +134,9 @@ def _verified(
     system: QuadraticSystem, dimension: int, classes: tuple[RootClass, ...], engine: str
 ) -> ExactSolution:
     if sum(c.degree * c.multiplicity for c in classes) != dimension:
-        raise SolverError("the multiplicities do not add up to the quotient dimension")
+        raise SolverError(
+            "the multiplicities do not add up to the dimension of the quotient algebra"
+        )
     for root_class in classes:
         root_class.verify(system)
     krull = 0 if dimension else -1
@@ -143,7 +150,7 @@ def _flint_basis(system: QuadraticSystem) -> list[SparsePolynomial]:
 
 
 def _flint_reduced(polynomials: Sequence[SparsePolynomial], size: int) -> list[SparsePolynomial]:
-    """The reduced grevlex basis of polynomials with integer coefficients."""
+    """The reduced grevlex Groebner basis of polynomials with integer coefficients."""
     context = fmpz_mpoly_ctx.get([f"x{k}" for k in range(size)], Ordering.degrevlex)
     given = [context.from_dict(dict(terms)) for terms in polynomials if terms]
     if not given:
@@ -153,7 +160,7 @@ def _flint_reduced(polynomials: Sequence[SparsePolynomial], size: int) -> list[S
 
 
 def _sympy_basis(system: QuadraticSystem) -> list[SparsePolynomial]:
-    import sympy  # here, as loading it takes longer than most commands
+    import sympy  # here: loading it takes longer than most commands
 
     symbols = sympy.symbols(f"x0:{system.size}")
     quadrics = [
@@ -185,8 +192,8 @@ def _classes_of_form(
 ) -> tuple[RootClass, ...]:
     """The classes, from the characteristic polynomial q of a separating form on the radical.
 
-    With the trace functional, the polynomial part w_a of q(z) sum_k Tr(a T^k) z^(-k-1) takes the
-    value a(t) q'(t) at each root t of q.
+    Let Tr be the trace functional. At each root t of q, the polynomial part w_a of
+    q(z) sum_k Tr(a T^k) z^(-k-1) has the value a(t) q'(t).
     """
     reduced = algebra.reduced
     matrix = reduced.multiplication(form)

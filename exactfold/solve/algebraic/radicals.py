@@ -1,4 +1,4 @@
-"""Branch heights as nested square roots, for patterns built by H1 moves."""
+"""Heights of branches as nested square roots, for patterns built by H1 moves."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ Move: TypeAlias = tuple[int, int, int, int]
 def h1_moves(pattern: CreasePattern) -> tuple[Move, ...] | None:
     """H1 moves (v1, v2, v3, w) that build the pattern from two triangles; None if there are none.
 
-    Each joins a new boundary vertex w to consecutive boundary vertices v1, v2, v3, of which v2
-    becomes interior; v1, v2, v3 are not collinear. Found backwards, by taking off boundary vertices
-    of degree three; the order need not be that in which the pattern was built.
+    Each move joins a new boundary vertex w to consecutive boundary vertices v1, v2, v3, which are
+    not collinear. Then v2 becomes interior. The moves are found backwards, by removing boundary
+    vertices of degree three. Their order need not be the order in which the pattern was built.
 
     >>> from exactfold.pattern.families import h1_sequence, single_vertex
     >>> [w for *_, w in h1_moves(h1_sequence(3))], h1_moves(single_vertex(5))
@@ -60,11 +60,11 @@ def _peel(
 
 @dataclass(frozen=True)
 class Tower:
-    """Q[r_1, ..., r_m] with r_k^2 = radicands[k - 1], an element of Q[r_1, ..., r_(k-1)].
+    """The ring Q[r_1, ..., r_m] with r_k^2 = radicands[k - 1], an element of Q[r_1, ..., r_(k-1)].
 
-    An element is the tuple of the coefficients of the 2^k products of r_1, ..., r_k; bit i of the
-    position says whether r_(i+1) is a factor. What holds in this ring holds for every choice of the
-    signs of the roots, whether or not some radicand is a square.
+    An element is the tuple of the coefficients of the 2^k products of r_1, ..., r_k. Bit i of the
+    position says whether r_(i+1) is a factor. An identity in this ring holds for every choice of
+    the signs of the roots, even if some radicand is a square.
 
     >>> tower = Tower(((Fraction(2),), (Fraction(1), Fraction(1))))  # sqrt(2), sqrt(1 + sqrt(2))
     >>> root = (Fraction(0), Fraction(0), Fraction(1), Fraction(0))
@@ -76,7 +76,7 @@ class Tower:
 
     @property
     def dimension(self) -> int:
-        """2^m."""
+        """The dimension 2^m of the ring over Q, for m roots."""
         return 1 << len(self.radicands)
 
     def widened(self, a: Element) -> Element:
@@ -121,10 +121,10 @@ class Tower:
 class BranchTower:
     """The branches of a pattern built by H1 moves, in a tower of square roots.
 
-    `elements` holds the height of each vertex, scaled and up to affine functions such that the
-    first triangle lies at height 0 and the fourth vertex of the first quadrilateral at 1. Each of
-    the 2^m choices of signs of the roots r_k is a branch; opposite choices at a zero radicand are
-    the same branch, which then is a multiple solution.
+    `elements` holds the height of each vertex. Heights are scaled and changed by affine functions
+    so that the first triangle has height 0 and the fourth vertex of the first quadrilateral has
+    height 1. Each of the 2^m choices of signs of the roots r_k is a branch. If a radicand is zero,
+    opposite signs of its root give the same branch, which is then a multiple solution.
     """
 
     pattern: CreasePattern
@@ -133,19 +133,19 @@ class BranchTower:
     elements: tuple[Element, ...]
 
     def heights(self, signs: Sequence[int]) -> dict[int, sympy.Expr]:
-        """Exact heights of all vertices on the branch with these signs (+1, -1) of the roots.
+        """The exact heights of all vertices on the branch with these signs (+1, -1) of the roots.
 
         Raises `UsageError` for a wrong number of signs.
         """
         if len(signs) != len(self.moves) or any(s not in (1, -1) for s in signs):
-            raise UsageError(f"{len(self.moves)} signs 1 or -1 are wanted, not {tuple(signs)}")
+            raise UsageError(f"give {len(self.moves)} signs 1 or -1, not {tuple(signs)}")
         roots: list[sympy.Expr] = []
         for sign, radicand in zip(signs, self.tower.radicands, strict=True):
             roots.append(sign * sympy.sqrt(_expression(radicand, roots)))
         return {v: _expression(a, roots) for v, a in enumerate(self.elements)}
 
     def verify(self) -> None:
-        """Substitute the heights in every curvature form: all must vanish in the tower, exactly.
+        """Checks by substitution, exactly in the tower, that every curvature form vanishes.
 
         Raises `SolverError` if one does not.
         """
@@ -165,11 +165,12 @@ class BranchTower:
 def branch_tower(pattern: CreasePattern) -> BranchTower:
     """All branches of a pattern built by H1 moves, as nested square roots; verified.
 
-    When w is joined to v1, v2, v3, the form of v2 is the only new equation: a x^2 + 2 b x + c = 0
-    in x = h_w, with b and c polynomials in the heights known before and the rational number
-    a = -c_13 / (2 c_1w c_w3), not 0 (docs/mathematics.md, Curvature form). So x = -b/a + r with
-    r^2 = (b/a)^2 - c/a: each move adds a square root, and the field of a branch has a power of 2 as
-    its degree. No branch is missing: where the first fold is flat, all heights are zero.
+    When a move joins w to v1, v2, v3, the form of v2 is the only new equation. It is
+    a x^2 + 2 b x + c = 0 in x = h_w, where b and c are polynomials in the heights known before, and
+    a = -c_13 / (2 c_1w c_w3) is a rational number that is not 0 (docs/mathematics.md, Curvature
+    form). So x = -b/a + r with r^2 = (b/a)^2 - c/a. Each move adds a square root, so that the
+    degree of the field of a branch is a power of 2. No branch is missing: if the first fold is
+    flat, all heights are zero.
 
     Raises `NotApplicableError` if the pattern is not built by H1 moves (`h1_moves`).
 
@@ -206,14 +207,14 @@ def branch_tower(pattern: CreasePattern) -> BranchTower:
 
 
 def _first_quadrilateral(pattern: CreasePattern, moves: Sequence[Move]) -> dict[int, Element]:
-    """Heights 0, 0, 0, 1 of the two triangles that are there before the moves."""
+    """The heights 0, 0, 0, 1 of the two triangles that exist before the moves."""
     added = {w for *_, w in moves}
     first, second = (t for t in pattern.triangles if added.isdisjoint(t))
     return {v: (Fraction(v not in first),) for v in {*first, *second}}
 
 
 def _combination(weights: Sequence[Fraction], elements: Sequence[Element]) -> Element:
-    """sum weights_i elements_i."""
+    """The sum of weights_i elements_i."""
     total = [Fraction(0)] * len(elements[0])
     for weight, element in zip(weights, elements, strict=True):
         if weight:

@@ -1,4 +1,4 @@
-"""Newton's method at rising precision for all zeros of a system at once: long approximations."""
+"""Newton's method at rising precision for all zeros of a system at once."""
 
 from __future__ import annotations
 
@@ -16,13 +16,16 @@ from exactfold.solve.numeric.candidates import Candidates
 _FIRST = 384  # bits after the point for the first steps
 _MOST_STEPS = 40  # convergence from double precision takes about five
 _GUARD = 32
-_REAL = 64  # an imaginary part below 2^-64 at the first accuracy belongs to a real zero
+_REAL = 64  # if the first imaginary parts are below 2^-64, the zero counts as real
 
 Value: TypeAlias = "arb | acb"
 
 
 class Centre(Protocol):
-    """What is read of an isolating box: its centre (real + i imag) / 2^bits; no imag if real."""
+    """The parts of an isolating box that are read: its centre (real + i imag) / 2^bits.
+
+    `imag` is empty for a real box.
+    """
 
     @property
     def real(self) -> tuple[int, ...]: ...  # noqa: D102
@@ -38,9 +41,9 @@ class Centre(Protocol):
 class RefinedRoots:
     """Approximate zeros of a system: the real ones, and one of each pair of conjugate zeros.
 
-    Numbers of any length but not enclosures. `accuracy` is how many bits after the point are
-    believed to be right, from the lengths of the Newton steps, and `guard` how many are lost in a
-    step; nothing here is proved.
+    They are numbers of any length, but not enclosures. `accuracy` is the number of bits after the
+    point that are believed to be right, from the lengths of the Newton steps. `guard` is the number
+    of bits that a step loses. Nothing here is proved.
 
     >>> import numpy as np
     >>> system = QuadraticSystem((((1, 0), (0, -2)),))
@@ -59,11 +62,11 @@ class RefinedRoots:
     guard: int = 32
 
     def refine(self, bits: int) -> bool:
-        """Newton steps until `accuracy` is at least `bits`; False if they fail to converge."""
+        """Does Newton steps until `accuracy` is at least `bits`; False if they do not converge."""
         if self.accuracy == 0 and not self._start():
             return False
         while self.accuracy < bits:
-            # As few doublings as possible, each as short as they allow.
+            # As few doublings as possible, and each as short as this allows.
             target = bits
             while target > 2 * (self.accuracy - self.guard):
                 target = target // 2 + 2 * self.guard
@@ -75,9 +78,9 @@ class RefinedRoots:
         return True
 
     def _start(self) -> bool:
-        """Newton steps from the first guesses until only rounding is left of them.
+        """Does Newton steps from the first guesses until only rounding errors are left.
 
-        What rounding leaves shows how many bits the condition of the zeros costs.
+        The rounding errors show how many bits are lost to the condition of the zeros.
         """
         bits = _FIRST
         for _ in range(_MOST_STEPS):
@@ -93,13 +96,13 @@ class RefinedRoots:
         return False
 
     def _step(self, bits: int) -> int:
-        """A Newton step at every zero: b if all were shorter than 2^-b; see `_newton`."""
+        """Does a Newton step at every zero; returns b if all steps are shorter than 2^-b."""
         return min(self._newton(row, bits) for row in chain(self.real, self.upper))
 
     def _newton(self, row: list[Value], bits: int) -> int:
-        """A Newton step at one zero, in place, rounded `bits` after the point; its size as above.
+        """Does a Newton step at one zero, in place; returns b if the step is shorter than 2^-b.
 
-        The size is -`_MUCH` if there was no step.
+        The zero is rounded `bits` after the point. The result is -`_MUCH` if no step was possible.
         """
         n = self.system.size
         matrix = acb_mat if isinstance(row[0], acb) else arb_mat
@@ -108,7 +111,7 @@ class RefinedRoots:
             z = [*row, arb(1)]
             products = matrix(len(self._pairs), 1, [z[i] * z[j] for i, j in self._pairs])
             twice = matrix(self._weights) * products
-        # The step begins `accuracy` bits after the point: only what comes then must be right.
+        # The step begins `accuracy` bits after the point; only later bits must be right.
         with ctx.workprec(bits - self.accuracy + above + self.guard):
             jacobian = matrix(n, n, (matrix(self._gradients) * matrix(n + 1, 1, z)).entries())
             try:
@@ -125,7 +128,7 @@ class RefinedRoots:
 
     @cached_property
     def _pairs(self) -> list[tuple[int, int]]:
-        """The products z_i z_j that occur."""
+        """The pairs (i, j) of the products z_i z_j that occur."""
         indices = range(self.system.size + 1)
         return [(i, j) for i in indices for j in indices[i:] if any(m[i][j] for m in self._forms)]
 
@@ -135,13 +138,13 @@ class RefinedRoots:
 
     @cached_property
     def _weights(self) -> arb_mat:
-        """2 F_p = z^T S_p z as the rows of a matrix, on the products z_i z_j."""
+        """The forms 2 F_p = z^T S_p z as rows of a matrix, on the products z_i z_j."""
         weights = [m[i][j] * (1 + (i != j)) for m in self._forms for i, j in self._pairs]
         return arb_mat(self.system.size, len(self._pairs), weights)
 
     @cached_property
     def _gradients(self) -> arb_mat:
-        """The rows of S_p that belong to unknowns, one p below the other."""
+        """The rows of all S_p that belong to unknowns, below each other."""
         n = self.system.size
         return arb_mat(n * n, n + 1, [x for m in self._forms for row in m[:n] for x in row])
 
@@ -152,12 +155,11 @@ _MUCH = 1 << 30
 def refined_roots(
     system: QuadraticSystem, roots: Candidates | Iterable[Centre], *, some: bool = False
 ) -> RefinedRoots | None:
-    """The zeros near the given points at the first accuracy.
+    """The zeros near the given points, at the first accuracy.
 
-    None unless there are 2^n of them, or `some` are enough.
-
-    Points are the rows of `Candidates`, or the centres of isolating boxes. Of two conjugate points
-    the one kept has a positive first imaginary part. None if Newton's method does not converge.
+    Points are the rows of `Candidates`, or the centres of isolating boxes. Of two conjugate points,
+    the one with a positive first imaginary part is kept. The result is None if Newton's method does
+    not converge, or if there are not 2^n points, unless `some` are enough.
     """
     if isinstance(roots, Candidates):
         rows = [[acb(x.real, x.imag) for x in row] for row in roots.points.tolist()]
@@ -198,7 +200,7 @@ def _middle(value: Value) -> Value:
 
 
 def bits_after_point(value: Value) -> int:
-    """The largest b, within one, with |value| < 2^-b; very large for zero."""
+    """The largest b, up to an error of one, with |value| < 2^-b; very large for zero."""
     parts = (value.real, value.imag) if isinstance(value, acb) else (value,)
     sizes = []
     for part in parts:

@@ -15,7 +15,7 @@ _MIXTURES = 12
 
 
 def transposed(matrix: Sequence[Sequence[Entry]]) -> list[list[Entry]]:
-    """Rows for columns.
+    """The matrix with rows and columns exchanged.
 
     >>> transposed([[1, 2], [3, 4]])
     [[1, 3], [2, 4]]
@@ -25,7 +25,7 @@ def transposed(matrix: Sequence[Sequence[Entry]]) -> list[list[Entry]]:
 
 @dataclass(frozen=True)
 class ResidueRing:
-    """Z/m[T]/q with q monic.
+    """The ring Z/m[T]/q with q monic.
 
     >>> ring = ResidueRing.over(7, [-2, 0, 1])
     >>> ring.inverse([[ring.element([0, 1])]])
@@ -37,7 +37,7 @@ class ResidueRing:
 
     @classmethod
     def over(cls, number: int, modulus: Sequence[int]) -> ResidueRing:
-        """The ring for m = number and the coefficients of q, constant term first."""
+        """The ring for m = `number` and the coefficients of q, constant term first."""
         context = fmpz_mod_poly_ctx(fmpz_mod_ctx(number))
         return cls(context, context(list(modulus)))
 
@@ -46,11 +46,11 @@ class ResidueRing:
         return self.context(list(coefficients))
 
     def integers(self, row: Sequence[int]) -> Vector:
-        """A vector of integers."""
+        """A row of integers as a vector of the ring."""
         return [self.context([x]) for x in row]
 
     def lift(self, matrix: Matrix) -> Matrix:
-        """The same integers, from a ring with a smaller m."""
+        """The matrix with the same integers, taken from a ring with a smaller m."""
         return [[self.context([int(c) for c in x.coeffs()]) for x in row] for row in matrix]
 
     def times(self, a: fmpz_mod_poly, b: fmpz_mod_poly) -> fmpz_mod_poly:
@@ -58,7 +58,7 @@ class ResidueRing:
         return a * b % self.modulus
 
     def dot(self, row: Vector, column: Vector) -> fmpz_mod_poly:
-        """sum row_k column_k modulo q."""
+        """The sum of row_k column_k, modulo q."""
         total = self.context([0])
         for a, b in zip(row, column, strict=True):
             total += a * b
@@ -76,11 +76,11 @@ class ResidueRing:
         ]
 
     def negated(self, matrix: Matrix) -> Matrix:
-        """Minus the matrix."""
+        """The negative of the matrix."""
         return [[-x for x in row] for row in matrix]
 
     def refined(self, inverse: Matrix, matrix: Matrix) -> Matrix:
-        """X (2 - A X): from an inverse X of A modulo a nilpotent ideal, one modulo its square."""
+        """X (2 - A X): if X inverts A modulo a nilpotent ideal, it inverts A modulo its square."""
         residue = self.product(matrix, inverse)
         twice = [
             [self.context([2 * (i == k)]) - x for k, x in enumerate(row)]
@@ -89,14 +89,14 @@ class ResidueRing:
         return self.product(inverse, twice)
 
     def inverse(self, matrix: Matrix) -> Matrix | None:
-        """The inverse for a prime m; None if the matrix is singular at some root of q."""
+        """The inverse if m is a prime; None if the matrix is singular at some root of q."""
         size = len(matrix)
         work = [
             [*row, *(self.context([int(i == k)]) for k in range(size))]
             for i, row in enumerate(matrix)
         ]
         for k in range(size):
-            # No single entry need be a unit modulo a reducible q; a combination of rows then is.
+            # Modulo a reducible q no single entry need be a unit, but a combination of rows is.
             mixtures = (self._mixture(work[k:], weight) for weight in range(_MIXTURES))
             pivot = next((r for r in mixtures if r[k].gcd(self.modulus).degree() == 0), None)
             if pivot is None:
@@ -112,7 +112,7 @@ class ResidueRing:
         return [row[size:] for row in work]
 
     def _mixture(self, rows: Sequence[Vector], weight: int) -> Vector:
-        """The first row plus weight^i times the i-th of the others."""
+        """The first row plus weight^i times row i, for all other rows."""
         mixed = list(rows[0])
         for i, row in enumerate(rows[1:], start=1):
             mixed = [(x + y * weight**i) % self.modulus for x, y in zip(mixed, row, strict=True)]

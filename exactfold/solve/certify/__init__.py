@@ -1,1 +1,1 @@
-"""From candidates to proofs."""
+"""Certifiers: they prove which candidates are roots, and whether all roots are found."""

@@ -1,4 +1,4 @@
-"""Exact roots with exact multiplicities, and the proof that there are no others."""
+"""Proves exact roots with exact multiplicities, and that there are no others."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ from exactfold.solve.algebraic.flat_zeros import flat_equations
 from exactfold.solve.certify.box import IsolatingBox
 
 FlatBox = tuple[FlatSheets, IsolatingBox]
-"""A box in the unknowns of the sheets that are flat at given vertices."""
+"""Sheets that are flat at given vertices, and a box in the unknowns of these sheets."""
 
 
 @dataclass(frozen=True)
 class AlgebraicProof:
-    """Root classes with the vertices flat there, boxes, and multipliers of a definite stress.
+    """Root classes with their flat vertices, boxes, and the multipliers of a definite stress.
 
-    The stress leaves no zero on a hyperplane of P^n (docs/mathematics.md, Multiple solutions), so
-    there are finitely many zeros and their multiplicities add up to 2^n. The multiplicity of an
-    isolated zero is at least the product of the orders of the equations, hence at least 2^f where f
-    vertices are flat; where these bounds and the boxes, each with one regular zero, add up to 2^n,
-    they are exact and no zero is missing.
+    The stress leaves no zero on a hyperplane of P^n (docs/mathematics.md, Multiple solutions). So
+    there are finitely many zeros, and their multiplicities add up to 2^n. The multiplicity of an
+    isolated zero is at least the product of the orders of the equations, hence at least 2^f if f
+    vertices are flat. Each box contains one regular zero. If these bounds and the boxes add up to
+    2^n, the bounds are exact and no zero is missing.
     """
 
     classes: tuple[tuple[RootClass, tuple[int, ...]], ...]
@@ -38,7 +38,7 @@ class AlgebraicProof:
 
     @property
     def roots(self) -> list[tuple[RootClass, int, int]]:
-        """(class, index among its real roots, multiplicity) of the real zeros outside the boxes."""
+        """(class, index among its real roots, multiplicity) of each real zero outside the boxes."""
         return [
             (root_class, index, 1 << len(flat))
             for root_class, flat in self.classes
@@ -47,7 +47,7 @@ class AlgebraicProof:
 
     @property
     def distinct(self) -> int:
-        """Number of different zeros, real or not."""
+        """The number of different zeros, real or not."""
         boxes = len(self.boxes) + len(self.flat_boxes)
         return sum(root_class.degree for root_class, _ in self.classes) + boxes
 
@@ -58,12 +58,12 @@ def prove_algebraic(
     boxes: Sequence[IsolatingBox] = (),
     flat_boxes: Sequence[FlatBox] = (),
 ) -> AlgebraicProof:
-    """Prove that these classes and boxes are all zeros of the system of a chart.
+    """Proves that these classes and boxes are all zeros of the system of a chart.
 
-    The classes need different irreducible polynomials in one separating form; the boxes must be
-    disjoint within each kind, and no zero may be in two kinds, which is left to the caller.
-    `complete` is UNDECIDED, with a reason, if a stress or a part of the sum of multiplicities is
-    missing; that does not mean that roots are missing. Raises `SolverError` if a root
+    The classes must have different irreducible polynomials in one separating form. The boxes of
+    each kind must be disjoint, and the caller must make sure that no zero is in two kinds.
+    `complete` is UNDECIDED, with a reason, if a stress is missing or the multiplicities do not add
+    up to 2^n; that does not mean that roots are missing. Raises `SolverError` if a root
     fails its check.
     """
     closed = chart.branch_system.pattern.with_notch_closed()
@@ -79,12 +79,12 @@ def prove_algebraic(
     elif len({c.separating for c in classes}) > 1 or len({c.polynomial for c in classes}) < len(
         classes
     ):
-        verdict, reason = UNDECIDED, "two classes may share a root"
+        verdict, reason = UNDECIDED, "two classes of zeros may share a root"
     elif total != chart.system.bezout_number:
         verdict = UNDECIDED
-        reason = f"proved multiplicities add up to {total}, not {chart.system.bezout_number}"
+        reason = f"the proved multiplicities add up to {total}, not {chart.system.bezout_number}"
     else:
-        verdict, reason = PROVED, "multiplicities by flat vertices add up to the Bezout number"
+        verdict, reason = PROVED, "the multiplicities 2^(flat vertices) add up to the Bezout number"
     multipliers = () if stress is None else tuple(stress[v] for v in closed.interior)
     return AlgebraicProof(
         tuple(proved), tuple(boxes), tuple(flat_boxes), multipliers, verdict, reason

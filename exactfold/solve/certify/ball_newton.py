@@ -1,4 +1,4 @@
-"""Interval Newton test in mpmath interval arithmetic, at rising precision."""
+"""The interval Newton test in mpmath interval arithmetic, at rising precision."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from exactfold.solve.certify.points import (
 
 _PRECISIONS = (106, 212, 424, 848, 1696)
 _NEWTON_STEPS = 128
-_SLOW_STEPS = 20  # in a row, each no shorter than an eighth of the one before: a multiple zero
+_SLOW_STEPS = 20  # so many steps in a row that hardly shrink show a multiple zero
 _INFLATIONS = (1, 4, 64)
 _GUARD = 16
 
@@ -42,26 +42,26 @@ def interval_newton(
 ) -> list[IsolatingBox | Uncertified]:
     r"""An isolating box around each candidate, proved in interval arithmetic, or a reason.
 
-    For a box X with dyadic centre m let N(X) = m - F'(X)^-1 F(m), the linear interval system solved
-    by Gaussian elimination after multiplication with an approximate inverse. If the elimination
-    succeeds and N(X) lies in the interior of X, then X holds exactly one zero; it is regular and
-    lies in N(X) (Neumaier, Interval Methods for Systems of Equations, 1990, theorem 5.1.7). What is
-    returned is a cube of about twice the width of N(X) around it, if that lies in X; otherwise X.
+    For a box X with dyadic centre m let N(X) = m - F'(X)^-1 F(m). This linear interval system is
+    multiplied with an approximate inverse and solved by Gaussian elimination. If the elimination
+    succeeds and N(X) lies in the interior of X, then X contains exactly one zero; it is regular and
+    lies in N(X) (Neumaier, Interval Methods for Systems of Equations, 1990, theorem 5.1.7). The
+    result is a cube around N(X) of about twice its width, if that cube lies in X, and otherwise X.
 
-    mpmath's elementary functions are not all correctly rounded (its `iv.exp` has missed values,
-    mpmath issue 1181). The proof uses none: of mpmath's public interface it uses an interval
-    context of its own, intervals with exactly given dyadic ends (`mpmath.ldexp`, which does not
-    round), their sums, differences and products, quotients by intervals without zero and by 2,
-    comparisons, and end points as integers. Each of these is tested against Fractions, for
-    enclosure and for width, in tests/solve/certify/test_interval_newton.py. FLINT's Newton steps
-    and inverses only choose m, r and Y.
+    Not all elementary functions of mpmath are correctly rounded (its `iv.exp` has missed values,
+    mpmath issue 1181), and the proof uses none of them. It uses only this part of mpmath's public
+    interface: an interval context of its own, intervals with exactly given dyadic ends
+    (`mpmath.ldexp`, which does not round), their sums, differences and products, quotients by 2 and
+    by intervals without zero, comparisons, and end points as integers.
+    tests/solve/certify/test_interval_newton.py compares each of these operations with Fractions,
+    for enclosure and for width. FLINT's Newton steps and inverses only choose m, r and Y.
 
-    `points` has shape (m, n); coordinates as in `exact_candidates`. Where imaginary parts are
-    negligible the real system is tried first, which proves the zero real; otherwise, and if that
-    fails, the 2n real equations in real and imaginary parts. Newton's method in floating point
-    chooses m, within `reach` max(1, |candidate|) of the candidate (None: anywhere). `precisions`
-    are bits of the significand, tried in turn. No precision of mpmath's global contexts is read or
-    changed, and that of python-flint's context is restored.
+    `points` has shape (m, n), with coordinates as in `exact_candidates`. If imaginary parts are
+    negligible, the real system is tried first, which proves the zero real. Otherwise, and if that
+    fails, the 2n real equations in real and imaginary parts are used. Newton's method in floating
+    point chooses m within `reach` max(1, |candidate|) of the candidate (None: anywhere).
+    `precisions` are bits of the significand, tried in turn. The precision of mpmath's global
+    contexts is neither read nor changed, and that of python-flint's context is restored.
 
     Raises `UsageError` if a candidate does not have n coordinates. `Uncertified` does not mean that
     there is no zero nearby: it may be multiple, the candidate too far off, the precision too low.
@@ -86,11 +86,12 @@ def interval_newton(
 
 
 def decide_contains_one_zero(system: QuadraticSystem, box: IsolatingBox) -> Verdict:
-    """Whether a given box holds exactly one zero and a regular one, by the interval Newton test.
+    """Whether a given box contains exactly one zero, a regular one, by the interval Newton test.
 
-    PROVED if N(X) lies in the interior of the box; REFUTED if some quadric has no zero in it;
-    otherwise UNDECIDED, as for a box that is too wide, even if it does hold exactly one zero. A box
-    with imaginary parts is a box of R^2n. Uses the operations that `interval_newton` names.
+    The answer is PROVED if N(X) lies in the interior of the box, and REFUTED if some quadric has no
+    zero in it. Otherwise it is UNDECIDED, for example for a box that is too wide, even if it does
+    contain exactly one zero. A box with imaginary parts is a box of R^2n. Uses only the operations
+    that `interval_newton` names.
 
     >>> line_pair = QuadraticSystem.from_rational([[[1, 0], [0, -2]]])
     >>> boxes = [IsolatingBox((m,), (), r, 3) for m, r in ((11, 1), (11, 12), (20, 1))]
@@ -107,7 +108,7 @@ def _certify(
     worker: Callable[[bool], _Worker], candidate: Candidate, precisions: Sequence[int]
 ) -> IsolatingBox | Uncertified:
     n = len(candidate.real)
-    if n == 0:  # no equation, no unknown: the one point there is
+    if n == 0:  # no equation and no unknown: there is exactly one point
         return IsolatingBox((), (), 1, 0)
     reasons = []
     if candidate.is_nearly_real:
@@ -121,14 +122,14 @@ def _certify(
             box = IsolatingBox(found.centre[:n], found.centre[n:], found.radius, found.bits)
             if not reasons or box.is_nonreal:
                 return box
-            found = "the zero was not proved real, nor not real"
+            found = "the zero is proved neither real nor non-real"
         reasons.append(f"as a complex point: {found}" if reasons else found)
     return Uncertified(candidate.shown, "; ".join(reasons))
 
 
 @dataclass(frozen=True)
 class _Cube:
-    """|x_k - centre_k / 2^bits| <= radius / 2^bits for every k."""
+    """The points x with |x_k - centre_k / 2^bits| <= radius / 2^bits for every k."""
 
     centre: tuple[int, ...]
     radius: int
@@ -140,7 +141,7 @@ class _LeftError(Exception):
 
 
 class _Worker:
-    """The test for one real system, in an interval context of its own."""
+    """The test for one real system, in its own interval context."""
 
     def __init__(self, system: QuadraticSystem, reach: Fraction | None = REACH) -> None:
         self.reach = reach
@@ -154,12 +155,12 @@ class _Worker:
         ]
 
     def run(self, start: Point, precisions: Sequence[int]) -> _Cube | str:
-        """A proved cube near `start`, or the reason why there is none."""
+        """A proved cube near `start`, or the reason why none was found."""
         reason = "no precision was given"
         for precision in precisions:
             self.iv.prec = precision
             try:
-                # Afresh each time: lower precision may have taken a cluster to the wrong zero.
+                # Start again each time: a lower precision may have led to a wrong zero.
                 with ctx.workprec(precision + _GUARD):
                     bits, centre = _rounded(self._newton(start, precision), precision)
                 found = self._enclose(centre, bits, precision)
@@ -174,7 +175,7 @@ class _Worker:
         return reason
 
     def decide(self, box: _Cube) -> Verdict:
-        """The test on a given cube, at rising precision."""
+        """Applies the test to a given cube, at rising precision."""
         length = max(abs(c) + box.radius for c in box.centre).bit_length()
         for precision in (length + 64, 2 * length + 256, 4 * length + 1024):
             self.iv.prec = precision
@@ -225,9 +226,9 @@ class _Worker:
         return jacobian, (rows * z * arb((1, -1))).mid()
 
     def _inverse(self, centre: Sequence[int], bits: int) -> list[list[Interval]]:
-        """About the inverse of F'(centre / 2^bits), as intervals of width 0.
+        """An approximate inverse of F'(centre / 2^bits), as intervals of width 0.
 
-        Raises `ZeroDivisionError` if F' may be singular there.
+        Raises `ZeroDivisionError` if F' may be singular at this point.
         """
         n = self.size
         with ctx.workprec(self.iv.prec + _GUARD):
@@ -244,7 +245,7 @@ class _Worker:
         return self.iv.mpf([mpmath.ldexp(low, -bits), mpmath.ldexp(high, -bits)])
 
     def _enclose(self, centre: list[int], bits: int, precision: int) -> _Cube | str:
-        """The interval Newton test on cubes about a point, for the smallest radius that fits."""
+        """Applies the interval Newton test to cubes around a point, for the smallest radius."""
         point = [self._dyadic(c, c, bits) for c in centre]
         factors = self._inverse(centre, bits)
         residual = self._product(factors, [[v] for v in self._values(point)])
@@ -268,7 +269,7 @@ class _Worker:
         return reason
 
     def _gradients(self, x: list[Interval]) -> list[list[Interval]]:
-        """S_p (x, 1) for each p."""
+        """The vectors S_p (x, 1) for all p."""
         result = []
         for p, matrix in enumerate(self.exact):
             rows = []
@@ -310,8 +311,8 @@ class _Worker:
 def _eliminate(matrix: list[list[Interval]], right: list[Interval]) -> list[Interval] | None:
     """An enclosure of {A^-1 b : A in matrix, b in right}; None if a pivot contains zero.
 
-    Gaussian elimination without pivoting. It succeeds only if every A in the interval matrix is
-    nonsingular (Neumaier 1990, section 4.5).
+    This is Gaussian elimination without pivoting. It succeeds only if every A in the interval
+    matrix is nonsingular (Neumaier 1990, section 4.5).
     """
     n = len(matrix)
     rows = [[*row, b] for row, b in zip(matrix, right, strict=True)]
@@ -338,9 +339,10 @@ def _inside(inner: Interval, outer: Interval) -> bool:
 
 
 def _tighten(image: list[Interval], proved: _Cube) -> _Cube:
-    """A cube that holds `image` and lies in `proved`: it holds the same single zero.
+    """A cube that contains `image` and lies in `proved`, so that it contains the same single zero.
 
-    Twice as wide as it need be, so that the zero is well inside and other tests can replay it.
+    It is twice as wide as necessary, so that the zero is well inside and other tests can repeat the
+    proof.
     """
     ends = [_outward(entry, proved.bits) for entry in image]
     centre = tuple((low + high) // 2 for low, high in ends)
@@ -351,10 +353,10 @@ def _tighten(image: list[Interval], proved: _Cube) -> _Cube:
 
 
 def _outward(value: Interval, bits: int) -> tuple[int, int]:
-    """The smallest interval of multiples of 2^-bits that holds `value`, as integers.
+    """The smallest interval of multiples of 2^-bits that contains `value`, as integers.
 
-    The product is exact if the end points of `value` fit the working precision, as all results do;
-    otherwise it is rounded outward.
+    The product is exact if the end points of `value` fit the working precision, as those of all
+    results do. Otherwise it is rounded outward.
     """
     scaled = value * (1 << bits)
     low, high = int(scaled.a), int(scaled.b)  # truncated towards zero
@@ -366,12 +368,12 @@ def _magnitude(value: Interval, bits: int) -> int:
 
 
 def _text(value: int, bits: int) -> str:
-    """About value / 2^bits, in powers of two so that nothing overflows."""
+    """The approximate value / 2^bits as a power of two, so that nothing overflows."""
     return f"2^{value.bit_length() - bits}" if value else "0"
 
 
 def _rounded(x: Column, precision: int) -> tuple[int, list[int]]:
-    """Bits after the point that show about `precision` digits of the largest, and x in these."""
+    """The bits after the point that show the largest entry to `precision` digits, and x in them."""
     values = []
     for entry in x.entries():
         mantissa, exponent = map(int, entry.man_exp())

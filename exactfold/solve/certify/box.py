@@ -1,4 +1,4 @@
-"""Isolating boxes: what every certifier returns for a root."""
+"""Isolating boxes: the results of certifiers for roots."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from fractions import Fraction
 
 @dataclass(frozen=True)
 class IsolatingBox:
-    """A box proved to hold exactly one zero of a system, a regular one.
+    """A box that is proved to contain exactly one zero of a system, a regular one.
 
-    What proves it is, for one, docs/mathematics.md, Krawczyk's test.
-    Centre (real + i imag) / 2^bits, radius / 2^bits in the sup norm over the unknowns; in a
-    complex box real and imaginary parts each keep within the radius (a box of R^2n). `imag` is
-    empty if the zero is proved real.
+    Several tests prove this, for example docs/mathematics.md, Krawczyk's test. The centre is
+    (real + i imag) / 2^bits. The radius is radius / 2^bits, in the sup norm over the unknowns; in a
+    complex box the real and the imaginary parts each stay within the radius (a box of R^2n).
+    `imag` is empty if the zero is proved real.
 
     >>> IsolatingBox((3,), (), 1, 2).interval(0)
     (Fraction(1, 2), Fraction(1, 1))
@@ -36,11 +36,11 @@ class IsolatingBox:
 
     @property
     def is_nonreal(self) -> bool:
-        """Whether the zero is proved not real: some imaginary part keeps off zero."""
+        """Whether the zero is proved non-real: some imaginary part is bounded away from zero."""
         return any(abs(y) > self.radius for y in self.imag)
 
     def interval(self, k: int) -> tuple[Fraction, Fraction]:
-        """Bounds of the real part of unknown k."""
+        """Bounds of the real part of the unknown number k."""
         scale = 1 << self.bits
         return (
             Fraction(self.real[k] - self.radius, scale),
@@ -48,7 +48,7 @@ class IsolatingBox:
         )
 
     def is_inside(self, other: IsolatingBox) -> bool:
-        """Whether this box lies within `other` (decided exactly)."""
+        """Whether this box lies within `other`, decided exactly."""
         bits = max(self.bits, other.bits)
         mine, theirs = bits - self.bits, bits - other.bits
         slack = (other.radius << theirs) - (self.radius << mine)
@@ -60,7 +60,7 @@ class IsolatingBox:
         return all(abs((x << mine) - (y << theirs)) <= slack for x, y in pairs)
 
     def is_disjoint_from(self, other: IsolatingBox) -> bool:
-        """Whether the two boxes have no common point (decided exactly)."""
+        """Whether the two boxes have no common point, decided exactly."""
         bits = max(self.bits, other.bits)
         reach = (self.radius << (bits - self.bits)) + (other.radius << (bits - other.bits))
 
@@ -77,7 +77,7 @@ class IsolatingBox:
 
 @dataclass(frozen=True)
 class Uncertified:
-    """A candidate around which no zero could be isolated; there may or may not be one."""
+    """A candidate for which no zero could be isolated; there may or may not be a zero near it."""
 
     point: tuple[complex, ...]
     reason: str

@@ -1,4 +1,4 @@
-"""From proposed heights of a sheet to the enclosure of the branch with given signs."""
+"""Proves an enclosure of the branch with given signs, from proposed heights of a sheet."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from exactfold.solve.certify.refinement import exact, refine
 from exactfold.solve.numeric.sparse_sheet import FloatSheet
 
 _LEVELS = (80, 160, 320)
-"""Excess curvatures 2^-level tried one after the other until every fold is decided."""
+"""Heights have excess curvatures 2^-level; levels are tried in turn until all folds are decided."""
 
 
 def enclosed(
@@ -21,12 +21,12 @@ def enclosed(
     x: FloatArray,
     progress: Progress | None = None,
 ) -> tuple[Enclosure | None, tuple[int, ...]]:
-    """The enclosure near the heights `x` of the unknowns, of exactly these signs (`enclose`).
+    """The enclosure of the branch with exactly these signs near the heights `x` (`enclose`).
 
-    `signs` are those of the unknowns of the sheet, 1.0 or -1.0. The heights are refined in exact
-    arithmetic to as much precision as is needed to decide all folds, or as is reached. None where
-    the test fails, with the vertices at which it does, as far as they are known; that says nothing
-    against the branch.
+    `signs` are the signs of the unknowns of the sheet, 1.0 or -1.0. Exact arithmetic refines the
+    heights until all folds are decided, or as far as it gets. If the test fails, the result is None
+    and, as far as they are known, the vertices where it fails. That says nothing against the
+    branch.
     """
     wanted = dict(zip(sheet.unknowns, signs.astype(int).tolist(), strict=True))
     heights = exact(sheet, floats, x)

@@ -1,7 +1,7 @@
-"""What is exactly flat on a branch: folds deduced at their vertices, or heights that are rational.
+"""Proves what is exactly flat on a branch: by deduction at vertices, or by rational heights.
 
-No error bound can prove a fold flat. Both ways here are exact (docs/branch.md, What is computed and
-what is proved).
+No error bound can prove that a fold is flat. Both methods here are exact (docs/branch.md, What is
+computed and what is proved).
 """
 
 from __future__ import annotations
@@ -17,17 +17,20 @@ from exactfold.rigidity.equations.sheet import Sheet
 from exactfold.solve.certify.enclosure import Enclosure, check_hypotheses, nappes
 
 _MOST_BITS = 64
-"""Bits of the common denominator of heights that are tried as exact, that of the rim apart."""
+"""Exact heights are tried only if their common denominator has at most so many bits.
+
+The denominator of the boundary heights does not count.
+"""
 
 
 def deduced(sheet: Sheet, proof: Enclosure) -> Enclosure:
-    """The enclosure with the folds that must be flat as K_v = 0 at their ends (`flat_folds`).
+    """The enclosure with the folds that must be flat because K_v = 0 at their ends (`flat_folds`).
 
-    The corner of a closed notch, where K is not 0, is a boundary vertex of the unclosed sheet.
+    At the corner of a closed notch K is not 0; but it is a boundary vertex of the unclosed sheet.
     """
     if all(proof.letters):
         return proof
-    from exactfold.rigidity.flat_folds import flat_folds  # loaded only where needed
+    from exactfold.rigidity.flat_folds import flat_folds  # here: loaded only if needed
 
     decided = dict(zip(sheet.pattern.folds, proof.letters, strict=True))
     folds = sheet.unclosed.folds
@@ -38,10 +41,11 @@ def deduced(sheet: Sheet, proof: Enclosure) -> Enclosure:
 
 
 def rational(sheet: Sheet, proof: Enclosure, wanted: Mapping[int, int]) -> Enclosure | None:
-    """The branch itself, if it has heights over a small common denominator near those of `proof`.
+    """The branch itself, if it has heights with a small common denominator near those of `proof`.
 
-    Heights with K_v = k_v for all v in the closed nappes `wanted` are the only ones, by Theorem 5
-    (a), so that all signs and letters are those of the heights. Flat vertices lie in both nappes.
+    By Theorem 5 (a), heights with K_v = k_v for all v in the closed nappes `wanted` are the only
+    ones. So all signs and letters can be read from these heights. A flat vertex lies in both
+    nappes.
     """
     guess = _guess(sheet, proof)
     if guess is None:
@@ -72,7 +76,11 @@ def rational(sheet: Sheet, proof: Enclosure, wanted: Mapping[int, int]) -> Enclo
 
 
 def _with_flat(sheet: Sheet, proof: Enclosure, flat: frozenset[int]) -> Enclosure:
-    """`loose` are the vertices at which no fold is bent and some may be; k_v = 0 at all of them."""
+    """The enclosure with these flat folds, and with flat and loose vertices.
+
+    `loose` are the vertices at which no fold is known to bend, but some may; k_v = 0 at all of
+    them.
+    """
     bent, open_ = set[int](), set[int]()
     for k, ends in enumerate(sheet.folds.corners[:, :2].tolist()):
         (bent if proof.letters[k] else set() if k in flat else open_).update(ends)
@@ -83,10 +91,10 @@ def _with_flat(sheet: Sheet, proof: Enclosure, flat: frozenset[int]) -> Enclosur
 
 
 def _guess(sheet: Sheet, proof: Enclosure) -> tuple[BigArray, int] | None:
-    """The nearest integer heights over the least denominator that seems to make them integers."""
+    """The nearest integer heights over the least denominator that seems to fit; None if none."""
     if not proof.squared_distance:
         return None
-    # Heights are right to about `places` binary places; by chance p/q is as near to within 1/q^2.
+    # Heights are right to about `places` bits. By chance, p/q is as near as this only to 1/q^2.
     distance = proof.squared_distance
     places = (distance.denominator.bit_length() - distance.numerator.bit_length()) // 2
     most = min(_MOST_BITS, places // 3)

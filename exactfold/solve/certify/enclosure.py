@@ -1,4 +1,4 @@
-"""Exact proof that a branch lies near given heights (docs/branch.md); nothing here is float."""
+"""Proves exactly that a branch lies near given heights (docs/branch.md), without floats."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from exactfold.rigidity.equations.sheet import Sheet
 
 _LENGTH_BITS = 64
 _LEAST_COST = 2.0**-500
-"""The square of a smaller cost may be below the range of normal floats, where errors are larger."""
+"""Smaller costs are rounded up to this, as their squares may be too small for normal floats."""
 
 
 @dataclass(frozen=True)
 class Enclosure:
-    """What follows from heights `heights[v] / denominator` that pass the test of `enclose`.
+    """What is proved by heights `heights[v] / denominator` that pass the test of `enclose`.
 
-    `signs[v]`: in which nappe of K_v the heights lie. `squared_distance` bounds the integral of
-    |grad(h - heights)|^2 for the only solution h in these closed nappes. `letters[e]`: +1 valley,
-    -1 mountain on h, 0 undecided, in the order of the folds of the sheet. `loose`: vertices at
-    which no fold is decided. `flat_folds` (indices of folds with letter 0) and `flat_vertices` are
-    proved flat (`exactfold.solve.certify.enclosed_flat`).
+    `signs[v]` says in which nappe of K_v the heights lie. `squared_distance` bounds the integral of
+    |grad(h - heights)|^2 for the only solution h in these closed nappes. `letters` lists the folds
+    of the sheet in order: h has a valley (+1) or a mountain (-1), or the letter is undecided (0).
+    `loose` are the vertices at which no fold is decided. `flat_folds` (indices of folds with letter
+    0) and `flat_vertices` are proved flat (`exactfold.solve.certify.enclosed_flat`).
     """
 
     heights: BigArray
@@ -39,15 +39,16 @@ class Enclosure:
 
     @property
     def complete(self) -> bool:
-        """Whether every fold is a mountain, a valley or flat."""
+        """Whether every fold is proved a mountain, a valley or flat."""
         return self.letters.count(0) == len(self.flat_folds)
 
 
 @dataclass(frozen=True)
 class Curvatures:
-    """Integers low_v <= 2^`bits` * 2 * denominator^2 * K_v <= high_v of heights over a denominator.
+    """Integer bounds low_v <= 2^`bits` * 2 * denominator^2 * K_v <= high_v of all curvatures.
 
-    `bends` are the fold functionals f_e of the integer heights.
+    The heights are integers over `denominator`; `bends` are the fold functionals f_e of these
+    integers.
     """
 
     bits: int
@@ -57,7 +58,7 @@ class Curvatures:
 
 
 def curvatures(sheet: Sheet, heights: BigArray, bits: int) -> Curvatures:
-    """Bounds of all curvature forms: 2 K_v = sum_w omega_vw (h_w - h_v), each term rounded down."""
+    """Bounds of all K_v: 2 K_v = sum_w omega_vw (h_w - h_v), with each term rounded down."""
     folds = sheet.folds
     i, j = folds.corners[:, 0], folds.corners[:, 1]
     bends = folds.bends(heights)
@@ -75,23 +76,25 @@ def curvatures(sheet: Sheet, heights: BigArray, bits: int) -> Curvatures:
 def enclose(
     sheet: Sheet, heights: BigArray, denominator: int, bits: int
 ) -> Enclosure | tuple[int, ...]:
-    """The branches near rational heights, or the vertices at which the test fails.
+    """The branch near rational heights, or the vertices at which the test fails.
 
     *Theorem 5* (docs/branch.md, How far heights are from a branch). Let the boundary be convex, let
-    h' have the given rim heights and K_v(h') > 0 for all interior v, and let e_v be the nappe of h'
-    at v. Then K_v(h) = k_v has exactly one solution in the closed nappes e, and it satisfies
+    h' have the given boundary heights and K_v(h') > 0 for all interior v, and let e_v be the nappe
+    of h' at v. Then K_v(h) = k_v has exactly one solution in the closed nappes e, and it satisfies
 
         int |grad(h - h')|^2 <= sum_v m_v (sqrt K_v(h') - sqrt k_v)^2,  m_v = R^2 - |U_v - c|^2,
 
-    for every disk (c, R) that holds the sheet. A fold whose bend in h' is larger than gradients of
-    that size can undo is decided; a vertex with a decided fold is not flat, and if there is one at
-    every vertex, the solution is simple and its signs are e.
+    for every disk (c, R) that contains the sheet. The letter of a fold is decided if its bend in h'
+    is too large for gradients of that size to undo it. A vertex with a decided fold is not flat. If
+    every vertex has one, the solution is simple and its signs are e.
 
-    `heights` are integers over `denominator`, which must reproduce the rim exactly; `bits` is the
-    extra precision of the rounded divisions. Arithmetic is exact, or rounded in the safe direction.
-    A vertex is returned if K_v(h') > 0 or the side of h' could not be proved there.
+    `heights` are integers over `denominator`; they must reproduce the boundary heights exactly.
+    `bits` is the extra precision of the rounded divisions. Arithmetic is exact, or rounded in the
+    safe direction. A vertex is returned if K_v(h') > 0 or the nappe of h' could not be proved at
+    it.
 
-    Raises `ValueError` if the rim is not the one of the sheet or the boundary is not convex.
+    Raises `ValueError` if the boundary heights are not those of the sheet, or the boundary is not
+    convex.
     """
     check_hypotheses(sheet, heights, denominator)
     found = curvatures(sheet, heights, bits)
@@ -108,26 +111,27 @@ def enclose(
 
 
 def check_hypotheses(sheet: Sheet, heights: BigArray, denominator: int) -> None:
-    """Raise `ValueError` unless the boundary is convex and the heights continue the rim."""
+    """Raises `ValueError` unless the boundary is convex and has the given heights."""
     if not sheet.pattern.is_convex:
         raise ValueError("the theorem needs a convex boundary")
     if set(sheet.rim) != set(sheet.pattern.boundary) or any(
         heights[v] * sheet.rim_denominator != height * denominator
         for v, height in sheet.rim.items()
     ):
-        raise ValueError("the heights do not continue the rim")
+        raise ValueError("the heights of the boundary vertices are not those of the sheet")
 
 
 def nappes(sheet: Sheet, bends: BigArray) -> dict[int, int]:
-    """The side of each vertex, 0 if not proved: the sign of -sum_j L_j omega_vj.
+    """The nappe at each vertex, the sign of -sum_j L_j omega_vj; 0 if it is not proved.
 
-    This is 2 K_v(t, h) for the round cone t, t_j - t_v = -L_j, which is timelike and points up. The
-    lengths are rounded to `_LENGTH_BITS` binary places and omega to as many below the largest.
+    This sum is 2 K_v(t, h) for the round cone t, t_j - t_v = -L_j, which is timelike and points up.
+    The lengths are rounded to `_LENGTH_BITS` binary places, and omega to as many below its largest
+    value.
     """
     folds = sheet.folds
     lengths = np.array([isqrt(s << 2 * _LENGTH_BITS) for s in folds.squared_length], dtype=object)
     areas = folds.left * folds.right
-    # omega is of the order of bends / areas: keep _LENGTH_BITS binary places of the smallest.
+    # omega has the size of bends / areas; keep _LENGTH_BITS binary places of the smallest one.
     shift = max((int(c).bit_length() for c in areas), default=0) + _LENGTH_BITS
     omega = (bends << shift) // areas
     # |L omega - lengths omega| <= (lengths + 1) + |omega| + 1 in units of the last place.
@@ -143,7 +147,7 @@ def nappes(sheet: Sheet, bends: BigArray) -> dict[int, int]:
 
 
 def _squared_distance(sheet: Sheet, found: Curvatures, denominator: int) -> Fraction:
-    """sum_v m_v (sqrt K_v - sqrt k_v)^2 from above, by `off_target` where k_v is not 0."""
+    """An upper bound of sum_v m_v (sqrt K_v - sqrt k_v)^2; `off_target` is used where k_v > 0."""
     points = sheet.pattern.integer_vertices[0]
     x, y = (min(p[a] for p in points) + max(p[a] for p in points) for a in (0, 1))
 
@@ -162,7 +166,7 @@ def _squared_distance(sheet: Sheet, found: Curvatures, denominator: int) -> Frac
 
 
 def off_target(bounds: Iterable[Fraction], target: Fraction) -> Fraction:
-    """(sqrt K - sqrt k)^2 from above, for bounds of K and a target k > 0.
+    """An upper bound of (sqrt K - sqrt k)^2, from bounds of K, for a target k > 0.
 
     It is at most |K - k|, and at most (K - k)^2 / k.
     """
@@ -171,11 +175,12 @@ def off_target(bounds: Iterable[Fraction], target: Fraction) -> Fraction:
 
 
 def _letters(sheet: Sheet, bends: BigArray, squared: Fraction) -> tuple[int, ...]:
-    """Signs of the bends that no change w with int |grad w|^2 <= squared can undo.
+    """The signs of the bends that no change w with int |grad w|^2 <= squared can undo, else 0.
 
-    |omega_e(w)| L_e <= |g| + |g'| <= sqrt(squared (2/c + 2/c')) for the gradients g, g' of w on the
-    two faces, as c/2 |g|^2 + c'/2 |g'|^2 <= squared. With omega_e = f_e / (c c') the bend is safe
-    if f_e^2 L_e^2 > squared * 2 (c + c') c c'.
+    Let g and g' be the gradients of w on the two faces of the fold e. As
+    c/2 |g|^2 + c'/2 |g'|^2 <= squared, |omega_e(w)| L_e <= |g| + |g'| <= sqrt(squared (2/c +
+    2/c')). With omega_e = f_e / (c c'), the sign of the bend is safe if
+    f_e^2 L_e^2 > squared * 2 (c + c') c c'.
     """
     folds = sheet.folds
     top, bottom = squared.numerator, squared.denominator
@@ -185,11 +190,11 @@ def _letters(sheet: Sheet, bends: BigArray, squared: Fraction) -> tuple[int, ...
 
 
 def height_radius(sheet: Sheet, squared: Fraction) -> Fraction:
-    """A bound of |w| for every w with flat rim and int |grad w|^2 <= squared, with few digits.
+    """A short rational bound of |w| if w is 0 on the boundary and int |grad w|^2 <= squared.
 
     Along a side of length L of a face of area c/2, w changes by at most L |grad w| <=
-    sqrt(2 L^2 / c) sqrt(squared), so that |w_v| is bounded by the shortest path from the rim. The
-    sums are floats: each has a relative error below (V + 3) 2^-52, which 2^-20 covers.
+    sqrt(2 L^2 / c) sqrt(squared). So the shortest path from the boundary bounds |w_v|. The sums are
+    floats; each has a relative error below (V + 3) 2^-52, which the factor 1 + 2^-20 covers.
     """
     if not squared:
         return Fraction(0)
@@ -208,9 +213,9 @@ def height_radius(sheet: Sheet, squared: Fraction) -> Fraction:
 def _distances(
     count: int, ends: IndexArray, costs: FloatArray, sources: Sequence[int]
 ) -> FloatArray:
-    """The length of a shortest path to each vertex, by Bellman and Ford.
+    """The length of a shortest path to each vertex, by the method of Bellman and Ford.
 
-    Not by SciPy, which takes longer to load than a small proof.
+    SciPy is not used, as it takes longer to load than a small proof.
     """
     begin, end = np.concatenate([ends, ends[:, ::-1]]).T
     far, nearer = np.full(count, np.inf), np.full(count, np.inf)
@@ -222,14 +227,14 @@ def _distances(
 
 
 def root_above(value: Fraction) -> Fraction:
-    """A rational at least sqrt(value), relative error below 2^-30, for value >= 0."""
+    """A rational number at least sqrt(value), with a relative error below 2^-30; value >= 0."""
     product = value.numerator * value.denominator
     shift = max(0, 32 - product.bit_length() // 2)
     return Fraction(isqrt(product << 2 * shift) + 1, value.denominator << shift)
 
 
 def round_up(value: Fraction) -> Fraction:
-    """The least multiple of a power of two with 24 binary digits that is at least value > 0."""
+    """The least multiple of a power of two, with 24 binary digits, that is at least value > 0."""
     shift = 24 - value.numerator.bit_length() + value.denominator.bit_length()
     if shift >= 0:
         return Fraction(-((-value.numerator << shift) // value.denominator), 1 << shift)

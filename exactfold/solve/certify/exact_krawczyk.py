@@ -42,18 +42,18 @@ def krawczyk(
 ) -> list[IsolatingBox | Uncertified]:
     r"""An isolating box around each candidate, proved in exact integer arithmetic, or a reason.
 
-    With m dyadic, Y any dyadic matrix, r > 0 and sup norms let eta = |Y F(m)|,
+    Let m be dyadic, Y any dyadic matrix and r > 0. In sup norms let eta = |Y F(m)|,
     k0 = |I - Y F'(m)| and M = max_i sum_jk |sum_p Y_ip (H_p)_jk|. If k0 + r M < 1 and
     eta + (k0 + r M) r < r, then x -> x - Y F(x) maps the box |x - m| <= r into its interior and
-    contracts: the box holds exactly one zero, a regular one (Krawczyk 1969; docs/mathematics.md,
-    Krawczyk's test).
+    contracts. So the box contains exactly one zero, a regular one (Krawczyk 1969;
+    docs/mathematics.md, Krawczyk's test).
 
-    `points` has shape (m, n); coordinates as in `exact_candidates`, so that rationals tell
-    clusters apart that doubles cannot. A candidate whose imaginary parts are negligible is tried
-    as a real point, which then proves the zero real; others, and nearly real ones next to a
-    non-real zero, are treated as points of R^2n. Floating point only chooses m and Y. Precision
-    rises through `precisions` (bits after the point). A box further than `reach` max(1, |point|)
-    from its candidate is refused; None takes whatever zero Newton's steps lead to.
+    `points` has shape (m, n), with coordinates as in `exact_candidates`; rational coordinates
+    separate clusters that doubles cannot. A candidate with negligible imaginary parts is tried as a
+    real point, which then proves the zero real. Other candidates, and nearly real ones next to a
+    non-real zero, count as points of R^2n. Floating point only chooses m and Y. The precision rises
+    through `precisions` (bits after the point). A box further than `reach` max(1, |point|) from its
+    candidate is refused; with None, any zero is accepted to which Newton's steps lead.
 
     Raises `UsageError` if a candidate does not have n coordinates. `Uncertified` does not mean that
     there is no zero nearby: the zero may be multiple, the candidate too far off, or the precision
@@ -70,7 +70,7 @@ def krawczyk(
         results.append(candidate if isinstance(candidate, Uncertified) else None)
         if isinstance(candidate, Candidate):
             (real if candidate.is_nearly_real else nonreal)[index] = candidate
-    if system.size == 0:  # no equation, no unknown: the one point there is
+    if system.size == 0:  # no equation and no unknown: there is exactly one point
         return [IsolatingBox((), (), 1, 0) for _ in results]
     if real:
         starts = [candidate.real for candidate in real.values()]
@@ -95,11 +95,11 @@ def krawczyk(
 
 
 def decide_contains_one_zero(system: QuadraticSystem, box: IsolatingBox) -> Verdict:
-    """Whether a given box holds exactly one zero and a regular one, by the test of `krawczyk`.
+    """Whether a given box contains exactly one zero, a regular one, by the test of `krawczyk`.
 
     PROVED if the inequalities hold for its centre and radius, with Y the rounded inverse of F'(m);
-    REFUTED if some quadric has no zero in the box; otherwise UNDECIDED, as for a box that is too
-    wide, even if it does hold exactly one zero. A box with imaginary parts is a box of R^2n.
+    REFUTED if some quadric has no zero in the box. Otherwise UNDECIDED, for example if the box is
+    too wide, even if it does contain exactly one zero. Imaginary parts make it a box of R^2n.
 
     >>> line_pair = QuadraticSystem.from_rational([[[1, 0], [0, -2]]])
     >>> boxes = [IsolatingBox((m,), (), r, 3) for m, r in ((11, 1), (11, 12), (20, 1))]
@@ -115,10 +115,10 @@ def decide_contains_one_zero(system: QuadraticSystem, box: IsolatingBox) -> Verd
 def krawczyk_at(system: QuadraticSystem, box: IsolatingBox, bits: int) -> IsolatingBox | str:
     """The same zero in a sharper real box, with `bits` bits after the point, or a reason.
 
-    Newton steps start from the centre of `box`; the result is returned only if it lies inside it,
-    so that both hold the same zero.
+    Newton steps start from the centre of `box`. The result is returned only if it lies inside
+    `box`, so that both contain the same zero.
     """
-    if system.size == 0:  # no equation: the one point there is
+    if system.size == 0:  # no equation: there is exactly one point
         return IsolatingBox((), (), box.radius, bits)
     shift = bits - box.bits
     centre = [m << shift if shift >= 0 else m >> -shift for m in box.real]
@@ -140,7 +140,7 @@ class _Kernel:
 
     @cached_property
     def shifted(self) -> tuple[list[list[list[int]]], int]:
-        """S_p times a power of two each, so that all have entries of `K` bits at most."""
+        """Each S_p times a power of two, so that all have entries of at most `K` bits; and K."""
         largest = [
             max((abs(x) for row in matrix for x in row), default=0).bit_length()
             for matrix in self.system.matrices
@@ -154,9 +154,9 @@ class _Kernel:
 
     @cached_property
     def stacked(self) -> tuple[list[int], fmpz_mat]:
-        """All S_p below each other, n (n + 1) rows, n + 1 columns: those that are not 0, and where.
+        """The places, among the n (n + 1) rows of all S_p, of the rows that are not 0; these rows.
 
-        A quadric depends on the heights of one star only, so that most rows are 0.
+        Most rows are 0, as a quadric depends only on the heights of one star.
         """
         matrices, _ = self.shifted
         rows = [row for matrix in matrices for row in matrix]
@@ -166,16 +166,16 @@ class _Kernel:
 
     @cached_property
     def float_stack(self) -> FloatArray:
-        """The same divided by 2^K, as floats of shape (n, n + 1, n + 1)."""
+        """All S_p divided by 2^K, as floats of shape (n, n + 1, n + 1)."""
         matrices, bits = self.shifted
-        # Dropping the low bits first keeps every conversion in range; Y only needs to be near.
+        # Dropping low bits first keeps every conversion in range; Y need not be accurate.
         drop = max(0, bits - 1000)
         scaled = np.array([[[float(x >> drop) for x in row] for row in m] for m in matrices])
         return np.asarray(scaled * 2.0 ** (drop - bits))
 
     @cached_property
     def hessian_norms(self) -> list[int]:
-        """sum_jk |(H_p)_jk| for each p."""
+        """The sums over j, k of |(H_p)_jk|, for each p."""
         matrices, _ = self.shifted
         return [sum(abs(x) for row in m[:-1] for x in row[:-1]) for m in matrices]
 
@@ -186,7 +186,7 @@ class _Kernel:
         precisions: Sequence[int],
         reach: Fraction | None,
     ) -> list[IsolatingBox | str]:
-        """A box or a reason for each of `points`, which are given as floats, too."""
+        """A box or a reason for each of `points`, which are also given as floats."""
         if not precisions:
             return ["no precision was given" for _ in points]
         first, *rising = precisions
@@ -205,7 +205,7 @@ class _Kernel:
                 if isinstance(sharper, IsolatingBox) and sharper.is_inside(result):
                     result = sharper
             if isinstance(result, IsolatingBox) and not is_within_reach(result, point, reach):
-                result = f"{_LEFT} at {first} bits"  # perhaps for want of precision
+                result = f"{_LEFT} at {first} bits"  # perhaps the precision was too low
             for bits in rising:
                 if isinstance(result, IsolatingBox) or result in (_SLOW, _LEFT):
                     break
@@ -216,7 +216,7 @@ class _Kernel:
         return results
 
     def decide(self, m: list[int], radius: int, bits: int) -> Verdict:
-        """The test on the box of the given centre and radius, both over 2^bits."""
+        """Applies the test to the box with the given centre and radius, both over 2^bits."""
         n = self.system.size
         jacobian, values = self._evaluate(m, bits)
         norms = [sum(abs(jacobian[p, k]) for k in range(n)) for p in range(n)]
@@ -250,7 +250,7 @@ class _Kernel:
         return np.asarray(inverses)
 
     def _attempt(self, m: list[int], bits: int, entries: list[int], q: int) -> IsolatingBox | str:
-        """Newton steps with a fixed Y = entries / 2^q from floating point, then the test."""
+        """Newton steps with a fixed float Y = entries / 2^q, and then the test."""
         y = fmpz_mat(self.system.size, self.system.size, entries)
         shift = q + self.shifted[1]
         if shift + bits < 0:
@@ -265,7 +265,7 @@ class _Kernel:
         return self._test(m, jacobian, values, bits, y, entries, shift)
 
     def _attempt_exactly(self, m: list[int], bits: int) -> IsolatingBox | str:
-        """Newton with the exact inverse, rounded; for clusters that doubles cannot tell apart."""
+        """Newton steps with the rounded exact inverse; doubles cannot separate clusters."""
         n = self.system.size
         result: IsolatingBox | str = "no Newton step was possible"
         length: int | None = None
@@ -288,7 +288,7 @@ class _Kernel:
         return _SLOW if slow and not isinstance(result, IsolatingBox) else result
 
     def _evaluate(self, m: list[int], bits: int) -> tuple[fmpz_mat, fmpz_mat]:
-        """2^bits F'(m) as an n x n matrix, and 2^(2 bits + 1) F(m) as a column."""
+        """The n x n matrix 2^bits F'(m), and the column 2^(2 bits + 1) F(m)."""
         n = self.system.size
         z = fmpz_mat(n + 1, 1, [*m, 1 << bits])
         places, stacked = self.stacked
@@ -300,14 +300,14 @@ class _Kernel:
         return fmpz_mat(n, n, products), values
 
     def _step(self, values: fmpz_mat, bits: int, y: fmpz_mat, shift: int) -> list[int]:
-        """Y F(m), rounded to units of 2^-bits: what a Newton step subtracts from m."""
+        """The step Y F(m) that Newton's method subtracts from m, rounded to units of 2^-bits."""
         down = shift + bits + 1
         return [int(_shift_round(s, down)) for s in (y * values).entries()]
 
     def _rounded_inverse(
         self, jacobian: fmpz_mat, bits: int, significant: int
     ) -> tuple[list[int], int] | None:
-        """Entries of Y times 2^shift for jacobian = 2^bits F'(m); None if it is too singular."""
+        """The entries of 2^shift Y for jacobian = 2^bits F'(m), and shift; None if singular."""
         try:
             cells = fmpq_mat(jacobian).inv().entries()
         except ZeroDivisionError:
@@ -327,7 +327,7 @@ class _Kernel:
         entries: list[int],
         shift: int,
     ) -> tuple[int, int, int, int]:
-        """k0 and M times `unit`, and eta times 2 `unit` (both radii in units of 2^-bits)."""
+        """k0 and M times `unit`, and eta times 2 `unit` (M and eta in units of 2^-bits)."""
         n = self.system.size
         unit = 1 << (shift + bits)
         product = (y * jacobian).entries()
@@ -351,7 +351,7 @@ class _Kernel:
         entries: list[int],
         shift: int,
     ) -> IsolatingBox | str:
-        """The Krawczyk inequalities at m, Y = y / 2^shift, for the smallest radius that fits."""
+        """Tests the Krawczyk inequalities at m, with Y = y / 2^shift, for the smallest radius."""
         k0, eta, bound, unit = self._norms(jacobian, values, bits, y, entries, shift)
         if k0 >= unit:
             return f"|I - Y F'(m)| is not below 1 at {bits} bits: the zero may be multiple"
@@ -365,7 +365,7 @@ class _Kernel:
 
 
 def _fixed_point(matrices: FloatArray) -> tuple[list[int], list[list[int]]]:
-    """Shifts q and entries times 2^q, at most `_Y_BITS` bits long, of finite non-zero matrices."""
+    """Shifts q, and entries times 2^q of at most `_Y_BITS` bits, of finite nonzero matrices."""
     sizes = np.frexp(np.abs(matrices).max(axis=(1, 2)))[1]
     shifts = _Y_BITS - sizes
     entries = np.rint(np.ldexp(matrices, shifts[:, None, None])).astype(np.int64)
@@ -391,7 +391,7 @@ def _shift_round(value: fmpz, bits: int) -> fmpz:
 
 
 def _magnitude(value: fmpq) -> int:
-    """Bit length of |value| within one, for value != 0."""
+    """The bit length of |value|, up to an error of one, for value != 0."""
     return int(value.p).bit_length() - int(value.q).bit_length()
 
 

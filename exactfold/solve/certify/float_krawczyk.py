@@ -1,11 +1,12 @@
-r"""Krawczyk's test on many candidates at once, in floats whose rounding errors are bounded.
+r"""Krawczyk's test on many candidates at once, in floats with bounded rounding errors.
 
-Notation: u = 2^-53, gamma_k = k u / (1 - k u); A holds the doubles nearest to the exact
-coefficients S, each quadric scaled by a power of two to at most 1; m is the candidate, exactly a
-double, z = (m, 1), Y any matrix of doubles, |.| entrywise, F_p = (1/2) z^T S_p z. A dot product of
-k terms, summed in any order, with or without fused operations, has an error of at most
-gamma_k |a| . |b| (Higham, Accuracy and Stability of Numerical Algorithms, section 3.1); matrix
-products are made of dot products. With G = |A| |z|, row G_p for quadric p, and H_p = G_p . |z|:
+Notation: u = 2^-53, gamma_k = k u / (1 - k u), and |.| is entrywise. A holds the doubles nearest to
+the exact coefficients S, where a power of two scales each quadric to at most 1. The candidate m
+consists of doubles and counts as exact; z = (m, 1). Y is any matrix of doubles, and
+F_p = (1/2) z^T S_p z. A dot product of k terms, summed in any order, with or without fused
+operations, has an error of at most gamma_k |a| . |b| (Higham, Accuracy and Stability of Numerical
+Algorithms, section 3.1); matrix products consist of dot products. Let G = |A| |z|, with the row G_p
+for quadric p, and H_p = G_p . |z|. Then
 
     gradients   J = fl(A z):    |J - F'(m)|   <= gamma_{n+2} G    (n + 1 terms; |A - S| <= u |S|)
     product     P = fl(Y J):    |P - Y J|     <= gamma_n |Y| |J| <= gamma_{2n+1} |Y| G
@@ -14,10 +15,11 @@ products are made of dot products. With G = |A| |z|, row G_p for quadric p, and 
     product     w = fl(Y f):    |w - Y F(m)|  <= gamma_{3n+4} |Y| H
 
 All gammas on the right are at most c = 3 (n + 3) u. The bounds themselves (|Y| G, |Y| H, sums of
-|R|, |Y| times Hessian norms) are computed as sums of non-negative terms, with a relative error
-below 2^-30 for n <= 1024, paid by the factor 1 + 2^-20. Underflow adds less than 2^-500, added
-outright, since |z| <= 2^100, |Y| <= 2^300 and non-zero coefficients are at least 2^-900, which is
-checked. Then nothing overflows; a NaN fails every comparison.
+|R|, |Y| times Hessian norms) are sums of non-negative terms. They are computed with a relative
+error below 2^-30 for n <= 1024, which the factor 1 + 2^-20 covers. Underflow adds less than 2^-500,
+which is added to the bounds. This holds because |z| <= 2^100, |Y| <= 2^300 and nonzero coefficients
+are at least 2^-900, all of which is checked. Then nothing overflows, and a NaN fails every
+comparison.
 """
 
 from __future__ import annotations
@@ -34,7 +36,7 @@ from exactfold.rigidity.equations.quadratic import QuadraticSystem
 from exactfold.solve.certify.box import IsolatingBox
 
 UNPROVED = -1
-"""The radius exponent of a candidate around which nothing was proved."""
+"""The radius exponent of a candidate for which nothing was proved."""
 
 _U = 2.0**-53
 _UP = 1.0 + 2.0**-20
@@ -47,9 +49,9 @@ _CHUNK = 256
 
 @dataclass(frozen=True)
 class FloatBoxes:
-    """Boxes |x - center / 2^bits| <= 2^exponent / 2^bits, one row a candidate.
+    """Boxes |x - center / 2^bits| <= 2^exponent / 2^bits, one row for each candidate.
 
-    Where the exponent is not `UNPROVED` the box holds exactly one zero, a regular one.
+    If the exponent is not `UNPROVED`, the box contains exactly one zero, a regular one.
     """
 
     bits: int
@@ -58,7 +60,7 @@ class FloatBoxes:
 
     @property
     def proved(self) -> BoolArray:
-        """Which rows are proved; never one whose centre is not exactly a double."""
+        """Which rows are proved; a row whose centre is not exactly a double never is."""
         most = int(_INTEGERS)
         exact = ((self.centers < most) & (self.centers > -most)).all(axis=1)
         return np.asarray((self.exponents != UNPROVED) & exact)
@@ -74,16 +76,16 @@ class FloatBoxes:
         return np.asarray(np.ldexp(1.0, (self.exponents - self.bits).astype(np.intc)))
 
     def box(self, row: int) -> IsolatingBox:
-        """The box of a row that is proved."""
+        """The box of a proved row."""
         radius = 1 << int(self.exponents[row])
         return IsolatingBox(tuple(self.centers[row].tolist()), (), radius, self.bits)
 
 
 @dataclass(frozen=True)
 class FloatKrawczyk:
-    """The test of `krawczyk` for one system in floats; see the module for the error bounds.
+    """The test of `krawczyk` for one system, in floats; the module states the error bounds.
 
-    Failure says nothing about zeros: the exact test may still pass.
+    A failure says nothing about zeros: the exact test may still pass.
 
     >>> test = FloatKrawczyk(QuadraticSystem.from_rational([[[1, 0], [0, -2]]]))
     >>> boxes = test.isolate(np.array([[1.4142135623731], [1.5]]), bits=40)
@@ -95,7 +97,7 @@ class FloatKrawczyk:
 
     @cached_property
     def _stack(self) -> FloatArray | None:
-        """A of shape (n (n + 1), n + 1), None if the test does not apply."""
+        """A with the shape (n (n + 1), n + 1); None if the test does not apply."""
         if not 0 < self.system.size <= _MOST_UNKNOWNS:
             return None
         blocks = [scaled_rows(matrix) for matrix in self.system.matrices]
@@ -104,15 +106,15 @@ class FloatKrawczyk:
 
     @cached_property
     def _absolute(self) -> tuple[FloatArray, FloatArray]:
-        """|A|, and sum_jk |(H_p)_jk| for each p."""
+        """|A|, and the sums over j, k of |(H_p)_jk|, for each p."""
         n = self.system.size
         absolute = np.abs(self._stack if self._stack is not None else np.zeros((n * n + n, n + 1)))
         return absolute, absolute.reshape(n, n + 1, n + 1)[:, :n, :n].sum(axis=(1, 2))
 
     def isolate(self, points: FloatArray, bits: int) -> FloatBoxes:
-        """A box around each candidate of shape (m, n), centres rounded to `bits` bits.
+        """A box around each candidate; `points` has shape (m, n), centres have `bits` bits.
 
-        Radii are powers of two with room to spare, so that another Y proves the boxes as well.
+        Radii are powers of two and larger than necessary, so that another Y proves the boxes too.
         """
         with np.errstate(all="ignore"):
             scaled = np.rint(np.ldexp(points, bits))
@@ -127,7 +129,7 @@ class FloatKrawczyk:
         return FloatBoxes(bits, centers, np.where(passed, exponents, UNPROVED))
 
     def verify(self, boxes: FloatBoxes) -> BoolArray:
-        """Which of the given boxes hold exactly one zero, a regular one; False if not proved."""
+        """Which of the given boxes are proved to contain exactly one zero, a regular one."""
         with np.errstate(all="ignore"):
             eta, k0, bound = self._bounds(boxes.points)
             contraction = (k0 + boxes.radii * bound) * _UP
@@ -135,7 +137,7 @@ class FloatKrawczyk:
         return np.asarray(boxes.proved & (contraction < 1.0) & holds)
 
     def _bounds(self, points: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Upper bounds of eta, k0 and M for every point; NaN or infinite where there are none."""
+        """Upper bounds of eta, k0 and M for every point; NaN or infinite if there is no bound."""
         parts = [
             self._chunk(points[start : start + _CHUNK]) for start in range(0, len(points), _CHUNK)
         ]
@@ -177,10 +179,10 @@ class FloatKrawczyk:
 
 @dataclass(frozen=True)
 class FloatSigns:
-    """Signs of integer rows (c_1, ..., c_n, c_0), the functionals c . x + c_0, on whole boxes.
+    """The signs of functionals c . x + c_0 on whole boxes, from integer rows (c_1, ..., c_n, c_0).
 
-    |fl(C z) - c . z| <= gamma_{n+2} |C| |z| for the nearest doubles C, and over a box of radius r
-    the value changes by at most r sum_k |c_k|; majorised as in `FloatKrawczyk`.
+    For the nearest doubles C, |fl(C z) - c . z| <= gamma_{n+2} |C| |z|. Over a box of radius r the
+    value changes by at most r sum_k |c_k|. Errors are bounded as in `FloatKrawczyk`.
 
     >>> boxes = FloatBoxes(4, np.array([[16], [2]]), np.array([2, 2]))
     >>> FloatSigns(((1, 0), (-3, 1))).on(boxes).tolist()
@@ -196,7 +198,7 @@ class FloatSigns:
         return np.vstack(found) if found and len(found) == len(scaled) else None
 
     def on(self, boxes: FloatBoxes) -> npt.NDArray[np.int8]:
-        """1 or -1 where a row keeps that sign on the whole box, 0 where that is not proved."""
+        """1 or -1 if a row has this sign on the whole box, 0 if that is not proved."""
         if self._matrix is None:
             return np.zeros((len(boxes.centers), len(self.rows)), dtype=np.int8)
         z = np.hstack([boxes.points, np.ones((len(boxes.centers), 1))])
@@ -215,12 +217,12 @@ def scaled_rows(rows: Sequence[Sequence[int]]) -> FloatArray | None:
     bits = max((abs(x) for row in rows for x in row), default=0).bit_length()
     if bits > _MOST_BITS:
         return None
-    # Division of integers is correctly rounded, and no non-zero quotient is below 2^-900.
+    # Division of integers is correctly rounded, and every nonzero quotient is at least 2^-900.
     return np.array([[x / (1 << bits) for x in row] for row in rows], dtype=np.float64)
 
 
 def inverse_each(matrices: FloatArray) -> FloatArray:
-    """Approximate inverses of m matrices; NaN where singular."""
+    """Approximate inverses of m matrices; NaN for a singular matrix."""
     try:
         return np.asarray(np.linalg.inv(matrices), dtype=np.float64)
     except np.linalg.LinAlgError:

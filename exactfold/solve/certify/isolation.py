@@ -1,4 +1,4 @@
-"""From candidates to disjoint isolating boxes, and whether they are all the zeros there are."""
+"""Makes disjoint isolating boxes from candidates, and decides whether they hold all zeros."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ _INTERVAL = (106, 424)
 
 @dataclass(frozen=True)
 class Isolation:
-    """Pairwise disjoint isolating boxes of a system and what they prove.
+    """Pairwise disjoint isolating boxes of a system, and what they prove.
 
     Refined Bezout (Fulton, Intersection Theory, 8.4.6): the degrees of the components of the common
-    zero set of n quadrics in P^n add up to at most 2^n. So 2^n disjoint boxes are all the zeros:
-    all simple, none at infinity, no component of positive dimension (docs/mathematics.md,
-    Completeness). `complete` is PROVED exactly
-    then; otherwise UNDECIDED, and `failures` says around which candidates no box was found.
+    zero set of n quadrics in P^n add up to at most 2^n. So if there are 2^n disjoint boxes, they
+    contain all zeros; all are simple, none is at infinity, and there is no component of positive
+    dimension (docs/mathematics.md, Completeness). Exactly in this case `complete` is PROVED.
+    Otherwise it is UNDECIDED, and `failures` lists the candidates for which no box was found.
     """
 
     system: QuadraticSystem
@@ -44,7 +44,7 @@ class Isolation:
 
     @property
     def complete(self) -> Verdict:
-        """Whether the boxes are proved to hold all zeros in projective space."""
+        """Whether the boxes are proved to contain all zeros in projective space."""
         return PROVED if self._total == self.system.bezout_number else UNDECIDED
 
     @property
@@ -53,21 +53,21 @@ class Isolation:
 
     @property
     def real(self) -> int:
-        """Number of zeros proved real."""
+        """The number of zeros that are proved real."""
         return sum(box.is_real for box in self.boxes)
 
     @property
     def nonreal(self) -> int:
-        """Number of zeros proved not real."""
+        """The number of zeros that are proved non-real."""
         return sum(box.is_nonreal for box in self.boxes)
 
 
 def isolate(
     system: QuadraticSystem, candidates: Candidates, *, progress: Steps | None = None
 ) -> Isolation:
-    """Certify every candidate: exact Krawczyk first, interval Newton for what is left.
+    """Certifies every candidate: first by exact Krawczyk, then, if that fails, by interval Newton.
 
-    Candidates that lead to the same zero are counted once.
+    Candidates that lead to the same zero count once.
 
     >>> import numpy as np
     >>> system = QuadraticSystem.from_rational([[[1, 0], [0, -2]]])
@@ -81,7 +81,7 @@ def isolate(
     total = len(candidates.points)
     for start in range(0, total, _BLOCK):
         block = candidates.points[start : start + _BLOCK]
-        # Whatever zero a candidate leads to is welcome.
+        # Any zero to which a candidate leads is accepted.
         results = krawczyk(system, block, precisions=_FIRST, reach=None)
         for point, result in zip(block, results, strict=True):
             if isinstance(result, IsolatingBox):
@@ -100,7 +100,7 @@ def isolate(
 
 
 def _clusters(points: list[ComplexArray]) -> list[list[ComplexArray]]:
-    """Points that agree to about five digits together; this only chooses what to try."""
+    """Groups of points that agree to about five digits; the groups only choose what to try."""
     groups: dict[tuple[complex, ...], list[ComplexArray]] = {}
     for point in points:
         scale = float(np.abs(point).max(initial=0.0)) or 1.0
@@ -111,7 +111,7 @@ def _clusters(points: list[ComplexArray]) -> list[list[ComplexArray]]:
 def _prove_meeting(
     system: QuadraticSystem, group: list[ComplexArray]
 ) -> tuple[list[IsolatingBox], Uncertified | None]:
-    """Higher precision and the second certifier for candidates that meet; stops at a failure."""
+    """Tries higher precision and the second certifier on a group; stops at the first failure."""
     found: list[IsolatingBox] = []
     for point in group:
         (result,) = krawczyk(system, [point], precisions=_RISING, reach=None)
@@ -128,10 +128,10 @@ def _prove_meeting(
 
 
 def disjoint(boxes: Iterable[IsolatingBox]) -> list[IsolatingBox]:
-    """The boxes in order, without those that meet an earlier one; never compared pairwise.
+    """The boxes in order, without those that meet an earlier one; not compared pairwise.
 
-    Boxes are sorted by a fixed integer functional; only those whose values may coincide are
-    compared in all coordinates. Two boxes that meet may hold the same zero, so one is dropped.
+    Boxes are sorted by a fixed integer functional. Only boxes whose values may coincide are
+    compared in all coordinates. Two boxes that meet may contain the same zero, so one is dropped.
     """
     boxes = list(boxes)
     if not boxes:

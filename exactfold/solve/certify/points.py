@@ -1,4 +1,4 @@
-"""Candidates for a certifier, read exactly: floats, complex numbers and rationals alike."""
+"""Reads the candidates for a certifier exactly: floats, complex numbers and rationals."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ Points: TypeAlias = "Iterable[Sequence[Coordinate]] | Iterable[npt.NDArray[Any]]
 Point: TypeAlias = tuple[Fraction, ...]
 
 REACH = Fraction(1, 64)
-"""A box is accepted up to max(1, |candidate|) times this away from its candidate."""
+"""A box is accepted if it is at most max(1, |candidate|) times this away from its candidate."""
 _ZERO = Fraction(0)
 _NEGLIGIBLE = Fraction(1, 10**8)
 
 
 @dataclass(frozen=True)
 class Candidate:
-    """A point of C^n: exact real and imaginary parts, and the floats to show."""
+    """A point of C^n: its exact real and imaginary parts, and floats for messages."""
 
     real: Point
     imag: Point
@@ -69,7 +69,7 @@ def exact_candidates(points: Points, size: int) -> list[Candidate | Uncertified]
 
 
 def is_within_reach(box: IsolatingBox, start: Point, reach: Fraction | None) -> bool:
-    """Whether the centre of a box is near the point (real, then imaginary parts) it started from.
+    """Whether the centre of a box is near the point (real, then imaginary parts) of its start.
 
     `reach` is in units of max(1, |start|); None allows any distance.
     """
@@ -82,12 +82,12 @@ def is_within_reach(box: IsolatingBox, start: Point, reach: Fraction | None) -> 
 
 
 def to_arb(value: Fraction) -> arb:
-    """A ball about the number, at the precision of FLINT's context."""
+    """A ball around the number, at the precision of FLINT's context."""
     return arb(value.numerator) / arb(value.denominator)
 
 
 def largest(column: Any) -> arb:
-    """About the largest absolute value in a matrix of balls: no bound, to choose what to try."""
+    """Roughly the largest absolute value in a matrix of balls; not a bound, only for choices."""
     return max(abs(entry).mid() for entry in column.entries())
 
 

@@ -1,4 +1,4 @@
-"""Exact form of isolated roots: their parametrisation rebuilt from sharp boxes, then verified."""
+"""Finds the exact form of isolated roots: rebuilds their parametrisation, and verifies it."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from exactfold.solve.certify.box import IsolatingBox
 
 
 def recognise(system: QuadraticSystem, boxes: Sequence[IsolatingBox]) -> list[RootClass] | None:
-    """The zeros in real boxes as classes of conjugate algebraic points, exactly.
+    """The zeros in real boxes, exactly, as classes of conjugate algebraic points.
 
-    They have a rational parametrisation if they are all zeros of some rational system (such as all
-    zeros at which given folds are flat): see `parametrisation_of_some`. What is returned has passed
-    `RootClass.verify` and has exactly one zero in each of the boxes. None if no rational
-    coefficients were found, which decides nothing.
+    The zeros have a rational parametrisation if they are all zeros of some rational system, such as
+    all zeros at which given folds are flat (see `parametrisation_of_some`). The result has passed
+    `RootClass.verify` and has exactly one zero in each of the boxes. The result None means that no
+    rational coefficients were found, which decides nothing.
 
     >>> from exactfold.solve.certify.exact_krawczyk import krawczyk
     >>> system = QuadraticSystem.from_rational([[[1, 0], [0, -2]]])

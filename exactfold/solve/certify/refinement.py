@@ -1,7 +1,7 @@
-"""Heights in high precision with every curvature slightly above its target; proposes only.
+"""Refines heights so that every curvature is slightly above its target; this proposes only.
 
-The equations are those of `solve.numeric.sparse_newton`. Its float steps take exact bends and
-residuals here, so that each gains the digits of a float.
+The equations are those of `solve.numeric.sparse_newton`. Its float steps are computed here from
+exact bends and residuals, so that each step gains as many digits as a float has.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ _SPARE = 16
 
 @dataclass(frozen=True)
 class Heights:
-    """Integer heights of all vertices over `denominator`, a multiple of that of the rim.
+    """Integer heights of all vertices over `denominator`, a multiple of that of the boundary.
 
-    `bits` is the extra precision of divisions with which `enclose` sees their curvature.
+    `bits` is the extra precision with which `enclose` should divide for their curvatures.
     """
 
     values: BigArray
@@ -34,7 +34,7 @@ class Heights:
 
 
 def exact(sheet: Sheet, floats: FloatSheet, x: FloatArray, places: int = 64) -> Heights:
-    """Float heights of the unknowns, and the rim, to 2^-places."""
+    """The float heights of the unknowns, and the boundary heights, as integers over 2^places."""
     result = _with_rim(sheet, places)
     result.values[floats.unknowns] = _integers(x, places) * sheet.rim_denominator
     return result
@@ -43,16 +43,16 @@ def exact(sheet: Sheet, floats: FloatSheet, x: FloatArray, places: int = 64) -> 
 def refine(
     sheet: Sheet, floats: FloatSheet, signs: FloatArray, start: Heights, level: int
 ) -> Heights | None:
-    """Newton on the nappes towards K_v = k_v + 2^-level, in units of the size of the sheet.
+    """Newton's method on the nappes towards K_v = k_v + 2^-level, in units of the sheet's size.
 
-    Residuals are exact; a step is the float solution of a linear system whose entries are floats of
-    exact bends, so that each gains the digits of a float. In the result K_v - k_v is between a half
-    and three halves of 2^-level; None if that was not reached.
+    Residuals are exact. A step solves, in floats, a linear system whose entries are floats of exact
+    bends; so each step gains as many digits as a float has. In the result, K_v - k_v is between one
+    half and three halves of 2^-level. The result is None if that was not reached.
     """
     inner, areas = floats.unknowns, sheet.folds.left * sheet.folds.right
     square = sheet.size**2
     omega = ratio(sheet.folds.bends(start.values) * square, areas * start.denominator)
-    # A rounding by 2^-places moves no K_v by more than a sixteenth of 2^-level.
+    # Rounding by 2^-places changes each K_v by at most a sixteenth of 2^-level.
     places = level + 5 + max(0, ceil(log2(max(floats.row_sums(omega).max(), 1.0))))
     at = _with_rim(sheet, places)
     q = at.denominator
@@ -93,7 +93,7 @@ def _with_rim(sheet: Sheet, places: int) -> Heights:
 
 
 def _integers(x: FloatArray, places: int) -> BigArray:
-    """The floats times 2^places, rounded down, for any places."""
+    """The floats times 2^places, rounded down; `places` may be negative."""
     pairs = (value.as_integer_ratio() for value in x.tolist())
     if places >= 0:
         return np.array([(p << places) // q for p, q in pairs], dtype=object)

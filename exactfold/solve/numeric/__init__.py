@@ -1,1 +1,1 @@
-"""Candidates for the branches, in floating point; nothing here is proved."""
+"""Finds candidates for the branches in floating point; nothing here is proved."""

@@ -1,4 +1,4 @@
-"""What a solver returns: untrusted candidates for the zeros of a quadratic system."""
+"""The result of a solver: untrusted candidates for the zeros of a quadratic system."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from exactfold._support.arrays import ComplexArray
 
 @dataclass(frozen=True, eq=False)
 class Candidates:
-    """Approximate zeros of a `QuadraticSystem`, one row a zero; nothing here is proved.
+    """Approximate zeros of a `QuadraticSystem`, one row for each zero; nothing here is proved.
 
-    `points` has shape (m, n). `lost` names the paths that did not arrive, in the solver's own
-    words; `settings` records seed, tolerances and counts, so that a run can be repeated.
+    `points` has shape (m, n). `lost` names, in the solver's own words, the paths that did not
+    arrive. `settings` records seed, tolerances and counts, so that a run can be repeated.
     """
 
     method: str
@@ -24,7 +24,7 @@ class Candidates:
     settings: Mapping[str, int | str] = field(default_factory=dict)
 
     def finite(self) -> Candidates:
-        """The finite candidates; the others are lost."""
+        """The finite candidates; `lost` mentions the others."""
         good = np.isfinite(self.points).all(axis=1)
         if good.all():
             return self
@@ -44,11 +44,11 @@ class Candidates:
 
     @property
     def some_meet(self) -> bool:
-        """Whether two of them agree to about six digits, as they do at a multiple zero."""
+        """Whether two candidates agree to about six digits, as they do at a multiple zero."""
         return self.agree_to(6)
 
     def agree_to(self, digits: int) -> bool:
-        """Whether two of them agree to about so many digits."""
+        """Whether two candidates agree to about so many digits."""
         size = np.abs(self.points).max(axis=1, initial=1.0)
         rounded = np.round(self.points / size[:, None], digits)
         return len(np.unique(rounded, axis=0)) < len(rounded)

@@ -1,18 +1,18 @@
 r"""Newton's method on the nappes: one equation system for each vector of vertex signs.
 
-With l_v and the positive semidefinite N_v = l_v^2 - K_v = |A_v h|^2 of the popping homotopy,
-K_v = 0 with vertex sign e_v says l_v = e_v |A_v h|. For given boundary heights and signs e put
+Take l_v and the positive semidefinite N_v = l_v^2 - K_v = |A_v h|^2 of the popping homotopy. Then
+K_v = 0 with the vertex sign e_v means l_v = e_v |A_v h|. For given boundary heights and signs e put
 
     g_v(h) = l_v(h) - e_v |A_v h|    for every interior vertex v.
 
-*g is a homeomorphism of R^n with Lipschitz inverse* (docs/mathematics.md, Nappes), so that there is
-one zero for each e, and Newton's steps are defined wherever g is differentiable. A zero where a
-star is flat, a multiple root of K = 0, is no worse conditioned than others. Floating point: nothing
-here is proved.
+*g is a homeomorphism of R^n with Lipschitz inverse* (docs/mathematics.md, Nappes). So there is one
+zero for each e, and Newton's steps are defined wherever g is differentiable. A zero at which a star
+is flat, which is a multiple root of K = 0, is no worse conditioned than others. All this is
+floating point; nothing here is proved.
 
-A block of sign vectors is solved at once by dense arrays, which takes a fraction of the time of one
-after the other; `sparse_newton` is for one sign vector of a sheet of any size, and `refined_newton`
-for ends that doubles do not tell apart.
+Dense arrays solve a block of sign vectors at once, much faster than one after the other.
+`sparse_newton` solves for one sign vector on a sheet of any size, and `refined_newton` separates
+zeros that doubles cannot.
 """
 
 from __future__ import annotations
@@ -48,9 +48,9 @@ _CHUNK = 256
 
 @dataclass(frozen=True)
 class Ends:
-    """Approximate ends, one row a sign vector: `points` in the chart and which ones `converged`.
+    """Approximate zeros, one row for each sign vector: `points` in the chart.
 
-    `steps` counts the Newton steps of all rows together.
+    `converged` says which rows converged. `steps` counts the Newton steps of all rows together.
     """
 
     points: FloatArray
@@ -60,10 +60,11 @@ class Ends:
 
 @dataclass(frozen=True)
 class Nappe:
-    """l_v and A_v of one vertex as exact rows on (x, 1): N_v = sum of weight * (row . (x, 1))^2.
+    """l_v and A_v of one vertex as exact rows on (x, 1).
 
-    A row is a tuple of integers and their common denominator, a weight a pair of integers whose
-    quotient it is: these are long, and hardly ever needed in lowest terms.
+    N_v is the sum of weight * (row . (x, 1))^2. A row is a tuple of integers and their common
+    denominator; a weight is a pair of integers and stands for their quotient. They are long and
+    hardly ever needed in lowest terms.
     """
 
     over_line: tuple[tuple[int, ...], int]
@@ -71,13 +72,13 @@ class Nappe:
 
     @cached_property
     def line(self) -> Row:
-        """l_v as a row of fractions."""
+        """The functional l_v as a row of fractions."""
         row, below = self.over_line
         return tuple(Fraction(c, below) for c in row)
 
     @cached_property
     def squares(self) -> tuple[tuple[Fraction, Row], ...]:
-        """Weights and rows as fractions."""
+        """The weights and rows as fractions."""
         return tuple(
             (Fraction(*weight), tuple(Fraction(c, below) for c in row))
             for weight, (row, below) in self.over_squares
@@ -85,13 +86,13 @@ class Nappe:
 
     @property
     def float_line(self) -> list[float]:
-        """l_v, each entry rounded once."""
+        """The functional l_v, with each entry rounded once."""
         row, below = self.over_line
         return [c / below for c in row]
 
     @property
     def float_root(self) -> list[list[float]]:
-        """A_v: the rows times the roots of their weights."""
+        """The matrix A_v: each row times the root of its weight."""
         return [
             [(over / under) ** 0.5 * (c / below) for c in row]
             for (over, under), (row, below) in self.over_squares
@@ -99,7 +100,7 @@ class Nappe:
 
     @property
     def form(self) -> FloatArray:
-        """l_v^2 - N_v as a matrix on (x, 1), each entry rounded once: K_v, scaled, minus k_v."""
+        """l_v^2 - N_v as a matrix on (x, 1), with each entry rounded once: scaled K_v minus k_v."""
         terms = [(Fraction(1), self.line), *((-weight, row) for weight, row in self.squares)]
         places = sorted({k for _, row in terms for k, c in enumerate(row) if c})
         matrix = np.zeros((len(self.line), len(self.line)))
@@ -110,7 +111,7 @@ class Nappe:
 
 
 def sign_vectors(first: int, count: int, size: int) -> FloatArray:
-    """Sign vectors number `first`, ...: bit k of the number is set where sign k is -1.
+    """The sign vectors number `first`, ...: sign k is -1 if bit k of the number is set.
 
     >>> sign_vectors(1, 2, 2).tolist()
     [[-1.0, 1.0], [1.0, -1.0]]
@@ -123,9 +124,9 @@ def sign_vectors(first: int, count: int, size: int) -> FloatArray:
 class NappeSystem:
     """The equations g = 0 of a pattern with four boundary vertices, for all sign vectors.
 
-    Unknowns are the heights of `gauge.unknowns`, the rim having those of the gauge; ends are given
-    as points of `chart`. A reflex corner is the last unknown, with the equation
-    l_r = (N_r + k)^(1/2), k its given curvature, that is K_r = k in the closed sheet.
+    The unknowns are the heights of `gauge.unknowns`; the boundary heights are those of the gauge.
+    Zeros are given as points of `chart`. A reflex corner is the last unknown. Its equation is
+    l_r = (N_r + k)^(1/2), where k is its given curvature: K_r = k in the closed sheet.
     """
 
     chart: Chart
@@ -137,10 +138,10 @@ class NappeSystem:
 
     @cached_property
     def nappes(self) -> tuple[Nappe, ...]:
-        """Exact data of every unknown's vertex, scaled so that l_v has coefficient 1 at the hub.
+        """The exact data of the vertices of all unknowns; each l_v has coefficient 1 at the hub.
 
-        With K_v = M / d, a cone t and p = M t in integers, l_v is p . h over its coefficient p_v at
-        the hub, and p_v^2 N_v = (p . h)^2 - (t . p) h^T M h.
+        Write K_v = M / d, and let t be a cone and p = M t, in integers. Then l_v is p . h divided
+        by its coefficient p_v at the hub, and p_v^2 N_v = (p . h)^2 - (t . p) h^T M h.
         """
         gauge = self.gauge
         size = len(gauge.unknowns) + 1
@@ -171,35 +172,35 @@ class NappeSystem:
 
     @cached_property
     def lines(self) -> FloatArray:
-        """All l_v on (x, 1), one row each."""
+        """The functionals l_v on (x, 1), one row for each."""
         return np.array([nappe.float_line for nappe in self.nappes])
 
     @cached_property
     def _roots(self) -> list[FloatArray]:
-        """A_v for every v, one row a square."""
+        """The matrix A_v for every v, with one row for each square."""
         return [np.array(nappe.float_root) for nappe in self.nappes]
 
     @cached_property
     def _stacked(self) -> FloatArray:
-        """All A_v below each other."""
+        """The matrices A_v below each other."""
         return np.vstack(self._roots)
 
     @cached_property
     def _owners(self) -> FloatArray:
-        """One column for every v: 1 at the squares of v."""
+        """One column for every v, which is 1 at the squares of v."""
         return np.repeat(np.eye(len(self.nappes)), [len(a) for a in self._roots], axis=0)
 
     def full_signs(self, signs: FloatArray) -> FloatArray:
-        """The signs of all unknowns: a reflex corner pops up."""
+        """The signs of all unknowns; a reflex corner pops up."""
         missing = len(self.gauge.unknowns) - signs.shape[1]
         return np.hstack([signs, np.ones((len(signs), missing))])
 
     def ends(self, signs: FloatArray) -> Ends:
         """The zero of g for every row of `signs` (in the order of the interior vertices).
 
-        Damped Newton from the linear system l_v = e_v c. Rows that have not converged are not known
-        to have no zero (each has one if the boundary is convex or its notch closed); their last
-        point is returned.
+        Damped Newton steps start from the solution of the linear system l_v = e_v c. For a row that
+        does not converge the last point is returned. It may have a zero all the same (each row has
+        one if the boundary is convex or its notch closed).
 
         >>> from exactfold.pattern.families import single_vertex
         >>> from exactfold.rigidity.equations.branch_system import chamber_chart
@@ -211,11 +212,12 @@ class NappeSystem:
         return self._ends(*self.unknowns(self.full_signs(signs)))
 
     def ends_of_block(self, first: int, count: int) -> Ends:
-        """The same for the sign vectors number `first` to `first + count - 1`, in fewer steps.
+        """The zeros for the sign vectors number `first` to `first + count - 1`, in fewer steps.
 
-        `count` is a power of two and divides `first`. Ends for the first few are found from the
-        linear start. An end with one more bit starts from that without it, x(r), moved as that bit
-        moved the end of an earlier row: x(r) + x(q + bit) - x(q), with q = r without its top bit.
+        `count` is a power of two and divides `first`. The zeros of the first few sign vectors are
+        found from the linear start. Let r be a number without a certain bit. The zero of r + bit
+        starts from x(r), moved as this bit moved the zero of an earlier row: it starts from
+        x(r) + x(q + bit) - x(q), where q is r without its top bit.
         """
         e = self.full_signs(sign_vectors(first, count, self.chart.system.size))
         x, converged = np.empty_like(e), np.zeros(count, dtype=bool)
@@ -241,7 +243,7 @@ class NappeSystem:
         return Ends(points, converged & np.isfinite(points).all(axis=1), steps)
 
     def flat_at_end(self, signs: Sequence[int]) -> tuple[int, ...]:
-        """The places of `signs` whose vertices look flat in doubles at the end for these signs."""
+        """The places in `signs` of the vertices whose stars look flat, in doubles, at the zero."""
         e = self.full_signs(np.array([signs], dtype=np.float64))
         x, _, _ = self.unknowns(e)
         small = self._values(x, e)[2][0] < _FLAT * (1.0 + np.abs(x).max())
@@ -249,12 +251,12 @@ class NappeSystem:
 
     @cached_property
     def rest(self) -> FloatArray:
-        """The heights at which all l_v are 0, for a linear start."""
+        """The heights at which all l_v are 0, from which the linear start is made."""
         n = len(self.lines)
         return np.asarray(np.linalg.solve(self.lines[:, :n], -self.lines[:, n]))
 
     def unknowns(self, e: FloatArray) -> tuple[FloatArray, BoolArray, int]:
-        """The same before scaling to the chart, for signs of all unknowns."""
+        """Like `ends`, but before scaling to the chart, and for signs of all unknowns."""
         n = e.shape[1]
         lines = self.lines
         right = e * start_size(self.rest) - lines[:, n]
@@ -262,7 +264,7 @@ class NappeSystem:
         return self._newton(np.array(start, dtype=np.float64), e)
 
     def _newton(self, x: FloatArray, e: FloatArray) -> tuple[FloatArray, BoolArray, int]:
-        """Damped Newton from given points, which are overwritten."""
+        """Damped Newton steps from given points, which are overwritten."""
         converged, steps = np.zeros(len(x), dtype=bool), 0
         live = np.arange(len(x))
         with np.errstate(all="ignore"):
@@ -276,18 +278,18 @@ class NappeSystem:
         return x, converged, steps
 
     def _values(self, x: FloatArray, e: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """g, the products A h and the norms |A_v h|."""
+        """g, the products A h, and the norms |A_v h|."""
         z = np.hstack([x, np.ones((len(x), 1))])
         products = z @ self._stacked.T
         norms = np.sqrt((products * products) @ self._owners)
         return z @ self.lines.T - e * norms, products, norms
 
     def _step(self, x: FloatArray, e: FloatArray) -> tuple[FloatArray, BoolArray, BoolArray]:
-        """One damped step of every row: the new points, which converged and which are stuck."""
+        """One damped step of every row: the new points, which rows converged, which are stuck."""
         n = x.shape[1]
         g, products, norms = self._values(x, e)
         weights = products * ((-e / np.maximum(norms, 1e-300)) @ self._owners.T)
-        jacobian = np.empty((n, len(x), n))  # vertex first: each is written in one stroke
+        jacobian = np.empty((n, len(x), n))  # vertex first, so that each vertex is written at once
         column = 0
         for v, root in enumerate(self._roots):
             np.matmul(weights[:, column : column + len(root)], root[:, :n], out=jacobian[v])
@@ -316,7 +318,7 @@ class NappeSystem:
         return moved, (length == 1.0) & (small | (after <= _RESIDUAL * size)) & ~stuck, stuck
 
     def in_chart(self, x: FloatArray) -> FloatArray:
-        """Points of the chart: with a reflex corner, heights scaled to its functional."""
+        """The points in the chart; with a reflex corner, heights are scaled to its functional."""
         if self.gauge.corner is None:
             return x
         weights = np.array([float(self.chart.functional.get(v, 0)) for v in self.gauge.unknowns])
@@ -324,7 +326,7 @@ class NappeSystem:
 
 
 def solve_each(matrices: FloatArray, right: FloatArray) -> FloatArray:
-    """Solutions of m systems of shape (m, n, n), (m, n); not finite where singular."""
+    """The solutions of m systems of shape (m, n, n), (m, n); not finite for a singular system."""
     try:
         return np.asarray(np.linalg.solve(matrices, right[:, :, None])[:, :, 0])
     except np.linalg.LinAlgError:
@@ -339,7 +341,7 @@ def solve_each(matrices: FloatArray, right: FloatArray) -> FloatArray:
 def _lifted(
     row: Sequence[int], places: Sequence[tuple[int, int] | None], size: int
 ) -> tuple[int, ...]:
-    """A row over a star as a row on (x, 1), with heights in units; others have height 0."""
+    """A row over a star as a row on (x, 1), with heights in units; other vertices have height 0."""
     full = [0] * size
     for value, found in zip(row, places, strict=True):
         if found is not None:

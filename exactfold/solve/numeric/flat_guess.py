@@ -1,4 +1,4 @@
-"""Which vertices seem flat on approximate zeros: guesses in floating point, nothing is proved."""
+"""Guesses in floating point which vertices are flat at approximate zeros; nothing is proved."""
 
 from __future__ import annotations
 
@@ -18,24 +18,25 @@ _FLAT = (1e-5, 1e-4, 1e-3, 1e-2)
 _NEVER_FOLDED = 1e-9
 _REACH = 10.0  # times the tolerance
 _STEPS = 12
-_ZERO = 1e-11  # of the sum of the absolute values of the terms
+_ZERO = 1e-11  # a value is zero if it is below this share of the absolute sum of its terms
 
 
 @dataclass(frozen=True)
 class Guess:
-    """Sets of vertices that may be flat, with the points of each set, and the other points."""
+    """Sets of vertices that may be flat, the points of each set, and the remaining points."""
 
     flat: dict[frozenset[int], BoolArray]
     simple: BoolArray
 
 
 def flat_vertices(chart: Chart, points: FloatArray) -> Iterator[Guess]:
-    """Guesses from approximate zeros, of shape (m, n): which vertices are flat on which of them.
+    """Yields guesses which vertices are flat at which of the approximate zeros, of shape (m, n).
 
-    One guess for each tolerance on the largest fold at a vertex (each fold in units of its largest
-    value on any of the zeros), as far as they differ and some vertex is flat. Vertices that are
-    nearly flat are told from flat ones by whether the quadrics have a zero near the point on the
-    sheets with these flat vertices, the flattest of them first. Untrusted.
+    There is one guess for each tolerance on the largest fold at a vertex, if it differs from the
+    guess before and some vertex is flat. Each fold is measured in units of its largest value at any
+    of the zeros. To tell nearly flat vertices from flat ones, the quadrics are tried on the sheets
+    with these flat vertices: they must have a zero near the point. If they have none, the least
+    flat vertex is dropped. Untrusted.
     """
     pattern = chart.branch_system.pattern
     weights = _floats([chart.restrict(fold_functional(pattern, fold)) for fold in pattern.folds])
@@ -68,7 +69,7 @@ def flat_vertices(chart: Chart, points: FloatArray) -> Iterator[Guess]:
                 best[where] = np.where(near[:, None], row, best[where])
             left &= (best != flat).any(axis=1)
             last = np.where(flat, bend, -1.0).argmax(axis=1)
-            flat[left, last[left]] = False  # the least flat of them is not flat
+            flat[left, last[left]] = False  # the least flat vertex does not count as flat
             left &= (flat != before).any(axis=1) & flat.any(axis=1)
         if np.array_equal(best, before):
             continue
@@ -83,7 +84,10 @@ def flat_vertices(chart: Chart, points: FloatArray) -> Iterator[Guess]:
 
 
 def _near(sheets: FlatSheets, points: FloatArray, reach: float) -> BoolArray:
-    """Near which points of the chart, of shape (m, n), the quadrics on these sheets have zeros."""
+    """For which points of the chart, of shape (m, n), the quadrics have zeros nearby.
+
+    The quadrics are taken on these flat sheets.
+    """
     size = len(sheets.free) + 1
     flat = [[from_fmpq(c) for c in form.entries()] for form in sheets.quadrics]
     forms = _floats(flat).reshape(len(flat), size, size)
@@ -91,11 +95,11 @@ def _near(sheets: FlatSheets, points: FloatArray, reach: float) -> BoolArray:
 
 
 def near_zeros(quadrics: FloatArray, points: FloatArray, reach: float = 0.1) -> BoolArray:
-    """Near which of the points, of shape (m, n), all quadrics z^T S z, z = (y, 1), have a zero.
+    """For which of the points, of shape (m, n), all quadrics z^T S z, z = (y, 1), vanish nearby.
 
-    `quadrics` has shape (k, n + 1, n + 1), any k. Untrusted: True where the method of Gauss and
-    Newton goes to a zero to within rounding and no farther than `reach` (1 + |y|); elsewhere there
-    may be zeros all the same.
+    `quadrics` has shape (k, n + 1, n + 1) with any k. The result is True for a point from which the
+    Gauss-Newton method goes to a zero (up to rounding) at a distance of at most `reach` (1 + |y|).
+    The result is untrusted: for other points there may be zeros all the same.
 
     >>> circle_and_line = [[[1, 0, 0], [0, 1, 0], [0, 0, -2]], [[0, 0, 1], [0, 0, -1], [1, -1, 0]]]
     >>> near_zeros(np.array(circle_and_line, dtype=float), np.array([[1.01, 0.99], [0, 5.0]]))

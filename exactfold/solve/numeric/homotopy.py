@@ -1,4 +1,4 @@
-"""Batched complex total-degree homotopy for square systems of affine quadrics."""
+"""A complex total-degree homotopy for square systems of affine quadrics, in batches."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _STALLED_LATE = 1e-8
 
 @dataclass(frozen=True)
 class _Tolerances:
-    """Predictor error aimed at, first correction accepted, shortest step, most steps."""
+    """The predictor's error, the first accepted correction, the shortest step, the most steps."""
 
     predict: float = 1e-6
     correct: float = 1e-4
@@ -42,22 +42,23 @@ def homotopy(
 ) -> Candidates:
     """Candidates for all complex zeros of n affine quadrics, one path for each of the 2^n.
 
-    In projective coordinates w, after a linear change of variables and of equations Q that balances
-    them, with random complex numbers g_p of modulus one (Sommese and Wampler, The Numerical
-    Solution of Systems of Polynomials, 2005, chapters 2 and 8), the paths satisfy
+    A linear change of variables and of equations Q balances them first. In projective coordinates w
+    and with random complex numbers g_p of modulus one (Sommese and Wampler, The Numerical Solution
+    of Systems of Polynomials, 2005, chapters 2 and 8), the paths satisfy
 
         (1 - T) g_p (w_p^2 - w_0^2) + T Q_p(w) = 0   for p = 1, ..., n,   from T = 0 to T = 1.
 
-    Predictor: a Taylor series from one inverse Jacobian per step, in the affine patch orthogonal to
-    the current point; corrector: Newton with that inverse; all paths of a block advance together as
-    arrays. Paths that stall or meet are followed again with shorter steps, then all of them with
-    other g_p. `progress(done, total)` counts paths. The result is a function of system and `seed`.
+    The predictor is a Taylor series from one inverse Jacobian per step, in the affine patch
+    orthogonal to the current point. The corrector is Newton's method with the same inverse. All
+    paths of a block advance together as arrays. Paths that stall or meet are followed again with
+    shorter steps, and then all paths with other g_p. `progress(done, total)` counts paths. The
+    result depends only on the system and `seed`.
 
     `points` has shape (m, n) with m <= 2^n, in the units of the unknowns. `lost` names every path
-    that did not arrive: it ended at infinity, where another one did, or stalled; where it stalled
-    is still a candidate if T was nearly 1, as it is at multiple zeros. Floating point throughout:
-    nothing here is proved, and a lost path does not mean that there are fewer zeros. Raises
-    `UsageError` if the system has no unknowns.
+    that did not arrive: it ended at infinity, or where another path ended, or it stalled. If it
+    stalled with T nearly 1, as it does at multiple zeros, its last point is still a candidate. This
+    is floating point throughout: nothing here is proved, and a lost path does not mean that there
+    are fewer zeros. Raises `UsageError` if the system has no unknowns.
 
     >>> circle_and_line_pair = QuadraticSystem.from_rational(
     ...     [[[1, 0, 0], [0, 1, 0], [0, 0, -1]], [[0, 1, 0], [1, 0, 0], [0, 0, 0]]])
@@ -66,7 +67,7 @@ def homotopy(
     ([(-1, 0), (0, -1), (0, 1), (1, 0)], ())
     """
     if system.size == 0:
-        raise UsageError("a system without unknowns has no paths to follow")
+        raise UsageError("the system has no unknowns: there are no paths to follow")
     powers, plain = _equilibrate(system.float_tensor)
     scaled = _Balanced(*_operator_scaling(plain), powers, plain)
     runs: list[_Run] = []
@@ -81,7 +82,7 @@ def homotopy(
 
 @dataclass(frozen=True)
 class _Balanced:
-    """Forms Q of shape (n, n+1, n+1) in coordinates w, where (x, 1) ~ exponents * (to_y @ w)."""
+    """Forms Q of shape (n, n+1, n+1) in coordinates w, where (x, 1) ~ powers * (to_y @ w)."""
 
     forms: FloatArray
     to_y: FloatArray
@@ -90,7 +91,7 @@ class _Balanced:
 
 
 def _equilibrate(tensor: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Powers of two d with S_pij d_i d_j of about the same size for each p (exact in floats)."""
+    """Powers of two d that make all S_pij d_i d_j about equal for each p; exact in floats."""
     n, size, _ = tensor.shape
     p, i, j = np.nonzero(tensor)
     rows = np.arange(len(p))
@@ -108,9 +109,9 @@ def _equilibrate(tensor: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def _operator_scaling(forms: FloatArray, rounds: int = 30) -> tuple[FloatArray, FloatArray]:
-    """(B, L) with B_p = sum_q R_pq L^T A_q L: trace-orthonormal, sum_p B_p^2 near a multiple of I.
+    """(B, L) with B_p = sum_q R_pq L^T A_q L, trace-orthonormal; sum_p B_p^2 is nearly c I.
 
-    Directions that are null for all forms are left alone.
+    Directions that are null for all forms are not changed.
     """
     n, size, _ = forms.shape
     change = np.eye(size)
@@ -127,7 +128,7 @@ def _operator_scaling(forms: FloatArray, rounds: int = 30) -> tuple[FloatArray, 
 
 
 def _orthonormal(forms: FloatArray) -> FloatArray:
-    """Combinations of the forms that are orthonormal under the trace form, nearest to them."""
+    """The combinations of the forms that are trace-orthonormal and nearest to the forms."""
     n = len(forms)
     flat = forms.reshape(n, -1)
     u, s, vt = np.linalg.svd(flat, full_matrices=False)
@@ -139,7 +140,7 @@ def _orthonormal(forms: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class _Run:
-    """Ends of all paths: w (2^n, n+1), T reached, |J^-1| there, and the path met, or -1."""
+    """The ends of all paths: w (2^n, n+1), T, |J^-1|, and the path that each one met, or -1."""
 
     w: ComplexArray
     reached: FloatArray
@@ -154,7 +155,7 @@ class _Run:
 
     @property
     def suspicious(self) -> bool:
-        """Whether a path failed other than at a singular end, where all g_p fare alike."""
+        """Whether a path failed, except at a singular end, where other g_p do not help."""
         stalled = self.reached < _NEAR_END
         jumped = (self.met >= 0) & (self.condition < _SINGULAR)
         return bool((stalled | jumped).any())
@@ -199,7 +200,7 @@ def _start_points(paths: IntArray, n: int) -> ComplexArray:
 
 
 def _meetings(w: ComplexArray, reached: FloatArray, probe: ComplexArray) -> IntArray:
-    """For each path the smallest path that ended at the same projective point, or -1."""
+    """For each path, the first path that ended at the same projective point; -1 if none did."""
     met = np.full(len(w), -1)
     arrived = np.flatnonzero(reached == 1.0)
     if arrived.size < 2:
@@ -219,7 +220,7 @@ def _meetings(w: ComplexArray, reached: FloatArray, probe: ComplexArray) -> IntA
 
 
 def _collect(scaled: _Balanced, run: _Run) -> tuple[ComplexArray, tuple[str, ...]]:
-    """The finite points in the units of the unknowns, and a line for every path that was lost."""
+    """The finite points in the units of the unknowns, and a line for every lost path."""
     y = run.w @ scaled.to_y.T
     y /= np.linalg.norm(y, axis=1, keepdims=True)
     finite = np.abs(y[:, -1]) > _AT_INFINITY
@@ -239,7 +240,7 @@ def _collect(scaled: _Balanced, run: _Run) -> tuple[ComplexArray, tuple[str, ...
 
 @np.errstate(all="ignore")
 def _polish(forms: FloatArray, x: ComplexArray, rounds: int = 3) -> ComplexArray:
-    """Newton steps in the affine chart, each kept only if it is short."""
+    """Newton steps in the affine chart; each step is kept only if it is short."""
     for _ in range(rounds):
         z = np.hstack([x, np.ones((len(x), 1))])
         rows = np.einsum("pij,bj->bpi", forms, z)
@@ -251,7 +252,7 @@ def _polish(forms: FloatArray, x: ComplexArray, rounds: int = 3) -> ComplexArray
 
 
 def _inverses(matrices: ComplexArray) -> ComplexArray:
-    """Inverses of a stack of matrices, NaN where LAPACK finds one singular."""
+    """The inverses of a stack of matrices; NaN for matrices that LAPACK finds singular."""
     try:
         return np.asarray(np.linalg.inv(matrices))
     except np.linalg.LinAlgError:
@@ -265,7 +266,7 @@ def _inverses(matrices: ComplexArray) -> ComplexArray:
 
 
 def _times(rows: ComplexArray, matrix: ComplexArray) -> ComplexArray:
-    """`rows @ matrix` in slices too small for a threaded BLAS, which stalls on a busy machine."""
+    """`rows @ matrix`, in slices too small for a threaded BLAS, which stalls on a busy machine."""
     whole = len(rows) // _SLICE * _SLICE
     result = np.empty((len(rows), matrix.shape[1]), dtype=np.complex128)
     slices = rows[:whole].reshape(-1, _SLICE, rows.shape[1])
@@ -287,7 +288,7 @@ class _Tracker:
     def track(
         self, w: ComplexArray, tolerances: _Tolerances
     ) -> tuple[ComplexArray, FloatArray, FloatArray, int]:
-        """(w, T, |J^-1|) of each path where it ended, and the number of path steps taken."""
+        """(w, T, |J^-1|) at the end of each path, and the number of path steps."""
         count = len(w)
         end_w, end_t, condition = w.copy(), np.zeros(count), np.full(count, np.inf)
         live = np.arange(count)
@@ -319,7 +320,7 @@ class _Tracker:
         return end_w, end_t, condition, steps
 
     def _jacobian(self, w: ComplexArray, t: FloatArray) -> ComplexArray:
-        """(dH/dw; conj(w)), shape (count, n + 1, n + 1)."""
+        """The matrices (dH/dw; conj(w)), of shape (count, n + 1, n + 1)."""
         n, count = self.n, len(w)
         jacobian = np.empty((count, n + 1, n + 1), dtype=np.complex128)
         rows = _times(w, self.gradient).reshape(count, n, n + 1)
@@ -332,7 +333,7 @@ class _Tracker:
         return jacobian
 
     def _values(self, square: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
-        """Start forms and Q, as linear functions of W = w w^T (shape (count, n+1, n+1))."""
+        """The start forms and Q, as linear functions of W = w w^T (shape (count, n+1, n+1))."""
         n = self.n
         k = np.arange(n)
         start = self.gamma * (square[:, k, k] - square[:, n:, n])
@@ -341,7 +342,7 @@ class _Tracker:
     def _correct(
         self, w: ComplexArray, t: FloatArray, inverse: ComplexArray, tolerances: _Tolerances
     ) -> tuple[ComplexArray, BoolArray]:
-        """Newton with a fixed inverse; good if the first step is short and the next far shorter."""
+        """Newton with a fixed inverse; good if the steps are short and shrink fast."""
         shift = t[:, None]
         lengths = []
         for _ in range(3):
@@ -357,10 +358,10 @@ class _Tracker:
         return w / np.linalg.norm(w, axis=1, keepdims=True), good
 
     def _series(self, w: ComplexArray, t: FloatArray, inverse: ComplexArray) -> ComplexArray:
-        """Taylor coefficients of the path at (w, t), shape (order + 1, count, n + 1).
+        """The Taylor coefficients of the path at (w, t), shape (order + 1, count, n + 1).
 
-        The coefficient of s^k in H(w(t + s), t + s) = 0, solved for w_k; `inverse` is that of the
-        Jacobian at a point nearby, and one Schulz step makes it fit.
+        The coefficient of s^k in H(w(t + s), t + s) = 0 is solved for w_k. `inverse` inverts the
+        Jacobian at a nearby point, and one Schulz step adapts it.
         """
         jacobian = self._jacobian(w, t)
         inverse = 2 * inverse - inverse @ (jacobian @ inverse)
@@ -384,7 +385,7 @@ class _Tracker:
         return series
 
     def _step(self, series: ComplexArray, t: FloatArray, tolerances: _Tolerances) -> FloatArray:
-        """Step at which the last two terms of the series are below the predictor error."""
+        """The step for which the last two terms of the series are below the predictor's error."""
         last = np.linalg.norm(series[-2:], axis=2)
         lengths = (tolerances.predict / last) ** (1.0 / np.array([[_ORDER - 1], [_ORDER]]))
         return np.asarray(np.nan_to_num(np.minimum(lengths.min(axis=0), 1 - t), nan=0.0))

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 def least_squares(matrix: csc_array, right: FloatArray) -> FloatArray:
     """The x with the least |matrix x - right|, refined once, in floats.
 
-    From the augmented form, since the normal equations would square the condition. Raises
-    `RuntimeError` where the columns are dependent in floats.
+    It is computed from the augmented system, as the normal equations would square the condition
+    number. Raises `RuntimeError` if the columns are dependent in floats.
 
     >>> from scipy.sparse import csc_array
     >>> least_squares(csc_array([[1.0], [1.0]]), np.array([1.0, 3.0])).tolist()

@@ -1,4 +1,4 @@
-"""Where Newton's method and popping start: the linear equations l_v = e_v c."""
+"""The start of Newton's method and of popping: the linear equations l_v = e_v c."""
 
 from __future__ import annotations
 
@@ -8,11 +8,10 @@ from exactfold._support.arrays import FloatArray
 
 
 def start_size(rest: FloatArray) -> float:
-    """c: a quarter of the largest height of the sheet with all l_v = 0, or 1 if that is flat.
+    """The number c: a quarter of the largest height of the sheet with all l_v = 0, or else 1.
 
-    `rest` are its heights, flat where the rim is, as with a reflex corner. With this c the vertices
-    pop as far as the rim asks for.
-
+    `rest` are the heights of this sheet. They are 0, and c is 1, if the boundary is flat, as with a
+    reflex corner. With this c the vertices pop about as far as the boundary heights require.
     >>> start_size(np.array([0.5, -2.0])), start_size(np.zeros(2))
     (0.5, 1.0)
     """

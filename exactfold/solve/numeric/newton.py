@@ -1,4 +1,4 @@
-"""Candidates by Newton's method on the nappes: the end of every popping path without the path."""
+"""Candidates by Newton's method on the nappes: the ends of all popping paths, without the paths."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ def newton(chart: Chart, *, progress: Steps | None = None) -> Candidates:
     """Candidates for all 2^Vi branches (Ve = 4), each by Newton's method on the nappes.
 
     For each vector e of vertex signs the equations l_v = e_v |A_v h| of `NappeSystem` have one
-    solution (docs/mathematics.md, Nappes), found by damped Newton steps, a block of sign vectors at
-    a time. Flat stars do not slow them down: where branches coincide, so do the candidates. Sign
-    vectors for which they did not converge are named in `lost`; their last point is still a
-    candidate. Floating point throughout: nothing here is proved.
+    solution (docs/mathematics.md, Nappes). Damped Newton steps find it, for a block of sign vectors
+    at a time. Flat stars do not slow them down. If branches coincide, so do their candidates.
+    `lost` names the sign vectors for which the steps did not converge; their last point is still a
+    candidate. This is floating point throughout: nothing here is proved.
 
     Raises `NotApplicableError` unless the pattern has four boundary vertices.
 
@@ -47,7 +47,7 @@ def newton(chart: Chart, *, progress: Steps | None = None) -> Candidates:
 
 
 def candidates_of(blocks: Sequence[Ends], size: int) -> Candidates:
-    """The ends of blocks of sign vectors, in their order, as candidates."""
+    """Blocks of zeros, in the order of their sign vectors, as candidates."""
     lost, first = [], 0
     for ends in blocks:
         for signs in sign_vectors(first, len(ends.points), size)[~ends.converged]:

@@ -24,18 +24,18 @@ _MIN_STEP = 1e-12
 def popping(chart: Chart, *, progress: Steps | None = None) -> Candidates:
     """Candidates for all 2^Vi branches (Ve = 4), each by following its popping path.
 
-    With the round cone t_v, l_v(h) = K_v(t_v, h) scaled to hub coefficient 1 and K_v scaled so that
-    l_v^2 - K_v >= 0, each sign vector e is followed along
+    Let t_v be the round cone, l_v(h) = K_v(t_v, h) scaled to the coefficient 1 at the hub, and K_v
+    scaled so that l_v^2 - K_v >= 0. Each sign vector e is followed along
 
         (1 - T) (l_v(h)^2 - k) + T K_v(h) = 0,   e_v l_v(h) > 0,   from T = 0 to T = 1.
 
-    For a convex boundary the path is regular for T < 1 and is the only solution in its chamber, so
-    a converged corrector with the right signs cannot have jumped (docs/mathematics.md, Popping
-    homotopy). A reflex corner is made interior by the triangle that closes the notch, and is given
-    curvature k in place of 0. Predictor: a Taylor series of order 8 from one inverse per step; all
-    paths of a block advance together. Paths that stall before T = 1, as they do where a vertex star
-    ends flat, are named in `lost`; where they stalled is still a candidate. Floating point
-    throughout: nothing here is proved.
+    For a convex boundary the path is regular for T < 1 and is the only solution in its chamber. So
+    if the corrector converges with the right signs, it has not jumped (docs/mathematics.md, Popping
+    homotopy). For a reflex corner, a triangle closes the notch and makes the corner interior; it
+    has the curvature k instead of 0. The predictor is a Taylor series of order 8 from one inverse
+    per step. All paths of a block advance together. `lost` names the paths that stall before T = 1,
+    as they do if a vertex star ends flat; their last point is still a candidate. This is floating
+    point throughout: nothing here is proved.
 
     Raises `NotApplicableError` unless the pattern has four boundary vertices.
 
@@ -73,7 +73,7 @@ def _text(signs: FloatArray) -> str:
 
 @dataclass(frozen=True)
 class _Problem:
-    """K - k_v of shape (n, n+1, n+1) and l of shape (n, n+1), on (x, 1); k where T is 0."""
+    """K - k_v of shape (n, n+1, n+1) and l of shape (n, n+1), on (x, 1); the level k at T = 0."""
 
     forms: FloatArray
     lines: FloatArray
@@ -85,7 +85,7 @@ class _Problem:
 
     @classmethod
     def of(cls, system: NappeSystem) -> _Problem:
-        """A reflex corner keeps its curvature from T = 0 to 1; without one, k suits the heights."""
+        """A reflex corner keeps its curvature as k; without one, k suits the boundary heights."""
         forms = np.array([nappe.form for nappe in system.nappes])
         if system.gauge.corner is not None:
             return cls(forms, system.lines, -float(forms[-1, -1, -1]))
@@ -93,7 +93,7 @@ class _Problem:
 
 
 def _track(problem: _Problem, signs: FloatArray) -> tuple[FloatArray, BoolArray, int]:
-    """Follow every row of `signs`: end points, which of them arrived, and steps of the longest."""
+    """Follows every row of `signs`: end points, which arrived, and the steps of the longest."""
     n = problem.size
     lines, level = problem.lines, problem.level
     # At T = 0 the system is linear: l_v(x) = e_v sqrt(k).
@@ -106,7 +106,7 @@ def _track(problem: _Problem, signs: FloatArray) -> tuple[FloatArray, BoolArray,
     while live.size and steps < _MAX_STEPS:
         steps += 1
         series = _taylor(problem, x[live], t[live])
-        # Largest step for which the last two terms stay below the corrector's reach.
+        # The largest step for which the last two terms stay within the corrector's reach.
         size = 1.0 + np.abs(series[0]).max(axis=1)
         tail = np.maximum(
             (np.abs(series[-1]).max(axis=1) / size) ** (1 / _ORDER),
@@ -130,7 +130,7 @@ def _track(problem: _Problem, signs: FloatArray) -> tuple[FloatArray, BoolArray,
 def _rows(
     problem: _Problem, z: FloatArray, t: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """K's half gradients (b, n, n+1), l (b, n) and the Jacobian (b, n, n) at (z, t)."""
+    """The half gradients of K (b, n, n+1), l (b, n) and the Jacobian (b, n, n) at (z, t)."""
     n = problem.size
     half = (z @ problem.forms.reshape(-1, n + 1).T).reshape(len(z), n, n + 1)
     line = z @ problem.lines.T
@@ -140,14 +140,14 @@ def _rows(
 
 
 def _taylor(problem: _Problem, x: FloatArray, t: FloatArray) -> list[FloatArray]:
-    """Taylor coefficients of the paths at (x, t), orders 0 to `_ORDER`."""
+    """The Taylor coefficients of the paths at (x, t), of orders 0 to `_ORDER`."""
     n = problem.size
     z = np.hstack([x, np.ones((len(x), 1))])
     half, line, jacobian = _rows(problem, z, t)
     inverse = np.linalg.inv(jacobian)
     series, halves, values = [x], [half], [line]
     for m in range(1, _ORDER + 1):
-        # Coefficient m of (1-T)(l^2 - k) + T K, without the unknown term.
+        # Coefficient m of (1-T)(l^2 - k) + T K, without the term that is unknown.
         cross_l, cross_k = np.zeros_like(line), np.zeros_like(line)
         for i in range(1, m):
             cross_l += values[i] * values[m - i]
@@ -174,7 +174,7 @@ def _taylor(problem: _Problem, x: FloatArray, t: FloatArray) -> list[FloatArray]
 def _correct(
     problem: _Problem, x: FloatArray, t: FloatArray, signs: FloatArray
 ) -> tuple[FloatArray, BoolArray]:
-    """Newton at fixed T; good where it converges fast and keeps e_v l_v > 0."""
+    """Newton's method at fixed T; good if it converges fast and keeps e_v l_v > 0."""
     good = np.ones(len(x), dtype=bool)
     first = np.zeros(len(x))
     for iteration in range(4):

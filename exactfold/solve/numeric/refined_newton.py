@@ -1,7 +1,7 @@
-"""Single ends of the nappe equations in higher precision, where doubles do not separate them.
+"""Single zeros of the nappe equations in higher precision, if doubles do not separate them.
 
-Rows and method are those of `dense_newton`, for one sign vector at a time. The Jacobian is in high
-precision, too: it depends on the direction of A_v h, which doubles lose next to a flat star.
+Rows and method are those of `dense_newton`, for one sign vector at a time. The Jacobian also has
+high precision, as it depends on the direction of A_v h, which doubles lose next to a flat star.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ _GUARD = 40
 
 @dataclass(frozen=True)
 class RefinedEnd:
-    """An end to `bits` bits: point / 2^bits in the chart, and which vertices look flat there.
+    """A zero to `bits` bits: point / 2^bits in the chart, and the vertices that look flat there.
 
-    `flat` gives places in the sign vector, those with |A_v h| below 2^-(bits/2). Nothing is proved.
+    `flat` lists the places in the sign vector with |A_v h| below 2^-(bits/2). Nothing is proved.
     """
 
     point: tuple[int, ...]
@@ -32,7 +32,7 @@ class RefinedEnd:
 
 
 def refined_end(system: NappeSystem, signs: Sequence[int], bits: int) -> RefinedEnd | None:
-    """The zero of g for one sign vector, to `bits` bits after the point; None if not reached.
+    """The zero of g for one sign vector, to `bits` bits after the point; None if not found.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> from exactfold.rigidity.equations.branch_system import chamber_chart
@@ -60,10 +60,10 @@ def refined_end(system: NappeSystem, signs: Sequence[int], bits: int) -> Refined
 
 
 class _Newton:
-    """Damped Newton in mpmath, in a context of its own."""
+    """Damped Newton steps in mpmath, in its own context."""
 
     def __init__(self, system: NappeSystem, e: list[int], bits: int) -> None:
-        import mpmath  # here, as few paths need it
+        import mpmath  # here: few paths need it
 
         self.ctx: Any = mpmath.mp.clone()
         self.ctx.prec = bits + _GUARD
@@ -76,11 +76,11 @@ class _Newton:
         ]
 
     def rational(self, value: Any) -> Any:
-        """A rational number, rounded."""
+        """A rational number, rounded to the precision of the context."""
         return self.ctx.mpf(value.numerator) / value.denominator
 
     def values(self, x: list[Any]) -> tuple[list[Any], list[list[Any]], list[Any]]:
-        """g, the products A_v h and the norms |A_v h|."""
+        """g, the products A_v h, and the norms |A_v h|."""
         z = [*x, self.ctx.mpf(1)]
         products = [[self.ctx.fdot(row, z) for row in root] for root in self.roots]
         norms = [self.ctx.sqrt(self.ctx.fdot(p, p)) for p in products]
@@ -89,7 +89,7 @@ class _Newton:
         return g, products, norms
 
     def run(self, x: list[Any]) -> list[Any] | None:
-        """The zero next to x, or None if the steps do not get below the precision."""
+        """The zero near x; None if the steps do not become shorter than the precision."""
         n, ctx = len(x), self.ctx
         g, products, norms = self.values(x)
         for _ in range(_STEPS):

@@ -1,8 +1,8 @@
-"""Newton on the nappes of one sign vector, on a sparse sheet; floating point, proposes only.
+"""Newton's method on the nappes for one sign vector, on a sparse sheet; this proposes only.
 
-The equations of `dense_newton`, written with K_v in place of N_v: K_v is a sum over folds, so that
-the Jacobian is as sparse as the sheet, while the squares of N_v would fill it star by star.
-`solve.certify.refinement` takes `equations` from here and puts exact residuals into them.
+The equations are those of `dense_newton`, in floats, with K_v instead of N_v. As K_v is a sum over
+folds, the Jacobian is as sparse as the sheet; the squares of N_v would fill it star by star.
+`solve.certify.refinement` takes `equations` from here and uses exact residuals in them.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ _APEX = 1e-14
 
 @dataclass(frozen=True)
 class End:
-    """Where Newton's method ended: heights of the unknowns, and why it is not a zero, or "".
+    """The end of Newton's method: the heights of the unknowns, and the failure ("" for a zero).
 
-    `worst`: the unknown at which the equations fail most, if there is a failure and it has a place.
+    `worst` is the unknown with the largest residual, if there is a failure at a certain place.
     """
 
     x: FloatArray
@@ -39,7 +39,7 @@ class End:
 
 @dataclass(frozen=True)
 class Point:
-    """omega_e, l_v and K_v - k_v at heights x of the unknowns."""
+    """The values omega_e, l_v and K_v - k_v at heights x of the unknowns."""
 
     x: FloatArray
     omega: FloatArray
@@ -48,7 +48,7 @@ class Point:
 
     @classmethod
     def at(cls, sheet: FloatSheet, x: FloatArray) -> Point:
-        """Everything at x."""
+        """All values at x."""
         h = sheet.heights(x)
         omega = sheet.bends(h)
         forms = sheet.forms(omega * sheet.differences(h))
@@ -58,14 +58,14 @@ class Point:
 def equations(
     sheet: FloatSheet, point: Point, signs: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """g_v = l_v - e_v sqrt(N_v + k_v) and the factors of dl_v and dK_v in its gradient.
+    """The values g_v = l_v - e_v sqrt(N_v + k_v), and the factors of dl_v and dK_v in dg_v.
 
-    With E = K_v - k_v and r = sqrt(N_v + k_v) = sqrt(l_v^2 - E), written so that nothing cancels
-    where l_v and e_v r nearly agree:
+    Let E = K_v - k_v and r = sqrt(N_v + k_v) = sqrt(l_v^2 - E). If e l > 0, g is written so that
+    nothing cancels if l_v and e_v r nearly agree:
 
-        g = E / (l + e r),   dg = -E / (r (r + e l)) dl + e / (2 r) dK      where e l > 0.
+        g = E / (l + e r),   dg = -E / (r (r + e l)) dl + e / (2 r) dK.
 
-    Where r is lost in rounding, as on a regular cone, its gradient is noise: dg = dl is taken,
+    If r is lost in rounding, as on a regular cone, its gradient is noise. Then dg = dl is used,
     which is as good (docs/mathematics.md, Nappes, with u_v = 0).
     """
     lines, excess = point.lines, point.excess
@@ -88,8 +88,8 @@ def solve(
 ) -> End:
     """The zero of all g_v (docs/mathematics.md, Nappes) by damped Newton steps.
 
-    g is a homeomorphism with one zero for each sign vector. Starts at the solution of the linear
-    system l_v = e_v c, or at `start`, such as a neighbouring branch.
+    g is a homeomorphism with one zero for each sign vector. The steps start at the solution of the
+    linear system l_v = e_v c, or at `start`, such as a neighbouring branch.
     """
     try:
         point = Point.at(sheet, _start(sheet, signs) if start is None else start)
@@ -100,14 +100,14 @@ def solve(
             size = 1.0 + np.abs(point.x).max()
             if length == 1.0 and change <= _CONVERGED * size:
                 return End(point.x, step, "")
-            if length == 0.0:  # nothing left to gain: rounding errors, or a failure
+            if length == 0.0:  # no progress: because of rounding errors, or a failure
                 if change <= _NOISE * size:
                     return End(point.x, step, "")
                 worst = _worst(sheet, point, signs)
-                return End(point.x, step, "Newton's method is stuck", worst)
+                return End(point.x, step, "Newton's method makes no more progress", worst)
     except SingularError as error:
         return End(np.zeros(sheet.n), 0, f"a factorisation failed: {error}")
-    failure = f"Newton's method did not end in {_ITERATIONS} steps"
+    failure = f"Newton's method did not converge in {_ITERATIONS} steps"
     return End(point.x, _ITERATIONS, failure, _worst(sheet, point, signs))
 
 
@@ -124,7 +124,7 @@ def _worst(sheet: FloatSheet, point: Point, signs: FloatArray) -> int:
 
 
 def _step(sheet: FloatSheet, point: Point, signs: FloatArray) -> tuple[Point, float, float]:
-    """One damped step: the new point, the size of the full step, and the part of it taken."""
+    """One damped step: the new point, the size of the full step, and the share of it taken."""
     value, of_lines, of_forms = equations(sheet, point, signs)
     change = sheet.solve(point.omega, of_lines, of_forms, value)
     full = float(np.abs(change).max())

@@ -1,4 +1,4 @@
-"""The equations in floating point, with sparse Jacobians of one fixed pattern; proposes only."""
+"""The equations in floats, with sparse Jacobians of one fixed pattern; this proposes only."""
 
 from __future__ import annotations
 
@@ -19,11 +19,12 @@ class SingularError(ArithmeticError):
 
 @dataclass(frozen=True)
 class FloatSheet:
-    """K_v, its round-cone line l_v, and Jacobians, on fold arrays; unit of length: the sheet.
+    """K_v, its round-cone functional l_v, and Jacobians, as arrays over the folds.
 
-    Unknown k is vertex `unknowns[k]`. K_v is scaled by `scale` so that l_v^2 - K_v >= 0 for
-    the functional l_v of hub coefficient 1 (docs/mathematics.md, Popping homotopy). Shapes: n
-    unknowns, E folds, V vertices.
+    The unit of length is the size of the sheet. Unknown k is vertex `unknowns[k]`. `scale` scales
+    K_v so that l_v^2 - K_v >= 0 for the functional l_v with coefficient 1 at the hub
+    (docs/mathematics.md, Popping homotopy). Arrays have shapes over n unknowns, E folds and V
+    vertices.
     """
 
     unknowns: IndexArray
@@ -37,7 +38,7 @@ class FloatSheet:
 
     @classmethod
     def of(cls, sheet: Sheet) -> FloatSheet:
-        """Floats of the exact data, each rounded from exact integers."""
+        """The exact data as floats; each float is rounded from exact integers."""
         folds, size = sheet.folds, sheet.size
         areas = folds.left * folds.right
         weights = (folds.weights * size**2 / areas[:, None]).astype(np.float64)
@@ -46,8 +47,8 @@ class FloatSheet:
         unknowns = np.array(sheet.unknowns, dtype=np.intp)
         lengths = np.sqrt(squares)
         i, j = folds.corners[:, 0], folds.corners[:, 1]
-        # Of l_v before scaling, -sum_j L_j omega_vj / 2: its hub coefficient, and its value K_v(t)
-        # at the round cone t itself.
+        # Before scaling, l_v is -sum_j L_j omega_vj / 2. This is its coefficient at the hub; its
+        # value at the round cone t itself is K_v(t).
         hub = (
             -(
                 np.bincount(i, lengths * weights[:, 0], count)
@@ -66,19 +67,19 @@ class FloatSheet:
 
     @property
     def n(self) -> int:
-        """Number of unknowns."""
+        """The number of unknowns."""
         return len(self.unknowns)
 
     # --- heights, bends, forms -------------------------------------------------------------------
 
     def heights(self, x: FloatArray, *, rim: bool = True) -> FloatArray:
-        """Heights of all vertices from the unknowns, the rim given or flat."""
+        """The heights of all vertices, from the unknowns; the boundary is as given or flat."""
         h = self.rim.copy() if rim else np.zeros_like(self.rim)
         h[self.unknowns] = x
         return h
 
     def bends(self, h: FloatArray) -> FloatArray:
-        """omega_e, shape (E,)."""
+        """The values omega_e, shape (E,)."""
         c, w = self.corners, self.weights
         return np.asarray(
             w[:, 0] * h[c[:, 0]]
@@ -88,25 +89,25 @@ class FloatSheet:
         )
 
     def differences(self, h: FloatArray) -> FloatArray:
-        """h_j - h_i along each fold."""
+        """The differences h_j - h_i along all folds."""
         return np.asarray(h[self.corners[:, 1]] - h[self.corners[:, 0]])
 
     def forms(self, products: FloatArray) -> FloatArray:
-        """Scaled K_v from omega_e(a) (b_j - b_i), shape (E,): the polar form K_v(a, b)."""
+        """The scaled polar forms K_v(a, b), from omega_e(a) (b_j - b_i), shape (E,)."""
         count = len(self.rim)
         total = np.bincount(self.corners[:, 0], products, count)
         total -= np.bincount(self.corners[:, 1], products, count)
         return np.asarray(0.5 * self.scale * total[self.unknowns])
 
     def lines(self, omega: FloatArray) -> FloatArray:
-        """l_v from the bends."""
+        """The values l_v, from the values omega_e."""
         weighted, count = self.lengths * omega, len(self.rim)
         total = np.bincount(self.corners[:, 0], weighted, count)
         total += np.bincount(self.corners[:, 1], weighted, count)
         return np.asarray(self.line_factor * total[self.unknowns])
 
     def row_sums(self, omega: FloatArray) -> FloatArray:
-        """sum_w |omega_vw| at each unknown."""
+        """The sums over w of |omega_vw|, at each unknown."""
         count = len(self.rim)
         total = np.bincount(self.corners[:, 0], abs(omega), count)
         total += np.bincount(self.corners[:, 1], abs(omega), count)
@@ -120,7 +121,7 @@ class FloatSheet:
 
     @cached_property
     def _line_data(self) -> FloatArray:
-        """Entries of the matrix of the l_v, in the pattern of the Jacobian."""
+        """The entries of the matrix of the l_v, in the pattern of the Jacobian."""
         p = self._pattern
         data = np.zeros(len(p.rows))
         for k in range(4):
@@ -135,11 +136,12 @@ class FloatSheet:
     def solve(
         self, omega: FloatArray, of_lines: FloatArray, of_forms: FloatArray, right: FloatArray
     ) -> FloatArray:
-        """x with J x = right, for the rows of_lines_v dl_v/dx + of_forms_v dK_v/dx, K_v scaled.
+        """The x with J x = right; J has the rows of_lines_v dl_v/dx + of_forms_v dK_v/dx, scaled.
 
-        J has the pattern of a planar graph: sparse LU in minimum-degree order, with pivots on the
-        diagonal unless they vanish, as another order costs much more; Newton's method forgives what
-        accuracy that loses. Dense for small sheets. Raises `SingularError`.
+        The scale is that of K_v. J has the pattern of a planar graph. It is factored by sparse LU
+        in minimum-degree order, with pivots on the diagonal unless they vanish, as another order
+        costs much more. Newton's method tolerates the accuracy that this loses. Small sheets use
+        dense matrices. Raises `SingularError`.
         """
         data = self.jacobian(omega, of_lines, of_forms)
         if not np.isfinite(data).all():
@@ -152,7 +154,7 @@ class FloatSheet:
                 return np.asarray(np.linalg.solve(matrix, right))
             except np.linalg.LinAlgError as error:
                 raise SingularError(str(error)) from None
-        from scipy.sparse import csc_matrix  # loaded only where needed: it takes a while
+        from scipy.sparse import csc_matrix  # here: it takes a while to load
         from scipy.sparse.linalg import splu
 
         sparse = csc_matrix((data, p.rows, p.pointers), shape=(self.n, self.n), copy=False)
@@ -168,7 +170,7 @@ class FloatSheet:
         return np.asarray(factors.solve(right))
 
     def jacobian(self, omega: FloatArray, of_lines: FloatArray, of_forms: FloatArray) -> FloatArray:
-        """The entries of J in compressed columns."""
+        """The entries of J, in compressed columns."""
         p = self._pattern
         data = np.zeros(len(p.rows))
         data[p.upper] = omega[p.inner]
@@ -182,7 +184,7 @@ class FloatSheet:
 
 
 def _cone_curvature(sheet: Sheet) -> FloatArray:
-    """K_v of the round cones, sum_j tan(a_j / 2) in units of one, from exact areas."""
+    """K_v of the round cones, sum_j tan(a_j / 2), which has no unit; from exact areas."""
     points = np.array(sheet.pattern.integer_vertices[0], dtype=object)
     triangles = np.array(sheet.pattern.triangles, dtype=np.intp)
     total = np.zeros(len(points))
@@ -198,7 +200,7 @@ def _cone_curvature(sheet: Sheet) -> FloatArray:
 
 @dataclass(frozen=True)
 class _Pattern:
-    """The common pattern of all Jacobians, in compressed columns."""
+    """The common pattern of all Jacobians, as compressed columns."""
 
     position: IndexArray
     rows: IndexArray
@@ -244,5 +246,5 @@ class _Pattern:
 
 
 def ratio(top: BigArray, bottom: BigArray | int) -> FloatArray:
-    """Quotients of integers of any size as floats, each rounded correctly."""
+    """Quotients of integers of any size as floats; each is rounded correctly."""
     return np.asarray((top / bottom).astype(np.float64))

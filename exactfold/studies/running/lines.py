@@ -14,7 +14,7 @@ from exactfold._support.arrays import FloatArray
 from exactfold._support.verdict import PROVED, Verdict
 from exactfold.branches.counting.by_theorem import IN_MEMORY, is_too_many
 from exactfold.branches.counting.collect import count_branches
-from exactfold.branches.counting.conveyor import LISTED_BITS, Conveyor
+from exactfold.branches.counting.conveyor import Conveyor
 from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.letters import LETTERS
 from exactfold.branches.values.result import BranchCount
@@ -79,7 +79,7 @@ class Lines:
         if is_too_many(pattern, IN_MEMORY):
             return _one_by_one(count_branches(pattern))
         try:
-            conveyor = Conveyor.of(pattern, bits=LISTED_BITS)
+            conveyor = Conveyor.of(pattern)
         except NotCountedError:
             return _one_by_one(count_branches(pattern))
         return _by_blocks(conveyor) or _one_by_one(count_branches(pattern))
@@ -125,7 +125,7 @@ def _by_blocks(conveyor: Conveyor) -> Lines | None:
     folds = [places[labels[i], labels[j]] for i, j in sorted(problem.sheet.folds)]
     for index in range(conveyor.blocks):
         block = conveyor.prove(index)
-        if block.open or any("U" in root.assignment for root in block.exact.values()):
+        if not block.is_decided:
             return None
         rows = slice(index * count, (index + 1) * count)
         found = np.where(block.valleys, 1, -1).astype(np.int8)

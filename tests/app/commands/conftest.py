@@ -13,6 +13,6 @@ def two_vertex():
 
 @pytest.fixture
 def certificate(tmp_path, two_vertex):
-    path = tmp_path / "two-vertex.json"
+    path = tmp_path / "two-vertex.txt"
     assert run("count", two_vertex, "--certificate", path).exit_code == PROVED
     return path

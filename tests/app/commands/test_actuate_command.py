@@ -7,8 +7,9 @@ import pytest
 from jsonschema import Draft202012Validator
 from running import BAD_INPUT, INVALID, PROVED, UNDECIDED, USAGE, error_class, run
 
-from exactfold import random_square, schema, write_fold
+from exactfold import random_square, schema
 from exactfold.design import actuate
+from exactfold.pattern import write_fold
 from exactfold.pattern.families import two_vertex
 
 TORQUES = {"0-4": -1, "2-5": 0.5, "4-5": "-1/3"}
@@ -103,7 +104,7 @@ def test_nothing_found_is_undecided(tmp_path):
     write_fold(random_square(4, seed=1), tmp_path / "p.fold")
     result = run("actuate", tmp_path / "p.fold", "--signs", "+-+-", "--creases", 1)
     assert result.exit_code == UNDECIDED
-    assert "UNDECIDED (no torques on so few creases that prefer the branch" in result.stdout
+    assert "UNDECIDED (no torques on so few creases were found that prefer" in result.stdout
     assert "crease  letter" not in result.stdout
 
 

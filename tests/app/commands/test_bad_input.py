@@ -8,10 +8,8 @@ from files import CORNERS, FACES, written
 from running import BAD_INPUT, PROVED, UNDECIDED, error_class, process, run
 from sheets import SQUARE, with_point
 
-from exactfold import (
-    random_square,
-    write_fold,
-)
+from exactfold import random_square
+from exactfold.pattern import write_fold
 from exactfold.pattern.crease_pattern import CreasePattern
 
 SQUARE_FOLD = {"vertices_coords": CORNERS, "faces_vertices": FACES}
@@ -178,7 +176,7 @@ def test_standard_input_is_named():
     result = process("info", "-", input="{")
     assert result.returncode == BAD_INPUT
     assert result.stderr == (
-        "exactfold: standard input: not JSON at line 1, column 2: it ends too early\n"
+        "exactfold: standard input: not JSON at line 1, column 2: the text ends too early\n"
     )
 
 
@@ -216,7 +214,7 @@ def test_an_unknown_format_is_refused_with_a_list_of_those_that_are_read(tmp_pat
     result = run("count", path)
     assert result.exit_code == BAD_INPUT
     assert result.stderr == (
-        f"exactfold: {path} is no drawing of a known format; the formats that are read are "
+        f"exactfold: {path} is not a drawing of a known format; exactfold reads "
         "FOLD, SVG, CP, OPX, ORI and ORH\n"
     )
 

@@ -24,12 +24,14 @@ from running import (
 )
 from sheets import DENTED, scrambled
 
-from exactfold import count_branches, random_square, write_fold
+from exactfold import random_square
 from exactfold.app.commands import batch
 from exactfold.app.shell.shell import Bar
+from exactfold.branches import count_branches
 from exactfold.branches.counting.batch import count_many
 from exactfold.branches.counting.pools import dask_pool, process_pool
 from exactfold.errors import NotFoldError, UnreadableFileError, UsageError, WorkerDiedError
+from exactfold.pattern import write_fold
 from exactfold.pattern.data import example_path
 
 KEYS = {
@@ -104,7 +106,7 @@ def test_files_that_were_counted_are_skipped_and_failed_ones_tried_again(
     assert sorted(d["name"] for d in lines(out)) == sorted(map(str, [*paths, bad, bad]))
     monkeypatch.setenv("COLUMNS", "300")
     again = run("count", *paths, bad, "--jsonl", out, "--jobs", 1).stdout
-    assert f"{bad} ? FAILED a FOLD file holds one JSON object" in " ".join(again.split())
+    assert f"{bad} ? FAILED a FOLD file contains one JSON object" in " ".join(again.split())
     assert "1 failed; 4 counted before" in " ".join(again.split())
     write_fold(random_square(3, seed=9), paths[0])  # another pattern under the same name
     assert (

@@ -3,6 +3,7 @@
 import json
 
 import pytest
+from compact_files import bodies, chained
 from running import BAD_INPUT, INVALID, PROVED, error_class, run
 
 from exactfold.pattern.data import SHEETS, example_path
@@ -57,13 +58,13 @@ def test_check_json(certificate):
 
 
 def test_tampered_certificate_is_invalid(tmp_path, certificate):
-    document = json.loads(certificate.read_text())
-    document["claims"]["distinct"] = 5
-    bad = tmp_path / "bad.json"
-    bad.write_text(json.dumps(document))
+    lines = bodies(certificate.read_bytes())
+    lines[-1]["claims"]["distinct"] = 5
+    bad = tmp_path / "bad.txt"
+    bad.write_bytes(chained(lines))
     result = run("check", bad)
     assert result.exit_code == INVALID
-    assert result.stdout.startswith("INVALID: claim distinct")
+    assert result.stdout == "INVALID: distinct = 5 is 4\n"
     as_json = run("check", bad, "--json")
     assert as_json.exit_code == INVALID
     assert json.loads(as_json.stdout)["valid"] is False
@@ -90,8 +91,9 @@ def test_truncated_certificate_is_bad_input(tmp_path, certificate, keep):
     ],
 )
 def test_unknown_certificate_is_bad_input(tmp_path, certificate, change, culprit):
-    bad = tmp_path / "bad.json"
-    bad.write_text(json.dumps(json.loads(certificate.read_text()) | change))
+    first, *others = bodies(certificate.read_bytes())
+    bad = tmp_path / "bad.txt"
+    bad.write_bytes(chained([first | change, *others]))
     result = run("check", bad)
     assert result.exit_code == BAD_INPUT
     assert error_class(run("check", bad, "--json")) == "CertificateFormatError"

@@ -10,7 +10,8 @@ from drawings import SQUARE, as_cp, as_fold, as_ori, as_svg
 from files import written
 from running import BAD_INPUT, PROVED, UNDECIDED, USAGE, run
 
-from exactfold import CreasePattern, read_fold
+from exactfold import CreasePattern
+from exactfold.pattern import read_fold
 from exactfold.pattern.data import SHEETS, example_path
 from exactfold.pattern.opening import open_pattern
 from exactfold.pattern.panel_pattern import PanelPattern
@@ -57,7 +58,7 @@ def test_the_sheet_that_is_read_again_is_the_identical_one(
     assert again.sheet == first.sheet
     assert again.sheet.sha256 == first.sheet.sha256
     assert again.assignment == first.assignment
-    assert again.lines[1] == "coordinates kept as they are written: the file has exact ones"
+    assert again.lines[1] == "coordinates kept as written: the file states exact coordinates"
     document = json.loads(out.read_text())
     assert ("J" in document["edges_assignment"]) is triangulate
     assert document["frame_exactfold:field"] == [["2"]]

@@ -13,7 +13,9 @@ from running import (
 )
 from sheets import DENTED, SQUARE, TRIANGLE, nested_triangles, scrambled, with_point
 
-from exactfold import count_branches, random_square, read_fold, write_fold
+from exactfold import random_square
+from exactfold.branches import count_branches
+from exactfold.pattern import read_fold, write_fold
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.data import SHEETS, example_path
 from exactfold.pattern.families import FAMILIES

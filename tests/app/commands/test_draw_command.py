@@ -7,11 +7,12 @@ from xml.etree import ElementTree
 import pytest
 from running import BAD_INPUT, PROVED, UNDECIDED, USAGE, run
 
-from exactfold import count_ways, find_branch, follow, load, open_pattern
 from exactfold.app.commands import draw
 from exactfold.app.pictures.folded import Amount, folded
 from exactfold.app.report import branch_way, mode_way, pattern_picture, sheet_of_multiples, ways_of
-from exactfold.motion import panel_modes
+from exactfold.branches import count_ways, find_branch
+from exactfold.motion import follow, panel_modes
+from exactfold.pattern import load, open_pattern
 from exactfold.pattern.data import example_path
 
 NAME = "{http://www.w3.org/2000/svg}"

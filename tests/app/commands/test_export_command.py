@@ -8,10 +8,9 @@ from dataclasses import replace
 import pytest
 from typer.testing import CliRunner
 
-from exactfold import count_branches, export_branch, find_branch
 from exactfold._support.verdict import UNDECIDED as UNPROVED
 from exactfold.app.cli.main import app
-from exactfold.branches import branch_certificate
+from exactfold.branches import branch_certificate, count_branches, export_branch, find_branch
 from exactfold.errors import UndecidedBranchError
 from exactfold.interop import branch_to_coq, branches_to_coq, to_coq
 from exactfold.interop.fold_frames import BRANCH_KEY
@@ -275,11 +274,11 @@ def test_a_branch_is_written_for_coq():
             USAGE,
             "vertex 7 lies in a triangulated triangle and is flat",
         ),
-        (["flat-vertex", "--signs", "++"], USAGE, "do not show that vertex 5 is bent"),
+        (["flat-vertex", "--signs", "++"], USAGE, "vertex 5 may be flat"),
         (["two-vertex", "-o", "two-vertex.v"], USAGE, "which two-vertex.v cannot be"),
         (["two-vertex", "-o", "two_vertex.coq"], USAGE, "which two_vertex.coq cannot be"),
         (["miura"], UNDECIDED, "16 panels with more than three sides"),
-        (["bird-base"], UNDECIDED, "those of this one lie in Q(sqrt 2)"),
+        (["bird-base"], UNDECIDED, "the coordinates of this one lie in Q(sqrt 2)"),
     ],
 )
 def test_what_coq_does_not_take_is_refused(arguments, code, said):

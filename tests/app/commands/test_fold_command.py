@@ -13,9 +13,11 @@ from panel_sheets import miura
 from running import BAD_INPUT, UNDECIDED, USAGE, error_class, run
 from sheets import HEXAGON, TRIANGLE, scrambled
 
-from exactfold import count_ways, find_branch, follow, random_square, schema, write_fold
+from exactfold import random_square, schema
+from exactfold.branches import count_ways, find_branch
 from exactfold.interop import meshes
-from exactfold.motion import follow_panels
+from exactfold.motion import follow, follow_panels
+from exactfold.pattern import write_fold
 from exactfold.pattern.degenerate import ringed_square
 from exactfold.pattern.opening import Opened
 from exactfold.pattern.panel_writing import converted
@@ -267,8 +269,8 @@ def test_sheets_that_have_no_single_motion(pattern, words, tmp_path):
 def test_a_branch_with_a_flat_vertex_is_not_followed():
     result = run("fold", "flat-vertex", "--signs", "+0", "--json")
     assert result.exit_code == UNDECIDED
-    what = "the sheet turns about the straight line 0-4-2, exactly, up to 180 degrees"
-    assert f"vertex 5 is flat on this branch: {what}; this is not followed" in result.stderr
+    what = "the sheet turns exactly about the straight line 0-4-2, up to 180 degrees"
+    assert f"vertex 5 is flat on this branch: {what}, and exactfold does not" in result.stderr
     assert error_class(result) == "NotFollowedError"
 
 
@@ -276,7 +278,7 @@ def test_a_branch_that_is_not_proved_is_not_followed_where_it_is_not_simple(tmp_
     write_fold(ringed_square(4), tmp_path / "p.fold")
     result = run("fold", tmp_path / "p.fold", "--signs", "+++++")
     assert result.exit_code == UNDECIDED
-    assert "it is not simple, or too close to another one for floats" in result.stderr
+    assert "the branch is not simple, or floats cannot distinguish it" in result.stderr
 
 
 def test_folds_that_stay_flat_do_not_turn_back(tmp_path):

@@ -6,16 +6,10 @@ import pytest
 from jsonschema import Draft202012Validator, ValidationError
 from running import BAD_INPUT, INVALID, PROVED, UNDECIDED, USAGE, error_class, run
 
-from exactfold import (
-    CreasePattern,
-    count_branches,
-    find_branch,
-    load,
-    random_square,
-    schema,
-    write_fold,
-)
+from exactfold import CreasePattern, random_square, schema
+from exactfold.branches import count_branches, find_branch
 from exactfold.design import match, nearest_branches
+from exactfold.pattern import load, write_fold
 
 TURNED = str.maketrans("MV", "VM")
 CP = """1 0 0 4 0

@@ -6,7 +6,9 @@ from jsonschema import Draft202012Validator
 from running import BAD_INPUT, UNDECIDED, USAGE, error_class, run
 from sheets import HEXAGON, scrambled
 
-from exactfold import find_loops, random_square, schema, write_fold
+from exactfold import random_square, schema
+from exactfold.motion import find_loops
+from exactfold.pattern import write_fold
 
 OK = 0
 

@@ -10,7 +10,8 @@ from running import (
 )
 from sheets import HEXAGON, SQUARE, TRIANGLE, nested_triangles, scrambled
 
-from exactfold import random_square, read_fold, write_fold
+from exactfold import random_square
+from exactfold.pattern import read_fold, write_fold
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.data import SHEETS, example_path
 from exactfold.pattern.families import FAMILIES

@@ -11,9 +11,10 @@ import jsonschema
 import pytest
 from running import error_class, run
 
-from exactfold import checker, delaunay, families, write_fold
+from exactfold import checker, delaunay
 from exactfold.app.schemas import schema
 from exactfold.branches import fold_angles
+from exactfold.pattern import families, write_fold
 from exactfold.rigidity.equations.boundary_heights import default_rim
 
 RIM = '{"0": 1, "1": "-1/2", "2": 0.25, "3": 0, "4": 1e-1}'
@@ -60,16 +61,16 @@ def test_a_shape_with_deficits(here: Path) -> None:
 @pytest.mark.parametrize(
     ("option", "text", "name", "said"),
     [
-        ("--rim", '{"0": 1}', "BadRimError", "vertex 1 of the border has no height"),
+        ("--rim", '{"0": 1}', "BadRimError", "boundary vertex 1 has no height"),
         ("--rim", RIM.replace("0.25", '"x"'), "BadRimError", "the height of vertex 2: 'x'"),
         ("--rim", RIM.replace("0.25", "NaN"), "BadRimError", "the height of vertex 2: 'NaN'"),
         ("--rim", RIM.replace('"3"', '"0"'), "BadRimError", "vertex 0 is there twice"),
-        ("--rim", RIM.replace('"3"', '"0-5"'), "BadRimError", "0-5 is no vertex of the border"),
+        ("--rim", RIM.replace('"3"', '"0-5"'), "BadRimError", "0-5 is not a boundary vertex"),
         (
             "--rim",
             RIM.replace("}", ', "00": 2}'),
             "BadRimError",
-            "00 is no vertex of the border",
+            "00 is not a boundary vertex",
         ),
         ("--rim", "[1, 2]", "BadRimError", "holds no numbers by vertex"),
         ("--rim", "{", "BadRimError", "is not JSON"),
@@ -80,8 +81,8 @@ def test_a_shape_with_deficits(here: Path) -> None:
             "lie in one plane",
         ),
         ("--curvature", '{"5": -1}', "BadCurvatureError", "deficit of vertex 5 is negative"),
-        ("--curvature", '{"0": 1}', "BadCurvatureError", "0 is no interior vertex"),
-        ("--curvature", '{"5": 1, "05": 0}', "BadCurvatureError", "05 is no interior vertex"),
+        ("--curvature", '{"0": 1}', "BadCurvatureError", "0 is not an interior vertex"),
+        ("--curvature", '{"5": 1, "05": 0}', "BadCurvatureError", "05 is not an interior vertex"),
         ("--curvature", '{"6": true}', "BadCurvatureError", "deficit of vertex 6"),
     ],
 )

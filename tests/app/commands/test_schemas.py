@@ -14,9 +14,10 @@ from jsonschema import Draft202012Validator, ValidationError
 from running import PROVED, UNDECIDED, run
 from sheets import DENTED, HEXAGON, TRIANGLE, nested_triangles, scrambled
 
-from exactfold import CreasePattern, read_fold, schema, write_fold
+from exactfold import CreasePattern, schema
 from exactfold.app.schemas import DOCUMENTS
 from exactfold.branches import METHODS
+from exactfold.pattern import read_fold, write_fold
 from exactfold.pattern.data import SHEETS, example_path
 from exactfold.rigidity import curvature_form
 

@@ -15,7 +15,8 @@ import pytest
 from running import BAD_INPUT, INTERRUPTED, OUTPUT_FAILED, PROVED, UNDECIDED, run
 from sheets import DENTED, scrambled
 
-from exactfold import random_square, write_fold
+from exactfold import random_square
+from exactfold.pattern import write_fold
 from exactfold.pattern.data import example_path
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="limits and signals of POSIX")

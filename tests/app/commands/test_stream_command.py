@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner, Result
 
-from exactfold import families, random_square, write_fold
+from exactfold import random_square
 from exactfold.app.cli.main import app
 from exactfold.app.commands import stream as stream_command
 from exactfold.branches.counting import by_theorem
@@ -20,6 +20,7 @@ from exactfold.branches.counting import conveyor as conveyor_module
 from exactfold.branches.counting.stream import stream_branches
 from exactfold.certificates.journal import Journal
 from exactfold.errors import UnwritableFileError, WorkerDiedError
+from exactfold.pattern import families, write_fold
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.data import example_path
 

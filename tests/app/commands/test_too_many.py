@@ -11,13 +11,14 @@ from jsonschema import Draft202012Validator
 from running import UNDECIDED, run
 from sheets import dart, nested_triangles, reflex_corners, scrambled
 
-from exactfold import count_branches, families, random_square, schema, write_fold
+from exactfold import random_square, schema
 from exactfold._support.verdict import PROVED
 from exactfold._support.verdict import UNDECIDED as OPEN
 from exactfold.app.shell.shell import Bar
-from exactfold.branches import METHODS
+from exactfold.branches import METHODS, count_branches
 from exactfold.branches.counting import by_theorem
 from exactfold.branches.counting.by_theorem import too_many
+from exactfold.pattern import families, write_fold
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.random_squares import sample_random_square
 

@@ -8,9 +8,10 @@ from pathlib import Path
 import pytest
 from running import PROVED, run
 
-from exactfold import CreasePattern, count_branches, count_many, read_fold, write_fold
+from exactfold import CreasePattern
+from exactfold.branches import count_branches, count_many
 from exactfold.exact.numbers import as_rational
-from exactfold.pattern import near_degenerate
+from exactfold.pattern import near_degenerate, read_fold, write_fold
 from exactfold.pattern.data import SHEETS, example_path
 
 
@@ -42,10 +43,10 @@ def test_a_vertex_that_is_almost_flat_is_named(
     assert result.exit_code == PROVED
     (line,) = result.stderr.splitlines()
     assert line.startswith(
-        "exactfold: warning: vertex 4 is within 1e-13 of (1/2, 1/2), but not there"
+        "exactfold: warning: vertex 4 is within 1e-13 of (1/2, 1/2), but not at it"
     )
     assert "the path 0-4-2 is nearly straight, but not quite" in line
-    assert line.endswith("rounds to the simpler pattern")
+    assert "rounds the coordinates to the simpler pattern" in line
     snap = line.split("--snap ")[1].split()[0]
     again = run(command, moved, *more, "--snap", snap)
     assert (again.exit_code, again.stderr) == (PROVED, "")

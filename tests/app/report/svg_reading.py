@@ -6,7 +6,7 @@ from collections import Counter
 from functools import cache
 from xml.etree import ElementTree
 
-from exactfold import open_pattern
+from exactfold.pattern import open_pattern
 from exactfold.pattern.data import example_path
 
 NAME = "{http://www.w3.org/2000/svg}"

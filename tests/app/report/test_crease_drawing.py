@@ -7,11 +7,13 @@ import numpy as np
 import pytest
 from svg_reading import NAME, ends, group_of, letters, numbered, of_class, shipped, tree, words
 
-from exactfold import CreasePattern, find_branch, load, open_pattern, random_square
+from exactfold import CreasePattern, random_square
 from exactfold.app.pictures.crease_drawing import pattern_picture
 from exactfold.app.pictures.crease_labels import labels
 from exactfold.app.pictures.drawn_ways import branch_way
+from exactfold.branches import find_branch
 from exactfold.exact.surds import SurdField
+from exactfold.pattern import load, open_pattern
 from exactfold.pattern.data import EXAMPLES, example_path
 from exactfold.pattern.drawing.drawing import Drawing, Line
 from exactfold.pattern.families import single_vertex

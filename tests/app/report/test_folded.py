@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from svg_reading import NAME, tree, words
 
-from exactfold import find_branch, follow
 from exactfold.app.pictures.folded import Amount, folded
+from exactfold.branches import find_branch
 from exactfold.errors import UsageError
+from exactfold.motion import follow
 
 
 @pytest.fixture(scope="module")

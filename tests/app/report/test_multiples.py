@@ -5,10 +5,10 @@ from dataclasses import replace
 import pytest
 from svg_reading import NAME, letters, of_class, tree, words
 
-from exactfold import count_ways
 from exactfold.app.pictures.drawn_ways import ways_of
 from exactfold.app.pictures.multiples import sheet_of_multiples
 from exactfold.app.pictures.way_sheets import number_listed, sheet_of_ways, why_no_way
+from exactfold.branches import count_ways
 from exactfold.errors import UsageError
 from exactfold.panels.decomposition import decompose
 from exactfold.pattern.families import single_vertex

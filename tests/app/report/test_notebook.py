@@ -8,14 +8,15 @@ from xml.etree import ElementTree
 import pytest
 from svg_reading import NAME, letters, shipped, tree, words
 
-from exactfold import count_ways, find_branch, follow, random_square, read_fold
+from exactfold import random_square
 from exactfold._support.notebook import shown
 from exactfold.app.pictures.crease_drawing import pattern_picture
 from exactfold.app.pictures.stills import motion_stills
 from exactfold.app.report.notebook import ROWS
+from exactfold.branches import count_ways, find_branch
 from exactfold.design import match
-from exactfold.motion import follow_panels
-from exactfold.pattern import read_drawing
+from exactfold.motion import follow, follow_panels
+from exactfold.pattern import read_drawing, read_fold
 from exactfold.pattern.data import EXAMPLES, example_path
 from exactfold.pattern.fold import load_fold
 
@@ -108,7 +109,7 @@ def test_other_values_are_not_shown():
 def test_values_are_shown_in_a_program_that_has_not_drawn_before():
     script = (
         "import exactfold, sys\n"
-        "pattern = exactfold.load('single-vertex-4')\n"
+        "pattern = exactfold.pattern.load('single-vertex-4')\n"
         "assert not [name for name in sys.modules if name.startswith('exactfold.app.report')]\n"
         "print(pattern._repr_svg_()[:4])"
     )

@@ -10,9 +10,11 @@ import pytest
 from browser import chromium
 from test_document import CORNER_AND_CENTRE
 
-from exactfold import count_branches, find_branch, follow, load, open_pattern
 from exactfold.app.pictures.crease_style import COLOUR
 from exactfold.app.viewer import view_server, write_view
+from exactfold.branches import count_branches, find_branch
+from exactfold.motion import follow
+from exactfold.pattern import load, open_pattern
 
 pytestmark = pytest.mark.slow
 

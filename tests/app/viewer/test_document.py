@@ -11,23 +11,16 @@ import numpy as np
 import pytest
 from jsonschema import Draft202012Validator, ValidationError
 
-from exactfold import (
-    CreasePattern,
-    count_branches,
-    count_ways,
-    find_branch,
-    follow,
-    random_square,
-    schema,
-)
+from exactfold import CreasePattern, random_square, schema
 from exactfold.app.pictures import crease_style
 from exactfold.app.viewer import page as page_module
 from exactfold.app.viewer import view_document, view_page
 from exactfold.app.viewer.coding import coded_frames, decoded_frames, levelled
-from exactfold.branches.counting.ways import open_sheet
+from exactfold.branches import count_branches, count_ways, find_branch
 from exactfold.errors import UsageError
-from exactfold.motion import follow_panels, panel_components, prove, prove_contacts
+from exactfold.motion import follow, follow_panels, panel_components, prove, prove_contacts
 from exactfold.pattern.families import single_vertex
+from exactfold.pattern.loading import open_sheet
 from exactfold.solve.certify import algebraic
 
 PAGE = Path(page_module.__file__).parent / "page"

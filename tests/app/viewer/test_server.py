@@ -7,10 +7,10 @@ from http.client import HTTPConnection
 import numpy as np
 import pytest
 
-from exactfold import find_branch
 from exactfold.app.viewer import view_server
 from exactfold.app.viewer.coding import decoded_frames
 from exactfold.app.viewer.server import HEADER
+from exactfold.branches import find_branch
 
 
 @pytest.fixture(scope="module")

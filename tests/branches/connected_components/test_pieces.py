@@ -13,8 +13,8 @@ from running import run
 from shapes import FOUR_CIRCLES, NEVER_FLAT, joined_by_shapes
 from sheets import DENTED, HEXAGON, scrambled, wheel, with_point
 
-from exactfold import PROVED, REFUTED, UNDECIDED, CreasePattern, checker, count_branches, write_fold
-from exactfold.branches import Joint, Pieces, find_pieces
+from exactfold import PROVED, REFUTED, UNDECIDED, CreasePattern, checker
+from exactfold.branches import Joint, Pieces, count_branches, find_pieces
 from exactfold.branches.connected_components import flat_stars, joining
 from exactfold.branches.connected_components.cubes import components
 from exactfold.branches.connected_components.no_zero import have_no_common_zero
@@ -23,6 +23,7 @@ from exactfold.branches.counting.true_bounds import with_true_bounds
 from exactfold.errors import NotApplicableError
 from exactfold.motion import follow_proved
 from exactfold.panels.stars import Star, edge_of, stars
+from exactfold.pattern import write_fold
 from exactfold.pattern.degenerate import DEGENERATE
 from exactfold.pattern.families import flat_vertex_square, single_vertex, waterbomb
 from exactfold.pattern.opening import panels

@@ -9,7 +9,8 @@ from mpmath import mpf
 from shapes import FOUR_CIRCLES, TUNED_ANTIPRISM
 from true_shapes import true_heights
 
-from exactfold import UNDECIDED, count_branches, find_branch
+from exactfold import UNDECIDED
+from exactfold.branches import count_branches, find_branch
 from exactfold.pattern.families import flat_vertex_square
 from exactfold.rigidity.functionals import vertex_sign_functional
 

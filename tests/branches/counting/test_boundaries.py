@@ -16,7 +16,8 @@ from sheets import (
     with_point,
 )
 
-from exactfold import PROVED, UNDECIDED, CreasePattern, count_branches
+from exactfold import PROVED, UNDECIDED, CreasePattern
+from exactfold.branches import count_branches
 from exactfold.branches.counting.registry import find_candidates
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.equations.branch_system import BranchSystem

@@ -8,7 +8,8 @@ import sympy
 from counting import counts
 from sheets import dart, random_wheel, reflex_corners, scrambled, star_in, wheel, with_point
 
-from exactfold import count_branches, random_square
+from exactfold import random_square
+from exactfold.branches import count_branches
 from exactfold.pattern.families import FAMILIES, single_vertex, two_vertex
 
 

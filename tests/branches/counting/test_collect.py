@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from exactfold import PROVED, count_branches, random_square
+from exactfold import PROVED, random_square
+from exactfold.branches import count_branches
 from exactfold.pattern.families import two_vertex
 from exactfold.solve.numeric.dense_newton import Ends, NappeSystem
 

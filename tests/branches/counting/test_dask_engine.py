@@ -12,15 +12,16 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from exactfold import random_square, write_fold
+from exactfold import random_square
 from exactfold.app.cli.main import app
-from exactfold.branches.certificates.streamed import block_line
+from exactfold.branches.certificates.blocks import block_line
 from exactfold.branches.counting import on_dask as engine_module
 from exactfold.branches.counting import pools
 from exactfold.branches.counting.conveyor import Conveyor
 from exactfold.branches.counting.on_dask import dask_engine, prove_block
 from exactfold.branches.counting.stream import stream_branches
 from exactfold.errors import ClusterError, PackageMissingError, WorkerDiedError
+from exactfold.pattern import write_fold
 from exactfold.pattern.data import example_path
 
 TWO = example_path("two-vertex")

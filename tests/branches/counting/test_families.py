@@ -4,7 +4,9 @@ import pytest
 from counting import check_generic
 from sheets import SQUARE, scrambled
 
-from exactfold import PROVED, count_branches, random_square, read_fold
+from exactfold import PROVED, random_square
+from exactfold.branches import count_branches
+from exactfold.pattern import read_fold
 from exactfold.pattern.data import SHEETS, example_path
 from exactfold.pattern.families import FAMILIES, h1_sequence
 

@@ -6,7 +6,8 @@ import pytest
 from counting import counts
 from sheets import DENTED, HEXAGON, SQUARE, random_wheel, scrambled, wheel
 
-from exactfold import PROVED, UNDECIDED, CreasePattern, count_branches
+from exactfold import PROVED, UNDECIDED, CreasePattern
+from exactfold.branches import count_branches
 from exactfold.errors import NotCountedError, UsageError
 from exactfold.pattern.families import two_vertex
 from exactfold.rigidity.equations.branch_system import BranchSystem

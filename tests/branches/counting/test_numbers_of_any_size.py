@@ -10,7 +10,8 @@ from counting import check_generic, summary
 from sheets import mapped
 
 import exactfold
-from exactfold import CreasePattern, count_branches, random_square
+from exactfold import CreasePattern, random_square
+from exactfold.branches import count_branches
 from exactfold.pattern.families import FAMILIES
 
 
@@ -74,7 +75,7 @@ def test_a_coordinate_of_300_digits_is_counted_in_seconds(name, tmp_path):
     path.write_text(json.dumps({"vertices_coords": coordinates, "faces_vertices": faces}))
     assert path.stat().st_size < 180
     start = time.process_time()
-    result = exactfold.count_branches(exactfold.load(path))
+    result = exactfold.branches.count_branches(exactfold.pattern.load(path))
     assert time.process_time() - start < 15  # once more than a minute
     assert result.status is exactfold.PROVED
     assert (result.distinct, result.real) == (expected, expected)

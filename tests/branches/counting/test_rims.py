@@ -13,7 +13,8 @@ from independent import curvature
 from scipy.optimize import root
 from sheets import HEXAGON, dart, nested_triangles, scrambled, wheel
 
-from exactfold import PROVED, checker, find_branch, follow, random_square
+from exactfold import PROVED, checker, random_square
+from exactfold.branches import find_branch
 from exactfold.branches.certificates.single import branch_certificate
 from exactfold.branches.values.branch import Branch
 from exactfold.errors import (
@@ -22,6 +23,7 @@ from exactfold.errors import (
     NotApplicableError,
     NotFollowedError,
 )
+from exactfold.motion import follow
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.rigidity.equations.boundary_heights import (
     above_plane,
@@ -156,17 +158,17 @@ def test_a_corner_on_a_straight_side_changes_nothing_if_it_stays_on_it() -> None
 
 def test_errors_of_heights_name_the_vertex() -> None:
     rim = dict.fromkeys(TWO.boundary, 0) | {0: 1}
-    with pytest.raises(BadRimError, match="vertex 3 of the border has no height") as missing:
+    with pytest.raises(BadRimError, match="boundary vertex 3 has no height") as missing:
         find_branch(TWO, "++", rim={v: h for v, h in rim.items() if v != 3})
     assert missing.value.vertices == (3,)
-    with pytest.raises(BadRimError, match=r"^6 is no vertex of the border") as inner:
+    with pytest.raises(BadRimError, match=r"^6 is not a boundary vertex") as inner:
         find_branch(TWO, "++", rim=rim | {6: 0})
     assert inner.value.vertices == (6,)
     with pytest.raises(BadRimError, match=r"height of vertex 2: the float 0\.5") as number:
         find_branch(TWO, "++", rim=rim | {2: 0.5})
     assert number.value.vertices == (2,)
     level = {v: 3 * TWO.vertices[v][0] - TWO.vertices[v][1] for v in TWO.boundary}
-    with pytest.raises(BadRimError, match="the rim is flat") as flat:
+    with pytest.raises(BadRimError, match="the boundary is flat") as flat:
         find_branch(TWO, "++", rim=level)
     assert flat.value.vertices == TWO.boundary
 
@@ -272,7 +274,7 @@ def test_errors_of_deficits_name_the_vertex() -> None:
     with pytest.raises(BadCurvatureError, match="vertex 6 is negative") as negative:
         find_branch(TWO, "++", curvature={6: -1, 7: 1})
     assert negative.value.vertices == (6,)
-    with pytest.raises(BadCurvatureError, match=r"^0 is no interior vertex"):
+    with pytest.raises(BadCurvatureError, match=r"^0 is not an interior vertex"):
         find_branch(TWO, "++", curvature={0: 1})
     with pytest.raises(BadCurvatureError, match="deficit of vertex 7: 'x'"):
         find_branch(TWO, "++", curvature={7: "x"})

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import exactfold
-from exactfold import count_branches, random_square
+from exactfold import random_square
 from exactfold._support.verdict import PROVED, UNDECIDED
-from exactfold.branches import METHODS, find_candidates
+from exactfold.branches import METHODS, count_branches, find_candidates
 from exactfold.branches.counting.registry import choose, register_solver, solvers, unregister_solver
 from exactfold.errors import NotApplicableError, SolverError, UsageError
 from exactfold.pattern.families import two_vertex

@@ -11,8 +11,9 @@ import pytest
 from compact_files import bodies, chained, refused
 from sheets import SQUARE, dart, nested_triangles, reflex_corners, scrambled
 
-from exactfold import Branch, count_branches, families, random_square, read_fold
+from exactfold import Branch, random_square
 from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.branches import count_branches
 from exactfold.branches.certificates.check import CertificateError, check_compact
 from exactfold.branches.certificates.read import read_branches
 from exactfold.branches.counting import conveyor as conveyor_module
@@ -21,6 +22,7 @@ from exactfold.branches.counting.stream import stream_branches
 from exactfold.branches.values import classify
 from exactfold.checker.branches import compact_blocks
 from exactfold.errors import ForeignJournalError, NotApplicableError, UnwritableFileError
+from exactfold.pattern import families, read_fold
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.data import example_path
 from exactfold.pattern.degenerate import straight_path

@@ -4,7 +4,8 @@ import pytest
 from counting import check_generic, counts
 from sheets import SQUARE, TRIANGLE, nested_triangles, scrambled, two_triangles, with_point
 
-from exactfold import PROVED, CreasePattern, count_branches
+from exactfold import PROVED, CreasePattern
+from exactfold.branches import count_branches
 from exactfold.pattern.families import single_vertex, two_vertex
 
 

@@ -5,10 +5,11 @@ import json
 
 import pytest
 from counting import counts
+from old_listing import old_listing
 from sheets import TRIANGLE, scrambled, two_triangles
 
-from exactfold import PROVED, UNDECIDED, checker, count_branches
-from exactfold.branches.certificates.listing import certificate
+from exactfold import PROVED, UNDECIDED, checker
+from exactfold.branches import count_branches
 from exactfold.branches.counting import fallback as hand_over
 from exactfold.branches.counting import multiple_roots
 from exactfold.branches.values import classify
@@ -97,7 +98,7 @@ def test_open_folds_cost_their_letters_and_not_the_count(monkeypatch, name):
             and all(a in (b, "U") for a, b in zip(branch.assignment_text, text, strict=True))
         ]
         assert agreeing
-    document = json.loads(json.dumps(certificate(result)))
+    document = json.loads(json.dumps(old_listing(result)))
     assert checker.check(document) == document["claims"]
     monkeypatch.setattr(listing, "close_flat", lambda sheet, signs: None)
     assert checker.check(document) == document["claims"]

@@ -9,11 +9,13 @@ import pytest
 from drawings import SQUARE, as_cp, as_fold
 from sheets import DENTED, scrambled
 
-from exactfold import PROVED, count_branches, count_many, write_fold
+from exactfold import PROVED
+from exactfold.branches import count_branches, count_many
 from exactfold.branches.counting.motion_facts import panel_facts
 from exactfold.branches.counting.ways import count_ways
 from exactfold.errors import SeveralSheetsError, UnreadableFileError, UsageError
 from exactfold.panels.decomposition import decompose
+from exactfold.pattern import write_fold
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.drawing.formats.read import parse_drawing
 from exactfold.pattern.families import single_vertex, two_vertex

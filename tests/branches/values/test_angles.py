@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 from sheets import random_wheel
 
-from exactfold import count_branches, families, find_branch, random_square
-from exactfold.branches import fold_angles
+from exactfold import random_square
+from exactfold.branches import count_branches, find_branch, fold_angles
 from exactfold.branches.values.second_order import second_order_sheet
 from exactfold.errors import NotApplicableError, UsageError
+from exactfold.pattern import families
 from exactfold.pattern.crease_pattern import CreasePattern
 
 

@@ -7,7 +7,8 @@ from math import hypot
 import pytest
 from sheets import dart, nested_triangles, reflex_corners, scrambled, wheel
 
-from exactfold import count_branches, random_square
+from exactfold import random_square
+from exactfold.branches import count_branches
 from exactfold.branches.values import classify as module
 from exactfold.branches.values.classify import classify
 from exactfold.branches.values.roots import AlgebraicRoot, BoxRoot

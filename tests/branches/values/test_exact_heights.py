@@ -6,7 +6,8 @@ import pytest
 import sympy
 from sheets import random_wheel
 
-from exactfold import Branch, count_branches, find_branch, random_square
+from exactfold import Branch, random_square
+from exactfold.branches import count_branches, find_branch
 from exactfold.branches.values.known_roots import FEW
 from exactfold.branches.values.roots import BoxRoot
 from exactfold.pattern.crease_pattern import CreasePattern

@@ -16,7 +16,8 @@ from sheets import (
     straight_side,
 )
 
-from exactfold import PROVED, UNDECIDED, count_branches, random_square
+from exactfold import PROVED, UNDECIDED, random_square
+from exactfold.branches import count_branches
 from exactfold.pattern.families import flat_vertex_square, hypar, single_vertex, two_vertex
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.functionals import saddle_functional

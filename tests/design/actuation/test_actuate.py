@@ -11,14 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from sheets import dart, mapped, mirrored, relabelled, rotated
 
-from exactfold import (
-    PROVED,
-    REFUTED,
-    UNDECIDED,
-    count_branches,
-    find_branch,
-    random_square,
-)
+from exactfold import PROVED, REFUTED, UNDECIDED, random_square
+from exactfold.branches import count_branches, find_branch
 from exactfold.design import actuate
 from exactfold.errors import (
     FloatRefusedError,

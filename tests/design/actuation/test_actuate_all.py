@@ -7,7 +7,8 @@ import driving
 import numpy as np
 import pytest
 
-from exactfold import PROVED, UNDECIDED, count_branches, random_square
+from exactfold import PROVED, UNDECIDED, random_square
+from exactfold.branches import count_branches
 from exactfold.design import Directions, actuate, actuate_all
 from exactfold.design.actuation import every
 from exactfold.design.actuation.interior import largest_margins

@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from exactfold import count_branches, find_branch, random_square
+from exactfold import random_square
+from exactfold.branches import count_branches, find_branch
 from exactfold.design import Directions, actuate
 from exactfold.design.actuation.directions import BITS
 from exactfold.design.actuation.orthogonal import independent_rows

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from springs import AMOUNT, Springs, asked, ends_on_the_branch, nearest_ray
 
-from exactfold import count_branches
+from exactfold.branches import count_branches
 from exactfold.design import actuate
 
 VERY_STIFF = 1e11

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from sheets import dart, relabelled, wheel
 
-from exactfold import PROVED, UNDECIDED, delaunay, families
+from exactfold import PROVED, UNDECIDED, delaunay
 from exactfold.branches.values.letters import UPSIDE_DOWN
 from exactfold.design.circles import circles
 from exactfold.design.circles import covering as coverings
@@ -18,6 +18,7 @@ from exactfold.design.circles.certificate import assignments_certificate
 from exactfold.design.circles.circles import all_assignments
 from exactfold.design.circles.covering import NotCoveredError, covering
 from exactfold.errors import NotApplicableError, NotCountedError
+from exactfold.pattern import families
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.functionals import fold_functional

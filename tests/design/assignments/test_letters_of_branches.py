@@ -7,8 +7,9 @@ from collections import Counter
 
 import pytest
 
-from exactfold import checker, find_branch, random_square
+from exactfold import checker, random_square
 from exactfold._support.verdict import PROVED
+from exactfold.branches import find_branch
 from exactfold.design import match, match_certificate
 from exactfold.design.assignments.search import Match
 from exactfold.errors import NotApplicableError

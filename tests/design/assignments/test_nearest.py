@@ -6,11 +6,13 @@ from dataclasses import replace
 import pytest
 from sheets import dart
 
-from exactfold import CreasePattern, count_branches, find_branch, load, random_square
+from exactfold import CreasePattern, random_square
 from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.branches import count_branches, find_branch
 from exactfold.design import Matched, match, nearest_branches, vertex_conflicts
 from exactfold.design.assignments import nearest
 from exactfold.design.assignments.conflicts import Clause, Stars, to_blame
+from exactfold.pattern import load
 from exactfold.pattern.data import example_path
 from exactfold.pattern.families import single_vertex
 

@@ -8,14 +8,16 @@ from jsonschema import Draft202012Validator
 from running import run
 from sheets import wheel
 
-from exactfold import CreasePattern, checker, delaunay, find_branch, write_fold
+from exactfold import CreasePattern, checker, delaunay
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED
 from exactfold.app.schemas import schema
+from exactfold.branches import find_branch
 from exactfold.design import all_assignments, match_certificate, match_panels, match_rim
 from exactfold.design.assignments.bend_program import BendProgram
 from exactfold.design.refutations.cone_program import ConeProgram
 from exactfold.design.refutations.refutation import Refutation
 from exactfold.errors import NotApplicableError, NotCountedError, UsageError
+from exactfold.pattern import write_fold
 from exactfold.pattern.families import single_vertex
 from exactfold.pattern.random_squares import random_square
 

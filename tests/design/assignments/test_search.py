@@ -6,12 +6,14 @@ from fractions import Fraction
 import pytest
 from sheets import dart
 
-from exactfold import CreasePattern, count_branches, find_branch, load, random_square
+from exactfold import CreasePattern, random_square
 from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.branches import count_branches, find_branch
 from exactfold.design import Refutation, match
 from exactfold.design.refutations.cone_program import ConeProgram
 from exactfold.design.refutations.refutation import refuted_at
 from exactfold.errors import UsageError
+from exactfold.pattern import load
 from exactfold.pattern.data import example_path
 from exactfold.pattern.families import single_vertex
 from exactfold.rigidity.curvature import curvature_form
@@ -210,7 +212,7 @@ def test_a_sheet_with_a_reflex_corner():
         ("MVXMVMV", "fold (1, 5) has the letter 'X', not one of M, V, F, U"),
         ({(0, 1): "M"}, "(0, 1) is not a fold of the sheet"),
         ({(1, 5): 1}, "fold (1, 5) has the letter 1, not one of M, V, F, U"),
-        (None, "letters are a text, or a mapping from folds to letters"),
+        (None, "letters have to be a text"),
     ],
 )
 def test_letters_that_do_not_fit(letters, message):

@@ -122,7 +122,7 @@ def test_random_decimals_fit_no_field(seed):
     found = exact_coordinates(written)
     assert found.points == written.points
     assert found.reason
-    assert found.text.startswith("coordinates kept as they are written: ")
+    assert found.text.startswith("coordinates kept as written: ")
 
 
 def test_what_fits_nothing_keeps_its_decimals_and_is_counted():
@@ -207,7 +207,7 @@ def test_snap_exact_changes_nothing():
     written = drawn([*SQUARE, (1 / 3, 0.5)], 12)
     found = exact_coordinates(written, "exact")
     assert found.drawing is written
-    assert found.text == "coordinates kept as they are written: as asked for"
+    assert found.text == "coordinates kept as written: as requested"
 
 
 def test_what_is_refused():

@@ -186,7 +186,7 @@ def test_lower_case_and_missing_letters_are_told():
 def test_without_letters_edges_are_unassigned():
     drawing = sheet(edges_assignment=None, edges_foldAngles=[0, 0, 0, 0, 180])
     assert [line.letter for line in drawing.lines] == [*"UUUUU"]
-    assert drawing.remarks == ("there is no `edges_assignment`: the edges are unassigned",)
+    assert drawing.remarks == ("the file has no `edges_assignment`: all edges are unassigned",)
 
 
 def test_repeated_edges_are_kept_and_those_with_other_letters_named():
@@ -246,7 +246,7 @@ def test_sides_without_an_edge_are_added():
         (
             {"edges_vertices": None, "edges_assignment": None},
             MalformedDrawingError,
-            "neither `edges_vertices` nor",
+            "no `edges_vertices` and no `faces",
         ),
     ],
 )

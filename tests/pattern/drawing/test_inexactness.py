@@ -47,7 +47,7 @@ def test_creases_that_miss_the_border_by_far_less_than_all_else_end_on_it():
     made = exact_sheets(drawn)
     assert len(panels(made).faces) == 4
     assert "dangling" not in {repair.step for repair in made.repairs}
-    assert "misses by up to 4.0e-04 of the size is taken to meet" in sentences(made)
+    assert "miss each other by up to 4.0e-04 of the size are taken to meet" in sentences(made)
 
 
 def test_a_distance_that_is_given_goes_before_what_seems_clear():

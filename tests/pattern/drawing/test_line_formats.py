@@ -31,7 +31,7 @@ def test_lines_of_length_zero_are_left_out():
     ("text", "message"),
     [
         ("1 0 0 1 0\n2 0 0 1", r"line 2: '2 0 0 1' is not"),
-        ("7 0 0 1 0", "line 1: '7' is not a type"),
+        ("7 0 0 1 0", "line 1: '7' is not a line type"),
         ("1 0 0 1 0 0", "line 1"),
         ("1 0 0 one 0", "line 1: 'one' is not a number"),
         ("1 0 0 NaN 0", "line 1: 'NaN' is not a number"),
@@ -52,7 +52,7 @@ def test_opx_without_a_type_is_auxiliary():
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("<int>2</int>", "<int>9</int>", "line 4: '9' is not a type"),
+        ("<int>2</int>", "<int>9</int>", "line 4: '9' is not a line type"),
         ("<double>0.1</double>", "<double>x</double>", "line 4: 'x' is not a number"),
         ("</java>", "", "not XML"),
     ],
@@ -108,7 +108,7 @@ def test_auxiliary_lines_of_orh_are_left_out():
 
 @pytest.mark.parametrize(
     ("row", "message"),
-    [("座標,0,0,1", "row 5: .* has no four numbers"), ("座標,0,0,1,z", "row 5: 'z' is not")],
+    [("座標,0,0,1", "row 5: .* does not have four numbers"), ("座標,0,0,1,z", "row 5: 'z' is not")],
 )
 def test_orh_refusals_name_the_row(row, message):
     with pytest.raises(MalformedDrawingError, match=message):

@@ -171,7 +171,7 @@ def test_another_rim_is_refused() -> None:
     for v in sheet.pattern.boundary:
         values = found.values.copy()
         values[v] += 1
-        with pytest.raises(ValueError, match="rim"):
+        with pytest.raises(ValueError, match="are not those of the sheet"):
             enclose(sheet, values, found.denominator, found.bits)
 
 

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from sheets import SQUARE, dart, mapped, mirrored, reflex_corners, rotated, scrambled
 
-from exactfold import families, random_square, read_fold
+from exactfold import random_square
 from exactfold.errors import NotApplicableError
+from exactfold.pattern import families, read_fold
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.data import example_path
 from exactfold.rigidity.curvature import curvature_form

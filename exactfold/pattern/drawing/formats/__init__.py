@@ -1,1 +1,1 @@
-"""Readers of drawings, one for each format of files."""
+"""Readers of drawings, one for each file format."""

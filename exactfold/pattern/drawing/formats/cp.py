@@ -1,4 +1,4 @@
-"""Reading `.cp` files of ORIPA and Oriedita: one line of text for each line of the drawing."""
+"""Reads `.cp` files of ORIPA and Oriedita: each row of text is one line of the drawing."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from exactfold.pattern.drawing.drawing import Drawing
 from exactfold.pattern.drawing.segments import Segment, drawing_of, left_out
 
 ORIPA_TYPES: Final = {"0": "", "1": "B", "2": "M", "3": "V", "4": ""}
-"""ORIPA's types of lines as letters; empty for auxiliary lines, which are no creases."""
+"""The letters of ORIPA's line types; empty for auxiliary lines, which are not creases."""
 
 
 def read_cp(text: str) -> Drawing:
-    """The drawing in a `.cp` file: lines `type x1 y1 x2 y2`, numbers exactly as they are written.
+    """The drawing in a `.cp` file of rows `type x1 y1 x2 y2`, with the numbers exactly as written.
 
     Type 1 is a border, 2 a mountain, 3 a valley; 0 and 4 are auxiliary lines, which are left out.
     Coordinates are kept as they stand, as the converter of the FOLD project keeps them. Raises
@@ -35,7 +35,7 @@ def read_cp(text: str) -> Drawing:
         letter = ORIPA_TYPES.get(words[0])
         if letter is None:
             raise MalformedDrawingError(
-                f"line {number}: {shown(words[0])} is not a type of line from 0 to 4"
+                f"line {number}: {shown(words[0])} is not a line type from 0 to 4"
             )
         try:
             x1, y1, x2, y2 = map(parse_rational, words[1:])

@@ -1,4 +1,4 @@
-"""Reading FOLD files as other programs write them: frames, planes, letters, and what is missing."""
+"""Reads FOLD files as other programs write them: frames, planes, letters, missing parts."""
 
 from __future__ import annotations
 
@@ -31,22 +31,22 @@ _HINT: Final = "give the crease pattern, a frame with flat coordinates"
 _FLAT: Final = Fraction(1, 10**9)
 _SHOWN: Final = 5
 _AXES: Final = {"z": (0, 1), "y": (2, 0), "x": (1, 2)}
-"""The two coordinates that remain in a plane, anticlockwise seen from where the normal points."""
+"""The two coordinates that remain in a plane, counter-clockwise for a viewer on the normal."""
 
 
 def read_fold_drawing(text: str) -> Drawing:
-    """The drawing in a FOLD file, whatever program wrote it; numbers exactly through their text.
+    """The drawing in a FOLD file of any program; numbers are read exactly, from their text.
 
-    The top level is read if it has flat coordinates, otherwise the first flat frame of
-    `file_frames`, with what it inherits. Coordinates have two components, or three in a plane
-    z, y or x = constant (to within 1e-9 of the size), which is seen from where its normal points;
-    `vertices_exactfold:surds` and `vertices_exactfold:coords` go before `vertices_coords`, and make
-    the drawing `exact`. Edges without a letter are U; sides of faces that are not listed as edges
-    become lines, B if they belong to one face, else U. Repeated edges are kept, and are named in
-    the remarks if their letters differ.
+    If the top level has flat coordinates, it is read. Otherwise the first flat frame of
+    `file_frames` is read, with all that it inherits. Coordinates have two components, or three in a
+    plane z, y or x = constant (up to 1e-9 of the size), which is seen from the side of its normal.
+    `vertices_exactfold:surds` and `vertices_exactfold:coords` take precedence over
+    `vertices_coords` and make the drawing `exact`. Edges without a letter are U. Sides of faces
+    that are not listed as edges become lines: B if they belong to one face, else U. Repeated edges
+    are kept; if their letters differ, the remarks name them.
 
-    Raises `NotFoldError`, `NumberError`, a subclass of `FoldError`, `MalformedDrawingError`, or
-    `FoldedStateError` if all coordinates are those of a folded state.
+    Raises `NotFoldError`, `NumberError`, a subclass of `FoldError`, `MalformedDrawingError`, and
+    `FoldedStateError` if all coordinates belong to folded states.
 
     >>> drawing = read_fold_drawing('{"vertices_coords": [[0, 0, 5], [0.1, 0, 5]],'
     ...                             ' "edges_vertices": [[0, 1]], "edges_assignment": ["m"]}')
@@ -60,8 +60,8 @@ def read_fold_drawing(text: str) -> Drawing:
     for k, chain in enumerate([_chain(stated, k) for k in range(len(stated))]):
         if k >= MOST_FRAMES:
             raise TooLargeError(
-                f"none of the first {MOST_FRAMES} frames of {len(stated)} is flat, and no more are "
-                "looked at: leave out the folded ones"
+                f"none of the first {MOST_FRAMES} frames of {len(stated)} is flat, and the others "
+                "are not read: leave out the folded frames"
             )
         frame = _inherited(stated, chain)
         try:
@@ -85,7 +85,7 @@ def _source(document: Mapping[str, Any], frame: Mapping[str, Any], k: int) -> st
 
 
 def _frames(document: Mapping[str, Any]) -> list[Mapping[str, Any]]:
-    """The top level and the frames, as they are stated."""
+    """The top level and the frames, without what they inherit."""
     stated: list[Mapping[str, Any]] = [document]
     for k, frame in enumerate(list_at(document, "file_frames"), 1):
         if not isinstance(frame, dict):
@@ -95,7 +95,7 @@ def _frames(document: Mapping[str, Any]) -> list[Mapping[str, Any]]:
 
 
 def _chain(stated: Sequence[Mapping[str, Any]], k: int) -> list[int]:
-    """A frame, the one it inherits from, the one which that inherits from, and so on."""
+    """The numbers of a frame, of its parent, of the parent's parent, and so on."""
     chain = [k]
     while chain[-1] and stated[chain[-1]].get("frame_inherit") is True:
         parent = stated[chain[-1]].get("frame_parent", 0)
@@ -103,19 +103,20 @@ def _chain(stated: Sequence[Mapping[str, Any]], k: int) -> list[int]:
             raise NotFoldError(f"frame {chain[-1]} cannot inherit from frame {shown(parent)}")
         if not 0 <= parent < len(stated):
             raise NotFoldError(
-                f"frame {chain[-1]} inherits from frame {parent}, but there are {len(stated)}"
+                f"frame {chain[-1]} inherits from frame {parent}, but the number of frames is "
+                f"{len(stated)}"
             )
         if len(chain) > MOST_INHERITED:
             raise TooLargeError(
-                f"frame {k} inherits through more than {MOST_INHERITED} frames, the most that are "
-                "followed: state in it what it needs"
+                f"frame {k} inherits through more than {MOST_INHERITED} frames, which is not "
+                "followed: state in the frame what it needs"
             )
         chain.append(parent)
     return chain
 
 
 def _inherited(stated: Sequence[Mapping[str, Any]], chain: Sequence[int]) -> Mapping[str, Any]:
-    """The first frame of a chain with what it inherits from the others."""
+    """The first frame of a chain, together with all that it inherits from the others."""
     merged: dict[str, Any] = {}
     for index in reversed(chain):
         merged.update(stated[index])
@@ -153,7 +154,7 @@ def _drawing(frame: Mapping[str, Any], source: str) -> Drawing:
         remarks.append(f"left out {counted(empty, 'edge')} from a vertex to itself")
     lines = [line for line in lines if line.start != line.end] + missing
     if not lines:
-        raise MalformedDrawingError("neither `edges_vertices` nor `faces_vertices` is given")
+        raise MalformedDrawingError("the file has no `edges_vertices` and no `faces_vertices`")
     return Drawing(
         tuple(exact or points), tuple(lines), source + plane, tuple(remarks), bool(exact)
     )
@@ -162,7 +163,7 @@ def _drawing(frame: Mapping[str, Any], source: str) -> Drawing:
 def _flattened(
     places: Sequence[tuple[Fraction, Fraction, Fraction]],
 ) -> tuple[list[tuple[Fraction, Fraction]], str, list[str]]:
-    """The points in their plane z, y or x = constant, words for it unless it is z, and remarks."""
+    """The points in their plane z, y or x = constant; words for a plane other than z; remarks."""
     bounds = [(min(column), max(column)) for column in zip(*places, strict=True)]
     size = max(high - low for low, high in bounds)
     for name, (i, j) in _AXES.items():
@@ -185,7 +186,7 @@ def _check_unfolded(
     points: Sequence[tuple[Fraction, Fraction]],
     faces: Sequence[tuple[int, ...]],
 ) -> None:
-    """A frame that says it is folded is believed unless all its faces lie the same way up."""
+    """Raises `FoldedStateError` for a `foldedForm`, unless all its faces lie the same way up."""
     if "foldedForm" not in list_at(frame, "frame_classes"):
         return
     areas = [_area([points[v] for v in face]) for face in faces]
@@ -198,7 +199,7 @@ def _check_unfolded(
 
 
 def _area(corners: Sequence[tuple[Fraction, Fraction]]) -> Fraction:
-    """Twice the signed area."""
+    """Twice the signed area of a polygon."""
     following = [*corners[1:], *corners[:1]]
     products = (a[0] * b[1] - a[1] * b[0] for a, b in zip(corners, following, strict=True))
     return sum(products, Fraction(0))
@@ -210,7 +211,7 @@ def _area(corners: Sequence[tuple[Fraction, Fraction]]) -> Fraction:
 def _letters(frame: Mapping[str, Any], count: int) -> tuple[list[str], list[str]]:
     stated = list_at(frame, "edges_assignment")
     if not stated:
-        note = "there is no `edges_assignment`: the edges are unassigned"
+        note = "the file has no `edges_assignment`: all edges are unassigned"
         return ["U"] * count, [note] if count else []
     if len(stated) != count:
         raise NotFoldError(f"`edges_assignment` has {len(stated)} letters for {count} edges")
@@ -233,7 +234,7 @@ def _letters(frame: Mapping[str, Any], count: int) -> tuple[list[str], list[str]
 
 
 def _repeated(lines: Sequence[Line]) -> list[str]:
-    """Remarks on edges that are given more than once; those with different letters are named."""
+    """Remarks on edges that are given more than once; edges with different letters are named."""
     first: dict[tuple[int, int], int] = {}
     same = 0
     differing = []
@@ -256,7 +257,7 @@ def _repeated(lines: Sequence[Line]) -> list[str]:
 
 
 def _missing(lines: Sequence[Line], faces: Sequence[tuple[int, ...]]) -> list[Line]:
-    """Lines for the sides of faces that are no edges: B on one face, otherwise U."""
+    """Lines for the sides of faces that are not edges: B for a side of one face, else U."""
     known = {frozenset(line[:2]) for line in lines}
     sides: Counter[tuple[int, int]] = Counter()
     for face in faces:

@@ -1,4 +1,4 @@
-"""The JSON level of FOLD 1.2 files: keys, lists of indices, and numbers read through their text."""
+"""The JSON level of FOLD 1.2 files: keys, lists of indices, and numbers read from their text."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ EXACT_KEY: Final = "vertices_exactfold:coords"
 """The key of exact coordinates in a FOLD file, beside the floats of `vertices_coords`."""
 
 SURDS_KEY: Final = "vertices_exactfold:surds"
-"""The key of coordinates with square roots: for each vertex the coefficients of x and of y."""
+"""The key of coordinates with square roots: the coefficients of x and of y for each vertex."""
 FIELD_KEY: Final = "frame_exactfold:field"
 """The key of their field: for each root r1, r2, ... the coefficients of the number under it."""
 
 _PREFIXES: Final = ("file_", "frame_", "vertices_", "edges_", "faces_")
 AGREEMENT: Final = Fraction(1, 10**9)
-"""Exact coordinates and floats agree to within this share of the largest float."""
+"""Exact coordinates and floats must agree up to this share of the largest float."""
 
 
 @dataclass(frozen=True)
 class _Literal:
-    """The text of a JSON number with a point or exponent, or of NaN and Infinity."""
+    """The text of a JSON number with a point or an exponent, or of NaN or Infinity."""
 
     text: str
 
@@ -51,7 +51,7 @@ def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 def _integer(digits: str) -> int:
-    """A JSON integer; `int` alone stops at 4300 digits."""
+    """The value of a JSON integer of any length; `int` alone refuses more than 4300 digits."""
     return int(digits) if len(digits) < 1000 else parse_rational(digits).numerator
 
 
@@ -67,12 +67,16 @@ def json_object(text: str) -> dict[str, Any]:
         )
     except json.JSONDecodeError as error:
         place = f"line {error.lineno}, column {error.colno}"
-        cut = ": it ends too early" if error.pos >= len(error.doc.rstrip()) else f": {error.msg}"
+        cut = (
+            ": the text ends too early"
+            if error.pos >= len(error.doc.rstrip())
+            else f": {error.msg}"
+        )
         raise NotFoldError(f"not JSON at {place}{cut}") from None
     except RecursionError:
         raise NotFoldError("the JSON is nested too deeply") from None
     if not isinstance(document, dict):
-        raise NotFoldError(f"a FOLD file holds one JSON object, not {shown(document)}")
+        raise NotFoldError(f"a FOLD file contains one JSON object, not {shown(document)}")
     return document
 
 
@@ -87,7 +91,7 @@ def fold_document(text: str) -> dict[str, Any]:
 
 
 def list_at(document: Mapping[str, Any], key: str) -> list[Any]:
-    """The list under a key, empty if there is none; raises `NotFoldError` for other values."""
+    """The list under a key; empty if the key is absent. Raises `NotFoldError` for other values."""
     value = document.get(key)
     if value is None:
         return []
@@ -99,7 +103,7 @@ def list_at(document: Mapping[str, Any], key: str) -> list[Any]:
 def index_lists(
     document: Mapping[str, Any], key: str, kind: str, count: int
 ) -> Sequence[tuple[int, ...]]:
-    """The lists of vertex indices under a key, each index below `count`; raises `NotFoldError`."""
+    """The lists of vertex indices under a key; raises `NotFoldError` unless all are below count."""
     result = []
     for k, entry in enumerate(list_at(document, key)):
         if not isinstance(entry, list):
@@ -117,12 +121,13 @@ def index_lists(
 
 
 def components(vertex: int, row: object) -> tuple[Fraction, Fraction, Fraction]:
-    """The coordinates of a vertex through their text, z = 0 if there are two.
+    """The coordinates of a vertex, read from their text; with two components, z is 0.
 
-    Raises `MissingCoordinatesError`, `NumberError`, or `FoldError` for more than three.
+    Raises `MissingCoordinatesError`, `NumberError`, and `FoldError` for more than three
+    components.
     """
     if not isinstance(row, list):
-        raise MissingCoordinatesError(f"vertex {vertex} has {shown(row)} for coordinates")
+        raise MissingCoordinatesError(f"the coordinates of vertex {vertex} are {shown(row)}")
     values = []
     for name, value in zip("xyz", row, strict=False):
         try:
@@ -130,7 +135,7 @@ def components(vertex: int, row: object) -> tuple[Fraction, Fraction, Fraction]:
         except NumberError as error:
             raise NumberError(f"vertex {vertex}: {name}: {error}") from None
     if len(row) < 2:
-        raise MissingCoordinatesError(f"vertex {vertex} has only {len(row)} coordinates")
+        raise MissingCoordinatesError(f"the number of coordinates of vertex {vertex} is {len(row)}")
     if len(row) > 3:
         raise FoldError(f"vertex {vertex} has {len(row)} coordinates, more than three")
     x, y, z = values if len(values) == 3 else (*values, Fraction(0))
@@ -148,10 +153,10 @@ def _number(value: object) -> Fraction:
 def exact_points(
     document: Mapping[str, Any], stated: Sequence[tuple[Fraction, ...]]
 ) -> list[tuple[Fraction, Fraction]]:
-    """The pairs of `vertices_exactfold:coords`, empty if there are none.
+    """The pairs of `vertices_exactfold:coords`; empty if the key is absent.
 
-    They must agree with the first two components of `stated` to within 1e-9 of the largest of them;
-    raises `StaleExactCoordinatesError`, `NumberError`.
+    They must agree with the first two components of `stated` up to 1e-9 of the largest of these.
+    Raises `StaleExactCoordinatesError` if they do not, and `NumberError`.
     """
     rows = list_at(document, EXACT_KEY)
     if not rows:

@@ -1,4 +1,4 @@
-"""Points with square roots in FOLD files: the field they lie in, and their coefficients."""
+"""Points with square roots in FOLD files: their field, and their coefficients in it."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from exactfold.pattern.drawing.formats.fold_json import AGREEMENT, FIELD_KEY, SU
 
 
 def surd_keys(points: Iterable[Point]) -> dict[str, Any]:
-    """Points in a field of square roots as the two keys of a FOLD frame.
+    """The two FOLD keys of points in a field of square roots.
 
-    A number is the list of its coefficients at 1, r1, r2, r1 r2, r3, ..., as in `Surd`.
+    A number is written as the list of its coefficients of 1, r1, r2, r1 r2, r3, ..., as in `Surd`.
 
     >>> root = RATIONALS.adjoined(2).root
     >>> surd_keys([(root / 2, 1 + root)])["frame_exactfold:field"]
@@ -42,11 +42,11 @@ def surd_keys(points: Iterable[Point]) -> dict[str, Any]:
 
 
 def surd_points(document: Mapping[str, Any], stated: Sequence[tuple[Fraction, ...]]) -> list[Point]:
-    """The points of `vertices_exactfold:surds`, empty if there are none.
+    """The points of `vertices_exactfold:surds`; empty if the key is absent.
 
-    They must agree with the first two components of `stated` to within 1e-9 of the largest of them;
-    raises `StaleExactCoordinatesError`, and `NumberError` for a field or coefficients that are
-    none.
+    They must agree with the first two components of `stated` up to 1e-9 of the largest of these.
+    Raises `StaleExactCoordinatesError` if they do not, and `NumberError` for an invalid field
+    or invalid coefficients.
 
     >>> root = RATIONALS.adjoined(2).root
     >>> document = surd_keys([(root / 2, 1 + root)])
@@ -81,8 +81,8 @@ def surd_points(document: Mapping[str, Any], stated: Sequence[tuple[Fraction, ..
 def _field(rows: Sequence[object]) -> SurdField:
     if len(rows) > MOST_ROOTS:
         raise TooLargeError(
-            f"the field in `{FIELD_KEY}` has {len(rows)} square roots, and {MOST_ROOTS} are the "
-            "most that are read: give decimals instead"
+            f"the field in `{FIELD_KEY}` has {len(rows)} square roots, but at most {MOST_ROOTS} "
+            "are read: give decimals instead"
         )
     field = RATIONALS
     for k, row in enumerate(rows, 1):
@@ -93,7 +93,7 @@ def _field(rows: Sequence[object]) -> SurdField:
         except UsageError:
             raise NumberError(f"{name} is not positive: {shown(row)}") from None
         if larger is field:
-            raise NumberError(f"{name} is a square already: {shown(row)}")
+            raise NumberError(f"{name} is a square of the field already: {shown(row)}")
         field = larger
     return field
 

@@ -10,7 +10,7 @@ from exactfold.errors import MalformedDrawingError
 def xml_root(text: str) -> ElementTree.Element:
     """The outermost element of an XML text; raises `MalformedDrawingError` with the place.
 
-    Nothing is fetched from outside, and expat limits what entities may grow to.
+    Nothing is fetched from outside, and expat limits the growth of entities.
     """
     try:
         return ElementTree.fromstring(text)

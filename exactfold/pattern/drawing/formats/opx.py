@@ -1,4 +1,4 @@
-"""Reading `.opx` files: the XML in which ORIPA saves its Java objects."""
+"""Reads `.opx` files: the XML in which ORIPA saves its Java objects."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _COORDINATES: Final = ("x0", "y0", "x1", "y1")
 
 
 def read_opx(text: str) -> Drawing:
-    """The drawing in an `.opx` file, numbers exactly as they are written.
+    """The drawing in an `.opx` file, with the numbers exactly as written.
 
     Each line is an object `OriLineProxy` with the properties `type`, `x0`, `y0`, `x1`, `y1`; Java
     leaves out those that are 0. The types are those of `read_cp`. Raises `MalformedDrawingError`,
@@ -41,7 +41,7 @@ def read_opx(text: str) -> Drawing:
         letter = ORIPA_TYPES.get(stated.get("type", "0"))
         if letter is None:
             raise MalformedDrawingError(
-                f"line {k}: {shown(stated['type'])} is not a type of line from 0 to 4"
+                f"line {k}: {shown(stated['type'])} is not a line type from 0 to 4"
             )
         try:
             x0, y0, x1, y1 = (

@@ -1,4 +1,4 @@
-"""Reading `.ori` files of Oriedita (JSON) and the older `.orh` files of Orihime (text)."""
+"""Reads `.ori` files of Oriedita (JSON) and the older `.orh` files of Orihime (text)."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _COLOURS: Final = {"BLACK_0": "B", "RED_1": "M", "BLUE_2": "V"}
 _NUMBERS: Final = {"0": "B", "1": "M", "2": "V"}
 
 LINES: Final = "<線分集合>"
-"""The heading of the lines in an `.orh` file; other headings begin other sections."""
+"""The heading of the section of lines in an `.orh` file; other headings begin other sections."""
 
 
 def read_ori(text: str) -> Drawing:
@@ -39,7 +39,9 @@ def read_ori(text: str) -> Drawing:
     others: Counter[str] = Counter()
     for k, line in enumerate(lines):
         if not isinstance(line, dict):
-            raise MalformedDrawingError(f"line {k} in `lineSegments` is {shown(line)}")
+            raise MalformedDrawingError(
+                f"line {k} in `lineSegments` is {shown(line)}, not an object"
+            )
         colour = line.get("color")
         start, end = _end(k, line.get("a")), _end(k, line.get("b"))
         if isinstance(colour, str) and colour in _COLOURS:
@@ -67,7 +69,7 @@ def _place(what: str, parts: Sequence[str]) -> Place:
 
 
 def read_orh(text: str) -> Drawing:
-    """The drawing in an `.orh` file of Orihime, exactly as written.
+    """The drawing in an `.orh` file of Orihime, with the numbers exactly as written.
 
     After the heading of the lines, each line of the drawing has a row "色,colour" (0 border,
     1 mountain, 2 valley, others auxiliary, which are left out) and a row "座標,x1,y1,x2,y2". Raises
@@ -87,7 +89,9 @@ def read_orh(text: str) -> Drawing:
             colour = words[1]
         elif inside and words[0] == "座標":
             if len(words) != 5:
-                raise MalformedDrawingError(f"row {number}: {shown(row)} has no four numbers")
+                raise MalformedDrawingError(
+                    f"row {number}: {shown(row)} does not have four numbers"
+                )
             start, end = (_place(f"row {number}", words[i : i + 2]) for i in (1, 3))
             if colour in _NUMBERS:
                 segments.append((start, end, _NUMBERS[colour]))

@@ -1,4 +1,4 @@
-"""One way in for drawings: the format is known by the content, else by the ending."""
+"""The one way in for drawings: the content of a file shows its format, else its ending does."""
 
 from __future__ import annotations
 
@@ -27,20 +27,20 @@ READERS: Final[dict[str, Callable[[str], Drawing]]] = {
     "ori": read_ori,
     "orh": read_orh,
 }
-"""The reader of the text of each format, by the ending of its files."""
+"""The reader for the text of each format, by file name ending."""
 
 _CP: Final = re.compile(r"\s*[0-9](\s+[-+.0-9eE]+){4}[ \t\r]*(\n|\Z)")
 _ORI: Final = re.compile(r'"lineSegments"\s*:')
 _FOLD: Final = re.compile(r'"(file|frame|vertices|edges|faces)_\w+"\s*:')
 _SVG: Final = re.compile(r"<(\w+:)?svg[\s>/]")
 _ENCODING: Final = re.compile(rb"""<\?xml[^>]*encoding=["']([A-Za-z0-9._-]+)["']""")
-_NONE: Final = "the formats that are read are FOLD, SVG, CP, OPX, ORI and ORH"
+_NONE: Final = "exactfold reads FOLD, SVG, CP, OPX, ORI and ORH"
 
 
 def read_drawing(path: str | PathLike[str]) -> Drawing:
     """The drawing in a file of any known format; its `source` is one line on what was read.
 
-    Raises `UnreadableFileError`, and what `parse_drawing` raises.
+    Raises `UnreadableFileError` and the errors of `parse_drawing`.
 
     >>> from exactfold.pattern.data import example_path
     >>> read_drawing(example_path("two-vertex")).source
@@ -50,18 +50,18 @@ def read_drawing(path: str | PathLike[str]) -> Drawing:
 
 
 def parse_drawing(content: str | bytes, name: str) -> Drawing:
-    """The drawing in the content of a file; the ending of `name` counts where the content is mute.
+    """The drawing in the content of a file; if the content shows no format, `name` decides.
 
-    Bytes are UTF-8, UTF-16 with a mark, or what an XML declaration says. Raises
-    `UnknownFormatError`, which lists the formats, what the reader of the format raises, and
-    `TooLargeError`.
+    Bytes are decoded as UTF-8, as UTF-16 if there is a byte order mark, or as an XML declaration
+    says. Raises `UnknownFormatError`, which lists the formats, the errors of the reader of the
+    format, and `TooLargeError`.
 
     >>> parse_drawing("1 0 0 1 0", "edge").source
     'read edge: CP, 1 line (1 border)'
     >>> parse_drawing("%PDF-1.4", "crane.pdf")
     Traceback (most recent call last):
-    exactfold.errors.UnknownFormatError: crane.pdf is no drawing of a known format; the formats
-    that are read are FOLD, SVG, CP, OPX, ORI and ORH
+    exactfold.errors.UnknownFormatError: crane.pdf is not a drawing of a known format; exactfold
+    reads FOLD, SVG, CP, OPX, ORI and ORH
     """
     text = content if isinstance(content, str) else _decoded(content, name)
     text = text.removeprefix("\ufeff")
@@ -78,11 +78,11 @@ def _decoded(content: bytes, name: str) -> str:
     try:
         return content.decode(encoding)
     except (UnicodeDecodeError, LookupError):
-        raise UnknownFormatError(f"{name} is not a text in {encoding}; {_NONE}") from None
+        raise UnknownFormatError(f"{name} is not text in {encoding}; {_NONE}") from None
 
 
 def _format(text: str, name: str) -> str:
-    """The format of a text, as an ending in `READERS`."""
+    """The format of a text, as a key of `READERS`."""
     ending = PurePath(name).suffix.lower().removeprefix(".")
     start = text.lstrip()
     if start.startswith("{"):
@@ -96,4 +96,4 @@ def _format(text: str, name: str) -> str:
         return found
     if ending in READERS:
         return ending
-    raise UnknownFormatError(f"{name} is no drawing of a known format; {_NONE}")
+    raise UnknownFormatError(f"{name} is not a drawing of a known format; {_NONE}")

@@ -1,4 +1,4 @@
-"""Reading SVG drawings of crease patterns in the colours of Origami Simulator."""
+"""Reads SVG drawings of crease patterns in the colours of Origami Simulator."""
 
 from __future__ import annotations
 
@@ -50,12 +50,12 @@ _FAULTS: Final = (ArithmeticError, AttributeError, LookupError, TypeError, Value
 def read_svg(text: str) -> Drawing:
     """The drawing in an SVG file: straight lines with stroke colours; y upwards.
 
-    Black is the border B, red M, blue V, green a cut C, yellow F and magenta U, as in Origami
-    Simulator (its opacity, a fold angle, is not read); colours near these are taken for them, with
-    a remark, and others are left out. Styles come from attributes, `style` and CSS classes; groups
-    and transforms apply; `line`, `polyline`, `polygon`, `rect` and `path` are read. The size of the
-    picture (`width`, `height`, `viewBox`) is not applied. Numbers are read through their text; only
-    transforms are products of floats.
+    The colours are those of Origami Simulator: black is the boundary B, red M, blue V, green a cut
+    C, yellow F and magenta U. Opacity, which is a fold angle there, is not read. Similar colours
+    count as these, with a remark; lines in other colours are left out. Styles come from attributes,
+    `style` and CSS classes. Groups and transforms apply. The elements `line`, `polyline`,
+    `polygon`, `rect` and `path` are read. The size of the picture (`width`, `height`, `viewBox`) is
+    not applied. Numbers are read from their text; only transforms are products of floats.
 
     Raises `MalformedDrawingError`, also for a file without lines and for curves; for these it names
     the element.
@@ -111,27 +111,29 @@ def read_svg(text: str) -> Drawing:
 
 
 def _shapes(text: str) -> tuple[Iterator[Any], list[Mapping[str, str]]]:
-    """The shapes that are drawn, with styles and transforms resolved, in the file's own units.
+    """The shapes that are drawn, with styles and transforms resolved, in the units of the file.
 
-    Also the attributes of all elements as they are written, by the numbers that the shapes have.
+    The second value holds the attributes of all elements as written; a shape has its number in it.
     """
-    from svgelements import SVG, Shape  # here, as loading it takes longer than reading a pattern
+    from svgelements import SVG, Shape  # here: loading it takes longer than reading a pattern
 
     root = xml_root(text)
     if root.tag not in ("svg", f"{{{NAMESPACE}}}svg"):
-        raise MalformedDrawingError(f"the XML is {shown(root.tag)}, not an svg of {NAMESPACE}")
+        raise MalformedDrawingError(
+            f"the outermost XML element is {shown(root.tag)}, not svg in {NAMESPACE}"
+        )
     for key in _VIEW:
         root.attrib.pop(key, None)
     root, given = plain_tree(root)
     try:
         picture = SVG.parse(io.StringIO(ElementTree.tostring(root, "unicode")), reify=False)
     except _FAULTS as error:
-        raise MalformedDrawingError(f"the SVG is not understood: {error}") from None
+        raise MalformedDrawingError(f"the SVG cannot be read: {error}") from None
     return (element for element in picture.elements() if isinstance(element, Shape)), given
 
 
 def _letter(stroke: str) -> tuple[str, bool]:
-    """The letter of a colour, empty if it has none, and whether it is exactly that colour."""
+    """The letter of a colour (empty if it has none), and whether it is exactly that colour."""
     from svgelements import Color
 
     try:
@@ -140,7 +142,7 @@ def _letter(stroke: str) -> tuple[str, bool]:
         return "", False
     rgb = (colour.red, colour.green, colour.blue)
     if rgb == (0, 0, 0) and stroke != "black" and not re.match(r"#|rgb|hsl", stroke):
-        return "", False  # the library takes what it does not know for black
+        return "", False  # the library returns black for unknown colours
     if rgb in _COLOURS:
         return _COLOURS[rgb], True
     hue, saturation, value = rgb_to_hsv(*(component / 255 for component in rgb))
@@ -155,7 +157,7 @@ def _letter(stroke: str) -> tuple[str, bool]:
 def _lines(
     tag: str, own: Mapping[str, str], name: str
 ) -> tuple[list[tuple[Place, Place]] | None, int]:
-    """The lines of an element, None for what is no line, and how many were written as curves."""
+    """The lines of an element (None if its kind is not read), and how many were curves."""
     try:
         if tag == "path":
             return path_lines(own.get("d", ""))
@@ -193,7 +195,7 @@ def _points(text: str) -> list[Place]:
         words.append(match[1])
         position = match.end()
     if position < end or len(words) % 2:
-        raise MalformedDrawingError(f"`points` is not pairs of numbers: {shown(text)}")
+        raise MalformedDrawingError(f"`points` does not consist of pairs of numbers: {shown(text)}")
     numbers = [parse_rational(word) for word in words]
     return list(zip(numbers[::2], numbers[1::2], strict=True))
 
@@ -207,11 +209,13 @@ def _length(own: Mapping[str, str], key: str) -> Fraction:
 
 
 def _mover(matrix: Any) -> Callable[[Place], Place]:
-    """The transform, with the y axis turned upwards."""
+    """A function that applies the transform and turns the y axis upwards."""
     try:
         a, b, c, d, e, f = (Fraction(repr(float(getattr(matrix, key)))) for key in "abcdef")
     except _FAULTS:
-        raise MalformedDrawingError("the numbers of a transform are too large") from None
+        raise MalformedDrawingError(
+            "a transform has numbers that are too large: apply it to the coordinates"
+        ) from None
 
     def move(place: Place) -> Place:
         x, y = place

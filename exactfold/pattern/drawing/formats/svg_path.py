@@ -1,4 +1,4 @@
-"""The straight lines of SVG path data, exactly; curves are refused."""
+"""Reads the straight lines of SVG path data exactly, and refuses curves."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from exactfold.pattern.drawing.segments import Place
 NUMBER: Final = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 _TOKEN: Final = re.compile(rf"[\s,]*(?:([A-Za-z])|({NUMBER}))")
 _NUMBERS_EACH: Final = {"M": 2, "L": 2, "H": 1, "V": 1, "Z": 0, "C": 6, "S": 4, "Q": 4, "T": 2}
-_CONTINUED: Final = {"S": "CS", "T": "QT"}  # whose last control point they reflect
+_CONTINUED: Final = {"S": "CS", "T": "QT"}  # S and T reflect the last control point of these
 STRAIGHT: Final = "creases must be straight"
 _BEND: Final = Fraction(1, 1000)
-"""A curve that leaves its chord by at most this share of its length is meant to be straight."""
+"""A curve counts as straight if it leaves its chord by at most this share of its length."""
 
 
 def path_lines(data: str) -> tuple[list[tuple[Place, Place]], int]:
@@ -72,7 +72,7 @@ def path_lines(data: str) -> tuple[list[tuple[Place, Place]], int]:
 
 
 def _commands(data: str) -> Iterator[tuple[str, list[Fraction]]]:
-    """The commands with their numbers; a command is repeated as long as there are numbers."""
+    """Yields the commands with their numbers; a command repeats while numbers follow."""
     tokens = list(_tokens(data))
     k = 0
     command = ""
@@ -102,7 +102,7 @@ def _tokens(data: str) -> Iterator[str]:
     while position < end:
         match = _TOKEN.match(data, position)
         if match is None:
-            raise MalformedDrawingError(f"path data is not understood at {shown(data[position:])}")
+            raise MalformedDrawingError(f"path data cannot be read at {shown(data[position:])}")
         yield match[1] or match[2]
         position = match.end()
 

@@ -1,7 +1,7 @@
-"""What a drawing takes of an SVG file: few elements and attributes, within limits, styles applied.
+"""Reduces an SVG file to the few elements and attributes of a drawing, within limits.
 
-The library that resolves groups, transforms and `use` takes long, or for ever, on text that nobody
-draws: it gets nothing else than this.
+Styles become attributes. The library that resolves groups, transforms and `use` takes long, or
+never ends, on text that nobody would draw. So it gets only the reduced tree.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from exactfold.exact.numbers import shown
 
 NAMESPACE: Final = "http://www.w3.org/2000/svg"
 NUMBER: Final = "exactfold"
-"""The attribute that numbers the elements."""
+"""The attribute that holds the number of an element."""
 _DROPPED: Final = ("style", "text", "tspan", "title", "desc", "image", "metadata", "script")
 _LINK: Final = "{http://www.w3.org/1999/xlink}href"
 _STYLED: Final = (
@@ -38,27 +38,28 @@ _OF_TAG: Final = {
     "circle": ("cx", "cy", "r"),
     "ellipse": ("cx", "cy", "rx", "ry"),
 }
-"""What else the library needs of an element: it is not to read the lines of a shape."""
+"""Other attributes that the library needs, by element; it must not read the lines of a shape."""
 _MOVE: Final = 32
-"""Characters, at most, around the numbers by which `use` moves."""
+"""So many characters, at most, are added around the numbers by which `use` moves."""
 
 
 @dataclass(frozen=True)
 class _Cost:
-    """What an element holds, with all that `use` brings in."""
+    """The size of an element, including everything that `use` brings in."""
 
     elements: int = 1
     depth: int = 1
-    transforms: int = 0  # characters, once for each element that they apply to
+    transforms: int = 0  # characters, counted once for each element that they apply to
     longest: int = 0  # characters of all transforms that apply to one element
 
 
 def plain_tree(root: Element) -> tuple[Element, list[Mapping[str, str]]]:
-    """The tree without what is not read, and the attributes of its elements as they are written.
+    """The tree without the parts that are not read, and the attributes of its elements as written.
 
-    An element has the number of its attributes; styles have become attributes.
+    The attribute `NUMBER` of an element is its position among the attributes. Styles have become
+    attributes.
 
-    Raises `TooLargeError` for nesting, repetition by `use` or text beyond the limits, and
+    Raises `TooLargeError` if nesting, repetition by `use` or text exceeds the limits, and
     `MalformedDrawingError` for a `use` that refers to itself.
     """
     styles = _styles("".join(e.text or "" for e in root.iter() if _tag(e) == "style"))
@@ -83,7 +84,7 @@ def _tag(element: Element) -> str:
 def _alone(
     element: Element, styles: Mapping[str, Mapping[str, str]], given: list[Mapping[str, str]]
 ) -> Element:
-    """A copy of an element without what is in it; its attributes are appended to those given."""
+    """A copy of an element without its children; its attributes are appended to `given`."""
     tag, own = _tag(element), dict(element.attrib)
     classes = own.get("class", "").split(" ")
     selectors = ["*", tag, f"#{own.get('id')}"]
@@ -96,10 +97,10 @@ def _alone(
         if len(text) > MOST_TEXT:
             raise TooLargeError(
                 f"an attribute ({key.rpartition('}')[2]}) of an SVG element {shown(tag)} has "
-                f"{len(text)} characters, and {MOST_TEXT} are the most that are read: shorten it"
+                f"{len(text)} characters, but at most {MOST_TEXT} are read: shorten it"
             )
     if tag in ("polyline", "polygon") and own.get("points", "").strip():
-        kept["points"] = "0 0 1 0"  # the library leaves out what has no points
+        kept["points"] = "0 0 1 0"  # the library leaves out elements without points
     elif tag == "path":
         kept["d"] = ""
     given.append(own)
@@ -107,7 +108,7 @@ def _alone(
 
 
 def _styles(text: str) -> dict[str, dict[str, str]]:
-    """The declarations of a style sheet by selector."""
+    """The declarations of a style sheet, by selector."""
     first, *others = text.split("/*")
     text = first + "".join(part.partition("*/")[2] for part in others)
     text = "\n".join(line.partition("//")[0] for line in text.split("\n"))
@@ -121,7 +122,7 @@ def _styles(text: str) -> dict[str, dict[str, str]]:
 
 
 def _declarations(text: str) -> dict[str, str]:
-    """What a style says of the attributes that are read."""
+    """The values that a style declares for the attributes that are read."""
     pairs = (part.split(":") for part in text.split(";"))
     stated = {pair[0].strip(): pair[1].strip() for pair in pairs if len(pair) == 2}
     return {key: stated[key] for key in _STYLED if key in stated}
@@ -131,7 +132,7 @@ def _declarations(text: str) -> dict[str, str]:
 
 
 def _check_cost(root: Element) -> None:
-    """Raise for nesting, repetition or transforms beyond the limits, or a circle of `use`."""
+    """Raises an error if `use` forms a circle, or for too much nesting, repetition, transforms."""
     named = {e.get("id"): e for e in root.iter() if e.get("id")}
     costs: dict[Element, _Cost | None] = {}
     waiting = [root]
@@ -148,7 +149,7 @@ def _check_cost(root: Element) -> None:
                     waiting.append(child)
                 elif costs[child] is None:
                     raise MalformedDrawingError(
-                        f"the `use` of {shown(link)} is inside what it refers to: remove it"
+                        f"the `use` of {shown(link)} lies inside its own target: remove it"
                     )
             continue
         waiting.pop()
@@ -160,14 +161,14 @@ def _check_cost(root: Element) -> None:
         _too_deep()
     if repeated > MOST_USED:
         raise TooLargeError(
-            f"`use` repeats {repeated} elements of the SVG file, and {MOST_USED} are the most that "
-            "are read: draw the lines themselves"
+            f"`use` repeats {repeated} elements of the SVG file, but at most {MOST_USED} are read: "
+            "draw the lines themselves"
         )
     if total.longest > MOST_TEXT or total.transforms > MOST_TRANSFORMS:
         raise TooLargeError(
             f"the transforms of the SVG file are too long: {total.longest} characters for one "
-            f"element and {total.transforms} for all, and {MOST_TEXT} and {MOST_TRANSFORMS} are "
-            "the most that are read: apply them to the coordinates"
+            f"element and {total.transforms} for all, but at most {MOST_TEXT} and "
+            f"{MOST_TRANSFORMS} are read: apply them to the coordinates"
         )
 
 
@@ -186,6 +187,6 @@ def _cost(element: Element, inside: list[_Cost]) -> _Cost:
 
 def _too_deep() -> NoReturn:
     raise TooLargeError(
-        f"elements of the SVG file are nested more than {MOST_DEPTH} deep, the most that is read: "
+        f"elements of the SVG file are nested more than {MOST_DEPTH} deep, which is not read: "
         "ungroup them"
     )

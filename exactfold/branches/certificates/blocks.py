@@ -1,10 +1,14 @@
-"""Compact certificates: proved blocks as lines of text (docs/compact-certificate.md)."""
+"""Certificates of one root for each sign vector: proved blocks as lines of text.
+
+`docs/compact-certificate.md` describes every key.
+"""
 
 from __future__ import annotations
 
 import base64
 import json
 import platform
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -12,18 +16,20 @@ import numpy.typing as npt
 
 from exactfold.branches.values.blocks import ProvedBlock
 from exactfold.certificates.entries import chart_evidence, pattern_document, triangle_evidence
-from exactfold.checker.branches.compact import COMPACT
+from exactfold.checker.branches.compact import CHAMBERS, COMPACT
 from exactfold.checker.branches.compact_blocks import UNPROVED
+from exactfold.checker.branches.listing import CountClaims, Counts
 from exactfold.exact.numbers import format_integer
+from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.rigidity.equations.problem import Problem
 
 
 def header_line(problem: Problem, block_size: int) -> str:
     """The first line: the pattern and what its roots are proved with."""
-    return _text(
+    return line_text(
         {
             "format": COMPACT.format,
-            "version": COMPACT.version,
+            "version": CHAMBERS,
             "pattern": pattern_document(problem.pattern),
             "evidence": {
                 "kind": "chambers",
@@ -44,7 +50,7 @@ def block_line(block: ProvedBlock) -> str:
     raw = np.ascontiguousarray(boxes.centers.astype("<i8")).view(np.uint8)
     centers = raw.reshape(*boxes.centers.shape, 8)[:, :, :width]
     radii = np.where(boxes.proved, boxes.exponents, UNPROVED).astype(np.uint8)
-    return _text(
+    return line_text(
         {
             "block": block.index,
             "bits": boxes.bits,
@@ -67,28 +73,38 @@ def block_line(block: ProvedBlock) -> str:
     )
 
 
-def claims_line(problem: Problem) -> str:
+def compact_lines(problem: Problem, block_size: int, blocks: Sequence[str]) -> tuple[str, ...]:
+    """All lines of a certificate whose blocks are proved, without the digests that chain them."""
+    claims = claims_line(problem.pattern, chamber_counts(problem))
+    return (header_line(problem, block_size), *blocks, claims)
+
+
+def chamber_counts(problem: Problem) -> Counts:
+    """What one root for each sign vector proves."""
+    return {
+        "distinct": 1 << problem.size,
+        "with_multiplicity": 1 << problem.pattern.Vi,
+        "real": 1 << problem.size,
+        "nonreal": 0,
+        "true_branches": "proved",
+    }
+
+
+def claims_line(pattern: CreasePattern, counts: Counts) -> str:
     """The last line of a file without open roots."""
-    pattern = problem.pattern
-    return _text(
-        {
-            "claims": {
-                "interior": pattern.Vi,
-                "boundary": pattern.Ve,
-                "folds": len(pattern.folds),
-                "degrees_of_freedom": pattern.degrees_of_freedom,
-                "sha256": pattern.sha256,
-                "distinct": 1 << problem.size,
-                "with_multiplicity": 1 << pattern.Vi,
-                "real": 1 << problem.size,
-                "nonreal": 0,
-                "true_branches": "proved",
-            }
-        }
-    )
+    claims: CountClaims = {
+        "interior": pattern.Vi,
+        "boundary": pattern.Ve,
+        "folds": len(pattern.folds),
+        "degrees_of_freedom": pattern.degrees_of_freedom,
+        "sha256": pattern.sha256,
+        **counts,
+    }
+    return line_text({"claims": claims})
 
 
-def _text(data: dict[str, Any]) -> str:
+def line_text(data: Mapping[str, Any]) -> str:
+    """The text of one line."""
     return json.dumps(data, separators=(",", ":"))
 
 

@@ -1,4 +1,4 @@
-"""Work shared among processes without threads: nothing waits for what cannot be."""
+"""Work shared among processes without threads, and their environment: nothing waits for ever."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from multiprocessing.context import SpawnProcess
 
 import pytest
 
-from exactfold._support import shared_work as crew
-from exactfold._support.shared_work import as_they_end, in_order
+from exactfold._support import processes as module
+from exactfold._support.processes import as_they_end, in_order, worker_environment
 from exactfold.errors import NotEnoughMemoryError, WorkerDiedError
 
 
@@ -106,6 +106,15 @@ def test_no_process_at_all(monkeypatch: pytest.MonkeyPatch) -> None:
     message = f"no worker process can be started: {os.strerror(errno.EAGAIN)}"
     with pytest.raises(WorkerDiedError, match=message):
         list(as_they_end(2, square, range(6)))
-    monkeypatch.setattr(crew, "memory_is_limited", lambda: True)
+    monkeypatch.setattr(module, "memory_is_limited", lambda: True)
     with pytest.raises(NotEnoughMemoryError, match=f"{message}: not enough memory"):
         list(as_they_end(2, square, range(6)))
+
+
+def test_the_environment_is_restored(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("OMP_NUM_THREADS", "7")
+    monkeypatch.delenv("OPENBLAS_NUM_THREADS", raising=False)
+    with worker_environment():
+        assert os.environ["OMP_NUM_THREADS"] == os.environ["OPENBLAS_NUM_THREADS"] == "1"
+    assert os.environ["OMP_NUM_THREADS"] == "7"
+    assert "OPENBLAS_NUM_THREADS" not in os.environ

@@ -1,0 +1,181 @@
+"""What the commands that fold and drive sheets take: their options, and which go together."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from exactfold.app.shell.parameters import (
+    Drive,
+    Json,
+    Pattern,
+    Place,
+    Resume,
+    Rim,
+    Sheet,
+    Side,
+    Signs,
+    Snap,
+    Up,
+    flag,
+    fold_name,
+    number,
+    numbers,
+    written,
+)
+from exactfold.app.shell.shell import apart, one_at_most
+from exactfold.errors import UsageError
+
+
+@dataclass(frozen=True)
+class FoldOptions:
+    """What `exactfold fold` takes; raises `UsageError` for options that do not go together.
+
+    `side` is None where it was not given.
+    """
+
+    file: Pattern
+    signs: Signs = None
+    up: Up = None
+    place: Place = None
+    rim: Rim = None
+    side: Side = None
+    drive: Drive = None
+    through_nodes: Annotated[
+        bool,
+        flag("--through-nodes", text="Of a branch: go straight on where another motion crosses."),
+    ] = False
+    component: Annotated[
+        int | None,
+        number(
+            "Of panels: the K-th component of their motions, those with most folds first. "
+            "Default: 1.",
+            "K",
+        ),
+    ] = None
+    modes: Annotated[
+        Sequence[int] | None,
+        typer.Option(
+            parser=numbers,
+            metavar="1,3",
+            help="Instead: modes that share no vertex, as `count` numbers them.",
+        ),
+    ] = None
+    until: Annotated[
+        str,
+        typer.Option(
+            metavar="WHERE",
+            help="Where to stop: `contact`, when faces meet or a fold closes; a fold angle such as "
+            "90deg; of a branch also `return`, when the sheet is flat again, or a number, the "
+            "time.",
+        ),
+    ] = "contact"
+    frames: Annotated[int, number("Number of frames.", least=2)] = 60
+    by: Annotated[
+        tuple[int, int] | None,
+        typer.Option(
+            parser=fold_name,
+            metavar="I-J",
+            help="Frames at equal steps of the angle of this fold, not of time.",
+        ),
+    ] = None
+    output: Annotated[
+        Path | None,
+        written(
+            "Write the frames: FILE.fold; .glb or .gltf with an animation; or .obj, a file "
+            "for each, FILE_0000.obj and on.",
+            "FILE",
+            "-o",
+            "--output",
+        ),
+    ] = None
+    plot: Annotated[
+        Path | None,
+        written("Draw all fold angles along the motion: FILE.svg, .png or .pdf."),
+    ] = None
+    picture: Annotated[
+        Path | None,
+        written("Draw the sheet at five times, in space: FILE.svg, .png or .pdf."),
+    ] = None
+    certificate: Annotated[
+        Path | None,
+        written(
+            "Prove the motion and its first contact, and write the evidence for `exactfold check`.",
+            "OUT.json",
+        ),
+    ] = None
+    as_json: Json = False
+    snap: Snap = None
+    sheet: Sheet = None
+
+    def __post_init__(self) -> None:
+        one_at_most("one of --signs, --up and --branch", self.signs, self.up, self.place)
+        if self.place is not None and (self.rim, self.drive) != (None, None):
+            option = "--drive" if self.rim is None else "--rim"
+            raise UsageError(f"{option} goes with --signs or --up")
+        if self.component is not None and self.modes is not None:
+            raise UsageError("give one of --component and --modes")
+        apart(self.output, self.file, self.rim, self.plot, self.picture, self.certificate)
+        apart(self.plot, self.file, self.rim, self.picture, self.certificate)
+        apart(self.picture, self.file, self.rim, self.certificate)
+        apart(self.certificate, self.file, self.rim)
+
+
+@dataclass(frozen=True)
+class MotionsOptions:
+    """What `exactfold motions` takes."""
+
+    file: Pattern
+    workers: Annotated[
+        int | None,
+        number("Processes. Default: all cores."),
+    ] = None
+    dask: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ADDRESS",
+            help="Run on the dask.distributed cluster with this scheduler; `local` starts one "
+            "here.",
+        ),
+    ] = None
+    certificate: Annotated[
+        Path | None,
+        written("Write the proof of each loop to FILE as it is found, for `check`."),
+    ] = None
+    resume: Resume = False
+    as_json: Json = False
+    snap: Snap = None
+    sheet: Sheet = None
+
+
+@dataclass(frozen=True)
+class ActuateOptions:
+    """What `exactfold actuate` takes; raises `UsageError` for options that do not go together."""
+
+    file: Pattern
+    signs: Signs = None
+    up: Up = None
+    creases: Annotated[
+        int | None,
+        number("Drive at most K creases. Default: all.", "K"),
+    ] = None
+    torques: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE.json",
+            help='Instead: judge these torques, {"0-4": 0.5, ...}; creases not named have 0.',
+        ),
+    ] = None
+    as_json: Json = False
+    snap: Snap = None
+    sheet: Sheet = None
+    everything: Annotated[bool, flag("--all", text="List every branch in the ranking.")] = False
+
+    def __post_init__(self) -> None:
+        one_at_most("either --signs or --up", self.signs, self.up)
+        if self.creases is not None and self.torques is not None:
+            raise UsageError("--creases and --torques do not go together")

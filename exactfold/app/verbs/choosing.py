@@ -1,0 +1,170 @@
+"""How a verb chooses one way: by its number, by vertex signs, or by mountains and valleys."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING
+
+from exactfold._support.plurals import counted
+from exactfold._support.progress import Progress
+from exactfold._support.verdict import PROVED
+from exactfold.branches.counting.find import Deficits, Rim, Signs, branch_finder
+from exactfold.branches.values.branch import Branch
+from exactfold.branches.values.letters import UPSIDE_DOWN
+from exactfold.errors import (
+    NotCountedError,
+    UsageError,
+)
+from exactfold.pattern.crease_pattern import CreasePattern, Edge
+from exactfold.pattern.opening import Opened, triangles
+
+if TYPE_CHECKING:
+    from exactfold.branches.values.result import BranchCount
+    from exactfold.panels.result import Decomposition
+
+DRAWN = "drawn"
+"""In place of letters: those of the file."""
+_NAMED = 4
+
+Letters = Mapping[Edge, str] | str
+Ray = tuple[Branch, int]
+"""A branch and its side: 1 for the ray that it shows, -1 for the opposite one."""
+
+
+def the_branch(
+    opened: Opened,
+    way: int | None,
+    signs: Signs | None,
+    up: Iterable[int] | None,
+    letters: Letters | None,
+    *,
+    rim: Rim | None = None,
+    curvature: Deficits | None = None,
+    progress: Progress | None = None,
+) -> Ray:
+    """The ray that exactly one of `way`, `signs`, `up` and `letters` names; see `branch`."""
+    given = {"way": way, "signs": signs, "up": up, "letters": letters}
+    named = [name for name, value in given.items() if value is not None]
+    if len(named) != 1:
+        but = f", not {' and '.join(named)}" if named else ""
+        raise UsageError(f"name the branch by one of signs, up, letters and way{but}")
+    pattern = _triangulated(opened)
+    if (rim is not None or curvature is not None) and named[0] in ("way", "letters"):
+        raise UsageError(f"rim and curvature go with signs or up, not with {named[0]}")
+    if way is not None:
+        from exactfold.branches.counting.collect import count_branches
+
+        return listed(count_branches(pattern, progress=progress), way), 1
+    if letters is not None:
+        return _with_letters(pattern, asked_letters(opened, letters), progress)
+    finder = branch_finder(pattern, rim, curvature)
+    return finder.find(finder.signs(signs, up), progress=progress), 1
+
+
+def listed(result: BranchCount, way: int) -> Branch:
+    """The branch with a number, from 1, in the list of a count.
+
+    Raises `NotCountedError` where the count lists no branch, `UsageError` for a number that it has
+    not.
+    """
+    if 1 <= way <= len(result.branches):
+        return result.branches[way - 1]
+    if result.branches:
+        raise UsageError(f"there is no way {way}: `count` lists 1 to {len(result.branches)}")
+    corners = result.pattern.Ve
+    if corners > 4:
+        raise NotCountedError(
+            f"`count` lists no single branch of a sheet with {corners} corners, where branches "
+            "depend on the heights of the boundary: name one by its vertex signs"
+        )
+    raise NotCountedError(f"`count` lists no branch of this sheet: {result.reason}")
+
+
+def asked_letters(opened: Opened, letters: Letters | None) -> Letters:
+    """The letters that are meant; those of the file for None and "drawn".
+
+    Raises `UsageError` where the file has none.
+    """
+    if letters is not None and letters != DRAWN:
+        return letters
+    if not opened.letters:
+        raise UsageError("no fold of the sheet is drawn as a mountain or a valley: give letters")
+    return opened.letters
+
+
+def modes_with(
+    ways: Decomposition, wanted: int | Iterable[int] | None, letters: Mapping[Edge, str] | None
+) -> dict[int | Edge, float] | None:
+    """The rates of the modes that are meant, by number: 1, or -1 on the other side of the sheet.
+
+    None where neither numbers nor letters are given. Raises `UsageError` for both, and for letters
+    that several modes have, `NotCountedError` for letters that no mode has.
+    """
+    if letters is None:
+        if wanted is None:
+            return None
+        return dict.fromkeys((wanted,) if isinstance(wanted, int) else tuple(wanted), 1.0)
+    if wanted is not None:
+        raise UsageError("name the mode by one of letters and way, not letters and way")
+    from exactfold.motion.panels.followable import panel_modes
+
+    found: dict[int | Edge, float] = {}
+    for mode in panel_modes(ways):
+        for rate in (1.0, -1.0):
+            turn = UPSIDE_DOWN if rate < 0 else {}
+            own = {f: mode.letters.get(f, "F").translate(turn) for f in ways.pattern.folds}
+            if all(x in ("U", own[fold]) for fold, x in letters.items()):
+                found[mode.number] = rate
+                break
+    if not found:
+        raise NotCountedError(
+            "no mode that is known has these letters: `match` says whether the sheet starts to "
+            "fold with them"
+        )
+    if len(found) > 1:
+        numbers = ", ".join(map(str, [*found][:_NAMED]))
+        raise UsageError(f"{len(found)} modes have these letters: name one by way={numbers}")
+    return found
+
+
+def _triangulated(opened: Opened) -> CreasePattern:
+    """The sheet of triangles, or what the sheet has instead of branches."""
+    if isinstance(opened.sheet, CreasePattern):
+        return opened.sheet
+    if opened.sheet.field.radicands or all(len(face) == 3 for face in opened.sheet.faces):
+        return triangles(opened, "branch")
+    raise NotCountedError(
+        "this sheet of rigid panels has modes in place of branches: `count` lists them, and "
+        "`follow(sheet, 1)` follows the first"
+    )
+
+
+def _with_letters(pattern: CreasePattern, letters: Letters, progress: Progress | None) -> Ray:
+    """The ray that has letters, if there is one only."""
+    from exactfold.design.assignments.boundary_match import match_rim
+    from exactfold.design.assignments.search import match
+
+    if pattern.Ve > 4:
+        over = match_rim(pattern, letters, progress=progress)
+        if over.branch is None:
+            raise NotCountedError(_none(over.status is PROVED, over.reasons))
+        return over.branch, 1
+    found = match(pattern, letters, progress=progress)
+    if not found.matches:
+        raise NotCountedError(_none(found.status is PROVED, found.reasons))
+    if len(found.matches) > 1:
+        some = ", ".join(f'"{one.sign_text}"' for one in found.matches[:_NAMED])
+        more = ", ..." if len(found.matches) > _NAMED else ""
+        raise UsageError(
+            f"{counted(len(found.matches), 'ray')} of branches have these letters: name one by its "
+            f"signs, {some}{more}"
+        )
+    [one] = found.matches
+    return one.branch, one.side
+
+
+def _none(proved: bool, reasons: Iterable[str]) -> str:
+    why = "; ".join(reasons)
+    if proved:
+        return f"no branch has these letters{f': {why}' if why else ''}"
+    return "no branch with these letters was found, and it is undecided whether there is one"

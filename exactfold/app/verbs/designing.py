@@ -1,0 +1,106 @@
+"""`match` and `actuate`: from a wish to a way to fold."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING
+
+from exactfold._support.progress import Progress
+from exactfold._support.verdict import PROVED
+from exactfold.app.verbs.choosing import Letters, asked_letters, the_branch
+from exactfold.branches.counting.find import Signs
+from exactfold.design.actuation.actuate import actuate as actuate_branch
+from exactfold.design.assignments.boundary_match import can_pop, match_rim
+from exactfold.design.assignments.search import match as match_branches
+from exactfold.design.panels.match import match_panels
+from exactfold.design.refutations.asked import by_fold
+from exactfold.errors import NotCountedError
+from exactfold.pattern.crease_pattern import CreasePattern, Edge
+from exactfold.pattern.loading import PatternLike, open_sheet
+from exactfold.pattern.opening import triangles
+
+if TYPE_CHECKING:
+    from exactfold.design.actuation.result import Actuation
+    from exactfold.design.assignments.boundary_match import RimMatch
+    from exactfold.design.assignments.search import Match
+    from exactfold.design.panels.match import PanelMatch
+    from exactfold.exact.numbers import RationalLike
+
+
+def match(
+    sheet: PatternLike,
+    letters: Letters | None = None,
+    *,
+    most: int | None = None,
+    progress: Progress | None = None,
+) -> Match | RimMatch | PanelMatch:
+    """Which ways have given mountains and valleys, or a proof that there are none.
+
+    `sheet` is what `read` takes. `letters`: M, V, F (flat) or U (free) for each fold, as text in
+    the order of the folds or by fold (i, j), i < j; None or "drawn" for those of the file. The
+    result depends on the sheet: a `Match` has all branches of a triangulated sheet with four
+    corners that have the letters; a `RimMatch` says whether a sheet with more corners starts to
+    fold with them, and heights of its boundary with which it does; a `PanelMatch` says whether
+    rigid panels do. `most`: how many sign vectors of a triangulated sheet are tried before the
+    answer is UNDECIDED.
+
+    Raises `UsageError` for a file without mountains and valleys and for letters that do not fit,
+    `NotCountedError` for a triangle, which is rigid.
+
+    >>> import exactfold
+    >>> exactfold.match("two-vertex", "MVVVMVM")
+    <Match: proved, 1 halves, 1 sign vectors>
+    >>> exactfold.match("miura").starts
+    <Verdict.PROVED: 'proved'>
+    """
+    opened = open_sheet(sheet)
+    pattern = opened.sheet
+    wanted = by_fold(pattern.folds, asked_letters(opened, letters))
+    if isinstance(pattern, CreasePattern) and pattern.Ve > 4 and can_pop(pattern):
+        over = match_rim(pattern, wanted, progress=progress, **_at_most(most))
+        if over.status is PROVED:
+            return over
+    if not isinstance(pattern, CreasePattern) or pattern.Ve > 4:
+        return match_panels(opened, wanted, progress=progress)
+    if pattern.interior and pattern.Ve == 3:
+        raise NotCountedError("this sheet is rigid: it has three vertices on its boundary")
+    return match_branches(pattern, wanted, progress=progress, **_at_most(most))
+
+
+def actuate(
+    sheet: PatternLike,
+    signs: Signs | None = None,
+    *,
+    way: int | None = None,
+    up: Iterable[int] | None = None,
+    letters: Letters | None = None,
+    creases: int | None = None,
+    torques: Mapping[Edge, RationalLike] | None = None,
+    progress: Progress | None = None,
+) -> Actuation:
+    """Torques on the folds that drive a triangulated sheet along one branch and no other.
+
+    The branch is named as for `branch`. On at most `creases` folds, if that is given. With
+    `torques`, exact numbers by fold, these are judged instead (docs/actuation.md).
+
+    Raises `NotCountedError` for larger panels and for more than 12 vertices that fold, and the
+    errors of `branch` and of `exactfold.design.actuate`.
+
+    >>> import exactfold
+    >>> exactfold.actuate("two-vertex", "+-")
+    <Actuation of +-: proved, margin 0.982 of at most 0.982>
+    """
+    opened = open_sheet(sheet)
+    pattern = triangles(opened, "actuate")
+    wanted: Signs | None = signs
+    if way is not None or letters is not None:
+        branch, side = the_branch(opened, way, signs, up, letters, progress=progress)
+        wanted, up = {v: side * sign for v, sign in branch.vertex_signs.items()}, None
+    return actuate_branch(
+        pattern, wanted, up=up, creases=creases, torques=torques, progress=progress
+    )
+
+
+def _at_most(most: int | None) -> dict[str, int]:
+    """The limit as an argument; each kind of sheet has one of its own where none is given."""
+    return {} if most is None else {"most": most}

@@ -1,0 +1,268 @@
+"""`follow`, `prove` and `loops`: the sheet as it folds for real."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from exactfold._support.progress import Progress
+from exactfold.app.verbs.choosing import (
+    Letters,
+    Ray,
+    asked_letters,
+    listed,
+    modes_with,
+    the_branch,
+)
+from exactfold.branches.counting.find import Rim, Signs
+from exactfold.branches.counting.ways import decompose_opened
+from exactfold.branches.values.branch import Branch
+from exactfold.branches.values.result import BranchCount
+from exactfold.design.assignments.search import Matched
+from exactfold.design.refutations.asked import by_fold
+from exactfold.errors import UsageError
+from exactfold.motion.curves.drive import Drive
+from exactfold.motion.curves.motion import Motion
+from exactfold.motion.following import follow as follow_branch
+from exactfold.motion.loops.matching import Loops, find_loops
+from exactfold.motion.panels.following import follow_panels
+from exactfold.motion.panels.motion import PanelMotion
+from exactfold.motion.panels.proving import PanelProof, prove_panels
+from exactfold.motion.proving import MotionProof
+from exactfold.motion.proving import prove as prove_motion
+from exactfold.motion.tubes.driven import find_driven
+from exactfold.panels.result import Decomposition
+from exactfold.pattern.crease_pattern import CreasePattern, Edge
+from exactfold.pattern.loading import PatternLike, open_sheet
+from exactfold.pattern.opening import Opened, has_branches
+
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+Way: TypeAlias = "Branch | Matched | BranchCount | Decomposition | PatternLike"
+"""What can be followed: a way that was found, a result with a number, or a sheet."""
+
+
+def follow(
+    sheet: Way,
+    way: int | Sequence[int] | None = None,
+    *,
+    signs: Signs | None = None,
+    up: Iterable[int] | None = None,
+    letters: Letters | None = None,
+    rim: Rim | None = None,
+    drive: Mapping[Edge, float | None] | None = None,
+    side: int | None = None,
+    until: str | float = "contact",
+    frames: int = 60,
+    by: Edge | None = None,
+    held: Sequence[int] | None = None,
+    through_nodes: bool = False,
+    progress: Progress | None = None,
+) -> Motion | PanelMotion:
+    """The motion along one way: the sheet in space, from flat until something happens.
+
+    `sheet`: a `Branch`, a way of a `Match`, a `BranchCount` or a `Decomposition`, or what `read`
+    takes. Which way of a sheet or a result is followed: `way`, its number as `count` lists it, from
+    1, or several numbers of modes that fold together; `signs` or `up`, of a branch, as for
+    `branch`; `letters`, of a branch or a mode, "drawn" for those of the file. Without any of these:
+    the branch on which all vertices pop up, or the modes with most folds.
+
+    The motion ends at `until`: "contact", the first contact of two faces or fold that closes;
+    "90deg", the first fold angle of that size; along a branch also "return", the flat sheet again,
+    or a number, the time. `frames`: their number, at equal steps of time, or of the angle of the
+    fold `by`. `side`: -1 for the mirror image. `held`: the corners of the face that does not move.
+    Along a branch only: `rim`, the heights of the boundary of a sheet with more than four corners;
+    `drive`, the angles in degrees to which folds are driven (`exactfold.motion.find_driven`);
+    `through_nodes`, to go on where another curve crosses.
+
+    Raises `UsageError` for what does not fit the sheet, `NotFollowedError` for what cannot be
+    followed, `UndecidedBranchError` for a branch that is not proved, and as `branch`.
+
+    >>> import exactfold
+    >>> exactfold.follow("two-vertex", signs="+-", until="90deg", frames=5)
+    <Motion: branch +-, 5 frames to angle at 1.37421>
+    >>> exactfold.follow("zigzags", 2, until="90deg", frames=5)
+    <PanelMotion: mode 2, followed, 5 frames to angle at 1.5708>
+    """
+    asked = _Asked(way, signs, up, letters, rim, drive, side)
+    if isinstance(sheet, Branch | Matched):
+        asked.refuse_names("a branch")
+        start = (sheet, side or 1) if isinstance(sheet, Branch) else (sheet.branch, sheet.side)
+        return _along(start, None, until, frames, by, held, through_nodes, progress)
+    if isinstance(sheet, BranchCount):
+        if not isinstance(way, int):
+            raise UsageError("name a way of the count by its number, as in `follow(result, 3)`")
+        start = listed(sheet, way), side or 1
+        return _along(start, None, until, frames, by, held, through_nodes, progress)
+    if not isinstance(sheet, Decomposition):
+        opened = open_sheet(sheet)
+        if isinstance(opened.sheet, CreasePattern) and asked.is_branch(opened.sheet):
+            start, drive_found = asked.ray(opened, opened.sheet, progress)
+            return _along(start, drive_found, until, frames, by, held, through_nodes, progress)
+        letters = None if letters is None else asked_letters(opened, letters)
+        sheet = decompose_opened(opened, progress=progress)
+    asked.refuse_of_panels(through_nodes)
+    wanted = None if letters is None else by_fold(sheet.pattern.folds, letters)
+    rates = modes_with(sheet, way, wanted)
+    if rates is not None and side == -1:
+        rates = {number: -rate for number, rate in rates.items()}
+    return follow_panels(
+        sheet,
+        modes=None if rates is None else [n for n in rates if isinstance(n, int)],
+        amounts=rates,
+        until=str(until),
+        frames=frames,
+        by=by,
+        held=0 if held is None else _face(sheet, held),
+    )
+
+
+def prove(
+    motion: Motion | PanelMotion, *, progress: Progress | None = None
+) -> MotionProof | PanelProof:
+    """Prove a motion: that the sheet folds so without a gap, and what touches first.
+
+    `motion` of the result has frames that are enclosed, `certificate()` is the evidence, and
+    `write(path)` writes it for `check`. UNDECIDED says nothing against the motion; `reason` says
+    what is missing.
+
+    Raises `UsageError` where the branch of the motion is not proved.
+
+    >>> import exactfold
+    >>> motion = exactfold.follow("two-vertex", signs="+-", until="30deg", frames=2)
+    >>> exactfold.prove(motion).status
+    <Verdict.PROVED: 'proved'>
+    """
+    if isinstance(motion, PanelMotion):
+        return prove_panels(motion)
+    if not isinstance(motion, Motion):
+        raise UsageError(f"{type(motion).__name__} is not a motion: `follow` makes one")
+    return prove_motion(motion, progress=progress)
+
+
+def loops(
+    sheet: PatternLike,
+    *,
+    workers: int = 1,
+    certificate: str | os.PathLike[str] | None = None,
+    resume: bool = False,
+    progress: Progress | None = None,
+) -> Loops:
+    """All motions of a triangulated sheet with four corners that come back to the flat state.
+
+    Each is proved from end to end, contact ignored (docs/motions.md). `sheet` is what `read` takes;
+    `workers` processes share the work. The file `certificate` takes the proofs as they are found;
+    with `resume`, one that was interrupted is continued.
+
+    Raises `NotCountedError` for larger panels, for a sheet without four corners, and for one whose
+    branches are not proved, and as `exactfold.motion.find_loops`.
+
+    >>> import exactfold
+    >>> exactfold.loops("two-vertex")
+    <Loops: proved, 2 of 2 loops proved>
+    """
+    return find_loops(
+        open_sheet(sheet),
+        processes=workers,
+        certificate=certificate,
+        resume=resume,
+        progress=progress,
+    )
+
+
+@dataclass(frozen=True)
+class _Asked:
+    """Which way of a sheet was asked for."""
+
+    way: int | Sequence[int] | None
+    signs: Signs | None
+    up: Iterable[int] | None
+    letters: Letters | None
+    rim: Rim | None
+    drive: Mapping[Edge, float | None] | None
+    side: int | None
+
+    def is_branch(self, pattern: CreasePattern) -> bool:
+        """Whether the way is a branch; with more than four corners, where it is named like one."""
+        like_one = (self.signs, self.up, self.rim, self.drive) != (None, None, None, None)
+        return like_one or has_branches(pattern)
+
+    def ray(
+        self, opened: Opened, pattern: CreasePattern, progress: Progress | None
+    ) -> tuple[Ray, Drive | None]:
+        """The ray that was asked for, and what is driven."""
+        if self.drive is not None:
+            if self.way is not None or self.letters is not None:
+                raise UsageError("drive goes with signs or up, not with way or letters")
+            signs = self.signs
+            if self.up is not None:
+                signs = the_branch(opened, None, signs, self.up, None)[0].vertex_signs
+            driven = find_driven(
+                pattern, self.drive, signs, rim=self.rim, side=self.side, progress=progress
+            )
+            return (driven.branch, driven.side), driven.drive
+        if self.way is not None and not isinstance(self.way, int):
+            raise UsageError("branches do not fold together: give one number for way")
+        up = self.up
+        if (self.way, self.signs, up, self.letters) == (None, None, None, None):
+            up = pattern.foldable_vertices
+        branch, side = the_branch(
+            opened, self.way, self.signs, up, self.letters, rim=self.rim, progress=progress
+        )
+        return (branch, side * (self.side or 1)), None
+
+    def refuse_names(self, what: str) -> None:
+        """Raise `UsageError` where a way is named although it is there."""
+        for name in ("way", "signs", "up", "letters", "rim", "drive"):
+            if getattr(self, name) is not None:
+                raise UsageError(f"{name} chooses a way of a sheet, and this is {what} already")
+
+    def refuse_of_panels(self, through_nodes: bool) -> None:
+        """Raise `UsageError` for what only branches have."""
+        given = {name: getattr(self, name) for name in ("signs", "up", "rim", "drive")}
+        for name, value in (given | {"through_nodes": through_nodes or None}).items():
+            if value is not None:
+                raise UsageError(
+                    f"{name} is for branches, and this sheet of rigid panels has modes: choose one "
+                    "by way or letters"
+                )
+
+
+def _along(
+    start: Ray,
+    drive: Drive | None,
+    until: str | float,
+    frames: int,
+    by: Edge | None,
+    held: Sequence[int] | None,
+    through_nodes: bool,
+    progress: Progress | None,
+) -> Motion:
+    branch, side = start
+    pinned = None
+    if held is not None:
+        if len(held) != 3:
+            raise UsageError(f"held {tuple(held)}: give the three corners of a triangle")
+        pinned = held[0], held[1], held[2]
+    return follow_branch(
+        branch,
+        side=side,
+        until=until,
+        frames=frames,
+        by=by,
+        through_nodes=through_nodes,
+        pinned=pinned,
+        drive=drive,
+        progress=progress,
+    )
+
+
+def _face(ways: Decomposition, corners: Sequence[int]) -> int:
+    """The number of the panel with these corners."""
+    for number, face in enumerate(ways.pattern.faces):
+        if set(face) == set(corners):
+            return number
+    raise UsageError(f"held {tuple(corners)}: no panel has these corners")

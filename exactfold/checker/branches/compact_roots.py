@@ -1,0 +1,55 @@
+"""Compact certificates, version 2: an entry for each root, with the branch that it is.
+
+What the evidence proves is written in `listing`, whose certificates hold the same in one object.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from ..core.limits import MOST_BYTES, MOST_ENTRIES
+from ..core.lines import read_object
+from ..core.reading import UnfinishedError, at_most, items, keys, natural, refusing, require
+from ..sheets.sheet import facts_of, read_sheet
+from . import listing
+
+
+@refusing()
+def check_roots(header: dict[str, Any], found: Iterator[str]) -> tuple[listing.CountClaims, int]:
+    """What the blocks that follow a header prove, and their number; all of them are kept."""
+    sheet, digest = read_sheet(header["pattern"])
+    evidence, branches, blocks = gathered(header, found)
+    counts = listing.proved(sheet, evidence, branches)
+    return {**facts_of(sheet, digest), **counts}, blocks
+
+
+def gathered(header: dict[str, Any], found: Iterator[str]) -> tuple[dict[str, Any], list[Any], int]:
+    """The evidence with all roots, and the branches, as a listing in one object has them.
+
+    The last is the number of blocks.
+    """
+    evidence, branches, roots = header["evidence"], list[Any](), list[Any]()
+    if "roots" not in evidence:  # the sheet is rigid, or a single vertex
+        return evidence, branches, 0
+    number, block = natural(evidence["roots"], "roots"), natural(evidence["block"], "block")
+    at_most(number, MOST_ENTRIES, "the roots")
+    total, blocks = 0, -(-number // block)
+    for k in range(blocks):
+        text = next(found, None)
+        if text is None:
+            raise UnfinishedError(f"only {k} of {blocks} blocks are there")
+        total += len(text)
+        at_most(total, MOST_BYTES, "the bytes of the blocks")
+        what = f"block {k}"
+        data = read_object(text, what)
+        keys(data, "block roots", what)
+        require(
+            type(data["block"]) is int and data["block"] == k,
+            f"{what} is expected, but here is block {data['block']!a}",
+        )
+        for entry in items(data["roots"], f"{what}: roots", min(block, number - k * block)):
+            roots.append(entry.pop("root"))
+            branches.append(entry)
+    kept = {key: value for key, value in evidence.items() if key != "block"}
+    return kept | {"roots": roots}, branches, blocks

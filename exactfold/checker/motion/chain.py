@@ -1,0 +1,108 @@
+"""Chains: the pieces of a motion along a branch, each verified to go on from the one before.
+
+Why a chain is one curve: the first piece is a curve of zeros of the equations in blown-up
+coordinates, which at the flat state solve the second-order equations with certain vertex signs: it
+belongs to the one branch with these signs (docs/theorem.md, 3 and 4). Every tube holds one curve of
+configurations; where it begins, the piece before ends on it and goes the same way. So does an arc
+through a branch point, a point of which lies on the tube before.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from itertools import zip_longest
+from typing import Any
+
+from ..core.limits import MOST_TUBES, MOST_WORK, MOTION_BITS, NODE_WORK
+from ..core.reading import items, keys, natural, require
+from ..sheets.sheet import Sheet
+from .equations import LengthEquations
+from .paths import Path
+from .pieces import arc_of, first_piece, parameter_of, tube_of
+from .restriction import Restriction
+from .stretches import Arc, Link, Step
+
+
+class Chain:
+    """A motion as far as it is verified.
+
+    `given` is the sheet, of which the vertices `removed` cannot fold. The motion leaves the flat
+    state on `start` and goes over to `steps` at `tau`; `end` is a box with the configuration at
+    which the last tube is left, or entered if it is not left. `passed`: which vertices are flat at
+    the branch points on the way. `facts` are what else a check says of the motion.
+    """
+
+    def __init__(
+        self, given: Sheet, removed: set[int], equations: LengthEquations, start: Any
+    ) -> None:
+        self.given, self.removed, self.equations = given, removed, equations
+        self.start, self.tau = first_piece(equations, start)
+        self.path = Path(self.start.configuration(self.tau), equations.bits)
+        self.end = self.path.here
+        self.steps: list[Step] = []
+        self.passed: list[list[int]] = []
+        self.facts: dict[str, Any] = {}
+
+    def walk(self, entries: list[Any], leaves: bool) -> None:
+        """Verify the tubes of a file, and the arcs through branch points between them.
+
+        A tube is left at its exit unless an arc follows; after the last one if it `leaves`.
+        """
+        for entry, after in zip_longest(entries, entries[1:]):
+            if is_arc(entry):
+                self.steps.append(through(self.equations, self.path, entry))
+                self.passed.append(entry["flat"])
+                continue
+            onwards = leaves if after is None else not is_arc(after)
+            keys(entry, "centre row reach exit" if onwards else "centre row reach", "tube")
+            tube, here, left = tube_of(self.equations, entry), self.path.here, None
+            self.path.enter(tube)
+            if onwards:
+                left = parameter_of(entry["exit"])
+                self.path.leave(left)
+            self.steps.append(Link(tube, here, left))
+        self.end = self.path.here
+        self.facts["tubes"] = sum(isinstance(step, Link) for step in self.steps)
+
+
+def through(equations: LengthEquations, path: Path, entry: Any) -> Arc:
+    """An arc through a branch point, from before it until after it."""
+    keys(entry, "flat node centre row reach entry exit", "node")
+    arc = arc_of(equations, entry["flat"], entry)
+    begin, end = parameter_of(entry["entry"]), parameter_of(entry["exit"])
+    require(begin < 0 < end, "an arc does not go through its node")
+    path.meet(*arc.configuration(begin))
+    path.go(*arc.configuration(Fraction(0)))
+    path.go(*arc.configuration(end))
+    return Arc(arc, begin, end)
+
+
+def is_arc(entry: Any) -> bool:
+    """Whether a step of a file is an arc through a branch point, not a tube."""
+    return isinstance(entry, dict) and "flat" in entry
+
+
+def equations_of(
+    sheet: Sheet, pinned: Any, bits: Any, restrictions: Sequence[Restriction] = ()
+) -> LengthEquations:
+    """The equations of a sheet that can fold, with `pinned` and `bits` as a file has them."""
+    four = len(sheet.boundary) == 4
+    require(four or restrictions, "there are not four boundary vertices")
+    one = len(restrictions) < 2
+    require(one, "a motion keeps the ratio of its border or that of driven folds, not both")
+    require(sheet.interior, "nothing can fold")
+    bits = natural(bits, "bits")
+    require(bits <= MOTION_BITS, "bits are out of range")
+    corners = [natural(v, "pinned vertex") for v in items(pinned, "pinned", 3)]
+    return LengthEquations(sheet, corners, bits, *restrictions[-1:])
+
+
+def check_work(equations: LengthEquations, entries: list[Any], arcs: int = 0) -> None:
+    """Raise if the tubes and arcs of a file, and so many `arcs` more, are too much work."""
+    among = sum(map(is_arc, entries))
+    tubes = len(entries) - among + NODE_WORK * (among + arcs)
+    require(tubes <= MOST_TUBES, "there are too many tubes")
+    size, digits = equations.size, 1 + (equations.bits + equations.more) // 256
+    work = (tubes + 1) * size**2 * (size + 200) * digits
+    require(work <= MOST_WORK, "the work is out of range")

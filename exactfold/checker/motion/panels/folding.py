@@ -1,0 +1,113 @@
+"""Sheets of panels that fold as claimed: their motion, verified, and the claims that say which."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+from ...core.limits import MOST_TESTS
+from ...core.reading import counted, natural, require
+from ...sheets.panels import PanelSheet
+from ..claims import Claim, Document
+from ..faces import FacePairs
+from .cut import Triangle, cut
+from .drive import Drive
+from .places import Places, shrunk
+from .times import Clock, OneRate, Rates
+
+_NAMED = 3
+_PARAMETER_BITS = 40
+
+
+class Folding:
+    """A motion of panels that is verified to exist, until its clock ends.
+
+    `drive` has its fold angles, `clock` the time at a parameter, `places` where the panels are, and
+    `panels` which of them may touch.
+    """
+
+    def __init__(self, sheet: PanelSheet, claims: Document, evidence: Document) -> None:
+        shrunk(sheet)
+        self.drive = Drive(sheet, claims["assignment"], claims["drivers"], evidence["vertices"])
+        rated = "rates" in claims
+        self.clock: Clock = Rates(claims["drivers"], claims["rates"]) if rated else OneRate()
+        self.places = Places(self.drive, self.clock)
+        self.panels = Panels(self.drive, self.places)
+
+    def parameter(self, value: Any) -> Fraction:
+        """A parameter as a file has it."""
+        found = Fraction(natural(value, "a parameter"), 1 << _PARAMETER_BITS)
+        require(found < self.clock.last, "a parameter is out of range")
+        return found
+
+
+class Panels(FacePairs):
+    """The pairs of triangles of different panels, and which triangles a panel has.
+
+    Folds need no test: before the time pi none is closed.
+    """
+
+    def __init__(self, drive: Drive, places: Places) -> None:
+        sheet = drive.sheet
+        faces: list[Triangle] = []
+        names: list[tuple[int, ...]] = []
+        self.triangles: dict[tuple[int, ...], list[Triangle]] = {}
+        for panel in sheet.panels:
+            some = cut(sheet, panel)
+            self.triangles[from_least(panel)] = some
+            faces += some
+            names += [panel] * len(some)
+        body = dict(zip(sheet.panels, places.bodies, strict=True))
+        still = [0, 0, 0]
+        flat = dict.fromkeys(range(len(sheet.points)), still)
+        place = {v: 3 * v for v in flat}
+        super().__init__(faces, names, [body[n] for n in names], {}, flat, place, MOST_TESTS)
+
+
+def from_least(corners: tuple[int, ...]) -> tuple[int, ...]:
+    """The same corners in the same order round a panel, the one with the smallest number first."""
+    first = corners.index(min(corners))
+    return corners[first:] + corners[:first]
+
+
+class PanelClaim(Claim):
+    """A claim of a motion of panels, checked on the motion that is verified to exist."""
+
+    def check(self, folding: Folding) -> None:
+        """Refuse a motion of which it does not hold; that it exists is verified already."""
+
+
+class Driven(PanelClaim):
+    """From the flat sheet on the panels fold with the mountains and valleys of `assignment`.
+
+    No other fold moves. Until a fold is closed the folds `drivers` have the angle t at the time t,
+    or t times their rate. `Drive` verifies it.
+    """
+
+    names = ("assignment", "drivers")
+    needs = ("vertices",)
+    always = True
+
+    @staticmethod
+    def said(claims: Document) -> str:
+        """How many folds move, and what drives them."""
+        letters, drivers = claims["assignment"], claims["drivers"]
+        number = counted(len(letters) - letters.count("F"), "fold moves", "folds move")
+        names = ", ".join(f"{i}-{j}" for i, j in drivers[:_NAMED])
+        more = f" and {len(drivers) - _NAMED} more" if drivers[_NAMED:] else ""
+        return f"the panels fold, {number} of {len(letters)}, driven by {names}{more}"
+
+
+class OwnRates(PanelClaim):
+    """The drivers have these `rates`, of which the largest is 1; without this key all have 1.
+
+    `Rates` verifies it.
+    """
+
+    names = ("rates",)
+    always = True
+
+    @staticmethod
+    def said(claims: Document) -> str:
+        """That there are some."""
+        return " at rates of their own" if "rates" in claims else ""
