@@ -12,6 +12,7 @@ from exactfold import pattern as pattern
 from exactfold import rigidity as rigidity
 from exactfold import solve as solve
 from exactfold import studies as studies
+from exactfold._support.results import Result as Result
 from exactfold._support.verdict import PROVED as PROVED
 from exactfold._support.verdict import REFUTED as REFUTED
 from exactfold._support.verdict import UNDECIDED as UNDECIDED

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Annotated, Literal, TypeAlias, TypedDict, overload
+from typing import Annotated, ClassVar, Literal, TypeAlias, TypedDict
 
 from exactfold._support.documents import (
     Empty,
@@ -18,6 +18,7 @@ from exactfold._support.documents import (
     VertexText,
 )
 from exactfold._support.notebook import Page
+from exactfold._support.results import Certified, Ways
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.panels.elementary import Support
 from exactfold.panels.extension import Extension
@@ -156,7 +157,7 @@ class Mode:
 
 
 @dataclass(frozen=True)
-class Decomposition(Page):
+class Decomposition(Page, Ways[Mode], Certified):
     """The ways in which a sheet of rigid panels starts to fold, and which of them truly fold.
 
     `second_order` is {dimension: number} of the components of all motions to second order; some of
@@ -195,21 +196,11 @@ class Decomposition(Page):
     still: tuple[Edge, ...] = ()
     seconds: float = field(default=0.0, compare=False)
 
-    def __len__(self) -> int:
-        return len(self.modes)
+    WRITER: ClassVar = "exactfold.panels.certificate:certificate_of_panels"
 
-    def __iter__(self) -> Iterator[Mode]:
-        return iter(self.modes)
-
-    def __bool__(self) -> bool:
-        return True  # a result, also where no mode is listed
-
-    @overload
-    def __getitem__(self, which: int) -> Mode: ...
-    @overload
-    def __getitem__(self, which: slice) -> tuple[Mode, ...]: ...
-    def __getitem__(self, which: int | slice) -> Mode | tuple[Mode, ...]:
-        return self.modes[which]
+    def listed(self) -> tuple[Mode, ...]:
+        """`modes`."""
+        return self.modes
 
     def to_dict(
         self, certificate: str | None = None, name: str | None = None

@@ -11,10 +11,11 @@ from typing import Any
 from exactfold import checker
 from exactfold._support.processes import available_cores
 from exactfold._support.verdict import PROVED, REFUTED, Verdict
+from exactfold.certificates.entries import CertificateLines
 from exactfold.certificates.sharing import shared
 from exactfold.checker.branches.compact import COMPACT
 from exactfold.checker.command import refusal
-from exactfold.checker.core.kinds import LineKind
+from exactfold.checker.core.kinds import LineKind, Verified
 from exactfold.checker.core.parts import Engine
 from exactfold.checker.core.reading import plain
 from exactfold.errors import CertificateFormatError, UnreadableFileError, WorkerDiedError
@@ -42,7 +43,7 @@ class Checked:
 
 
 def check(
-    certificate: str | os.PathLike[str] | Mapping[str, Any] | tuple[str, ...],
+    certificate: str | os.PathLike[str] | Mapping[str, Any] | CertificateLines,
     *,
     workers: int | None = None,
 ) -> Checked:
@@ -63,16 +64,12 @@ def check(
     >>> exactfold.check(forged).status
     <Verdict.REFUTED: 'refuted'>
     """
-    workers = workers or available_cores()
-    name = "the certificate"
+    if isinstance(certificate, Mapping | CertificateLines):
+        name = "the certificate"
+    else:
+        name = os.fspath(certificate)
     try:
-        if isinstance(certificate, Mapping):
-            found = checker.check(checker.load(json.dumps(certificate)))
-        elif isinstance(certificate, tuple):
-            found = checker.check(certificate, workers, quickest)
-        else:
-            name = os.fspath(certificate)
-            found = checker.verify(certificate, workers, quickest)
+        claims = _verified(certificate, workers or available_cores())
     except checker.CertificateError as error:
         return Checked(REFUTED, plain(error), refusal(error))
     except checker.FormatError as error:
@@ -81,7 +78,18 @@ def check(
         raise type(error)(f"{error}; nothing is known of the file") from None
     except OSError as error:
         raise UnreadableFileError(f"cannot read {name}: {error.strerror}") from None
-    return Checked(PROVED, "every claim holds", checker.summary(found), dict(found))
+    return Checked(PROVED, "every claim holds", checker.summary(claims), dict(claims))
+
+
+def _verified(
+    certificate: str | os.PathLike[str] | Mapping[str, Any] | CertificateLines, workers: int
+) -> Verified[Any]:
+    """The claims of an object, of lines, or of a file."""
+    if isinstance(certificate, Mapping):
+        return checker.check(checker.load(json.dumps(certificate)))
+    if isinstance(certificate, CertificateLines):
+        return checker.check(certificate, workers, quickest)
+    return checker.verify(certificate, workers, quickest)
 
 
 def quickest(kind: LineKind[Any]) -> Engine:

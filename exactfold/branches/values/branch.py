@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import Annotated, Any, Literal, TypeAlias, TypedDict
+from typing import Annotated, Any, ClassVar, Literal, TypeAlias, TypedDict
 
 from exactfold._support.documents import (
     Assignment,
@@ -22,6 +22,7 @@ from exactfold._support.documents import (
     VertexText,
 )
 from exactfold._support.notebook import Picture
+from exactfold._support.results import Certified
 from exactfold._support.verdict import PROVED, Verdict
 from exactfold.branches.values.angles import FoldAngles, fold_angles
 from exactfold.branches.values.letters import SIGNS, UPSIDE_DOWN
@@ -82,7 +83,7 @@ class BranchDocument(TypedDict):
 
 
 @dataclass(frozen=True, repr=False)
-class Branch(Picture):
+class Branch(Picture, Certified):
     """One branch of a pattern, shown by one of its two rays (docs/mathematics.md, Branch).
 
     `vertex_signs`: interior vertex -> +1 popped up, -1 popped down, 0 proved flat. `assignment`:
@@ -122,6 +123,8 @@ class Branch(Picture):
     steps: int = 0
     seconds: float = field(default=0.0, compare=False)
     curvature: Mapping[int, Fraction] = field(default_factory=dict)
+
+    WRITER: ClassVar = "exactfold.branches.certificates.single:branch_certificate"
 
     @cached_property
     def sign_text(self) -> str:

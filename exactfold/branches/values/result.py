@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING, overload
+from typing import TYPE_CHECKING, ClassVar, overload
 
 from exactfold._support.notebook import Page
 from exactfold._support.plurals import counted
+from exactfold._support.results import Certified, Ways
 from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.letters import UPSIDE_DOWN, differing
@@ -73,7 +74,7 @@ class Lettered:
 
 
 @dataclass(frozen=True, repr=False)
-class BranchCount(Page):
+class BranchCount(Page, Ways[Branch], Certified):
     """What is known of the branches of a pattern at the unfolded state.
 
     `status` is PROVED when the counts are; they are None otherwise, and `reason` says what is
@@ -118,14 +119,11 @@ class BranchCount(Page):
     families: Decomposition | None = None
     seconds: float = field(default=0.0, compare=False)
 
-    def __len__(self) -> int:
-        return len(self.branches)
+    WRITER: ClassVar = "exactfold.branches.certificates.listing:certificate"
 
-    def __iter__(self) -> Iterator[Branch]:
-        return iter(self.branches)
-
-    def __bool__(self) -> bool:
-        return True  # a result, also where no branch is listed
+    def listed(self) -> tuple[Branch, ...]:
+        """`branches`."""
+        return self.branches
 
     def __contains__(self, which: object) -> bool:
         return which in self._by_signs if isinstance(which, str) else which in self.branches

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import Annotated, Literal, TypeAlias, TypedDict
+from typing import Annotated, ClassVar, Literal, TypeAlias, TypedDict
 
 from exactfold._support.documents import (
     FoldText,
@@ -15,6 +15,7 @@ from exactfold._support.documents import (
     VerdictText,
     VertexText,
 )
+from exactfold._support.results import Certified
 from exactfold._support.verdict import Verdict
 from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.letters import UPSIDE_DOWN
@@ -116,7 +117,7 @@ class AssignmentsDocument(TypedDict):
 
 
 @dataclass(frozen=True, repr=False)
-class AllAssignments:
+class AllAssignments(Certified):
     """The mountain-valley assignments that occur; the list is complete if `status` is PROVED.
 
     `circles` has one circle for each sign vector, in the order of the sign vectors. Where folds are
@@ -130,6 +131,8 @@ class AllAssignments:
     reason: str
     circles: tuple[Circle, ...]
     points: Covering | None = None
+
+    WRITER: ClassVar = "exactfold.design.circles.certificate:assignments_certificate"
 
     @cached_property
     def assignments(self) -> tuple[str, ...]:

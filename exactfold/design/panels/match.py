@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Annotated, Any, Literal, TypedDict
+from typing import Annotated, Any, ClassVar, Literal, TypedDict
 
 from exactfold._support.documents import (
     Assignment,
@@ -21,6 +21,7 @@ from exactfold._support.documents import (
 )
 from exactfold._support.plurals import agreeing, counted
 from exactfold._support.progress import Progress
+from exactfold._support.results import Certified
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.design.panels.parts import PartAnswer, answered
 from exactfold.design.panels.refutation import PanelRefutation, held
@@ -86,7 +87,7 @@ class StartingDocument(TypedDict):
 
 
 @dataclass(frozen=True, repr=False)
-class PanelMatch:
+class PanelMatch(Certified):
     """Whether a sheet of rigid panels starts to fold with given letters.
 
     `starts` says whether there is a motion to second order in which every fold with a letter bends
@@ -115,6 +116,13 @@ class PanelMatch:
     parts: tuple[PartAnswer, ...]
     first_order: Together | None = None
     seconds: float = field(default=0.0, compare=False)
+
+    WRITER: ClassVar = "exactfold.design.assignments.certificate:match_certificate"
+
+    @property
+    def reason(self) -> str:
+        """The reasons for the answer, in one text."""
+        return "; ".join(self.reasons)
 
     @property
     def status(self) -> Verdict:

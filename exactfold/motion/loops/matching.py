@@ -15,6 +15,7 @@ from typing import Annotated, Literal, TypedDict
 from exactfold._support.documents import Keywords, Natural, NotNegative, ProvedOrNot
 from exactfold._support.plurals import agreeing, counted
 from exactfold._support.progress import Progress
+from exactfold._support.results import Ways
 from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.branches.counting.collect import count_branches
 from exactfold.branches.counting.find import BranchFinder
@@ -67,7 +68,7 @@ class LoopsDocument(TypedDict):
 
 
 @dataclass(frozen=True, repr=False)
-class Loops:
+class Loops(Ways[Loop]):
     """The loops of true configurations through the flat state of a sheet.
 
     If contact is ignored, every ray is the beginning of a curve that comes back along another ray.
@@ -88,6 +89,10 @@ class Loops:
     reason: str
     graph: ConfigurationGraph
     seconds: float = field(default=0.0, compare=False)
+
+    def listed(self) -> tuple[Loop, ...]:
+        """`loops`."""
+        return self.loops
 
     @cached_property
     def matching(self) -> Mapping[HalfBranch, HalfBranch]:

@@ -15,8 +15,10 @@ from jsonschema import Draft202012Validator
 from old_listing import old_listing
 from running import BAD_INPUT, INVALID, PROVED, USAGE, error_class, run
 
-from exactfold import certificate, count_branches, random_square, schema, write_certificate
+from exactfold import random_square, schema
+from exactfold.branches import certificate, count_branches
 from exactfold.branches.counting import by_theorem
+from exactfold.certificates import write_certificate
 from exactfold.pattern.data import SHEETS, example_path
 from exactfold.pattern.degenerate import DEGENERATE
 

@@ -11,18 +11,11 @@ import pytest
 from old_listing import old_listing
 from sheets import SQUARE, TRIANGLE, dart, reflex_corners, scrambled, straight_side, with_point
 
-from exactfold import (
-    PROVED,
-    CreasePattern,
-    certificate,
-    checker,
-    count_branches,
-    random_square,
-    stream_branches,
-    write_certificate,
-)
+from exactfold import PROVED, CreasePattern, check, checker, random_square
+from exactfold.branches import certificate, count_branches, stream_branches
 from exactfold.branches.certificates import listing
 from exactfold.branches.certificates.check import check_compact
+from exactfold.certificates import write_certificate
 from exactfold.checker.branches.compact import CHAMBERS, ROOTS
 from exactfold.errors import NotApplicableError
 from exactfold.pattern.data import SHEETS
@@ -63,6 +56,7 @@ def test_a_count_writes_what_a_stream_writes(tmp_path: Path, name: str) -> None:
     assert counted.read_bytes() == streamed.read_bytes()
     assert json.loads(made[0])["version"] == CHAMBERS
     assert check_compact(counted) == checker.check(made)
+    assert check(made) == check(counted)
     assert checker.check(made)["distinct"] == result.distinct
 
 

@@ -12,7 +12,8 @@ from compact_files import bodies, chained
 from old_listing import as_lines, old_listing
 from sheets import dart, reflex_corners, scrambled, with_point
 
-from exactfold import certificate, checker, count_branches, random_square, read_branches
+from exactfold import checker, random_square
+from exactfold.branches import certificate, count_branches, read_branches
 from exactfold.branches.certificates.read import branches_of, read_listing
 from exactfold.branches.counting import multiple_roots
 from exactfold.branches.values.branch import Branch

@@ -1,0 +1,93 @@
+"""What every result has: a status, a reason, a document; and what some have besides.
+
+A result says how much is known by `status`, why by `reason`, and all of it by `to_dict`. Some are
+sequences of ways (`Ways`), and of some a certificate can be written (`Certified`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from importlib import import_module
+from typing import Any, ClassVar, Generic, Protocol, TypeAlias, TypeVar, overload, runtime_checkable
+
+from exactfold._support.verdict import Verdict
+
+Certificate: TypeAlias = "dict[str, Any] | tuple[str, ...]"
+"""What `exactfold.check` takes: one JSON object, or the texts of several lines."""
+
+W_co = TypeVar("W_co", covariant=True)
+
+
+@runtime_checkable
+class Result(Protocol):
+    """What a verb returns when it has found something out.
+
+    >>> import exactfold
+    >>> result = exactfold.count("two-vertex")
+    >>> isinstance(result, exactfold.Result), result.status, result.to_dict()["status"]
+    (True, <Verdict.PROVED: 'proved'>, 'proved')
+    >>> result.reason
+    '4 solutions isolated; by refined Bezout there are no others'
+    """
+
+    @property
+    def status(self) -> Verdict:
+        """PROVED, REFUTED or UNDECIDED."""
+
+    @property
+    def reason(self) -> str:
+        """What was proved, or what is missing, in words; empty where there is no more to say."""
+
+    def to_dict(self) -> Mapping[str, object]:
+        """The document that the command prints with `--json`."""
+
+
+class Ways(Generic[W_co]):
+    """A result that is a sequence of ways: it has a length, an order, and a way at each place.
+
+    It is true also if it lists no way. Places are from 0, as in any sequence; `way=3` of a verb is
+    the way at place 2.
+    """
+
+    def listed(self) -> tuple[W_co, ...]:
+        """All ways that are listed, in their order."""
+        raise NotImplementedError
+
+    def __len__(self) -> int:
+        return len(self.listed())
+
+    def __iter__(self) -> Iterator[W_co]:
+        return iter(self.listed())
+
+    def __bool__(self) -> bool:
+        return True
+
+    @overload
+    def __getitem__(self, which: int) -> W_co: ...
+    @overload
+    def __getitem__(self, which: slice) -> tuple[W_co, ...]: ...
+    def __getitem__(self, which: int | slice) -> W_co | tuple[W_co, ...]:
+        return self.listed()[which]
+
+
+class Certified:
+    """A result of which a certificate can be written.
+
+    `WRITER` names the function that writes it, as "module:function". It is imported when it is
+    called: writers lie above the results that they take.
+    """
+
+    WRITER: ClassVar[str]
+
+    def certificate(self) -> Certificate:
+        """The certificate of what is proved, for `exactfold.check` and `write_certificate`.
+
+        Raises `NotApplicableError` where nothing is proved that a certificate could state.
+
+        >>> import exactfold
+        >>> exactfold.check(exactfold.count("two-vertex").certificate()).status
+        <Verdict.PROVED: 'proved'>
+        """
+        module, _, name = self.WRITER.partition(":")
+        found: Certificate = getattr(import_module(module), name)(self)
+        return found
