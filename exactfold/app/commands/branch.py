@@ -80,8 +80,7 @@ class Asked(BranchOptions):
             say(also_found(found.others))
         self._certify(found.branch)
         if self.as_json:
-            more = {"folds": found.drive.to_dict(), "side": found.side, "status": str(status)}
-            print(json.dumps(found.branch.report(self.name) | {"drive": more}))
+            print(json.dumps(found.report(self.name)))
         else:
             report.show(report.branch_report(found.branch, found))
         return found.branch.status is PROVED and status is PROVED

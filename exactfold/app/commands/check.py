@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from exactfold import checker
-from exactfold._support.schemas import headed
 from exactfold.app.shell.shell import Bar, name_of, regular, said
 from exactfold.app.verbs.checking import quickest
 from exactfold.checker.command import refusal
@@ -22,6 +21,7 @@ from exactfold.errors import (
 )
 
 if TYPE_CHECKING:
+    from exactfold.app.commands.check_document import BranchWithAngles, CheckDocument
     from exactfold.branches.values.branch import Branch
 
 _LISTS = ("supports", "flat", "letters", "halves", "joints", "together", "never")
@@ -123,10 +123,11 @@ def _document(
     reason: str,
     branches: list[Branch] | None,
     heights: bool,
-) -> dict[str, Any]:
+) -> CheckDocument:
     """What `check --json` prints."""
-    document = {
-        **headed("check"),
+    document: CheckDocument = {
+        "format": "exactfold check result",
+        "version": 1,
         "name": name_of(path),
         "valid": claims is not None,
         "reason": reason,
@@ -136,9 +137,12 @@ def _document(
         return document
     from exactfold.app.report.listing import angles_of
 
-    more = [{"angles": angles_of(branch)} if heights else {} for branch in branches]
-    listed = [branch.to_dict() | extra for branch, extra in zip(branches, more, strict=True)]
-    return document | {"branches": listed}
+    if heights:
+        bent: list[BranchWithAngles] = [
+            {**branch.to_dict(), "angles": angles_of(branch)} for branch in branches
+        ]
+        return {**document, "branches": bent}
+    return {**document, "branches": [branch.to_dict() for branch in branches]}
 
 
 def _cores(workers: int | None) -> int:

@@ -16,8 +16,10 @@ BatchRow = tuple[str, str, int | None, str]
 """Name, status, number of branches, and what is missing or wrong or to be known."""
 
 
-def batch_report(rows: list[BatchRow], summary: Mapping[str, Any], everything: bool) -> Group:
-    """A line for each pattern, and how many are proved."""
+def batch_report(
+    rows: list[BatchRow], summary: Mapping[str, Any], jsonl: str | None, everything: bool
+) -> Group:
+    """A line for each pattern, and how many are proved; `jsonl`: where the results are."""
     table = Table(box=None, pad_edge=False)
     table.add_column("", overflow="fold")
     table.add_column("ways", justify="right")
@@ -34,6 +36,6 @@ def batch_report(rows: list[BatchRow], summary: Mapping[str, Any], everything: b
         text += f"; {summary['warned']} with a warning"
     if summary["skipped"]:
         text += f"; {summary['skipped']} counted before"
-    if summary["jsonl"]:
-        text += f"; results in {summary['jsonl']}"
+    if jsonl is not None:
+        text += f"; results in {jsonl}"
     return Group(*parts, Text(text))

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from exactfold._support.progress import Progress
-from exactfold.app.viewer.document import FRAMES, view_document
+from exactfold.app.viewer.document import FRAMES, ViewDocument, view_document
 from exactfold.app.viewer.look import look_css, look_script
 from exactfold.pattern.fold_writing import checked_target, write_text
 from exactfold.pattern.loading import PatternLike
@@ -63,7 +63,7 @@ def write_view(
     proving: bool = False,
     workers: int = 1,
     progress: Progress | None = None,
-) -> dict[str, Any]:
+) -> ViewDocument:
     """Write the page of a sheet to a file; the document that it shows (see `view_document`).
 
     Raises the errors of `view_document`, and `UnwritableFileError`.

@@ -6,9 +6,9 @@ import os
 import time
 from collections.abc import Mapping
 from contextlib import closing
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import dataclass, field, fields
 from dataclasses import replace as changed
-from typing import Any
+from typing import TYPE_CHECKING, cast
 
 from exactfold._support.plurals import counted
 from exactfold._support.progress import Progress
@@ -25,6 +25,9 @@ from exactfold.checker.branches.compact import COMPACT
 from exactfold.checker.branches.compact_blocks import CompactSheet
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.loading import PatternLike, as_pattern
+
+if TYPE_CHECKING:
+    from exactfold.branches.values.count_document import StreamDocument, StreamedDocument
 
 HANDED_OVER = 12
 """Most foldable vertices of a pattern with open sign vectors that is also counted otherwise."""
@@ -66,21 +69,25 @@ class StreamedCount(BranchCount):
         """The open roots whose paths seem to meet others, by the sign vector they share there."""
         return by_limit(self.open_roots)
 
-    def to_dict(self, certificate: str | None = None, name: str | None = None) -> dict[str, Any]:
+    def to_dict(self, certificate: str | None = None, name: str | None = None) -> StreamedDocument:
         """The object printed by `exactfold count --stream --json`."""
-        stream = {
+        stream: StreamDocument = {
             "file": self.path,
             "blocks": self.blocks,
             "resumed": self.resumed,
             "unproved": self.unproved,
             "exact": self.exact,
-            "open": [asdict(root) for root in self.open_roots],
+            "open": [
+                {"signs": root.signs, "reason": root.reason, "limit": root.limit}
+                for root in self.open_roots
+            ],
             "groups": {
                 limit: [root.signs for root in group] for limit, group in self.groups.items()
             },
             "cpu_seconds": {name: round(value, 3) for name, value in self.cpu_seconds.items()},
         }
-        return {**super().to_dict(certificate, name), "stream": stream}
+        found = {**super().to_dict(certificate, name), "stream": stream}
+        return cast("StreamedDocument", found)
 
 
 def stream_branches(

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from exactfold._support.plurals import agreeing, counted
-from exactfold._support.schemas import headed
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
+from exactfold.branches.values.branch import Branch
 from exactfold.design.assignments.boundary_match import RimMatch
 from exactfold.design.assignments.document import fold_text
 from exactfold.design.assignments.why import vertex_conflicts
+from exactfold.design.panels.match import StartingBranch, StartingDocument
 from exactfold.exact.numbers import format_rational
 from exactfold.pattern.described import described_panels
 from exactfold.pattern.opening import panels
 
 
-def rim_match_document(found: RimMatch, name: str | None = None) -> dict[str, Any]:
+def rim_match_document(found: RimMatch, name: str | None = None) -> StartingDocument:
     """The object that `exactfold match --json` prints: `schema("starting")`.
 
     >>> from exactfold.design.assignments.boundary_match import match_rim
@@ -26,13 +25,14 @@ def rim_match_document(found: RimMatch, name: str | None = None) -> dict[str, An
     """
     conflicts = vertex_conflicts(found)
     return {
-        **headed("starting"),
+        "format": "exactfold starting result",
+        "version": 1,
         "pattern": described_panels(panels(found.pattern), name),
         "status": str(found.status),
         "starts": str(found.starts),
         "truly": str(truly(found)),
         "letters": {fold_text(fold): x for fold, x in sorted(found.letters.items())},
-        "matches": [] if found.branch is None else [_match(found)],
+        "matches": [] if found.branch is None else [_match(found.branch)],
         "ways": _ways(found),
         "reasons": list(reasons(found)),
         "together": None,
@@ -56,10 +56,7 @@ def truly(found: RimMatch) -> Verdict:
     return REFUTED if few or _stuck(found) else UNDECIDED
 
 
-def _match(found: RimMatch) -> dict[str, Any]:
-    branch = found.branch
-    if branch is None:
-        return {}
+def _match(branch: Branch) -> StartingBranch:
     densities = branch.fold_angles.densities
     middles = {fold: float((low + high) / 2) for fold, (low, high) in densities.items()}
     return {

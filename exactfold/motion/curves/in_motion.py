@@ -12,6 +12,11 @@ from exactfold._support.arrays import FloatArray
 
 if TYPE_CHECKING:
     from exactfold.motion.curves.events import Event
+    from exactfold.motion.curves.motion_document import (
+        FrameKeys,
+        MotionDocument,
+        PanelMotionDocument,
+    )
     from exactfold.pattern.crease_pattern import CreasePattern, Edge
     from exactfold.pattern.panel_pattern import PanelPattern
 
@@ -124,7 +129,9 @@ class SheetInMotion(Protocol):
     def sampled(self, least: int = 200) -> tuple[FloatArray, FloatArray]:
         """Times, and all fold angles in radians, at `least` points or more."""
 
-    def report(self, name: str | None = None, written: Sequence[str] = ()) -> dict[str, Any]:
+    def report(
+        self, name: str | None = None, written: Sequence[str] = ()
+    ) -> MotionDocument | PanelMotionDocument:
         """The object printed by `exactfold fold --json`."""
 
 
@@ -154,7 +161,7 @@ def table(motion: SheetInMotion) -> tuple[tuple[str, ...], FloatArray]:
     return names, np.column_stack([motion.times, np.degrees(motion.angles)])
 
 
-def frames_reported(motion: SheetInMotion, written: Sequence[str]) -> dict[str, Any]:
+def frames_reported(motion: SheetInMotion, written: Sequence[str]) -> FrameKeys:
     """The keys of `schema("motion")` that do not depend on what the sheet folds along."""
     folds, bounds = [f"{i}-{j}" for i, j in motion.pattern.folds], motion.bounds
     return {
@@ -173,7 +180,6 @@ def frames_reported(motion: SheetInMotion, written: Sequence[str]) -> dict[str, 
         "duration": motion.duration,
         "length_error": motion.length_error,
         "written": list(written),
-        "proof": None,
     }
 
 

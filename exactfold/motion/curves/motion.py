@@ -12,7 +12,6 @@ import numpy as np
 
 from exactfold._support.arrays import FloatArray
 from exactfold._support.notebook import Picture
-from exactfold._support.schemas import headed
 from exactfold._support.verdict import PROVED
 from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.export import AMOUNT
@@ -26,6 +25,7 @@ from exactfold.motion.curves.curve import Curve
 from exactfold.motion.curves.drive import Drive
 from exactfold.motion.curves.events import Event
 from exactfold.motion.curves.in_motion import FrameBounds
+from exactfold.motion.curves.motion_document import MotionDocument
 from exactfold.pattern.crease_pattern import CreasePattern, Edge, Triangle
 from exactfold.pattern.described import described
 from exactfold.pattern.near_degeneracy import warnings
@@ -206,14 +206,15 @@ class Motion(Picture):
         """For each fold its largest angle in any frame in degrees, with its sign."""
         return in_motion.largest_angles(self)
 
-    def report(self, name: str | None = None, written: Sequence[str] = ()) -> dict[str, Any]:
+    def report(self, name: str | None = None, written: Sequence[str] = ()) -> MotionDocument:
         """The object printed by `exactfold fold --json`: `schema("motion")`.
 
         `name`: of the pattern; `written`: the files that hold the motion.
         """
         branch = self.branch
         return {
-            **headed("motion"),
+            "format": "exactfold motion result",
+            "version": 1,
             "pattern": described(branch.pattern, name),
             "theory": "branches",
             "reason": branch.reason,
@@ -227,6 +228,7 @@ class Motion(Picture):
             **in_motion.frames_reported(self, written),
             "warnings": warnings(branch.pattern),
             "seconds": round(self.seconds, 3),
+            "proof": None,
         }
 
     @property

@@ -14,12 +14,12 @@ import numpy as np
 from exactfold._support.arrays import FloatArray
 from exactfold._support.notebook import Picture
 from exactfold._support.plurals import counted
-from exactfold._support.schemas import headed
 from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.errors import NotApplicableError, UsageError
 from exactfold.exact.surds import Number, exact
 from exactfold.motion.curves import in_motion
 from exactfold.motion.curves.events import Event
+from exactfold.motion.curves.motion_document import PanelMotionDocument
 from exactfold.motion.panels.curves import FollowedCurve, LinearCurve
 from exactfold.motion.panels.places import Placing, Spot, Turn
 from exactfold.pattern.described import described_panels
@@ -193,14 +193,15 @@ class PanelMotion(Picture):
             **in_motion.facts_of_frames(self),
         }
 
-    def report(self, name: str | None = None, written: Sequence[str] = ()) -> dict[str, Any]:
+    def report(self, name: str | None = None, written: Sequence[str] = ()) -> PanelMotionDocument:
         """The object printed by `exactfold fold --json`: `schema("motion")`.
 
         `name`: of the pattern; `written`: the files that hold the motion. What belongs to branches
         of triangulated sheets is null.
         """
         return {
-            **headed("motion"),
+            "format": "exactfold motion result",
+            "version": 1,
             "pattern": described_panels(self.pattern, name),
             "theory": "modes",
             "reason": self.reason,
@@ -214,6 +215,7 @@ class PanelMotion(Picture):
             **in_motion.frames_reported(self, written),
             "warnings": [],
             "seconds": round(self.seconds, 3),
+            "proof": None,
         }
 
     @cached_property

@@ -6,7 +6,7 @@ import hashlib
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, TypedDict
 
 from exactfold._support.plurals import counted
 from exactfold._support.verdict import PROVED, UNDECIDED
@@ -19,6 +19,18 @@ Row: TypeAlias = Mapping[str, Any]
 """What was found, by name; where tables and figures are made, with the recipe and its `row`."""
 
 Cell: TypeAlias = int | str | None
+
+
+class TableDocument(TypedDict):
+    """A table of a study."""
+
+    name: str
+    title: str
+    columns: list[str]
+    rows: list[list[Cell]]
+    notes: list[str]
+
+
 """What stands in a table; None where there is nothing to say."""
 
 STATUSES = (str(PROVED), str(UNDECIDED))
@@ -49,7 +61,7 @@ class StudyTable:
             for k in range(len(self.columns))
         )
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> TableDocument:
         """The table as `exactfold study --json` has it."""
         return {
             "name": self.name,
