@@ -276,7 +276,7 @@ class Branch(Picture, Certified):
         """Vertex signs in the order of the vertices, -1 before 0 before +1, then the folds."""
         return [self.vertex_signs[v] for v in sorted(self.vertex_signs)], self.assignment_text
 
-    def to_dict(self) -> ListedBranch:
+    def entry(self) -> ListedBranch:
         """The branch as it is listed by `exactfold count --json`."""
         return {
             "vertex_signs": {str(v): s for v, s in sorted(self.vertex_signs.items())},
@@ -289,7 +289,7 @@ class Branch(Picture, Certified):
             },
         }
 
-    def report(self, name: str | None = None) -> BranchDocument:
+    def to_dict(self, name: str | None = None) -> BranchDocument:
         """The object printed by `exactfold branch --json`: `schema("branch")`."""
         radius, squared = self.radius, self.squared_distance
         return {

@@ -252,7 +252,7 @@ class BranchCount(Page, Ways[Branch], Certified):
             "seconds": round(self.seconds, 3),
             "open_questions": list(self.open_questions),
             "settings": dict(self.settings),
-            "branches": [branch.to_dict() for branch in self.branches],
+            "branches": [branch.entry() for branch in self.branches],
             "theory": "branches",
             "letters": None if self.lettered is None else self.lettered.to_dict(),
             "rigid": self.distinct == 0 if self.status is PROVED else None,

@@ -11,7 +11,7 @@ from exactfold import checker, random_square
 from exactfold._support.verdict import PROVED
 from exactfold.branches import find_branch
 from exactfold.design import match, match_certificate
-from exactfold.design.assignments.search import Match
+from exactfold.design.assignments.result import Match
 from exactfold.errors import NotApplicableError
 
 TURNED = {"M": "V", "V": "M"}
