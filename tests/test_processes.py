@@ -65,7 +65,7 @@ def test_a_process_that_dies_is_the_result_of_its_job() -> None:
     assert {k: v for k, v in found.items() if k != 13} == {k: k**2 for k in (10, 11, 12, 14, 15)}
     rest = in_order(1, square, range(12, 16), 2)
     assert next(rest) == 144
-    with pytest.raises(WorkerDiedError, match="most likely for want of memory"):
+    with pytest.raises(WorkerDiedError, match="most likely for lack of memory"):
         next(rest)
 
 
@@ -77,7 +77,7 @@ def test_errors_of_the_work_are_raised_with_their_traceback() -> None:
 
 
 def test_processes_that_die_before_their_first_job_are_no_loop() -> None:
-    with pytest.raises(WorkerDiedError, match="no worker process came as far as its first job"):
+    with pytest.raises(WorkerDiedError, match="no worker process lived until its first job"):
         list(as_they_end(2, Fatal(), range(10)))
     assert active_children() == []
 

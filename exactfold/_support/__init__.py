@@ -1,1 +1,1 @@
-"""What every room may use: verdicts, progress, processes, schemas, plurals."""
+"""Modules that every room may use: verdicts, progress, processes, schemas, plurals."""

@@ -1,23 +1,24 @@
-"""Public names of a package, imported where they are first used: few programs need all of them."""
+"""Imports the public names of a package only when they are first used, as few programs need all."""
 
 from __future__ import annotations
 
 import sys
 from functools import cache
 
-TYPE_CHECKING = False  # as in typing, which takes longer to load than all that is imported here
+TYPE_CHECKING = False  # not from typing, which takes longer to load than all imports here
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-# The rest is loaded where a name is asked for: the command line starts without.
+# All other modules are imported when a name is asked for, so that the command line starts faster.
 
 
 def attached(package: str) -> tuple[Callable[[str], object], Callable[[], list[str]]]:
-    """`__getattr__` and `__dir__` of a package whose public names stand in its `__init__.pyi`.
+    """`__getattr__` and `__dir__` of a package whose public names are listed in `__init__.pyi`.
 
-    The stub, which type checkers read, is the only list: each `from home import name as name` in it
-    is a public name, and `__all__` has them all. `from package import name as name` is a module of
-    the package itself; where a name is missing, the error says which of these has it.
+    This stub, which type checkers read, is the only list. Each `from home import name as name` in
+    it is a public name, and `__all__` contains all of them. `from package import name as name` is a
+    module of the package itself. If a name is missing, the error says which of these modules has
+    it.
 
     >>> import exactfold
     >>> exactfold.as_rational
@@ -33,7 +34,7 @@ def attached(package: str) -> tuple[Callable[[str], object], Callable[[], list[s
 
         stub = pkgutil.get_data(package, "__init__.pyi")
         if stub is None:
-            raise ImportError(f"{package} has lost its file __init__.pyi", name=package)
+            raise ImportError(f"the file __init__.pyi of {package} is missing", name=package)
         return {
             alias.name: node.module
             for node in ast.parse(stub).body
@@ -64,12 +65,12 @@ def attached(package: str) -> tuple[Callable[[str], object], Callable[[], list[s
 
 
 def _missing(package: str, name: str, homes: dict[str, str]) -> str:
-    """What to say of a name that is not there, and where it is instead."""
+    """The message for a name that is missing; it says where the name is instead."""
     from importlib import import_module
     from importlib.util import find_spec
 
     message = f"module {package!r} has no attribute {name!r}"
-    if name.startswith("_") or find_spec(f"{package}.{name}"):  # asked before a module is imported
+    if name.startswith("_") or find_spec(f"{package}.{name}"):  # Python asks before it imports one
         return message
     inside = [import_module(f"{package}.{part}") for part, home in homes.items() if home == package]
     names = [(part.__name__, getattr(part, "__all__", vars(part))) for part in inside]

@@ -1,7 +1,7 @@
-"""Where memory is limited: whether it is, which errors mean a shortage, and room for libraries.
+"""Limited memory: whether it is limited, which errors mean a shortage, and room for libraries.
 
-Libraries written in C do not always say that memory is short. OpenBLAS, which NumPy and SciPy
-bring along, ends the process, or waits for ever, if there is no room for it when it is loaded.
+Libraries written in C do not always report that memory is short. NumPy and SciPy contain OpenBLAS.
+If there is no room for it when it is loaded, it ends the process or waits forever.
 """
 
 from __future__ import annotations
@@ -12,11 +12,11 @@ import sys
 from contextlib import suppress
 
 ROOM = {"numpy": 120, "scipy.linalg": 120}
-"""Megabytes of addresses that each of these packages takes with its OpenBLAS until it is used."""
+"""Megabytes of addresses that each package reserves, with its OpenBLAS, when it is loaded."""
 
 
 def memory_is_limited() -> bool:
-    """Whether allocations can fail: a limit of the process, or a system that promises no more."""
+    """Whether allocations can fail: the process has a limit, or the system never overcommits."""
     try:
         import resource
     except ImportError:  # Windows
@@ -32,7 +32,7 @@ def memory_is_limited() -> bool:
 def is_shortage(error: BaseException) -> bool:
     """Whether an error means that memory is short, or that no thread can be started.
 
-    Where memory is limited, a library that cannot be loaded is taken for one.
+    If memory is limited, a library that cannot be loaded counts as a shortage.
     """
     if isinstance(error, MemoryError):
         return True
@@ -44,13 +44,13 @@ def is_shortage(error: BaseException) -> bool:
 
 
 def shortage(error: BaseException) -> str:
-    """What to say of a shortage, on one line."""
+    """The message about a shortage, on one line."""
     said = str(error).strip().split("\n")[0]
     return f"not enough memory: {said}".rstrip(": ")
 
 
 class _Room:
-    """Finds no module, but refuses those that would not end well."""
+    """An import hook that finds no module, but refuses modules that have no room."""
 
     @staticmethod
     def find_spec(name: str, path: object = None, target: object = None) -> None:
@@ -63,7 +63,7 @@ class _Room:
 
 
 def require_room() -> None:
-    """Where memory is limited, raise `MemoryError` from now on rather than load what has no room.
+    """If memory is limited, loading a package without room raises `MemoryError` from now on.
 
     Only the packages in `ROOM` are watched, and only if they are not loaded yet.
     """

@@ -1,12 +1,12 @@
-"""How values show themselves in a notebook: they ask a table that the room `report` fills.
+"""Lets values show themselves in a notebook: they ask a table, which the room `report` fills.
 
-Values lie below the room that draws them and must not know it; so the table, which knows neither,
-lies below both. `app.report.notebook` is loaded when a value is first shown.
+Values lie below the room that draws them, so they must not import it. The table imports neither
+and lies below both. `app.report.notebook` is loaded when a value is first shown.
 """
 
 from __future__ import annotations
 
-TYPE_CHECKING = False  # as in `lazy`: patterns are loaded without it
+TYPE_CHECKING = False  # not from typing, as in `lazy`: patterns are loaded without it
 if TYPE_CHECKING:
     from collections.abc import Callable
     from typing import Any
@@ -16,7 +16,7 @@ _TABLE: dict[str, dict[type, Callable[[Any], str | None]]] = {"svg": {}, "html":
 
 
 def shows(kind: str, *types: type) -> Callable[[Callable[[Any], str | None]], Any]:
-    """A decorator: the function shows values of these types as "svg" or "html"."""
+    """A decorator for a function that shows values of these types as "svg" or "html"."""
 
     def enter(function: Callable[[Any], str | None]) -> Callable[[Any], str | None]:
         _TABLE[kind].update(dict.fromkeys(types, function))
@@ -26,7 +26,7 @@ def shows(kind: str, *types: type) -> Callable[[Callable[[Any], str | None]], An
 
 
 def shown(value: object, kind: str) -> str | None:
-    """A value as "svg" or "html"; None if it is not shown so.
+    """A value as "svg" or "html"; None if no function shows it like this.
 
     >>> shown(3, "svg") is None
     True
@@ -40,14 +40,14 @@ def shown(value: object, kind: str) -> str | None:
 
 
 class Picture:
-    """What a notebook shows as a picture."""
+    """A value that a notebook shows as a picture."""
 
     def _repr_svg_(self) -> str | None:
         return shown(self, "svg")
 
 
 class Page:
-    """What a notebook shows as text with pictures."""
+    """A value that a notebook shows as text with pictures."""
 
     def _repr_html_(self) -> str | None:
         return shown(self, "html")

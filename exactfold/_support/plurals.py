@@ -1,4 +1,4 @@
-"""Numbers of things, as they are said."""
+"""Writes numbers of things with the right forms of nouns and verbs."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def plural(word: str) -> str:
 
 
 def counted(number: int | str, noun: str) -> str:
-    """A number of things; the noun is the last word of `noun`, and text is never one.
+    """A number with its noun, the last word of `noun`; a number given as text is never one.
 
     >>> counted(1, "vertex"), counted(2, "sign vector"), counted("2^41", "branch")
     ('1 vertex', '2 sign vectors', '2^41 branches')
@@ -36,7 +36,7 @@ def counted(number: int | str, noun: str) -> str:
 
 
 def agreeing(number: int, verb: str) -> str:
-    """A verb after a number of things, or their noun without the number.
+    """The form of a verb for a number of things, or of their noun without the number.
 
     >>> agreeing(1, "stays"), agreeing(2, "stays")
     ('stays', 'stay')
@@ -45,7 +45,7 @@ def agreeing(number: int, verb: str) -> str:
 
 
 def visible(text: str) -> str:
-    """Text for a terminal: what is neither printed nor the end of a line is written as an escape.
+    """Text for a terminal: characters that cannot be printed become escapes, except line ends.
 
     >>> print(visible("sheet\x1b[2J.fold"))
     sheet\\x1b[2J.fold

@@ -36,14 +36,14 @@ _ONE_THREAD = {
 }
 
 _KEEP = {"MALLOC_TOP_PAD_": str(1 << 26)}
-"""glibc: keep 64 MB instead of returning it after every array; saves a fifth of the time."""
+"""glibc: keep 64 MB instead of returning them after every array; this saves a fifth of the time."""
 
 
 def one_thread() -> None:
-    """Keep NumPy, if it is not loaded yet, from starting threads unless the environment says so.
+    """Keeps NumPy, if it is not loaded yet, from starting threads, unless the environment says so.
 
-    Dense matrices here have at most some hundred rows: threads that wait for each other cost more
-    than they save, above all where other programs run.
+    Dense matrices have at most a few hundred rows here. Threads that wait for each other cost more
+    than they save, above all if other programs run.
     """
     for name, value in _ONE_THREAD.items():
         os.environ.setdefault(name, value)
@@ -51,8 +51,8 @@ def one_thread() -> None:
 
 @contextmanager
 def worker_environment() -> Iterator[None]:
-    """Within this block, processes started anew have the settings of a worker."""
-    # The workers share the cores already.
+    """Within this block, new processes start with the settings of a worker."""
+    # The workers already use all cores.
     settings = _ONE_THREAD if memory_is_limited() else _ONE_THREAD | _KEEP
     before = {name: os.environ.get(name) for name in settings}
     os.environ.update(settings)
@@ -68,13 +68,13 @@ def worker_environment() -> Iterator[None]:
 
 @contextmanager
 def held_interrupts() -> Iterator[None]:
-    """Within this block Ctrl-C waits; processes and threads started in it never see one."""
+    """Within this block Ctrl-C waits; processes and threads started in the block never see it."""
     if not hasattr(signal, "pthread_sigmask"):  # Windows
         yield
         return
     from multiprocessing import resource_tracker
 
-    resource_tracker.ensure_running()  # where it is started later, it lets them through again
+    resource_tracker.ensure_running()  # if it started later, it would unblock interrupts
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
@@ -83,10 +83,10 @@ def held_interrupts() -> Iterator[None]:
 
 
 def become_worker() -> None:
-    """Ignore Ctrl-C from now on, and end with the parent; nothing in the main process.
+    """Makes this process ignore Ctrl-C, and end with its parent; does nothing in the main process.
 
-    Where memory is limited a worker ends after the job that it has: no thread waits for the parent,
-    as starting one may wait for ever.
+    If memory is limited, a worker ends after its current job. No thread waits for the parent then,
+    as starting a thread may wait forever.
     """
     from multiprocessing import parent_process
 
@@ -98,14 +98,14 @@ def become_worker() -> None:
         return
 
     def follow() -> None:
-        parent.join()  # returns when the parent has gone, however it went
+        parent.join()  # returns when the parent has ended in any way
         os._exit(1)
 
     threading.Thread(target=follow, daemon=True).start()
 
 
 def available_cores() -> int:
-    """Number of processors that this process may use."""
+    """The number of processors that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
@@ -140,9 +140,10 @@ def as_they_end(
 def in_order(
     processes: int, work: Callable[[J], R], jobs: Iterable[J], ahead: int
 ) -> Generator[R, None, None]:
-    """The results in the order of the jobs, at most `ahead` for each process under way or waiting.
+    """Yields the results in the order of the jobs.
 
-    Raises `WorkerDiedError` for a job whose process died, and the errors of `as_they_end`.
+    At most `ahead` jobs for each process are under way or wait for an earlier result. Raises
+    `WorkerDiedError` for a job whose process died, and the errors of `as_they_end`.
     """
     begun: deque[int] = deque()
     done: dict[int, R | WorkerDiedError] = {}
@@ -167,7 +168,7 @@ def in_order(
 
 
 class _Numbered:
-    """The work on a job that has a number."""
+    """The work on a job with a number."""
 
     def __init__(self, work: Callable[[Any], Any]) -> None:
         self.work = work
@@ -177,7 +178,7 @@ class _Numbered:
 
 
 class _Workers:
-    """The processes, the jobs that are left, and who works on what."""
+    """The processes, the remaining jobs, and which process has which job."""
 
     def __init__(
         self, seats: int, work: bytes, left: Iterator[Any], room: Callable[[], bool]
@@ -185,13 +186,13 @@ class _Workers:
         self.seats, self.work, self.left, self.room = seats, work, left, room
         self.idle: list[_Worker] = []
         self.busy: dict[Connection, _Worker] = {}
-        self.again: list[Any] = []  # jobs handed to a process that never began
+        self.again: list[Any] = []  # jobs of processes that ended before they began
         self.reason = ""
 
     def is_busy(self) -> bool:
-        """Whether a job is under way, once each process that is free has one.
+        """Gives jobs to all free processes, and says whether a job is under way then.
 
-        Raises `WorkerDiedError` if there are jobs, and no process can be started.
+        Raises `WorkerDiedError` if there are jobs but no process can be started.
         """
         self.hand_out()
         if not self.busy and self.again:
@@ -199,7 +200,7 @@ class _Workers:
         return bool(self.busy)
 
     def hand_out(self) -> None:
-        """Give a job to each process that is free."""
+        """Gives a job to each free process."""
         while len(self.busy) < self.seats and (self.again or self.room()):
             job = self.again.pop() if self.again else next(self.left, _END)
             if job is _END:
@@ -211,13 +212,13 @@ class _Workers:
                 continue
             try:
                 worker.give(job)
-            except OSError:  # it died before it had a job
+            except OSError:  # the process died before it had a job
                 self._leave(worker, job)
             else:
                 self.busy[worker.link] = worker
 
     def collect(self) -> list[tuple[Any, Any]]:
-        """Wait until something has ended: the jobs and their results."""
+        """Waits until a job has ended; returns the ended jobs with their results."""
         from multiprocessing.connection import wait
 
         ended = []
@@ -248,7 +249,7 @@ class _Workers:
         if worker.loaded:
             self.again.append(job)
         else:
-            self._lost_seat(job, "no worker process came as far as its first job")
+            self._lost_seat(job, "no worker process lived until its first job")
 
     def _lost_seat(self, job: Any, reason: str) -> None:
         self.seats -= 1
@@ -256,13 +257,13 @@ class _Workers:
         self.reason = reason
 
     def end(self) -> None:
-        """Stop all processes, also in the middle of their work."""
+        """Stops all processes, even in the middle of their work."""
         for worker in (*self.idle, *self.busy.values()):
             worker.end()
 
 
 class _Worker:
-    """A process, and the job it has."""
+    """A process and its current job."""
 
     def __init__(self, work: bytes) -> None:
         from multiprocessing import get_context
@@ -278,15 +279,15 @@ class _Worker:
             self.link.close()
             raise
         finally:
-            there.close()  # so that the end of the process is the end of the link
+            there.close()  # so that the link ends when the process ends
 
     def give(self, job: Any) -> None:
-        """Hand over a job; raises `OSError` if the process has gone."""
+        """Sends a job; raises `OSError` if the process has ended."""
         self.job = job
         self.link.send_bytes(pickle.dumps(job))
 
     def end(self) -> None:
-        """Stop the process."""
+        """Stops the process."""
         self.link.close()
         self.process.terminate()
         self.process.join()
@@ -295,12 +296,12 @@ class _Worker:
 def _died(what: str) -> WorkerDiedError:
     if memory_is_limited():
         return NotEnoughMemoryError(f"{what}: not enough memory")
-    return WorkerDiedError(f"{what}, most likely for want of memory")
+    return WorkerDiedError(f"{what}, most likely for lack of memory: use fewer workers")
 
 
 def _serve(link: Connection, work: bytes) -> None:
-    """The process: say that everything is loaded, then take jobs until the parent has gone."""
-    if memory_is_limited():  # a shortage is told by the parent, in one line
+    """Runs in the process: reports that all is loaded, then does jobs until the parent ends."""
+    if memory_is_limited():  # the parent reports a shortage, in one line
         os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
     require_room()
     become_worker()
@@ -314,7 +315,7 @@ def _serve(link: Connection, work: bytes) -> None:
 
 
 def _answer(run: Callable[[Any], Any], job: bytes) -> bytes:
-    """Whether a job ended well, and its result or its error, pickled."""
+    """Whether a job ended without an error, and its result or its error, pickled."""
     try:
         return pickle.dumps((True, run(pickle.loads(job))))
     except Exception as error:

@@ -1,16 +1,16 @@
-"""Three-valued verdicts without a truth value."""
+"""Verdicts with three values, and without a truth value."""
 
 from __future__ import annotations
 
 from enum import Enum
 
-TYPE_CHECKING = False  # as in typing, which takes longer to load than all that is imported here
+TYPE_CHECKING = False  # not from typing, which takes longer to load than all imports here
 if TYPE_CHECKING:
     from typing import NoReturn
 
 
 class Verdict(Enum):
-    """`PROVED`, `REFUTED` or `UNDECIDED`; has no truth value, so that unknown is never read as no.
+    """`PROVED`, `REFUTED` or `UNDECIDED`; without a truth value, so that unknown never means no.
 
     >>> PROVED is Verdict.PROVED
     True

@@ -1,4 +1,3 @@
-from exactfold.motion.certificate import motion_certificate as motion_certificate
 from exactfold.motion.contacts.claims import certificate_with_contact as certificate_with_contact
 from exactfold.motion.contacts.contacts import FirstContact as FirstContact
 from exactfold.motion.contacts.contacts import first_contact as first_contact

@@ -1,15 +1,16 @@
 """Seeded ensembles of patterns: rows, each with its recipe, and tables and pictures made of them.
 
-A study is a function from a seeded recipe to a row, and from rows to tables and pictures: one
-module of this room, whose `STUDY` is a `Study`, and one line in `registry.MODULES`. The rest is
-done here: rows are kept in a journal as they are ready (`store`), computed by all cores or a
-cluster (`runner`), written as CSV and Parquet (`writing`). To add one:
+A study makes a row from a seeded recipe, and tables and pictures from the rows. It is one module of
+this room, whose `STUDY` is a `Study`, and one line in `registry.MODULES`. The room does the rest:
+`store` keeps rows in a journal as soon as they are ready, `runner` computes them on all cores or a
+cluster, and `writing` writes them as CSV and Parquet. To add a study:
 
 1.  Write `row(recipe)`, a function of the module. It returns a flat mapping of names to numbers,
-    texts, None, or lists of these, which depends on the recipe only: no time, no order of a set.
-    The key `status` is "proved" or "undecided"; what is not proved is None and not a guess.
-2.  Write `tables(rows)` and `figures(rows)`. A row is given to them with its recipe, as one
-    mapping; rows come in the order of the recipes, and can be gone through again.
+    texts, None, or lists of these. The row depends on the recipe only: not on the time, not on the
+    order of a set. Its key `status` is "proved" or "undecided". A value that is not proved is None,
+    not a guess.
+2.  Write `tables(rows)` and `figures(rows)`. Each row comes with its recipe, in one mapping. Rows
+    come in the order of the recipes, and can be read several times.
 3.  Choose the recipes: `square_recipes` are random squares. Raise `version` when rows change.
 """
 

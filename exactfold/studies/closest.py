@@ -1,4 +1,4 @@
-"""The closest pair of lines among unit vectors, with proved bounds of their distance."""
+"""Finds the closest pair of lines among unit vectors, with proved bounds of their distance."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from exactfold._support.arrays import FloatArray, IndexArray
 from exactfold.studies.running.lines import Lines
 
 NEAR: Final = 1e-5
-"""Lower bounds from doubles that are above this are good enough."""
+"""A lower bound from doubles is good enough if it is above this."""
 
 WIDE: Final = 1e-8
-"""Errors of directions that are sharpened in any case where lines are near each other."""
+"""If lines are near each other, directions with larger errors are always sharpened."""
 
 CLEAR: Final = 1 - 1e-6
-"""How near the bounds of a least distance are to each other in the end, where roots allow it."""
+"""In the end, the lower bound is at least this share of the upper one, if the roots allow it."""
 
 _ROWS = 512
 _U = 2.0**-53
@@ -27,7 +27,7 @@ _U = 2.0**-53
 class ClosestPair:
     """Bounds of the least distance, and a pair of rows that has it, or nearly so.
 
-    `rows`: those of all pairs that may have it, for what is known.
+    `rows` are the rows of all pairs that may be the closest pair, as far as the bounds tell.
     """
 
     low: float
@@ -37,9 +37,9 @@ class ClosestPair:
 
     @property
     def digits(self) -> int | None:
-        """The least d with 10^-d < `low`: so many digits tell all lines apart; None if low is 0.
+        """The least d with 10^-d < `low`: d digits distinguish all lines; None if low is 0.
 
-        Approximations with an error of at most 10^-d / 2 each differ then.
+        Approximations with errors of at most 10^-d / 2 then differ.
         """
         if self.low <= 0:
             return None
@@ -52,9 +52,9 @@ class ClosestPair:
 def closest_pair(directions: FloatArray, errors: FloatArray) -> ClosestPair | None:
     """The least of min(|u - v|, |u + v|) over pairs of lines; None for fewer than two.
 
-    `directions` are unit vectors within `errors` of the true ones. |u . v| as computed is off by at
-    most t = 2 max(errors) + (F + 4) u, so the closest true pair is among those within 2 t of the
-    largest |u . v|; for these the distance is computed from u and v themselves.
+    `directions` are unit vectors within `errors` of the true ones. The computed |u . v| has an
+    error of at most t = 2 max(errors) + (F + 4) u. So the closest true pair is among the pairs
+    within 2 t of the largest |u . v|. For these the distance is computed from u and v themselves.
 
     >>> pair = closest_pair(np.array([[1.0, 0.0], [0.0, 1.0], [-0.8, -0.6]]), np.zeros(3))
     >>> pair.pair, round(pair.high, 6), pair.digits
@@ -71,7 +71,7 @@ def closest_pair(directions: FloatArray, errors: FloatArray) -> ClosestPair | No
         rows = np.abs(directions[start : start + _ROWS] @ directions[start:].T)
         index = np.arange(len(rows))
         for k in index.tolist():
-            rows[k, : k + 1] = -1.0  # each pair once, and none with itself
+            rows[k, : k + 1] = -1.0  # so that each pair occurs once, and no row with itself
         top = float(rows.max())
         if top < largest - slack:
             continue
@@ -98,11 +98,10 @@ def closest_pair(directions: FloatArray, errors: FloatArray) -> ClosestPair | No
 
 
 def closest_lines(lines: Lines) -> ClosestPair | None:
-    """The closest pair of the lines of a pattern, from sharper roots where they are close.
+    """The closest pair among the lines of a pattern; lines that are close get sharper roots.
 
-    Roots are sharpened where the bound from below would be under 10^-5, or where there is none:
-    first those with wide errors, then those of all pairs that may be the closest, until none is
-    left.
+    Roots are sharpened if the lower bound is at most 10^-5: first the roots with large errors,
+    then those of all pairs that may be the closest, until none is left.
     """
     pair = closest_pair(lines.directions, lines.errors)
     if pair is None or pair.low > NEAR:

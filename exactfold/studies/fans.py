@@ -1,4 +1,4 @@
-"""Fans: sheets on which one sign flips on all loops, and which (docs/matching.md, Theorem 2)."""
+"""Fans: sheets on which the same sign flips on all loops (docs/matching.md, Theorem 2)."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from exactfold.pattern.validate import orientation
 
 @dataclass(frozen=True)
 class Fan:
-    """`chain` from border to border, x_0 to x_(n+1), and the poles p, q joined to all of it."""
+    """A `chain` x_0, ..., x_(n+1) between boundary vertices, and poles p, q joined to all of it."""
 
     sheet: CreasePattern
     poles: tuple[int, int]
@@ -24,14 +24,14 @@ class Fan:
         return area
 
     def closing(self, j: int) -> Fraction:
-        """c_j: a quarter of |p q|^2 in the flat sheet less |p q|^2 where fold j is closed."""
+        """c_j: a quarter of the difference of |p q|^2 in the flat sheet and with fold j closed."""
         (p, q), (x, y) = self.poles, self.chain[j - 1 : j + 1]
         dx, dy = (a - b for a, b in zip(*(self.sheet.vertices[v] for v in (x, y)), strict=True))
         product = self._area(x, y, p) * self._area(y, x, q)
         return product / Fraction(dx * dx + dy * dy)
 
     def signs(self) -> tuple[int, ...] | None:
-        """For folds 1 to n + 1 the place of the sign they carry, or None at a straight angle."""
+        """For folds 1 to n + 1 the place of the sign they carry; None at a straight angle."""
         p, q = self.poles
         n = len(self.chain) - 2
         carried: dict[int, int] = {}
@@ -47,7 +47,7 @@ class Fan:
         return tuple(carried.get(j, n) for j in range(1, n + 2)) if len(carried) == n else None
 
     def flipped(self) -> int | None:
-        """The place of the sign that flips on every loop, n for the last; None for a tie."""
+        """The place of the sign that flips on every loop (n for the last one); None for a tie."""
         signs = self.signs()
         values = [self.closing(j) for j in range(1, len(self.chain))]
         least = min(values)
@@ -57,7 +57,7 @@ class Fan:
 
 
 def fan(sheet: CreasePattern) -> Fan | None:
-    """The sheet as a fan, if it is one; for one vertex one of the two ways.
+    """The sheet as a fan, if it is one; a sheet with one vertex is a fan in two ways.
 
     >>> from exactfold.pattern.families import two_vertex
     >>> found = fan(two_vertex())

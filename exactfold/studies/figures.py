@@ -1,6 +1,7 @@
-"""The paper's computed figures, drawn again from proved branches.
+"""Draws the paper's computed figures again, from proved branches.
 
-A row is a figure, or a part of one: the numbers that it shows. Sizes number the figures.
+A row is a figure or a part of one: the numbers that it shows. The size of a row is the number of
+its figure.
 """
 
 from __future__ import annotations
@@ -30,26 +31,26 @@ SHOWN: Final = {
     4: "branches with equal letters",
     5: "branches with equal letters and vertex signs",
 }
-"""What the figures show, by number."""
+"""The subject of each figure, by number."""
 
 _SQUARES: Final = {4: 50001261, 5: 50000527}
-"""Seeds of random squares with five vertices and branches that share their letters."""
+"""The seeds of random squares with five vertices and with branches that share their letters."""
 
 _FOLDS: Final = ((0, 4), (1, 4), (1, 5))
-"""The folds of the two-vertex pattern whose angles are axes."""
+"""The folds of the two-vertex pattern whose angles are the axes."""
 
 _AXES: Final = {2: (3, 4, 5), 3: (3, 4, 5)}
-"""The vertices whose heights are axes; the others, 0, 1 and 2, are held."""
+"""The vertices whose heights are the axes; vertices 0, 1 and 2 are held at height 0."""
 
 _ARROW: Final = 48.0
-"""Degrees that the arrows of angles are long."""
+"""The length of the arrows of angles, in degrees."""
 
 _MOUNTAIN, _VALLEY = "#c62828", "#1565c0"
 _RAYS: Final = ("#365c8d", "#1fa187", "#e07b39", "#7b3294")
 
 
 def recipes(seed: int, numbers: Mapping[int, int]) -> Iterator[Recipe]:
-    """Each figure once; `seed` changes nothing.
+    """Yields each figure once; `seed` changes nothing.
 
     >>> [recipe["figure"] for recipe in recipes(0, {1: 1, 4: 1})]
     [1, 4]
@@ -58,7 +59,7 @@ def recipes(seed: int, numbers: Mapping[int, int]) -> Iterator[Recipe]:
 
 
 def row(recipe: Recipe) -> dict[str, Any]:
-    """The numbers of a figure, with six digits; proved where the branches it shows are."""
+    """The numbers of a figure, with six digits; proved if the branches that it shows are."""
     figure = int(recipe["figure"])
     if figure == 1:
         return _curves()
@@ -72,7 +73,7 @@ def _rounded(values: Any) -> Any:
 
 
 def _curves() -> dict[str, Any]:
-    """Of both rays of each branch the angles of three folds, in degrees, as the sheet folds."""
+    """The angles of three folds, in degrees, along both rays of each branch as the sheet folds."""
     count = count_branches(two_vertex())
     folds = [count.pattern.folds.index(fold) for fold in _FOLDS]
     curves = []
@@ -121,7 +122,7 @@ def _unit(vector: FloatArray) -> FloatArray:
 
 
 def _above(pattern: CreasePattern, heights: Mapping[int, Any]) -> FloatArray:
-    """Heights above the plane of vertices 0, 1 and 2."""
+    """The heights above the plane of vertices 0, 1 and 2."""
     points = np.array([[float(x), float(y), 1.0] for x, y in pattern.vertices])
     values = np.array([float(heights[v]) for v in range(len(points))])
     found: FloatArray = values - points @ np.linalg.solve(points[:3], values[:3])
@@ -129,7 +130,7 @@ def _above(pattern: CreasePattern, heights: Mapping[int, Any]) -> FloatArray:
 
 
 def _shared(figure: int) -> dict[str, Any]:
-    """A random square, and the first branches on it that share their letters (and signs)."""
+    """A random square, and its first branches that share their letters (and signs)."""
     pattern = random_square(5, _SQUARES[figure])
     lines = Lines.of(pattern)
     if lines.status is not PROVED:
@@ -152,7 +153,7 @@ def _shared(figure: int) -> dict[str, Any]:
 
 
 def tables(rows: Iterable[Row]) -> list[StudyTable]:
-    """What each figure shows."""
+    """A table of what each figure shows."""
     lines = []
     for row in sorted(rows, key=lambda row: int(row["figure"])):
         figure = int(row["figure"])
@@ -183,7 +184,7 @@ def tables(rows: Iterable[Row]) -> list[StudyTable]:
 
 
 def _has_picture(row: Row) -> bool:
-    """Whether all that the picture shows is proved."""
+    """Whether everything that the picture shows is proved."""
     return bool(row["status"] == str(PROVED))
 
 
@@ -205,10 +206,10 @@ def _axes_of_space(
     size: float,
     anchors: Sequence[tuple[str, str]],
 ) -> None:
-    """Three arrows from the origin, with names, and where these are anchored to the tips."""
+    """Three arrows from the origin with names; `anchors` places the names at the tips."""
     for direction, name, (across, along) in zip(np.eye(3), names, anchors, strict=True):
         x, y = view @ direction * size
-        axes.plot([1.25 * x], [1.25 * y], alpha=0.0)  # so that there is room for the name
+        axes.plot([1.25 * x], [1.25 * y], alpha=0.0)  # makes room for the name
         axes.annotate(
             "", (x, y), (0, 0), arrowprops={"arrowstyle": "->", "color": "0.55", "lw": 0.7}
         )
@@ -243,7 +244,7 @@ def _draw_curves(axes: Any, row: Row) -> None:
 
 
 def _draw_inset(axes: Any, shown: Sequence[Sequence[int]]) -> None:
-    """The two-vertex pattern, with some folds thick."""
+    """Draws the two-vertex pattern; the folds `shown` are thick."""
     pattern = two_vertex()
     points = np.array([[float(x), float(y)] for x, y in pattern.vertices])
     middle = points.mean(axis=0)
@@ -263,7 +264,7 @@ def _draw_inset(axes: Any, shown: Sequence[Sequence[int]]) -> None:
 
 
 def _shown(signs: str) -> str:
-    """Vertex signs with the sign that is as wide as a plus."""
+    """Vertex signs with a minus sign that is as wide as the plus sign."""
     return signs.replace("-", "\N{MINUS SIGN}")
 
 
@@ -290,7 +291,7 @@ def _draw_cone(axes: Any, row: Row) -> None:
 
 
 def _draw_chambers(axes: Any, row: Row) -> None:
-    """In coordinates in which the planes of the vertex signs are coordinate planes."""
+    """Draws the chambers in coordinates whose planes are the planes of the vertex signs."""
     view = _view(36.0, 24.0)
     coordinates = np.array([*row["functionals"].values(), [1.0, 0.0, 0.0]])
     rays = np.array([ray["heights"] for ray in row["rays"]]) @ coordinates.T
@@ -348,10 +349,10 @@ def figures(rows: Iterable[Row]) -> list[StudyFigure]:
         "the inset. The curves are the true motions along its four branches, until a fold has 45 "
         "degrees. Arrows are 48 degrees long, valleys are positive, and the signs are those of "
         "vertices 4 and 5.",
-        2: "The cone is that to second order in the heights of three vertices; the other three are "
-        "held.",
-        3: "The lines are the branches of the two-vertex pattern to second order. On two axes are "
-        "the functionals of the vertex signs, which vanish on the planes; on the third is the "
+        2: "The cone is the second-order cone in the heights of three vertices; the other three "
+        "are held.",
+        3: "The lines are the branches of the two-vertex pattern to second order. Two axes show "
+        "the functionals of the vertex signs, which vanish on the planes; the third shows the "
         "height of a corner.",
         4: _LEGEND,
         5: _LEGEND,

@@ -1,8 +1,9 @@
 """How often a random square is an exception: a vertex outside triangulated triangles can stay flat.
 
-For almost all positions of the vertices there is none (docs/generic.md, Theorem 11); on a grid of
-multiples of 1/denominator some squares are exceptions. A row is one random square on one grid. Of
-some squares it has how far at most the nearest exception is (`exactfold.studies.nearest`).
+For almost all positions of the vertices this does not happen (docs/generic.md, Theorem 11). On a
+grid of multiples of 1/denominator some squares are exceptions. A row is one random square on one
+grid. For some squares a bound is computed of the distance to the nearest exception
+(`exactfold.studies.nearest`).
 """
 
 from __future__ import annotations
@@ -29,14 +30,14 @@ from exactfold.studies.running.study import Recipe, Row, Study, StudyFigure, Stu
 from exactfold.studies.running.tallies import draw_distributions, draw_rare, tallied
 
 DENOMINATORS: Final = (16, 64, 256, 1024)
-"""Of the grids."""
+"""The denominators of the grids."""
 
 MEASURED: Final = 5
-"""Of so many squares on the finest grid the nearest exception to one is looked for."""
+"""For one of so many squares on the finest grid the nearest exception is looked for."""
 
 
 def recipes(seed: int, numbers: Mapping[int, int]) -> Iterator[Recipe]:
-    """Random squares in their order, on each grid in turn.
+    """Yields random squares in their order, on each grid in turn.
 
     >>> [(r["seed"], r["denominator"], r["measured"]) for r in recipes(0, {2: 5})][3:]
     [(20000003, 1024, 1), (20000004, 16, 0)]
@@ -52,12 +53,13 @@ def recipes(seed: int, numbers: Mapping[int, int]) -> Iterator[Recipe]:
 def row(recipe: Recipe) -> dict[str, Any]:
     """Whether a branch of one random square has flat vertices outside triangulated triangles.
 
-    `flat`: the sets of such vertices that are joined by folds, each once, as the folds at its
-    vertices (those inside triangulated triangles left out): [[4]] is one vertex of degree four.
-    `straight`: whether at some interior vertex two folds continue each other. `path`: whether folds
-    make a straight path from border to border. Of a measured square, `distance`: an exception is at
-    most so far, in sides of the square, with six digits, 0 if it is one; `distance_straight`:
-    whether that one may have straight folds. None where none was found.
+    `flat` lists each connected set of such vertices once, by the degrees of its vertices without
+    folds inside triangulated triangles: [[4]] is one vertex of degree four. `straight` says whether
+    two folds continue each other at some interior vertex. `path` says whether folds make a straight
+    path between two boundary vertices. For a measured square, `distance` is a bound of the distance
+    to an exception, in sides of the square, with six digits; it is 0 if the square is one.
+    `distance_straight` says whether that exception may have straight folds. Both are None if no
+    exception was found.
     """
     pattern = square_of(recipe)
     lines = Lines.of(pattern)
@@ -91,9 +93,9 @@ def has_straight_folds(pattern: CreasePattern) -> bool:
 
 
 def has_straight_path(pattern: CreasePattern) -> bool:
-    """Whether folds outside triangulated triangles make a straight path from border to border.
+    """Whether folds outside triangulated triangles make a straight path between boundary vertices.
 
-    The sheet folded along it and nowhere else is a branch, on which all vertices off it are flat.
+    The sheet that is folded along this path alone is a branch; all vertices off the path are flat.
 
     >>> from exactfold.pattern.families import flat_vertex_square, two_vertex
     >>> has_straight_path(flat_vertex_square()), has_straight_path(two_vertex())
@@ -114,7 +116,7 @@ def has_straight_path(pattern: CreasePattern) -> bool:
 
 
 def clusters(pattern: CreasePattern, signs: SignArray) -> list[list[int]]:
-    """The degrees of flat vertices that are joined by folds, for each such set of vertices.
+    """The connected sets of flat vertices, each as the degrees of its vertices.
 
     >>> from exactfold.pattern.families import flat_vertex_square
     >>> clusters(flat_vertex_square(), np.array([[1, 1], [-1, 1], [1, 0]], np.int8))
@@ -133,7 +135,7 @@ def clusters(pattern: CreasePattern, signs: SignArray) -> list[list[int]]:
 
 @dataclass
 class _Tally:
-    """What the rows of one number of vertices and one grid add up to."""
+    """The sums over the rows of one number of vertices and one grid."""
 
     squares: int = 0
     undecided: int = 0
@@ -149,7 +151,7 @@ class _Tally:
     first: int | None = None
 
     def add(self, row: Row) -> None:
-        """One more row."""
+        """Adds a row."""
         self.squares += 1
         if row["status"] != str(PROVED):
             self.undecided += 1
@@ -171,7 +173,7 @@ class _Tally:
 
     @property
     def proved(self) -> int:
-        """Squares whose branches are proved."""
+        """The number of squares whose branches are proved."""
         return self.squares - self.undecided
 
 
@@ -180,7 +182,7 @@ def _key(row: Row) -> tuple[int, int]:
 
 
 def tables(rows: Iterable[Row]) -> list[StudyTable]:
-    """How many squares are exceptions, by grid, and the stars that are flat on them."""
+    """How many squares are exceptions, by grid, and which stars are flat on them."""
     tallies = tallied(rows, _Tally, _key)
     lines = tuple(
         (
@@ -236,7 +238,7 @@ def tables(rows: Iterable[Row]) -> list[StudyTable]:
             (
                 "paths: with folds that make a straight path from corner to corner; straight: with "
                 "two folds that continue each other at an interior vertex, outside triangulated "
-                "triangles. Behind each how many of these are exceptions.",
+                "triangles. After each of these stands how many of them are exceptions.",
             ),
         ),
         StudyTable(
@@ -285,24 +287,24 @@ def _distances(tallies: dict[tuple[int, int], _Tally]) -> list[StudyTable]:
             ),
             lines,
             (
-                "Proved upper bounds of the root of the sum of the squares of the ways of all "
-                "vertices, rounded; nearer exceptions are not excluded. quarter, half, 3 quarters: "
-                "of the squares for which one was found. not straight: the exception is proved to "
-                "have no two folds that continue each other.",
+                "The distance is the root of the sum of the squared displacements of all "
+                "vertices. Bounds are proved, and rounded; nearer exceptions are not excluded. "
+                "quarter, half, 3 quarters: of the squares for which one was found. not straight: "
+                "the exception is proved to have no two folds that continue each other.",
             ),
         )
     ]
 
 
 def _quantile(values: Sequence[float], part: float) -> str | None:
-    """The least value with at least this part of all values up to it; None if there are none."""
+    """The least value with at least this share of all values up to it; None if there are none."""
     if not values:
         return None
     return f"{sorted(values)[max(0, ceil(part * len(values)) - 1)]:.2g}"
 
 
 def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
-    """The share of exceptions against the grid, and how far the nearest ones are."""
+    """The share of exceptions by grid, and the distances to the nearest ones."""
     tallies = {key: t for key, t in tallied(rows, _Tally, _key).items() if t.proved}
     if not tallies:
         return []
@@ -333,7 +335,7 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
             "exceptions",
             "Exceptions become rare on fine grids",
             "The figure shows the share of random squares with a vertex outside triangulated "
-            "triangles that can stay flat, with exact 95 % intervals. Where no square is an "
+            "triangles that can stay flat, with exact 95 % intervals. If no square is an "
             "exception, an open triangle shows the upper end of the interval.",
             shares,
         )
@@ -343,8 +345,8 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
             StudyFigure(
                 "distances",
                 "How far the nearest exception is at most",
-                "The figure shows the share of random squares with an exception that is proved to "
-                "be at most so far, of those for which one was found and that are none themselves.",
+                "The figure shows for which share of random squares an exception is proved to lie "
+                "within this distance, among squares that are not exceptions and have one found.",
                 distances,
             )
         )

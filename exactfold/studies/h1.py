@@ -1,7 +1,7 @@
 """H1 triangulations: how many random squares are H1, and how many types of triangulations.
 
-A row is one random square, or all types of triangulations of a quadrilateral with so many interior
-vertices. All of it is combinatorial and exact; what is random is the sample.
+A row is one random square, or all types of triangulations of a quadrilateral with a given number of
+interior vertices. Everything is combinatorial and exact; only the sample is random.
 """
 
 from __future__ import annotations
@@ -49,9 +49,11 @@ PAPER_IRREDUCIBLE: Final = {3: 0, 8: 17_700}
 """Squares without a corner of degree 3: 0 % at Vi = 3, 88.5 % at Vi = 8 (Section IV)."""
 PAPER_H1: Final = {3: 20_000, 8: 154}
 """H1 squares: all at Vi = 3, a fraction of 0.0077 at Vi = 8 (Section IV)."""
+_KINDS: Final = (("irreducible", "irreducible", PAPER_IRREDUCIBLE), ("H1", "h1", PAPER_H1))
+"""For each kind of squares its name, its key in a tally, and the paper's numbers."""
 
 LARGEST: Final = 7
-"""Interior vertices up to which all types are listed."""
+"""All types are listed up to so many interior vertices."""
 
 PLANTRI: Final = {
     1: (2, 1),
@@ -62,7 +64,7 @@ PLANTRI: Final = {
     6: (3071, 1404),
     7: (20667, 9714),
 }
-"""Types with and without chords as plantri 5.8 counts them: `plantri -P4 -c2 -m2`, `plantri -P4`.
+"""Numbers of types with and without chords by plantri 5.8: `plantri -P4 -c2 -m2`, `plantri -P4`.
 
 G. Brinkmann and B. D. McKay, Fast generation of planar graphs, MATCH 58 (2007) 323-357.
 """
@@ -71,7 +73,7 @@ _SQUARE, _TYPES = "random square", "all types"
 
 
 def recipes(seed: int, numbers: Mapping[int, int]) -> Iterator[Recipe]:
-    """All types for each size up to 7, and random squares.
+    """Yields a recipe of all types for each size up to 7, and random squares.
 
     >>> [recipe["kind"] for recipe in recipes(0, {3: 2})]
     ['all types', 'random square', 'random square']
@@ -89,11 +91,12 @@ def recipes(seed: int, numbers: Mapping[int, int]) -> Iterator[Recipe]:
 
 
 def row(recipe: Recipe) -> dict[str, Any]:
-    """What holds of one random square, or how many types there are.
+    """What holds for one random square, or how many types there are.
 
-    `low_corners`: boundary vertices of degree 3. `moves`: the most reverse H1 moves in a row. Of
-    types: how many there are, and without chords; and of those without an interior vertex of degree
-    3 (`kept`) how many are H1, without chords and with them.
+    For a square, `low_corners` is the number of boundary vertices of degree 3, and `moves` the most
+    reverse H1 moves in a row. For types there are the numbers of all, of those without chords, of
+    those without an interior vertex of degree 3 (`kept`) and of the H1 types among these, the last
+    two without chords and with them.
     """
     size = int(recipe["interior"])
     if recipe["kind"] == _SQUARE:
@@ -121,7 +124,7 @@ def row(recipe: Recipe) -> dict[str, Any]:
 
 @dataclass
 class _Tally:
-    """The random squares of one size."""
+    """The sums over the random squares of one size."""
 
     number: int = 0
     irreducible: int = 0
@@ -129,14 +132,14 @@ class _Tally:
     moves: Counter[int] = field(default_factory=Counter)
 
     def add(self, row: Row) -> None:
-        """One more square."""
+        """Adds a square."""
         self.number += 1
         self.irreducible += row["low_corners"] == 0
         self.h1 += row["h1"]
         self.moves[row["moves"]] += 1
 
     def at_least(self, moves: int) -> int:
-        """Squares with so many reverse moves."""
+        """The number of squares with at least so many reverse moves."""
         return sum(count for k, count in self.moves.items() if k >= moves)
 
 
@@ -152,7 +155,7 @@ def _sorted(rows: Iterable[Row]) -> tuple[dict[int, _Tally], list[Row]]:
 
 
 def tables(rows: Iterable[Row]) -> list[StudyTable]:
-    """Shares beside the paper's, how they fall off, and all types."""
+    """Shares beside those of the paper, their decay, and all types."""
     tallies, every = _sorted(rows)
     found = [_types(every)] if every else []
     if not tallies:
@@ -162,10 +165,7 @@ def tables(rows: Iterable[Row]) -> list[StudyTable]:
 
 def _shares(tallies: dict[int, _Tally]) -> StudyTable:
     lines: list[tuple[Cell, ...]] = []
-    for name, key, paper in (
-        ("irreducible", "irreducible", PAPER_IRREDUCIBLE),
-        ("H1", "h1", PAPER_H1),
-    ):
+    for name, key, paper in _KINDS:
         for size, tally in tallies.items():
             count = getattr(tally, key)
             share = f"{100 * count / tally.number:.2f}"
@@ -213,7 +213,7 @@ def _decay(tallies: dict[int, _Tally]) -> StudyTable:
         if after == size + 1 and first.h1:
             ratio = (second.h1 / second.number) / (first.h1 / first.number)
             lines.append((f"{size} to {after}", f"{ratio:.3f}"))
-    notes = ["What the share of H1 squares is multiplied by, with one vertex more."]
+    notes = ["The factor by which one more vertex multiplies the share of H1 squares."]
     fit = decay({size - 3: (tallies[size].h1, tallies[size].number) for size in sizes})
     if fit is not None:
         said = "one factor does not fit" if fit.p < 0.01 else "one factor fits"
@@ -235,7 +235,7 @@ def _factors(values: Sequence[float]) -> str:
 
 
 def _sentences(tallies: dict[int, _Tally], every: list[Row]) -> StudyTable:
-    """What Section IV says of these numbers."""
+    """The sentences of Section IV on these numbers."""
     lines: list[tuple[Cell, ...]] = []
     small = [found for found in every if found["interior"] <= 3]
     if small:
@@ -268,7 +268,7 @@ def _sentences(tallies: dict[int, _Tally], every: list[Row]) -> StudyTable:
         )
     for size in sizes:
         tally = tallies[size]
-        left = [tally.at_least(k) for k in range(size - 2)]  # with three vertices all are H1
+        left = [tally.at_least(k) for k in range(size - 2)]  # with three vertices, all are H1
         if len(left) > 2:
             p = one_share(zip(left[1:], left, strict=False))
             lines.append(
@@ -324,18 +324,13 @@ def _types(every: list[Row]) -> StudyTable:
 
 
 def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
-    """The shares against the number of vertices, on a logarithmic scale."""
+    """The shares by the number of vertices, on a logarithmic scale."""
     tallies, _ = _sorted(rows)
     if not tallies:
         return []
 
     def shares(axes: Any) -> None:
-        for k, (label, key, paper) in enumerate(
-            (
-                ("irreducible", "irreducible", PAPER_IRREDUCIBLE),
-                ("H1", "h1", PAPER_H1),
-            )
-        ):
+        for k, (label, key, paper) in enumerate(_KINDS):
             counts = {n: getattr(t, key) for n, t in tallies.items() if getattr(t, key)}
             points = [(n, 100 * count / tallies[n].number) for n, count in counts.items()]
             if not points:

@@ -1,7 +1,7 @@
 """True motions of random squares: loops through the flat state, and what ends each motion first.
 
-A row is one random square. All its half-branches are followed, with proof, until they come back to
-the flat state (docs/motions.md), and all its branches until two faces touch (docs/contacts.md).
+A row is one random square. All its rays are followed, with proof, until they come back to the flat
+state (docs/motions.md). All its branches are followed until two faces touch (docs/contacts.md).
 """
 
 from __future__ import annotations
@@ -31,20 +31,21 @@ from exactfold.studies.running.tallies import draw_distributions, interior_of, t
 from exactfold.studies.triangulations import reverse_moves, triangulation
 
 ENDS: Final = ("flat-fold", "contact", "node", "open")
-"""What ends a motion: a fold that closes, faces that touch, a node before that, or not proved."""
+"""The ends of a motion: a fold closes, faces touch, a branch point comes first, or not proved."""
 
 
 def row(recipe: Recipe) -> dict[str, Any]:
     """The loops and first contacts of one random square.
 
-    `rule`: the place of the sign that flips on all loops by Theorem 2 of docs/matching.md, the
-    number of vertices for the boundary saddle, where the square is a fan and there is no tie; `h1`:
-    whether it is H1. `loops`: for each loop of a pair of mirror images the places of the signs that
-    `flipped`, how many `nodes` it passes and how many `stars` are flat at them, bounds of its
-    `length` in sides of the square, how many folds wind (`winding`), and how many of these are at
-    the vertex that flipped, if it is one vertex (`winding_there`); None if that is not proved.
-    `contacts`: for each branch, named by its `signs`, what ends its motion (`ENDS`), bounds of its
-    length until then (`time`), and how many corners the two faces share that meet (`shared`).
+    `rule` is the place of the sign that flips on all loops by Theorem 2 of docs/matching.md (the
+    number of vertices for the boundary saddle), if the square is a fan without a tie. `h1` says
+    whether it is H1. `loops` describes one loop of each pair of mirror images: the places of the
+    signs that `flipped`, the number of branch points (`nodes`) that it passes and of flat `stars`
+    at them, bounds of its `length` in sides of the square, the number of folds that wind
+    (`winding`), and the number of these at the vertex that flipped, if exactly one vertex did
+    (`winding_there`). The last two are None if they are not proved. `contacts` has an entry for
+    each branch, named by its `signs`: what ends its motion (`ENDS`), bounds of its length until
+    then (`time`), and how many corners the two faces that meet have in common (`shared`).
     """
     pattern = square_of(recipe)
     found = find_loops(pattern)
@@ -64,7 +65,7 @@ def row(recipe: Recipe) -> dict[str, Any]:
 
 
 def _described(loop: Loop, target: HalfBranch, foldable: Sequence[int]) -> dict[str, Any]:
-    """What the row says of a loop."""
+    """The entry of a loop in the row."""
     ends = [(*half.vertex_signs, half.saddle) for half in (loop.source, target)]
     flipped = [k for k, (a, b) in enumerate(zip(*ends, strict=True)) if a != b]
     winding = [fold.fold for fold in loop.folds if fold.turns]
@@ -83,7 +84,7 @@ def _described(loop: Loop, target: HalfBranch, foldable: Sequence[int]) -> dict[
 
 
 def _contacts(pattern: CreasePattern) -> list[dict[str, Any]]:
-    """What ends the motion of each branch first, proved."""
+    """What ends the motion of each branch first, with proof."""
     finder = BranchFinder(pattern)
     size = len(pattern.foldable_vertices)
     found = []
@@ -103,16 +104,16 @@ def _contacts(pattern: CreasePattern) -> list[dict[str, Any]]:
 
 
 def _proof_of(branch: Branch) -> MotionProof | None:
-    """The proof of the motion along a branch until its end; None if it is not followed."""
+    """The proof of the motion along a branch until its end; None if it cannot be followed."""
     try:
         return prove(follow(branch, frames=2))
-    except NotFollowedError:  # a vertex is flat on it
+    except NotFollowedError:  # a vertex is flat on the branch
         return None
 
 
 @dataclass
 class _Tally:
-    """What the rows of one size add up to."""
+    """The sums over the rows of one size."""
 
     squares: int = 0
     proved: int = 0
@@ -126,7 +127,7 @@ class _Tally:
     times: list[tuple[float, float]] = field(default_factory=list)
 
     def add(self, row: Row) -> None:
-        """One more row."""
+        """Adds a row."""
         self.squares += 1
         self.proved += row["status"] == str(PROVED)
         self.half_branches += row["half_branches"]
@@ -146,7 +147,7 @@ class _Tally:
 
     @property
     def plain(self) -> list[Row]:
-        """The loops without nodes."""
+        """The loops without branch points."""
         return [loop for loop in self.loops if not loop["nodes"]]
 
     @property
@@ -156,12 +157,12 @@ class _Tally:
 
 
 def _flips(loops: Iterable[Row], number: int) -> int:
-    """How many loops flip so many signs."""
+    """The number of loops that flip so many signs."""
     return sum(len(loop["flipped"]) == number for loop in loops)
 
 
 def tables(rows: Iterable[Row]) -> list[StudyTable]:
-    """Loops by the signs that flip, the rules of the matching, lengths, and first contacts."""
+    """Loops by the number of signs that flip, the rules, lengths, and first contacts."""
     tallies = tallied(rows, _Tally, interior_of)
     return [_loops(tallies), _rules(tallies), _spans(tallies), _ends(tallies)]
 
@@ -193,7 +194,7 @@ def _loops(tallies: dict[int, _Tally]) -> StudyTable:
 
 
 def _rules(tallies: dict[int, _Tally]) -> StudyTable:
-    """How many loops follow each rule, of those it is about."""
+    """How many loops follow each rule, among those to which it applies."""
 
     def share(kept: Iterable[bool]) -> str | None:
         every = list(kept)
@@ -220,8 +221,8 @@ def _rules(tallies: dict[int, _Tally]) -> StudyTable:
         ("Vi", "parity", "fans", "H1", "plain", "saddle", "two wind", "all alike"),
         lines,
         (
-            "Theorems of docs/matching.md: parity, the number of signs that flip is odd with that "
-            "of the flat stars passed added (Theorem 1a); fans, the one sign of Theorem 2 flips; "
+            "Theorems of docs/matching.md: parity, the number of signs that flip plus the number "
+            "of flat stars on the way is odd (Theorem 1a); fans, the one sign of Theorem 2 flips; "
             "H1, one sign flips and there are no nodes (Theorem 3).",
             "No theorems: plain, one sign flips on a loop without nodes; saddle, if one sign "
             "flips, it is that of the saddle; two wind, if one vertex sign and no other flips, "

@@ -1,7 +1,7 @@
 """Mountain-valley assignments: how many occur on random squares, and which branches share them.
 
-A row is one random square. Assignments are counted up to turning the sheet over, which reverses all
-letters, the vertex signs and the boundary saddle.
+A row is one random square. Assignments that differ by turning the sheet over count once. Turning it
+over reverses all letters, the vertex signs and the boundary saddle.
 """
 
 from __future__ import annotations
@@ -27,11 +27,12 @@ from exactfold.studies.table1 import same_side
 def row(recipe: Recipe) -> dict[str, Any]:
     """The assignments of one random square.
 
-    `assignments` of its `distinct` branches differ. `with_letters` and `with_signs` branches share
-    their letters, and their vertex signs too, with another. `separated`: no two branches have the
-    same vertex signs on the side where the boundary saddle is positive. `differing`: for pairs of
-    branches with equal letters how many vertex signs differ, and how many pairs there are;
-    `least_degree` of a vertex whose signs differ. None: not decided, or no such vertex.
+    Its `distinct` branches have `assignments` different assignments. `with_letters` branches share
+    their letters with another branch, and `with_signs` branches share their vertex signs as well.
+    `separated` says that no two branches have the same vertex signs on the side on which the
+    boundary saddle is positive. `differing` counts pairs of branches with equal letters by the
+    number of vertex signs that differ. `least_degree` is that of a vertex whose signs differ. A
+    value is None if it is not decided or there is no such vertex.
     """
     lines = Lines.of(square_of(recipe))
     found: dict[str, Any] = {
@@ -75,7 +76,7 @@ def _differing(letters: SignArray, signs: SignArray) -> list[npt.NDArray[np.bool
 
 @dataclass
 class _Tally:
-    """What the rows of one size add up to."""
+    """The sums over the rows of one size."""
 
     squares: int = 0
     undecided: int = 0
@@ -92,7 +93,7 @@ class _Tally:
     least_degree: int | None = None
 
     def add(self, row: Row) -> None:
-        """One more row."""
+        """Adds a row."""
         self.squares += 1
         if row["status"] != str(PROVED):
             self.undecided += 1
@@ -116,12 +117,12 @@ class _Tally:
 
     @property
     def proved(self) -> int:
-        """Squares whose branches are proved."""
+        """The number of squares whose branches are proved."""
         return self.squares - self.undecided
 
     @property
     def known(self) -> int:
-        """Squares whose letters are proved."""
+        """The number of squares whose letters are proved."""
         return self.proved - self.unclear
 
 
@@ -130,7 +131,7 @@ def _first(known: int | None, other: int) -> int:
 
 
 def tables(rows: Iterable[Row]) -> list[StudyTable]:
-    """How many assignments occur, and what tells branches with equal letters apart."""
+    """How many assignments occur, and what distinguishes branches with equal letters."""
     tallies = tallied(rows, _Tally, interior_of)
     occurring = tuple(
         (
@@ -207,14 +208,14 @@ def _pairs(tallies: dict[int, _Tally]) -> StudyTable:
             for size, t in tallies.items()
         ),
         (
-            "least degree: of a vertex whose signs differ, folds in triangulated triangles left "
-            "out.",
+            "least degree: the least degree of a vertex whose signs differ, without folds in "
+            "triangulated triangles.",
         ),
     )
 
 
 def _sentences(tallies: dict[int, _Tally]) -> StudyTable:
-    """What Sections III.A and III.C say of these numbers."""
+    """The sentences of Sections III.A and III.C on these numbers."""
     shares = {size: (t.letters, t.known) for size, t in tallies.items() if size >= 5 and t.known}
     z, p = trend(shares)
     lines: list[tuple[Cell, ...]] = []
@@ -266,7 +267,7 @@ def _sentences(tallies: dict[int, _Tally]) -> StudyTable:
 
 
 def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
-    """The share of all assignments that occurs, against the number of vertices."""
+    """The share of all assignments that occurs, by the number of vertices."""
     tallies = {size: t for size, t in tallied(rows, _Tally, interior_of).items() if t.known}
     if not tallies:
         return []
@@ -285,8 +286,8 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
         StudyFigure(
             "occurring",
             "Few assignments occur",
-            "The figure shows which share of all assignments of letters occurs as those of a "
-            "branch, in the mean over random squares.",
+            "The figure shows the share of all assignments of letters that occur on a branch, as a "
+            "mean over random squares.",
             shares,
         )
     ]

@@ -1,13 +1,14 @@
-"""How far at most an exceptional sheet is: one on which a vertex outside 3-cycles can stay flat.
+"""Bounds the distance to an exceptional sheet: a vertex outside 3-cycles can stay flat on it.
 
 Let four folds or sides form a strictly convex quadrilateral C with vertices inside. If the corners
 of C lie in a plane on a branch, everything inside is flat (the key lemma of docs/theorem.md). So
 on sheets without flat vertices the saddle of C is not 0 on any branch. Along a path of such sheets
-the branch with given vertex signs changes continuously (Theorem 2), and so the saddle keeps its
-sign. If it has different signs at both ends of a path, an exceptional sheet lies between.
+the branch with given vertex signs changes continuously (Theorem 2), so that the saddle keeps its
+sign. So if the saddle has different signs at both ends of a path, an exceptional sheet lies
+between.
 
-Floats look for the place where the saddle of some C vanishes on some branch, nearest to first
-order; the signs at both ends of a segment that reaches a little farther are proved.
+Floats look for the nearest place, to first order, where the saddle of some C vanishes on some
+branch. Then the signs are proved at both ends of a segment that reaches slightly farther.
 """
 
 from __future__ import annotations
@@ -35,23 +36,24 @@ Vector = tuple[Fraction, Fraction]
 Product = Callable[[Vector, Vector], Fraction]
 
 _TRIED = 6
-"""Saddles that are followed to where they vanish, the nearest to first order."""
+"""So many saddles, those that vanish nearest to first order, are followed to where they vanish."""
 _STEPS = 12
 _BEYOND = 1.001
-"""Of the way to where a saddle vanishes: the sheet there is compared."""
+"""The compared sheet is so far on the way, as a multiple of the way to where a saddle vanishes."""
 _SCALE = 1 << 48
 _TINY = 1e-30
 
 
 @dataclass(frozen=True)
 class Nearest:
-    """An exceptional sheet is proved to lie on the way from a sheet to `other`, its end included.
+    """The proof that an exceptional sheet lies between a sheet and `other`, or is `other`.
 
-    `distance` is the root of the sum of the squares of the ways of all vertices, rounded up.
-    `straight`: that sheet may have two folds that continue each other at a vertex; if False it is
-    proved that no sheet on the way has. On the way the saddle of the quadrilateral `cycle` changes
-    its sign on the branch `signs`; or `other` can be folded along a straight path from corner to
-    corner, the three vertices `cycle`, and `signs` is empty.
+    `distance` is the root of the sum of the squared displacements of all vertices, rounded up. If
+    `straight` is False, it is proved that no sheet on the way has two folds that continue each
+    other at a vertex; otherwise the exceptional sheet may have such folds. On the way the saddle of
+    the quadrilateral `cycle` changes its sign on the branch `signs`. Alternatively, `signs` is
+    empty, and `other` can be folded along a straight path from corner to corner, the three vertices
+    `cycle`.
     """
 
     distance: float
@@ -62,11 +64,11 @@ class Nearest:
 
 
 def nearest_exception(count: BranchCount) -> Nearest | None:
-    """The nearest exceptional sheet that is found, with proof that it is there; None if none is.
+    """The nearest exceptional sheet that is found, with proof; None if none is found.
 
     `count` lists the branches of a sheet with four convex corners, without triangulated triangles
-    and without flat vertices. Corners keep their places. None does not say that there is none, and
-    a nearer one is not excluded.
+    and without flat vertices. The corners do not move. The result None does not mean that there is
+    no such sheet, and a nearer one than the result is not excluded.
 
     >>> from exactfold.branches.counting.collect import count_branches
     >>> from exactfold.pattern.random_squares import random_square
@@ -89,9 +91,9 @@ def nearest_exception(count: BranchCount) -> Nearest | None:
 
 
 def quadrilaterals(pattern: CreasePattern) -> Iterator[Cycle]:
-    """The 4-cycles of folds and sides, but for the border, that are strictly convex and not empty.
+    """Yields the 4-cycles of folds and sides that are strictly convex and contain vertices.
 
-    Corners are counter-clockwise.
+    The boundary itself is left out. Corners are counter-clockwise.
 
     >>> from exactfold.pattern.families import two_vertex
     >>> sorted(quadrilaterals(two_vertex()))
@@ -112,10 +114,11 @@ def quadrilaterals(pattern: CreasePattern) -> Iterator[Cycle]:
 
 
 def proved_between(pattern: CreasePattern, other: CreasePattern, cycle: Cycle, signs: str) -> bool:
-    """Whether an exceptional sheet is proved to lie on the segment between two sheets.
+    """Whether it is proved that an exceptional sheet lies on the segment between two sheets.
 
-    Both have the same triangles; `signs` name the branch on which the saddle of `cycle` changes its
-    sign. All faces, and the corners of the cycle, are proved to keep their orientation on the way.
+    Both have the same triangles. `signs` name the branch on which the saddle of `cycle` changes its
+    sign. It is proved that all faces, and the corners of the cycle, keep their orientation on the
+    way.
     """
     corners = [(cycle[k - 2], cycle[k - 1], cycle[k]) for k in range(4)]
     if not _same_faces(pattern, other) or not all(
@@ -130,9 +133,9 @@ def proved_between(pattern: CreasePattern, other: CreasePattern, cycle: Cycle, s
 
 
 def _beside_a_path(pattern: CreasePattern) -> Nearest | None:
-    """The nearest sheet with an interior vertex moved to a diagonal, joined to both its corners.
+    """The nearest sheet with an interior vertex on a diagonal, joined to both its corners.
 
-    Folded along this diagonal and nowhere else, all other interior vertices are flat.
+    If the sheet is folded along this diagonal alone, all other interior vertices are flat.
     """
     found = []
     for v in pattern.interior if pattern.Vi > 1 else ():
@@ -160,14 +163,14 @@ def _nearest(
 
 
 def _same_faces(first: CreasePattern, last: CreasePattern) -> bool:
-    """Whether all faces keep their orientation all the way."""
+    """Whether it is proved that all faces keep their orientation on the whole way."""
     return first.triangles == last.triangles and all(
         _stays_positive(first, last, triangle) for triangle in first.triangles
     )
 
 
 def _never_straight(first: CreasePattern, last: CreasePattern) -> bool:
-    """Whether no two folds are proved to continue each other at a vertex on the whole way."""
+    """Whether it is proved that nowhere on the way two folds continue each other at a vertex."""
     return all(
         _stays_positive(first, last, (i, v, j)) or _stays_positive(first, last, (j, v, i))
         for v in first.interior
@@ -185,12 +188,12 @@ def _turns(points: Sequence[Sequence[int]], cycle: Cycle) -> list[int]:
 
 
 def _sides(points: Any, cycle: Cycle, v: int) -> list[Any]:
-    """On which side of each side of the cycle a vertex is; 0 for its corners."""
+    """On which side of each side of the cycle a vertex lies; 0 on its line."""
     return [orientation(points[cycle[k]], points[cycle[(k + 1) % 4]], points[v]) for k in range(4)]
 
 
 def _stays_positive(first: CreasePattern, last: CreasePattern, triple: Sequence[int]) -> bool:
-    """Whether three vertices are proved to be counter-clockwise all the way."""
+    """Whether it is proved that three vertices are counter-clockwise on the whole way."""
     a, b, c = triple
     return _positive_all_the_way(
         first, last, (a, b), (a, c), lambda u, v: u[0] * v[1] - u[1] * v[0]
@@ -198,7 +201,7 @@ def _stays_positive(first: CreasePattern, last: CreasePattern, triple: Sequence[
 
 
 def _stays_acute(first: CreasePattern, last: CreasePattern, v: int, i: int, j: int) -> bool:
-    """Whether the angle of i, v and j is proved to be less than a right one all the way."""
+    """Whether it is proved that the angle of i, v and j is acute on the whole way."""
     return _positive_all_the_way(
         first, last, (v, i), (v, j), lambda u, w: u[0] * w[0] + u[1] * w[1]
     )
@@ -207,10 +210,10 @@ def _stays_acute(first: CreasePattern, last: CreasePattern, v: int, i: int, j: i
 def _positive_all_the_way(
     first: CreasePattern, last: CreasePattern, one: Edge, other: Edge, product: Product
 ) -> bool:
-    """Whether a product of the vectors along two edges is positive all the way.
+    """Whether it is proved that a product of the vectors along two edges is always positive.
 
-    It is a quadratic polynomial in the time; it is positive if its Bernstein coefficients are: the
-    values at both ends, and the mean of the two mixed products.
+    The product is a quadratic polynomial in time. It is positive if its Bernstein coefficients are:
+    the values at both ends, and the mean of the two mixed products.
     """
 
     def along(sheet: CreasePattern, edge: Edge) -> Vector:
@@ -223,9 +226,9 @@ def _positive_all_the_way(
 
 
 def _saddle_sign(sheet: CreasePattern, cycle: Cycle, signs: str) -> int:
-    """The proved sign of the saddle of four vertices on a branch, seen where the rim's is positive.
+    """The proved sign of the saddle of four vertices on a branch; 0 if it is not proved.
 
-    0 if it is not proved.
+    The branch is seen from the side on which the boundary saddle is positive.
     """
     branch = find_branch(sheet, signs)
     if (branch.status, branch.saddle, branch.sign_text) != (PROVED, 1, signs):
@@ -238,7 +241,7 @@ def _saddle_sign(sheet: CreasePattern, cycle: Cycle, signs: str) -> int:
 
 
 def saddle(points: Any, cycle: Cycle) -> list[Any]:
-    """The affine dependency of four points, + - + - around, which heights have in a plane."""
+    """The affine dependency of four points, with signs + - + -; it is 0 on heights in a plane."""
     a, b, c, d = (points[v] for v in cycle)
     return [
         orientation(b, c, d),
@@ -249,7 +252,7 @@ def saddle(points: Any, cycle: Cycle) -> list[Any]:
 
 
 def _moved(pattern: CreasePattern, places: Mapping[int, Sequence[Any]]) -> CreasePattern | None:
-    """The sheet with some vertices in other places, floats on a grid; None if it is no sheet."""
+    """The sheet with some vertices moved, floats rounded to a grid; None if it is not a sheet."""
     points = list(pattern.vertices)
     for v, place in places.items():
         x, y = (Fraction(round(c * _SCALE), _SCALE) if isinstance(c, float) else c for c in place)
@@ -264,9 +267,9 @@ def _moved(pattern: CreasePattern, places: Mapping[int, Sequence[Any]]) -> Creas
 
 
 class _Search:
-    """Looks, in floats, for the nearest places where the saddle of some cycle vanishes.
+    """Searches, in floats, for the nearest places at which the saddle of some cycle vanishes.
 
-    Derivatives are imaginary parts of values at points with an imaginary part of 1e-30.
+    A derivative is the imaginary part of the value at a point with an imaginary part of 1e-30.
     """
 
     def __init__(self, count: BranchCount, cycles: Sequence[Cycle]) -> None:
@@ -276,7 +279,7 @@ class _Search:
         self.start = np.array([[float(x), float(y)] for x, y in self.pattern.vertices])
 
     def nearest(self) -> list[tuple[str, Cycle, FloatArray]]:
-        """Branches, cycles and places a little beyond, the nearest first."""
+        """Branches, cycles and places slightly beyond the vanishing of a saddle, nearest first."""
         candidates = []
         for branch in self.count.branches:
             heights = np.array([branch.approx_heights[v] for v in range(len(self.start))])
@@ -293,7 +296,7 @@ class _Search:
         return [end[1:] for end in sorted(found, key=lambda end: end[0])]
 
     def _first_order(self, heights: FloatArray) -> Iterator[tuple[float, Cycle, FloatArray]]:
-        """For each cycle how far its saddle vanishes to first order, and where."""
+        """Yields, for each cycle, where its saddle vanishes to first order, and how far that is."""
         points, raised = self._stepped(self.start, heights)
         slopes = _curvatures(self.pattern, points, raised).imag / _TINY
         along, across = slopes[:, : 2 * self.size], slopes[:, 2 * self.size :]
@@ -312,10 +315,11 @@ class _Search:
                 yield float(np.linalg.norm(step)), cycle, place
 
     def _followed(self, cycle: Cycle, place: FloatArray, heights: FloatArray) -> FloatArray | None:
-        """Where the cycle and what is inside are flat, as near as possible; None if not found.
+        """The nearest places at which the cycle and its inside are flat; None if not found.
 
-        The conditions are one more than the heights; a combination of them depends, to first
-        order, on the places only. Newton's method, to the nearest zero of its linear part.
+        There is one condition more than heights. So a combination of the conditions depends, to
+        first order, on the places only. Newton's method goes to the nearest zero of its linear
+        part.
         """
         origin = self.start[self.inside].ravel()
         points, now = self.start.copy(), heights.copy()
@@ -341,7 +345,7 @@ class _Search:
     def _conditions(
         self, points: FloatArray, heights: FloatArray, cycle: Cycle
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Curvatures outside the cycle and saddles in it; derivatives by places and by heights."""
+        """Curvatures outside the cycle, saddles inside; derivatives by places and by heights."""
         stepped, raised = self._stepped(points, heights)
         curved = _curvatures(self.pattern, stepped, raised)
         within = [all(s > 0 for s in _sides(self.start, cycle, v)) for v in self.inside]
@@ -353,7 +357,7 @@ class _Search:
         return every.real[:, 0], slopes[:, : 2 * self.size], slopes[:, 2 * self.size :]
 
     def _stepped(self, points: FloatArray, heights: FloatArray) -> tuple[Any, Any]:
-        """Places (vertex, axis, step) and heights (vertex, step), each with one imaginary part."""
+        """Places (vertex, axis, step) and heights (vertex, step); each step has one i * 1e-30."""
         steps = 3 * self.size
         places = np.repeat(points[:, :, None].astype(complex), steps, axis=2)
         raised = np.repeat(heights[:, None].astype(complex), steps, axis=1)
@@ -369,7 +373,7 @@ def _saddles(points: Any, heights: Any, cycle: Cycle) -> Any:
 
 
 def _curvatures(pattern: CreasePattern, points: Any, heights: Any) -> Any:
-    """The sum of the stresses of the folds at each interior vertex times differences of heights."""
+    """For each interior vertex, the sum of fold stresses times differences of heights."""
     rows = []
     for v in pattern.interior:
         ring, total = pattern.star(v), 0.0

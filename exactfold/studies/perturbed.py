@@ -1,6 +1,6 @@
-"""The control experiment of the paper: how many zeros stay real if the quadrics come from no sheet.
+"""The paper's control experiment: how many zeros stay real if the quadrics come from no sheet.
 
-A row is one random square with each coefficient of its branch system multiplied by a random factor
+A row is one random square. Each coefficient of its branch system is multiplied by a random factor
 between 1 - size and 1 + size (`exactfold.rigidity.perturbed`). All zeros are proved, real or not.
 """
 
@@ -32,11 +32,11 @@ from exactfold.studies.running.study import (
 from exactfold.studies.running.tallies import draw_shares, tallied
 
 SIZES: Final = ("0", "1/1000", "1/100", "1/10", "1/2")
-"""Of the perturbations: the largest relative change of a coefficient."""
+"""The sizes of the perturbations: the largest relative change of a coefficient."""
 
 
 def recipes(seed: int, numbers: Mapping[int, int]) -> Iterator[Recipe]:
-    """Random squares in their order, each with every size of a perturbation in turn.
+    """Yields random squares in their order, each with every size of a perturbation in turn.
 
     >>> [(r["seed"], r["size"]) for r in recipes(0, {2: 6})][4:]
     [(20000000, '1/2'), (20000001, '0')]
@@ -51,10 +51,11 @@ def recipes(seed: int, numbers: Mapping[int, int]) -> Iterator[Recipe]:
 
 
 def row(recipe: Recipe) -> dict[str, Any]:
-    """What is proved of the zeros of one perturbed system.
+    """What is proved about the zeros of one perturbed system.
 
-    `nonreal` of `zeros` are not real. `two_for_each_pair`: two real zeros have each pair of
-    opposite sign vectors, by the vertex functionals of the square; None for a sign not decided.
+    `nonreal` of its `zeros` are not real. `two_for_each_pair` says whether each pair of opposite
+    sign vectors, by the vertex functionals of the square, belongs to two real zeros; it is None if
+    a sign is not decided.
     """
     chart = BranchSystem(square_of(recipe)).chart
     seed = int(recipe["seed"])
@@ -82,7 +83,7 @@ def row(recipe: Recipe) -> dict[str, Any]:
 
 @dataclass
 class _Tally:
-    """What the rows of one number of vertices and one size add up to."""
+    """The sums over the rows of one number of vertices and one size."""
 
     systems: int = 0
     undecided: int = 0
@@ -93,7 +94,7 @@ class _Tally:
     unclear: int = 0
 
     def add(self, row: Row) -> None:
-        """One more row."""
+        """Adds a row."""
         self.systems += 1
         if row["status"] != str(PROVED):
             self.undecided += 1
@@ -106,7 +107,7 @@ class _Tally:
 
     @property
     def proved(self) -> int:
-        """Systems whose zeros are proved."""
+        """The number of systems whose zeros are proved."""
         return self.systems - self.undecided
 
 
@@ -124,7 +125,7 @@ def _share(part: int, whole: int) -> str | None:
 
 
 def tables(rows: Iterable[Row]) -> list[StudyTable]:
-    """What share of zeros and of systems is not real, and the two sentences of the paper."""
+    """The shares of zeros and systems that are not real, and the two sentences of the paper."""
     tallies = _tallies(rows)
     lines = tuple(
         (
@@ -156,7 +157,7 @@ def tables(rows: Iterable[Row]) -> list[StudyTable]:
 
 
 def _sentences(tallies: Mapping[tuple[int, str], _Tally]) -> StudyTable:
-    largest = {n: size for n, size in tallies if size != SIZES[0]}  # sizes come in their order
+    largest = {n: size for n, size in tallies if size != SIZES[0]}  # sizes come in order
     lines: list[tuple[Cell, ...]] = []
     for n, size in largest.items():
         t = tallies[n, size]
@@ -176,13 +177,13 @@ def _sentences(tallies: Mapping[tuple[int, str], _Tally]) -> StudyTable:
         tuple(lines),
         (
             "The paper does not say how large its changes were: these are the largest here. Exact "
-            "95 % intervals; a verdict is not decided where the interval holds one half.",
+            "95 % intervals; a verdict is not decided if the interval contains one half.",
         ),
     )
 
 
 def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
-    """The share of systems with zeros that are not real, against the size of the change."""
+    """The share of systems with zeros that are not real, by the size of the change."""
     tallies = {key: t for key, t in _tallies(rows).items() if t.proved}
     if not tallies:
         return []

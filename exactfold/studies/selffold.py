@@ -1,7 +1,7 @@
-"""Self-folding: whether torques can single out a branch, and the best margin over its rivals.
+"""Self-folding: whether torques can single out a branch, and its best margin over its rivals.
 
-A row is one random square with all its branches, each for one of its two rays: the opposite one has
-the same dimension and margin (docs/actuation.md, 6).
+A row is one random square with all its branches, each represented by one of its two rays. The
+opposite ray has the same dimension and margin (docs/actuation.md, 6).
 """
 
 from __future__ import annotations
@@ -35,14 +35,15 @@ _UP = Context(prec=2, rounding=ROUND_CEILING)
 
 
 def row(recipe: Recipe) -> dict[str, Any]:
-    """What torques do for every branch of one random square.
+    """What torques can do for every branch of one random square.
 
-    `dimensions`: [low, high, branches] with proved bounds of the dimension of the torques that do
-    no work on any other branch (Tachi and Hull), and how many branches have them. `margins`: proved
-    lower bounds of the margins of the torques found, all at most 1, rounded down to five digits, in
-    the order of `count_branches`; `weakest` are the vertex signs of the branch with the least.
-    `gap`: the most by which a proved upper bound of all margins exceeds such a margin before it is
-    rounded, and `share` the most as a share of the bound, both rounded up to two digits.
+    The torques that do no work on any other branch form a space (Tachi and Hull). `dimensions` has
+    entries [low, high, branches]: proved bounds of the dimension of this space, and how many
+    branches have them. `margins` are proved lower bounds of the margins of the torques found, all
+    at most 1, rounded down to five digits, in the order of `count_branches`. `weakest` are the
+    vertex signs of the branch with the least margin. `gap` is the largest difference between a
+    proved upper bound of all margins and such a margin before rounding. `share` is the largest such
+    difference as a share of the bound. Both are rounded up to two digits.
     """
     pattern = square_of(recipe)
     found: dict[str, Any] = {
@@ -82,7 +83,7 @@ def _rounded(number: Fraction, context: Context) -> float:
 
 @dataclass
 class _Tally:
-    """What the rows of one size add up to."""
+    """The sums over the rows of one size."""
 
     squares: int = 0
     undecided: int = 0
@@ -93,7 +94,7 @@ class _Tally:
     share: float = 0.0
 
     def add(self, row: Row) -> None:
-        """One more row."""
+        """Adds a row."""
         self.squares += 1
         if row["status"] != str(PROVED):
             self.undecided += 1
@@ -108,7 +109,7 @@ class _Tally:
 
 
 def tables(rows: Iterable[Row]) -> list[StudyTable]:
-    """The dimension of Tachi and Hull, the best margins, and the least one of each square."""
+    """The dimension of Tachi and Hull, the best margins, and the least margin of each square."""
     tallies = tallied(rows, _Tally, interior_of)
     proved = {n: t for n, t in tallies.items() if t.margins}
     dimensions = tuple(
@@ -151,8 +152,8 @@ def tables(rows: Iterable[Row]) -> list[StudyTable]:
             ),
             (
                 "Torques of size at most 1 on all folds; the margin is the power along the branch "
-                "less the largest along another ray. Proved lower bounds; no torques do better by "
-                "more than the gap, or by more than this share of the best.",
+                "minus the largest power along another ray. Proved lower bounds; no torques do "
+                "better by more than the gap, or by more than this share of the best.",
             ),
         ),
         StudyTable(
@@ -184,7 +185,7 @@ def _five(values: Sequence[float]) -> tuple[Cell, ...]:
 
 
 def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
-    """The distributions of the best margins, of all branches and of the weakest of each square."""
+    """The distributions of the best margins: of all branches, and of the weakest in each square."""
     tallies = {n: t for n, t in tallied(rows, _Tally, interior_of).items() if t.margins}
 
     def margins(panels: Any) -> None:

@@ -1,8 +1,8 @@
-"""Table I of the paper, proved: branches of random squares, and which share their letters.
+"""Table I of the paper, proved: branches of random squares, and which of them share their letters.
 
-A row is one random square. Branches share their letters if the letters of one are those of the
-other, or all of them reversed, as the other side of the sheet shows them. Such a pair shares its
-vertex signs too if these agree when the letters do.
+A row is one random square. Two branches share their letters if they have equal letters, or if all
+letters are reversed, as the other side of the sheet shows them. Such a pair shares its vertex signs
+too if, on the side on which the letters agree, the signs agree.
 """
 
 from __future__ import annotations
@@ -44,16 +44,17 @@ PAPER: Final = {
     7: (300, 0, 17, 1),
     8: (50, 0, 8, 0),
 }
-"""By Vi: squares, those with V_t > 0, with MV duplicates (Table I), with signs too (IIIC)."""
+"""By Vi: squares, with V_t > 0, with MV duplicates (Table I), with equal signs too (IIIC)."""
 
 
 def row(recipe: Recipe) -> dict[str, Any]:
-    """What is proved of the branches of one random square.
+    """What is proved about the branches of one random square.
 
-    `with_letters` and `with_signs`: how many branches share their letters, and their signs too,
-    with another; None where a letter is not decided. `closest` bounds the distance of the closest
-    pair of branches, as unit vectors of fold angles up to sign, from below; `digits` tell all
-    branches apart. `flat`: vertices outside triangulated triangles that are flat in a branch.
+    `with_letters` branches share their letters with another branch, and `with_signs` branches share
+    their signs as well; None if a letter is not decided. `closest` is a lower bound of the distance
+    of the closest pair of branches, as unit vectors of fold angles up to sign. `digits` digits
+    distinguish all branches. `flat` is the number of vertices outside triangulated triangles that
+    are flat on a branch.
     """
     lines = Lines.of(square_of(recipe))
     pattern = lines.pattern
@@ -85,7 +86,7 @@ def row(recipe: Recipe) -> dict[str, Any]:
 
 
 def same_side(letters: SignArray, signs: SignArray) -> tuple[SignArray, SignArray]:
-    """Letters and signs of lines, each seen from the side on which its first letter is "V".
+    """Letters and signs of lines, each seen from the side on which the first bent fold is a valley.
 
     >>> same_side(np.array([[0, -1, 1], [0, 1, 1]], np.int8), np.array([[1], [1]], np.int8))
     (array([[ 0,  1, -1],
@@ -98,13 +99,13 @@ def same_side(letters: SignArray, signs: SignArray) -> tuple[SignArray, SignArra
 
 
 def _repeated(rows: SignArray) -> int:
-    """How many rows are equal to another."""
+    """The number of rows that are equal to another row."""
     counts = np.unique(rows, axis=0, return_counts=True)[1]
     return int(counts[counts > 1].sum())
 
 
 def _two_for_each_pair(signs: SignArray) -> bool:
-    """Whether two branches have each pair of opposite sign vectors of the foldable vertices."""
+    """Whether each pair of opposite sign vectors of the foldable vertices has two branches."""
     foldable = signs[:, (signs != 0).any(axis=0)]
     size = foldable.shape[1]
     if not size or (foldable == 0).any():
@@ -116,7 +117,7 @@ def _two_for_each_pair(signs: SignArray) -> bool:
 
 @dataclass
 class _Tally:
-    """What the rows of one size add up to."""
+    """The sums over the rows of one size."""
 
     number: int = 0
     undecided: int = 0
@@ -133,7 +134,7 @@ class _Tally:
     histogram: dict[int, int] = field(default_factory=lambda: defaultdict(int))
 
     def add(self, row: Row) -> None:
-        """One more row."""
+        """Adds a row."""
         self.number += 1
         if row["status"] != str(PROVED):
             self.undecided += 1
@@ -160,7 +161,7 @@ class _Tally:
 
 
 def tables(rows: Iterable[Row]) -> list[StudyTable]:
-    """The table of the paper, the comparison with it, and how close branches come."""
+    """The table of the paper, the comparison with it, and the distances between branches."""
     tallies = tallied(rows, _Tally, interior_of)
     beside = [_comparison(tallies)] if PAPER.keys() & tallies else []
     return [_main(tallies), *beside, _distances(tallies)]
@@ -189,7 +190,7 @@ def _main(tallies: dict[int, _Tally]) -> StudyTable:
         "branch.",
     ]
     if unclear:
-        notes.append(f"squares with a letter that is not decided, not counted there: {unclear}.")
+        notes.append(f"squares with an undecided letter, which are not counted there: {unclear}.")
     return StudyTable(
         "squares",
         "Table I: random squares, each counted with proof",
@@ -253,7 +254,7 @@ def _distances(tallies: dict[int, _Tally]) -> StudyTable:
             "sign; all branches of a square are told apart by so many decimals of these. The "
             "paper used up to 690.",
             *(
-                [f"squares whose branches are not all told apart, not counted here: {left}."]
+                [f"squares whose branches are not all told apart, so not counted here: {left}."]
                 * (left > 0)
             ),
         ),

@@ -1,10 +1,11 @@
 """Triangulations of a quadrilateral as combinatorial types, and the H1 moves that build them.
 
 A triangulation is the set of its triangles, each counter-clockwise and beginning with its smallest
-vertex; no two edges join the same vertices. A type is a class of triangulations under renumbering
-and reflection. Every one with n >= 1 interior vertices has an interior vertex of degree 3, 4 or 5
-whose removal can be filled without a double edge (`proofs/h1_triangulations.py`, which inserts
-vertices by this module), so that all arise from those with n - 1 by inserting one.
+vertex. No two edges join the same vertices. A type is a class of triangulations up to renumbering
+and reflection. Every triangulation with n >= 1 interior vertices has an interior vertex of degree
+3, 4 or 5 such that, after its removal, the hole can be filled without a double edge
+(`proofs/h1_triangulations.py`, which inserts vertices by this module). So inserting one vertex into
+the triangulations with n - 1 interior vertices gives all of them.
 """
 
 from __future__ import annotations
@@ -19,17 +20,17 @@ CORNERS = 4
 
 
 def triangulation(triangles: Iterable[Triangle]) -> Triangulation:
-    """Triangles, each turned so that its smallest vertex is the first."""
+    """The set of triangles, each rotated so that its smallest vertex comes first."""
     return frozenset(min((a, b, c), (b, c, a), (c, a, b)) for a, b, c in triangles)
 
 
 def turns(triangles: Iterable[Triangle]) -> dict[tuple[int, int], int]:
-    """The third vertex of the triangle to the left of each oriented edge that has one."""
+    """The third vertex of the triangle on the left of each oriented edge that has one."""
     return {(a, b): c for t in triangles for a, b, c in (t, (*t[1:], t[0]), (*t[2:], *t[:2]))}
 
 
 def types(interior: int) -> list[Triangulation]:
-    """One triangulation of each type with this number of interior vertices, chords allowed.
+    """One triangulation of each type with this number of interior vertices; chords are allowed.
 
     >>> [len(types(n)) for n in range(4)]
     [1, 2, 5, 18]
@@ -42,7 +43,7 @@ def types(interior: int) -> list[Triangulation]:
 
 
 def has_chord(triangles: Triangulation) -> bool:
-    """Whether an edge inside joins two boundary vertices."""
+    """Whether an interior edge joins two boundary vertices."""
     rim, turn = rim_of(triangles), turns(triangles)
     return any(a in rim and b in rim and (b, a) in turn for a, b in turn)
 
@@ -54,13 +55,13 @@ def has_low_vertex(triangles: Triangulation) -> bool:
 
 
 def rim_of(triangles: Triangulation) -> set[int]:
-    """The boundary vertices."""
+    """The set of boundary vertices."""
     turn = turns(triangles)
     return {v for a, b in turn if (b, a) not in turn for v in (a, b)}
 
 
 def degrees(triangles: Triangulation) -> dict[int, int]:
-    """Number of edges at each vertex."""
+    """The number of edges at each vertex."""
     near: dict[int, set[int]] = {}
     for t in triangles:
         for v in t:
@@ -69,17 +70,17 @@ def degrees(triangles: Triangulation) -> dict[int, int]:
 
 
 def low_corners(triangles: Triangulation) -> int:
-    """How many boundary vertices have degree 3."""
+    """The number of boundary vertices of degree 3."""
     degree = degrees(triangles)
     return sum(degree[v] == 3 for v in rim_of(triangles))
 
 
 def reverse_moves(triangles: Triangulation) -> int:
-    """The most reverse H1 moves that can be made one after the other.
+    """The largest number of reverse H1 moves that can be made one after the other.
 
-    Such a move removes a boundary vertex of degree 3 whose middle neighbour v2 is inside and keeps
-    a degree of at least 3 (the paper, Section IV). A triangulation with n interior vertices is H1
-    if n moves lead to the two triangles of a butterfly.
+    Such a move removes a boundary vertex of degree 3; its middle neighbour v2 must be interior and
+    keep a degree of at least 3 (the paper, Section IV). A triangulation with n interior vertices is
+    H1 if n such moves lead to the two triangles of a butterfly.
 
     >>> reverse_moves(triangulation([(0, 1, 4), (1, 2, 4), (2, 3, 4), (0, 4, 3)]))
     1
@@ -104,7 +105,7 @@ def _reduced(triangles: Triangulation) -> Iterator[Triangulation]:
 
 
 def insertions(triangles: Triangulation) -> Iterator[Triangulation]:
-    """All results of putting a vertex of degree 3, 4 or 5 inside, whose number is the next one.
+    """Yields all results of inserting a vertex of degree 3, 4 or 5, with the next number.
 
     >>> len(set(insertions(triangulation([(0, 1, 2), (0, 2, 3)]))))
     3
@@ -132,10 +133,10 @@ def _filled(
 
 
 def _code(triangles: Triangulation) -> bytes:
-    """The same for two triangulations exactly if they are of one type.
+    """A code that is equal for two triangulations exactly if they have the same type.
 
-    The least, over the four sides and two orientations, of the names that a search from that side
-    gives to the vertices as it meets them.
+    A search that starts from a boundary side names the vertices in the order in which it meets
+    them. The code is the least result over the four sides and both orientations.
     """
     turn = turns(triangles)
     mirror = {(b, a): c for (a, b), c in turn.items()}

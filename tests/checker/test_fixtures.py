@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 
 import pytest
+from typed_values import misfits
 
 from exactfold import checker
 
@@ -38,6 +39,7 @@ def test_there_are_certificates_of_every_kind() -> None:
 def test_certificates_of_earlier_versions_verify(name: str) -> None:
     path = FOLDER / name
     claims = checker.verify(path)
+    assert list(misfits(claims.claims, claims.kind.claims)) == []
     assert checker.is_compact(path) == name.startswith("compact")
     last = path.read_text().splitlines()[-1]
     given = json.loads(last.partition("\t")[0])["claims"]

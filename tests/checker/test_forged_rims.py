@@ -20,10 +20,10 @@ from exactfold.checker.motion.half_branch import check_half_branch
 from exactfold.checker.motion.restriction import saddle_of
 from exactfold.checker.motion.tubes import Ball
 from exactfold.checker.sheets.sheet import read_sheet
-from exactfold.motion.certificate import motion_certificate
-from exactfold.motion.curves.boundary_path import ties_of
+from exactfold.motion.curves.boundary_path import rim_claim, ties_of
 from exactfold.motion.curves.framework import Framework
 from exactfold.motion.tubes.branch_point_tube import prove_node_tube
+from exactfold.motion.tubes.certificate import motion_certificate
 from exactfold.motion.tubes.flat_patches import FlatPatch
 from exactfold.motion.tubes.length_equations import LengthEquations as LengthEquationsOfProver
 from exactfold.motion.tubes.links import onwards
@@ -156,23 +156,7 @@ def test_a_border_that_is_not_convex() -> None:
     ties = ties_of(SimpleNamespace(sheet=dented, gauge=gauge))
     framework = Framework.of(dented, None, ties)
     start = prove_start(framework, gauge, np.array([*map(float, rim.values()), 1.5]))
-    document = motion_certificate(
-        dented,
-        dict(zip(dented.interior, start.vertex_signs, strict=True)),
-        start.side,
-        Fraction(1, 1000),
-        framework.pinned,
-        start.bits,
-        {
-            "centre": list(start.coefficients[0]),
-            "halvings": start.halvings,
-            "held": int(framework.free[start.held // 3]),
-            "reach": start.reach,
-            "exit": start.last,
-        },
-        [],
-        rim=rim,
-    )
+    document = motion_certificate(dented, range(6), start, [], [rim_claim(rim)])
     with without("the boundary is not convex"):
         verified(json.loads(json.dumps(document)))
     refused(document, "the boundary is not convex")

@@ -192,7 +192,7 @@ def test_lines_that_are_missing_and_nodes_that_are_not_located_are_said(monkeypa
     monkeypatch.setattr(graph_building.LocatedNode, "of", lambda *_: None)
     found = graph_of(PROBLEM, [loop()], "", process_pool(1))
     assert found.nodes == ()
-    assert "not located" in found.reason
+    assert "could not be located" in found.reason
 
 
 def test_an_arc_that_is_not_followed_is_open(monkeypatch):

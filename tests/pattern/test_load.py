@@ -225,7 +225,6 @@ def test_no_public_function_that_takes_a_pattern_is_missing():
         "design.PanelMatch",
         "design.RimMatch",
         "branches.ShapeCount",
-        "motion.motion_certificate",
         "motion.Loops",
         "motion.PanelMode",
         "motion.PanelMotion",

@@ -130,7 +130,9 @@ def test_the_journal_of_another_study_is_left_alone(tmp_path, other):
     path = tmp_path / "a.sqlite"
     run_study(TOY, path)
     before = path.read_bytes()
-    with pytest.raises(ForeignJournalError, match="holds rows of the study toy, version 1, not of"):
+    with pytest.raises(
+        ForeignJournalError, match="contains rows of the study toy, version 1, not of"
+    ):
         run_study(replace(TOY, **other), path)
     assert path.read_bytes() == before
 
@@ -162,10 +164,10 @@ def test_a_database_of_another_program_is_left_alone(tmp_path):
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        ("UPDATE rows SET row = replace(row, '4', '5')", "is not what was written"),
-        ("UPDATE rows SET row = '{'", "is not what was written"),
-        ("UPDATE rows SET sha256 = 'no'", "is not what was written"),
-        ('UPDATE rows SET recipe = \'{"size":2,"seed":7}\'', "is not what was written"),
+        ("UPDATE rows SET row = replace(row, '4', '5')", "differs from what was written"),
+        ("UPDATE rows SET row = '{'", "differs from what was written"),
+        ("UPDATE rows SET sha256 = 'no'", "differs from what was written"),
+        ('UPDATE rows SET recipe = \'{"size":2,"seed":7}\'', "differs from what was written"),
         ("UPDATE about SET value = '9' WHERE name = 'version'", "is not the journal of a study"),
         ("DROP TABLE about", "is not the journal of a study"),
     ],
@@ -195,9 +197,9 @@ def test_a_journal_that_cannot_be_written_is_said(tmp_path):
 
 
 def test_wrong_usage_is_refused_before_anything_is_computed(tmp_path):
-    with pytest.raises(UsageError, match="no study 'x'; there are: table1"):
+    with pytest.raises(UsageError, match="no study 'x'; the studies are: table1"):
         run_study("x")
-    with pytest.raises(UsageError, match="at least one worker"):
+    with pytest.raises(UsageError, match="must be at least one"):
         run_study(TOY, workers=0)
     with pytest.raises(UsageError, match="must not be negative"):
         run_study("table1", seed=-1)
@@ -212,9 +214,9 @@ def test_wrong_usage_is_refused_before_anything_is_computed(tmp_path):
     ("row", "said"),
     [
         ({"value": 1}, "status"),
-        ({"status": "proved", "size": 1}, "both of the recipe and of the row"),
-        ({"status": "proved", "x": float("nan")}, "what JSON does not"),
-        ({"status": "proved", "x": {1, 2}}, "what JSON does not"),
+        ({"status": "proved", "size": 1}, "both in the recipe and in the row"),
+        ({"status": "proved", "x": float("nan")}, "that JSON cannot express"),
+        ({"status": "proved", "x": {1, 2}}, "that JSON cannot express"),
     ],
 )
 def test_what_is_no_row_is_refused(row, said):
@@ -234,7 +236,7 @@ def test_sizes_and_numbers_are_chosen():
     assert study.chosen([4, 5], {5: 7}) == {4: 1000, 5: 7}
     extended = study.chosen(number={5: 7, 20: 1}, extend=True)
     assert extended == {**study.numbers, **study.extended, 5: 7, 20: 1}
-    with pytest.raises(UsageError, match="for size 5, which is not one of the sizes"):
+    with pytest.raises(UsageError, match="for size 5, but this size is not among"):
         study.chosen([2, 3], {2: 1, 5: 7})
 
 

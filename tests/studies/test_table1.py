@@ -200,7 +200,7 @@ def test_what_is_not_proved_counts_nowhere():
     unclear = {**proved, "with_letters": None, "with_signs": None}
     main, comparison, _ = table1.tables([proved, undecided, unclear])
     assert main.rows == ((3, 3, 2, 2, 0, 0, 0, 0),)
-    assert main.notes[-1] == "squares with a letter that is not decided, not counted there: 1."
+    assert main.notes[-1] == "squares with an undecided letter, which are not counted there: 1."
     assert [line[4] for line in comparison.rows] == ["0/2", "0/1", "0/1"]
 
 
@@ -272,7 +272,9 @@ def test_squares_that_are_not_told_apart_are_named():
     row |= {"with_multiplicity": 64, "pairs_of_signs": True, "with_letters": 0, "with_signs": 0}
     measured = row | {"closest": 0.1, "digits": 1, "seed": 1}
     table = table1.STUDY.tables([measured, row | {"closest": None, "digits": None}])[-1]
-    assert table.notes[-1] == "squares whose branches are not all told apart, not counted here: 1."
+    assert (
+        table.notes[-1] == "squares whose branches are not all told apart, so not counted here: 1."
+    )
     assert len(table1.STUDY.tables([measured])[-1].notes) == len(table.notes) - 1
 
 

@@ -143,7 +143,7 @@ class Wanted(StudyOptions):
 
     def _list(self) -> int:
         if self._asks_for_rows or self.row is not None or self.journal is not None:
-            raise UsageError(f"name a study; there are: {', '.join(all_studies())}")
+            raise UsageError(f"name a study; the studies are: {', '.join(all_studies())}")
         if self.as_json:
             document: StudiesDocument = {
                 "format": "exactfold studies result",

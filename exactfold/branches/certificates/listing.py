@@ -77,15 +77,7 @@ def _root_lines(result: BranchCount, proof: Proof) -> list[str]:
             line_text({"block": number, "roots": entries[start : start + block]})
             for number, start in enumerate(range(0, len(entries), block))
         ]
-    counts = {
-        "distinct": result.distinct,
-        "with_multiplicity": result.with_multiplicity,
-        "real": result.real,
-        "nonreal": result.nonreal,
-        "true_branches": str(_true_branches(result)),
-    }
-    claims = claims_line(result.pattern, cast("Counts", counts))  # all are known, once proved
-    lines = [_header(result, evidence), *blocks, claims]
+    lines = [_header(result, evidence), *blocks, claims_line(result.pattern, _counts(result))]
     longest = max(map(len, lines))
     if longest + _DIGEST > MOST_LINE:
         raise NotApplicableError(
@@ -109,6 +101,18 @@ def _header(result: BranchCount, evidence: Document) -> str:
             },
         }
     )
+
+
+def _counts(result: BranchCount) -> Counts:
+    """What is claimed of the branches; all numbers are known, once proved."""
+    counts = {
+        "distinct": result.distinct,
+        "with_multiplicity": result.with_multiplicity,
+        "real": result.real,
+        "nonreal": result.nonreal,
+        "true_branches": str(_true_branches(result)),
+    }
+    return cast("Counts", counts)
 
 
 def _entry(proof: Proof, branch: Branch) -> Document:

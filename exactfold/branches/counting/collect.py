@@ -5,37 +5,21 @@ from __future__ import annotations
 import time
 from dataclasses import replace
 
-from exactfold._support.plurals import counted
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, UNDECIDED
-from exactfold.branches.certificates.blocks import compact_lines
-from exactfold.branches.counting.attempt import Attempt
 from exactfold.branches.counting.by_theorem import IN_MEMORY, is_too_many, too_many
-from exactfold.branches.counting.conveyor import Conveyor
-from exactfold.branches.counting.engines import in_this_process
-from exactfold.branches.counting.fallback import isolated, solved_exactly, with_flat_vertices
-from exactfold.branches.counting.registry import METHODS, NEWTON, Choice, choose, find_candidates
+from exactfold.branches.counting.lines import count_lines
+from exactfold.branches.counting.registry import METHODS, choose
 from exactfold.branches.counting.true_bounds import with_true_bounds
-from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.result import BranchCount, Proof
-from exactfold.checker.core.limits import MOST_UNKNOWNS
 from exactfold.errors import NotCountedError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.loading import PatternLike, as_pattern
 from exactfold.rigidity.definite_stresses import definite_stress
-from exactfold.rigidity.equations.branch_system import BranchSystem, notch_chart
 from exactfold.rigidity.equations.problem import Problem
 from exactfold.rigidity.rigid_triangles import RigidTriangle, certify_rigid_triangles
-from exactfold.solve.numeric.candidates import Candidates
-from exactfold.solve.numeric.newton import candidates_of
 
 __all__ = ["METHODS", "count_branches"]
-
-_MEET = 9
-"""Digits to which ends agree where a root is multiple: they are as good there as elsewhere."""
-
-GROEBNER_LIMIT = 6
-"""Largest number of unknowns for which "auto" turns to the exact engine."""
 
 
 def count_branches(
@@ -80,7 +64,7 @@ def count_branches(
     elif pattern.Ve == 3:
         result = _rigid(pattern, triangles)
     elif pattern.degrees_of_freedom == 1:
-        result = with_true_bounds(_lines(Problem.of(pattern), choice, method, seed, progress))
+        result = with_true_bounds(count_lines(Problem.of(pattern), choice, method, seed, progress))
     else:
         result = _higher(pattern, triangles, progress)
     seconds = time.perf_counter() - start
@@ -174,93 +158,3 @@ def not_convex(pattern: CreasePattern) -> str:
         "more than four corners the shapes over a rim need not be real then, so that nothing "
         "general is known of their number (docs/any_border.md, A border that is not convex)"
     )
-
-
-def _lines(
-    problem: Problem, choice: Choice, method: str, seed: int, progress: Progress | None
-) -> BranchCount:
-    """D = 1: branches are isolated lines.
-
-    Where the conveyor leaves something open, and for other methods, zeros are proved in the chart
-    `saddle = 1`; as with a reflex corner some may lie at infinity there, then also in the chart of
-    the closed notch, which misses none.
-    """
-    ends: Candidates | None = None
-    if choice.method == NEWTON and 0 < problem.size <= MOST_UNKNOWNS:
-        conveyor = Conveyor.of(problem)
-        attempt = Attempt(problem, problem.chart, choice, progress)
-        ends = _ends(conveyor, attempt)
-        if not (ends.lost or ends.agree_to(_MEET)):
-            result = _collected(conveyor, attempt, ends)
-            if result is not None:
-                return result
-    attempt = Attempt(problem, BranchSystem(problem.sheet).chart, choice, progress)
-    result = _in_chart(attempt, ends, method, seed)
-    if result.status is PROVED or problem.sheet.is_convex:
-        return result
-    again = _in_chart(replace(attempt, chart=notch_chart(problem.sheet)), ends, method, seed)
-    return again if again.status is PROVED else result
-
-
-def _ends(conveyor: Conveyor, attempt: Attempt) -> Candidates:
-    """The ends of all blocks, in the chart of the problem."""
-    stage, count = attempt.stage("solving"), conveyor.block_size
-    found = []
-    for index in range(conveyor.blocks):
-        found.append(conveyor.ends(index))
-        stage((index + 1) * count, attempt.total)
-    return candidates_of(found, conveyor.size).finite()
-
-
-def _collected(conveyor: Conveyor, attempt: Attempt, ends: Candidates) -> BranchCount | None:
-    """The branches of all blocks, None if a root or a letter stays open."""
-    stage, count = attempt.stage("certifying"), conveyor.block_size
-    branches: list[Branch] = []
-    proved: list[str] = []
-    for block, line in in_this_process(conveyor, range(conveyor.blocks)):
-        if not block.is_decided:
-            return None
-        branches += conveyor.branches(block)
-        proved.append(line)
-        stage(len(proved) * count, attempt.total)
-    branches.sort(key=Branch.sort_key)
-    return attempt.isolated(
-        attempt.undecided("", branches=tuple(branches), settings={**ends.settings, "lost": 0}),
-        real=attempt.total,
-        nonreal=0,
-        lines=compact_lines(conveyor.problem, count, proved),
-    )
-
-
-def _in_chart(attempt: Attempt, ends: Candidates | None, method: str, seed: int) -> BranchCount:
-    """Prove zeros in one chart; those with flat vertices are solved for apart from the others.
-
-    Where that fails too, "auto" turns to the exact engine for small systems.
-    """
-    size = attempt.chart.system.size
-    if attempt.choice.method == "groebner" and size:
-        return solved_exactly(attempt)
-    if ends is not None:
-        candidates = attempt.in_chart(ends)
-    else:
-        stage = attempt.stage("solving")
-        candidates = find_candidates(attempt.chart, method, seed=seed, progress=stage)
-    multiple = bool(candidates.lost) or candidates.some_meet
-    result = with_flat_vertices(attempt, candidates) if multiple else None
-    if result is None:
-        result = isolated(attempt, candidates)
-        if result.status is not PROVED and not multiple:
-            result = with_flat_vertices(attempt, candidates) or result
-    proved = result.status is PROVED
-    if method != "auto" or (proved and not (result.undecided_folds and size <= GROEBNER_LIMIT)):
-        return result
-    if size > GROEBNER_LIMIT:
-        advice = (
-            f"the exact engine is tried up to {counted(GROEBNER_LIMIT, 'unknown')}, not with "
-            f"{size} (--method groebner insists)"
-        )
-        return replace(result, reason=f"{result.reason}; {advice}")
-    exactly = solved_exactly(
-        replace(attempt, choice=Choice("groebner", "floating point did not prove it"))
-    )
-    return result if proved and exactly.status is not PROVED else exactly

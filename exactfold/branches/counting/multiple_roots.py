@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from exactfold._support.arrays import FloatArray
+from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.classify import Undecided
-from exactfold.branches.values.roots import BoxRoot, FlatBoxRoot
+from exactfold.branches.values.letters import UPSIDE_DOWN
+from exactfold.branches.values.roots import AlgebraicRoot, BoxRoot, FlatBoxRoot, Root
+from exactfold.exact.univariate import Interval
 from exactfold.rigidity.equations.branch_system import Chart
 from exactfold.rigidity.equations.flat_sheets import flat_sheets
 from exactfold.solve.algebraic.exact_solution import RootClass
@@ -21,6 +24,9 @@ from exactfold.solve.certify.recognition import recognise
 from exactfold.solve.numeric.candidates import Candidates
 
 _MOST_TOGETHER = 64  # conjugate zeros in one class, for the sake of the checker
+
+_FINE = 80
+"""Bits to which zeros of classes are told apart by the boxes that hold them."""
 
 GROEBNER_LIMIT = 5
 """Largest number of unknowns left on flat sheets for which a Groebner basis is computed."""
@@ -89,3 +95,51 @@ def recognised(chart: Chart, found: Zeros, undecided: Sequence[Undecided]) -> Ze
                     if s is not first.sheets or all(map(b.is_disjoint_from, boxes))
                 ]
     return result if len(result.classes) > len(found.classes) else None
+
+
+def with_exact_roots(
+    branches: Sequence[Branch], classes: Sequence[RootClass]
+) -> tuple[Branch, ...]:
+    """The same branches, whose boxes hold all zeros, told which zero of the classes each holds.
+
+    A zero of a class whose bounds meet one box only is the zero in that box.
+    """
+    found = list(branches)
+    for root_class in classes:
+        for index, point in enumerate(root_class.real_points(_FINE)):
+            near = [k for k, branch in enumerate(branches) if _meets(branch.root, point)]
+            if len(near) == 1:
+                root = branches[near[0]].root
+                if isinstance(root, BoxRoot):
+                    known = AlgebraicRoot(root_class, index)
+                    found[near[0]] = replace(branches[near[0]], root=replace(root, known=known))
+    return tuple(found)
+
+
+def _meets(root: Root | None, point: Sequence[Interval]) -> bool:
+    """Whether a box of bounds meets the box of a root."""
+    return isinstance(root, BoxRoot) and all(
+        low <= bounds[1] and bounds[0] <= high
+        for (low, high), bounds in zip(
+            point, (root.box.interval(k) for k in range(len(point))), strict=True
+        )
+    )
+
+
+def are_told_apart(branches: Sequence[Branch]) -> bool:
+    """Whether no two branches proved in different ways have the same, or mirrored, signs.
+
+    Only the folds that are decided on all branches are looked at.
+    """
+    kinds: dict[tuple[str, str], object] = {}
+    texts = [branch.assignment_text for branch in branches]
+    decided = [k for k, letters in enumerate(zip(*texts, strict=True)) if "U" not in letters]
+    for branch, text in zip(branches, texts, strict=True):
+        root = branch.root
+        kind = root.sheets.vertices if isinstance(root, FlatBoxRoot) else type(root)
+        seen = (branch.sign_text, "".join(text[k] for k in decided))
+        mirrored = (seen[0].translate(UPSIDE_DOWN), seen[1].translate(UPSIDE_DOWN))
+        for letters in (seen, mirrored):
+            if kinds.setdefault(letters, kind) != kind:
+                return False
+    return True

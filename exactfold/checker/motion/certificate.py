@@ -6,7 +6,7 @@ in `CLAIMS`, an object for each claim in the module that knows why it holds.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, cast
 
 from ..core.kinds import DocumentKind
 from ..core.reading import counted, items, refusing
@@ -16,6 +16,7 @@ from .boundary import RimClaim
 from .chain import Chain, check_work, equations_of
 from .claims import BranchClaim, read_claims, words
 from .contacts import Contacts
+from .documents import VerifiedMotion
 from .drive import DriveClaim
 from .half_branch import HalfBranch, Length
 from .nodes import Node, Through
@@ -37,7 +38,7 @@ _EVIDENCE = ("emptied", "pinned", "bits", "start", "tubes")
 
 
 @refusing()
-def check(data: dict[str, Any]) -> dict[str, Any]:
+def check(data: dict[str, Any]) -> VerifiedMotion:
     """Verify every claim of a loaded certificate; raises `CertificateError` at the first failure.
 
     What is claimed is that of the classes in `CLAIMS`. Returns the claims, the SHA-256 of the
@@ -60,20 +61,20 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
         claim.go_on(chain)
     for claim in claims:
         claim.check(chain)
-    return {"sha256": digest, **chain.facts, **data["claims"]}
+    return cast("VerifiedMotion", {"sha256": digest, **chain.facts, **data["claims"]})
 
 
-def summary(claims: dict[str, Any]) -> str:
+def summary(claims: VerifiedMotion) -> str:
     """One line for verified claims."""
     tubes = counted(claims["tubes"], "tube", "tubes")
-    return f"VALID: {words(CLAIMS, claims)}; {tubes}; sha256 {claims['sha256']}"
+    return f"VALID: {words(CLAIMS, dict(claims))}; {tubes}; sha256 {claims['sha256']}"
 
 
 MOTION = DocumentKind(
     format="exactfold motion",
     versions=(1,),
     names="format version pattern claims evidence",
-    claims=dict[str, Any],
+    claims=VerifiedMotion,
     check=check,
     summary=summary,
 )

@@ -10,6 +10,7 @@ from exactfold._support.verdict import PROVED
 from exactfold.certificates.entries import Document
 from exactfold.checker.motion.lengths import Path
 from exactfold.exact.numbers import format_rational
+from exactfold.motion.claims import Claim
 from exactfold.motion.contacts.contacts import FirstContact
 from exactfold.motion.tubes.links import Link
 from exactfold.motion.tubes.passages import Passage
@@ -40,40 +41,34 @@ def certificate_with_contact(track: Track, contact: FirstContact) -> Document:
     >>> claims["kind"], claims["folds"]
     ('flat-fold', [[3, 5]])
     """
-    document = track.certificate()
+    claim = contacts_claim(track, contact)
+    if claim is None:
+        return track.certificate()
+    return track.certificate(claim, clear=contact.clear_to_the_end)
+
+
+def contacts_claim(track: Track, contact: FirstContact) -> Claim | None:
+    """How long no two faces touch and, if the contact is enclosed, which faces do, and by when."""
     if contact.parameters is None:
-        return document
+        return None
     until, begin, end = contact.parameters
-    parts = _parts(track)
+    parts, unit = _parts(track), track.framework.unit
     if contact.before_the_arc:
         del parts[-1]
-    shortest = longest = Fraction(0)
-    for part in parts[:-1]:
-        low, high = part.entry
-        shortest += part.path.shortest(part.path.above(high), part.path.below(part.exit[0]))
-        longest += part.path.longest(part.path.below(low), part.path.above(part.exit[1]))
-    path, (low, high) = parts[-1].path, parts[-1].entry
-    at = Fraction(until, 1 << PARAMETER_BITS)
-    shortest += path.shortest(path.above(high), path.below(at))
-    clear = _rounded(shortest * (1 - _SLACK) * track.framework.unit)
-    document["claims"]["clear"] = format_rational(clear)
-    if track.node is not None:
-        document["claims"]["node"]["clear"] = contact.clear_to_the_end
-    contacts = {"tube": len(parts) - 1, "clear": until}
+    clear = _rounded(_shortest(parts, until) * (1 - _SLACK) * unit)
+    claims: Document = {"clear": format_rational(clear)}
+    evidence = {"tube": len(parts) - 1, "clear": until}
     event = contact.event
     if contact.status is PROVED and event is not None:
-        at = Fraction(end, 1 << PARAMETER_BITS)
-        longest += path.longest(path.below(low), path.above(at))
-        latest = _rounded(longest * (1 + _SLACK) * track.framework.unit, 1)
-        contacts |= {"from": begin, "to": end}
-        document["claims"]["contact"] = {
+        latest = _rounded(_longest(parts, end) * (1 + _SLACK) * unit, 1)
+        evidence |= {"from": begin, "to": end}
+        claims["contact"] = {
             "kind": event.kind,
             "time": [format_rational(clear), format_rational(latest)],
             "faces": [list(face) for face in event.faces],
             "folds": [list(fold) for fold in event.folds],
         }
-    document["evidence"]["contacts"] = contacts
-    return document
+    return Claim(claims, {"contacts": evidence})
 
 
 @dataclass(frozen=True)
@@ -85,6 +80,26 @@ class _Part:
     path: Path
     entry: tuple[Fraction, Fraction]
     exit: tuple[Fraction, Fraction]
+
+
+def _shortest(parts: list[_Part], parameter: int) -> Fraction:
+    """A lower bound of the length up to a parameter of the last part."""
+    total = Fraction(0)
+    for part in parts[:-1]:
+        path = part.path
+        total += path.shortest(path.above(part.entry[1]), path.below(part.exit[0]))
+    path, at = parts[-1].path, Fraction(parameter, 1 << PARAMETER_BITS)
+    return total + path.shortest(path.above(parts[-1].entry[1]), path.below(at))
+
+
+def _longest(parts: list[_Part], parameter: int) -> Fraction:
+    """An upper bound of the same."""
+    total = Fraction(0)
+    for part in parts[:-1]:
+        path = part.path
+        total += path.longest(path.below(part.entry[0]), path.above(part.exit[1]))
+    path, at = parts[-1].path, Fraction(parameter, 1 << PARAMETER_BITS)
+    return total + path.longest(path.below(parts[-1].entry[0]), path.above(at))
 
 
 def _parts(track: Track) -> list[_Part]:

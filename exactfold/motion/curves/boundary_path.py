@@ -7,7 +7,8 @@ from fractions import Fraction
 from math import gcd
 
 from exactfold.branches.values.branch import Branch
-from exactfold.exact.numbers import integer_row
+from exactfold.exact.numbers import format_rational, integer_row
+from exactfold.motion.claims import Claim
 from exactfold.motion.curves.drive import Drive
 from exactfold.motion.curves.framework import Framework, Tie
 from exactfold.pattern.crease_pattern import CreasePattern, Triangle
@@ -20,6 +21,11 @@ def problem_of(branch: Branch) -> Problem:
     """
     rim = branch.rim if branch.pattern.Ve > 4 else None
     return Problem.of(branch.pattern, rim=rim)
+
+
+def rim_claim(rim: Mapping[int, Fraction]) -> Claim:
+    """That the heights of the border stay in the ratio of these (docs/motion.md, 9)."""
+    return Claim({"rim": [format_rational(h) for _, h in sorted(rim.items())]})
 
 
 def ties_of(problem: Problem) -> tuple[Tie, ...]:

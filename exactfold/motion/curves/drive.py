@@ -11,6 +11,7 @@ from typing import TypeAlias, TypedDict
 from exactfold._support.documents import Degrees, FoldText, Rational
 from exactfold.errors import BadDriveError
 from exactfold.exact.numbers import format_rational, integer_row
+from exactfold.motion.claims import Claim
 from exactfold.motion.curves.coupling import NO_COUPLING, Coupling
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 
@@ -94,6 +95,18 @@ class Drive:
             fold_text(fold): {"angle": angle, "square": format_rational(q)}
             for (fold, angle), q in zip(self.angles.items(), self.squares, strict=True)
         }
+
+    def claim(self, reached: bool) -> Claim:
+        """That the angles keep their ratio, and whether they reach the goals at the end."""
+        return Claim(
+            {
+                "drive": {
+                    "folds": [list(fold) for fold in self.folds],
+                    "squares": [format_rational(q) for q in self.squares],
+                    "reached": reached,
+                }
+            }
+        )
 
     def coupling(self, sheet: CreasePattern, place: Mapping[int, int]) -> Coupling:
         """The equations of the drive on a sheet.

@@ -14,17 +14,23 @@ from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.certificates.entries import Document
 from exactfold.errors import NotCountedError
 from exactfold.exact.numbers import format_rational
-from exactfold.motion.certificate import motion_certificate
+from exactfold.motion.claims import Claim
 from exactfold.motion.contacts.fold_ranges import SLACK, FoldRange, FoldRangeDocument, fold_ranges
 from exactfold.motion.contacts.stretches import on_node_tube, on_start_tube, on_tube
+from exactfold.motion.curves.boundary_path import rim_claim
 from exactfold.motion.curves.motion_document import RayDocument
 from exactfold.motion.loops.certificate import loop_line
 from exactfold.motion.loops.rays import HalfBranch
 from exactfold.motion.tubes.arclength import Interval, in_floats
 from exactfold.motion.tubes.branch_point_tube import NodeTube
+from exactfold.motion.tubes.certificate import (
+    first_document,
+    flat_document,
+    motion_certificate,
+)
 from exactfold.motion.tubes.chain import Step, chords, step_documents
 from exactfold.motion.tubes.links import Link
-from exactfold.motion.tubes.passages import Passage
+from exactfold.motion.tubes.passages import Passage, through_claim
 from exactfold.motion.tubes.piece import PARAMETER_BITS, Ball
 from exactfold.motion.tubes.tube_start import StartTube
 from exactfold.motion.tubes.visits import Visit
@@ -211,9 +217,9 @@ class LoopProof:
             self._named(landing.to),
             format_rational(length * unit),
             {
-                "start": {**self._flat_end(self.start), "exit": self.start.last},
+                "start": first_document(self.problem.labels, self.start),
                 "steps": step_documents(self.steps, leaves=False),
-                "landing": {**self._flat_end(landing.start), "tau": landing.tau},
+                "landing": self._landed(landing),
             },
             provenance_of(loop),
         )
@@ -226,38 +232,31 @@ class LoopProof:
         """
         if self.landing is None:
             raise NotCountedError(f"the motion is not proved to its end: {self.reason}")
-        landing, start, problem = self.landing, self.start, self.problem
-        length = chords(start, self.steps, leaves=False, landing=landing.ball)
+        claims = [rim_claim(rim), self._return_claim(self.landing)]
+        passed = [step for step in self.steps if isinstance(step, Passage)]
+        if passed:
+            claims.append(through_claim(passed))
         return motion_certificate(
-            problem.pattern,
-            dict(zip(problem.foldable, start.vertex_signs, strict=True)),
-            start.side,
-            length * start.framework.unit,
-            [problem.labels[v] for v in start.framework.pinned],
-            start.bits,
-            {**self._flat_end(start), "exit": start.last},
-            step_documents(self.steps, leaves=False),
-            rim=rim,
-            returning=(
-                self._named(landing.to),
-                {**self._flat_end(landing.start), "tau": landing.tau},
-            ),
+            self.problem.pattern,
+            self.problem.labels,
+            self.start,
+            self.steps,
+            claims,
+            landing=self.landing.ball,
         )
+
+    def _return_claim(self, landing: Landing) -> Claim:
+        """That the motion ends in the flat state, and along which half-branch."""
+        return Claim({"return": self._named(landing.to)}, {"landing": self._landed(landing)})
+
+    def _landed(self, landing: Landing) -> Document:
+        return {**flat_document(self.problem.labels, landing.start), "tau": landing.tau}
 
     def _named(self, half_branch: HalfBranch) -> Document:
         """A ray, given by the signs of all interior vertices of the pattern."""
         signs = dict(zip(self.problem.foldable, half_branch.vertex_signs, strict=True))
         interior = self.problem.pattern.interior
         return {"vertex_signs": [signs.get(v, 0) for v in interior], "side": half_branch.saddle}
-
-    def _flat_end(self, start: StartTube) -> Document:
-        held = int(start.framework.free[start.held // 3])
-        return {
-            "centre": list(start.coefficients[0]),
-            "halvings": start.halvings,
-            "held": self.problem.labels[held],
-            "reach": start.reach,
-        }
 
     def __repr__(self) -> str:
         return f"<LoopProof: {len(self.steps)} steps, {self.outline!r}>"

@@ -1,11 +1,10 @@
 """Panels placed one after the other by rotations that are polynomials, with proved errors.
 
-With |R - P| <= e and |S - Q| <= f in the spectral norm R S is within e + f + e f of P Q for
-rotations R, S, so that the errors of a product of many add up (docs/panel_motion.md, 6).
-
-Polynomials are in y, |y| <= 1, and each has coefficients in floats along its last axis. With
-u = 2^-53 a sum of n products is off by at most 2 n u times the sum of their sizes; all errors are
-made larger by `_MORE`, which covers the rounding of the errors themselves.
+Let R and S be rotations. If |R - P| <= e and |S - Q| <= f in the spectral norm, then R S is within
+e + f + e f of P Q. So the errors of a product of many rotations add up (docs/panel_motion.md, 6).
+Polynomials are in y with |y| <= 1; their coefficients are floats along the last axis. With u =
+2^-53, a sum of n products has an error of at most 2 n u times the sum of their sizes. All errors
+are enlarged by the factor `_MORE`, which covers the rounding of the errors themselves.
 """
 
 from __future__ import annotations
@@ -22,9 +21,10 @@ _TINY = 1e-300
 
 
 class Turned(NamedTuple):
-    """A rotation, shape (3, 3, order + 1), or a place, (3, order + 1), within `error` of this.
+    """A polynomial that approximates a rotation or a place.
 
-    In the spectral norm of matrices, or the length of vectors, for all |y| <= 1.
+    It has the shape (3, 3, order + 1) or (3, order + 1). `error` bounds the distance for all |y| <=
+    1, in the spectral norm of matrices or in the length of vectors.
     """
 
     polynomial: FloatArray
@@ -45,9 +45,9 @@ def size(polynomial: FloatArray) -> float:
 
 
 def spun(sine: Turned, versine: Turned, axis: FloatArray, off: float) -> Turned:
-    """The rotation about an axis (x, y) within `off` of a unit vector: 1 + sine K + versine K^2.
+    """The rotation 1 + sine K + versine K^2 about an axis (x, y) within `off` of a unit vector.
 
-    `sine` and `versine`, 1 - cosine, have one row.
+    `sine` and `versine` (1 - cosine) have one row.
     """
     x, y = axis
     once = np.array([[0.0, 0.0, y], [0.0, 0.0, -x], [-y, x, 0.0]])
@@ -55,14 +55,14 @@ def spun(sine: Turned, versine: Turned, axis: FloatArray, off: float) -> Turned:
     (s, s_off), (v, v_off) = sine, versine
     polynomial = once[..., None] * s[0] + twice[..., None] * v[0]
     polynomial[..., 0] += np.eye(3)
-    # Each entry is rounded at most six times; |K| and |K^2| are at most 1 + 3 off.
+    # Each entry is rounded at most six times. |K| and |K^2| are at most 1 + 3 off.
     rounded = 12 * _U * 3 * (1 + size(s) + size(v))
     error = (1 + 3 * off) * (s_off + v_off) + 6 * off * (size(s) + size(v)) + rounded
     return Turned(polynomial, error * _MORE)
 
 
 def product(first: Turned, second: Turned) -> Turned:
-    """The product of two rotations up to the same order."""
+    """The product of two rotations, truncated at the same order."""
     a, b = first.polynomial, second.polynomial
     terms = a.shape[-1]
     whole = np.zeros((3, 3, 2 * terms - 1))
@@ -75,7 +75,9 @@ def product(first: Turned, second: Turned) -> Turned:
 
 
 def moved(rotation: Turned, point: FloatArray, off: float, shift: Turned) -> Turned:
-    """Where a point (x, y) of the flat sheet, within `off`, is: turned, then shifted."""
+    """The place of a point (x, y) of the flat sheet, known within `off`, after a rotation and a
+    shift.
+    """
     r = rotation.polynomial
     place = r[:, 0] * point[0] + r[:, 1] * point[1] + shift.polynomial
     reach = float(abs(point).sum())
@@ -85,7 +87,9 @@ def moved(rotation: Turned, point: FloatArray, off: float, shift: Turned) -> Tur
 
 
 def hinged(old: Turned, new: Turned, point: FloatArray, off: float, shift: Turned) -> Turned:
-    """The shift of the next panel: a point (x, y) of the fold, within `off`, is where it was."""
+    """The shift of the next panel: it leaves a point (x, y) of the fold, known within `off`, in
+    place.
+    """
     turn = old.polynomial - new.polynomial
     reach = float(abs(point).sum())
     sizes = size(old.polynomial) + size(new.polynomial)

@@ -1,4 +1,4 @@
-"""The first contact of a motion of panels, enclosed in time."""
+"""The first contact of a motion of panels, with proved bounds of its time."""
 
 from __future__ import annotations
 
@@ -29,24 +29,24 @@ _BITS = 128
 _FINEST = 2.0**-24
 _STEPS = 40
 _FIRST = 1e-12
-"""Radians after which a crossing is looked for at first."""
+"""The search for a crossing begins this long, in radians, after the contact found in floats."""
 _NARROW = 1e-3
-"""Radians within which a first contact counts as enclosed."""
+"""A first contact counts as enclosed if its time is known to within this, in radians."""
 
 
 @dataclass(frozen=True, repr=False)
 class PanelClearance:
     """What is proved of the contacts of a motion of panels, ignoring thickness.
 
-    No two panels touch, but for the folds and corners they share, at any time from 0 until before
-    `clear`. `event`: a contact, or folds that close, that is proved to happen in `event.time` =
-    (not before, at the latest); None if the motion ends before, or nothing is proved to touch. The
-    first contact of all is between these times, too; whether it is of the same panels, or other
-    ones touch shortly before, is not proved. `open_panels`: pairs that are not proved to stay apart
-    right after `clear`.
+    From time 0 until before `clear`, no two panels touch except in the folds and corners they
+    share. `event` is a contact, or folds that close, that is proved to happen in `event.time` =
+    (not before, at the latest). It is None if the motion ends earlier or nothing is proved to
+    touch. The first contact of all lies between these times, too. It is not proved that the same
+    panels meet in it; other panels may touch shortly before. `open_panels` are pairs that are not
+    proved to stay apart right after `clear`.
 
-    `status` is PROVED if the whole motion is clear or its first contact is enclosed within a
-    thousandth of a radian; else `reason` says what is missing.
+    `status` is PROVED if the whole motion is clear, or if the time of its first contact is known to
+    within a thousandth of a radian. Otherwise `reason` says what is missing.
     """
 
     status: Verdict
@@ -63,9 +63,9 @@ class PanelClearance:
 def prove_contacts(motion: PanelMotion) -> PanelClearance:
     """The first contact of a motion of panels, proved (docs/panel_motion.md, 5).
 
-    The positions of all vertices are enclosed over stretches of time from the exact motion, and
-    planes are found that stand between all panels (docs/contacts.md, Theorem 1). What touches is an
-    edge that runs through a panel, or folds that close at time pi, where they all do.
+    The positions of all vertices are enclosed over intervals of time, computed from the exact
+    motion. Planes are found that separate all panels (docs/contacts.md, Theorem 1). Panels touch
+    where an edge runs through a panel, or at time pi, where all folds close.
 
     Raises `NotApplicableError` for a motion that is not proved to exist (`motion.exists`).
 
@@ -78,7 +78,9 @@ def prove_contacts(motion: PanelMotion) -> PanelClearance:
     (<Verdict.PROVED: 'proved'>, None, True)
     """
     if motion.exists is not PROVED:
-        raise NotApplicableError("the motion is not proved to exist, and so are no contacts")
+        raise NotApplicableError(
+            "nothing is proved of contacts, because the motion is not proved to exist"
+        )
     contacts = PanelContacts(motion.pattern)
     pieces = PanelPieces(motion)
     pairs = PanelPairs(contacts, pieces.unit)
@@ -88,7 +90,7 @@ def prove_contacts(motion: PanelMotion) -> PanelClearance:
         at, left = clear_until(
             pairs, piece.coefficients, piece.radius, -piece.half, last, finest=_FINEST
         )
-        clear = nextafter(piece.middle + at, 0.0)  # the sum is rounded by less
+        clear = nextafter(piece.middle + at, 0.0)  # this covers the rounding of the sum
         if left:
             break
     else:
@@ -96,7 +98,7 @@ def prove_contacts(motion: PanelMotion) -> PanelClearance:
             return PanelClearance(PROVED, motion.duration, None, (), "")
     event = _crossing(motion, contacts, pieces, clear) or _closing(motion, clear)
     if event is None:
-        reason = "some panels are not proved to stay apart, nor to touch"
+        reason = "some panels are proved neither to stay apart nor to touch"
         return PanelClearance(UNDECIDED, clear, None, pairs.named(left), reason)
     low, high = event.time
     if high - low > _NARROW:
@@ -106,16 +108,16 @@ def prove_contacts(motion: PanelMotion) -> PanelClearance:
 
 
 def with_proved_contact(motion: PanelMotion) -> tuple[PanelMotion, PanelClearance]:
-    """The motion with its first contact as it is proved, in place of that in floats.
+    """The motion in which the proved first contact replaces the one found in floats.
 
-    Raises as `prove_contacts`. An event that is not proved stays as it is.
+    Raises the errors of `prove_contacts`. An event that is not proved stays as it is.
     """
     found = prove_contacts(motion)
     event = found.event
     if found.status is not PROVED or event is None:
         return motion, found
     kept = [e for e in motion.events if e.kind != event.kind]
-    if event.kind == FLAT_FOLD:  # with the folds that close in floats
+    if event.kind == FLAT_FOLD:  # name the folds that close in floats
         folds = next((e.folds for e in motion.events if e.kind == FLAT_FOLD), event.folds)
         event = replace(event, folds=folds)
     events = tuple(sorted((event, *kept), key=lambda e: e.time))
@@ -124,7 +126,9 @@ def with_proved_contact(motion: PanelMotion) -> tuple[PanelMotion, PanelClearanc
 
 @dataclass(frozen=True, repr=False)
 class PanelPairs(AnyPairs):
-    """Pairs of triangles of different panels, in units of `unit`; the cuts are no folds."""
+    """Pairs of triangles of different panels, in units of `unit`; cuts inside panels are
+    no folds.
+    """
 
     contacts: PanelContacts
     unit: float
@@ -136,7 +140,7 @@ class PanelPairs(AnyPairs):
 
     @cached_property
     def hinges(self) -> IndexArray:
-        """The folds of the panels with the corners of the triangles on both sides."""
+        """The folds of the panels, with the opposite corners of the triangles on both sides."""
         cut, rows = self.contacts.cut, []
         for i, j in self.contacts.pattern.folds:
             sides = (cut.faces[cut.sides[i, j]], cut.faces[cut.sides[j, i]])
@@ -146,7 +150,10 @@ class PanelPairs(AnyPairs):
 
     @cached_property
     def closed(self) -> FloatArray:
-        """Of each fold, not less than exact, by Arb."""
+        """Upper bounds of the squared distance of the opposite corners of each fold when closed.
+
+        Arb computes them.
+        """
         points = self.contacts.pattern.vertices
         found = []
         for i, j, left, right in self.hinges.tolist():
@@ -161,11 +168,11 @@ class PanelPairs(AnyPairs):
         return np.array(found)
 
     def one_body(self, i: int, j: int) -> bool:
-        """Whether two triangles are of one panel."""
+        """Whether two triangles belong to one panel."""
         return self.contacts.panel_of[i] == self.contacts.panel_of[j]
 
     def named(self, left: Open) -> tuple[tuple[Panel, Panel], ...]:
-        """The pairs of panels of what is left, each once."""
+        """The pairs of panels among the pairs that are left, each once."""
         rows = [self.apart[left.apart], self.corner[left.corner]]
         found = {self._panels(i, j) for row in rows for i, j in row.tolist()}
         sides = self.contacts.cut.sides
@@ -185,7 +192,7 @@ class PanelPairs(AnyPairs):
 def _crossing(
     motion: PanelMotion, contacts: PanelContacts, pieces: PanelPieces, clear: float
 ) -> Event | None:
-    """A contact that is proved to have happened shortly after `clear`, None if none is found."""
+    """A contact that is proved to happen shortly after `clear`; None if none is found."""
     known = [event.time[1] for event in motion.events if event.kind == CONTACT]
     if not known:
         return None
@@ -210,12 +217,12 @@ def _crossing(
 
 
 def _crossed(contacts: PanelContacts, pieces: PanelPieces, time: float) -> tuple[int, int] | None:
-    """Two panels of which an edge of one runs through the other at a time, proved."""
+    """Two panels, where an edge of one is proved to run through the other at a time; or None."""
     piece = pieces.around(time)
     if piece is None:
         return None
     point = Swept.of(piece.coefficients, piece.radius, 0.0, 0.0)
-    # Crossings are looked for in a sheet of size one.
+    # The search for crossings works on a sheet of size one.
     scale = piece.unit / contacts.unit
     crossings = contacts.crossings
     for crossing in map(crossings.named, crossings.pairs(point.start * scale)):
@@ -225,9 +232,10 @@ def _crossed(contacts: PanelContacts, pieces: PanelPieces, time: float) -> tuple
 
 
 def _closing(motion: PanelMotion, clear: float) -> Event | None:
-    """That all folds of linear modes and free folds of rate 1 are closed at time pi, exactly.
+    """The event that folds close at time pi, exactly, or None if the motion ends earlier.
 
-    Of other modes some fold is closed by then, which is not named.
+    It names all folds of linear modes with rate 1, and all free folds with rate 1. In other modes
+    some fold has closed by then, but it is not named.
     """
     if motion.duration < pi:
         return None

@@ -1,4 +1,4 @@
-"""The first contact of two panels of a sheet in motion, in floats."""
+"""The first contact of two panels of a sheet in motion, found in floats."""
 
 from __future__ import annotations
 
@@ -20,11 +20,13 @@ if TYPE_CHECKING:
 
 _CHUNK: Final = 16
 _CLOSE: Final = 1e-13
-"""Radians within which a contact is enclosed."""
+"""The time of a contact is bounded to within this, in radians."""
 
 
 class Contact(NamedTuple):
-    """Two panels, by their numbers, that meet between two times; `kind` says how."""
+    """Two panels, by their numbers, that meet between the times `low` and `high`; `kind`
+    says how.
+    """
 
     low: float
     high: float
@@ -34,10 +36,10 @@ class Contact(NamedTuple):
 
 @dataclass(frozen=True)
 class PanelContacts:
-    """Finds panels that run into each other: cut into triangles, for this test only.
+    """Finds panels that run into each other. For this test the panels are cut into triangles.
 
-    Panels that share a fold are not looked at: until the fold is closed their planes meet in its
-    line only.
+    Panels that share a fold are not examined: until the fold is closed, their planes meet only in
+    its line.
     """
 
     pattern: PanelPattern
@@ -49,7 +51,7 @@ class PanelContacts:
 
     @cached_property
     def panel_of(self) -> dict[int, int]:
-        """The panel of each triangle: spread from the edges of the panels across the cuts."""
+        """The panel of each triangle, spread from the edges of the panels across the cuts."""
         cut, sides = self.cut, self.pattern.sides
         found = {cut.sides[half]: panel for half, panel in sides.items()}
         inside = [edge for edge in cut.edges if edge not in set(self.pattern.edges)]
@@ -67,8 +69,8 @@ class PanelContacts:
 
     @cached_property
     def crossings(self) -> Crossings:
-        """Edges of triangles that run through others, in a sheet of size one."""
-        # It takes no more of a framework than these.
+        """A search for edges that run through triangles, on the sheet scaled to size one."""
+        # `Crossings` uses only these parts of a framework.
         framework = SimpleNamespace(
             sheet=self.cut, triangles=np.array(self.cut.faces, dtype=np.intp), flat=self._flat
         )
@@ -81,17 +83,17 @@ class PanelContacts:
 
     @cached_property
     def unit(self) -> float:
-        """The size of the sheet: crossings are looked for in a sheet of size one."""
+        """The size of the sheet; crossings are looked for on the sheet scaled to size one."""
         points = np.array([(float(x), float(y)) for x, y in self.pattern.vertices])
         return float(np.ptp(points, axis=0).max())
 
     def first(
         self, times: Sequence[float], places: Callable[[FloatArray], FloatArray]
     ) -> Contact | None:
-        """The first contact, looked for at these times and then enclosed by bisection.
+        """The first contact among these times, then bounded by bisection; or None.
 
         `places` gives the positions at many times, shape (times, V, 3). Panels that only touch, or
-        run through each other between two of the times, are not found.
+        that run through each other between two of the times, are not found.
         """
         for start in range(1, len(times), _CHUNK):
             some = np.asarray(times[start : start + _CHUNK], dtype=np.float64)
@@ -116,7 +118,10 @@ class PanelContacts:
         return Contact(low, high, self.who(crossing), self.crossings.kind(crossing, there))
 
     def who(self, crossing: Crossing) -> tuple[int, int]:
-        """The two panels of a crossing; of the two at an edge the one with less in common."""
+        """The two panels of a crossing.
+
+        If both panels at the edge are possible, the one with fewer common corners is chosen.
+        """
         other = self._panels[crossing.face]
         corners = set(self.pattern.faces[other])
         i, j = crossing.edge

@@ -1,4 +1,4 @@
-"""All fold angles of one elementary mode, from those of one fold: exact gains, or transmissions."""
+"""All fold angles of one elementary mode from those of one fold, by gains or transmissions."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ from exactfold.panels.transmission import Transmission
 from exactfold.pattern.panel_pattern import Edge
 
 CLOSED: Final = float(np.tan(pi / 2))
-"""The tangent that floats have for half of 180 degrees; its arc tangent is half of pi exactly."""
+"""The float tangent of half of 180 degrees; its arc tangent is exactly the float half of pi."""
 _BITS: Final = 256
 _SAME: Final = 1e-13
-"""Two folds that close within this of each other, relatively, close at once."""
+"""Two folds that close within this relative distance of each other close at the same time."""
 _AT_180: Final = 1e-9
 
 
 class ModeCurve(Protocol):
-    """The true motion of a mode from the flat sheet to the first fold at 180 degrees.
+    """The true motion of a mode from the flat sheet until the first fold reaches 180 degrees.
 
-    `driver` is a fold that reaches 180 degrees first, `folds` are all active ones.
+    `driver` is a fold that reaches 180 degrees first. `folds` are all active folds.
     """
 
     @property
@@ -46,27 +46,28 @@ class ModeCurve(Protocol):
 
     @property
     def turning(self) -> tuple[Edge, ...]:
-        """The folds that would turn back at the end, were the motion continued."""
+        """The folds that would turn back at the end if the motion were continued."""
 
     def angles(self, driver: FloatArray) -> FloatArray:
-        """All fold angles at angles of the driver in [-pi, pi], shape (times, folds), radians.
+        """All fold angles at driver angles in [-pi, pi], in radians, shape (times, folds).
 
-        At positive angles of the driver the signs are the letters of the mode.
+        At positive angles of the driver, the signs are the letters of the mode.
         """
 
 
 @dataclass(frozen=True, repr=False)
 class LinearCurve:
-    """A mode with `tau_e = c_e T` for all T: every vertex closes for every T, proved exactly.
+    """A mode with `tau_e = c_e T` for all T.
 
-    All folds close together, at T = infinity. `driver` is the fold whose angle is largest, at every
-    T; c is 1 or -1 there, so that T is its tau.
+    It is proved exactly that every vertex closes for every T. All folds close at the same time, at
+    T = infinity. `driver` is the fold whose angle is largest, at every T. There c is 1 or -1, so T
+    is its tau up to the sign.
     """
 
     mode: PanelMode
 
     def __reduce__(self) -> tuple[object, ...]:
-        return LinearCurve, (self.mode,)  # what is cached stays behind
+        return LinearCurve, (self.mode,)  # cached values are not pickled
 
     @property
     def folds(self) -> tuple[Edge, ...]:
@@ -74,7 +75,7 @@ class LinearCurve:
         return self.mode.folds
 
     def exact_tangents(self, bits: int) -> dict[Edge, arb]:
-        """tan(angle / 2) of each fold at T = 1, up to a common factor, enclosed."""
+        """Enclosures of tan(angle / 2) of each fold at T = 1, up to a common factor."""
         with ctx.workprec(bits):
             return {
                 fold: density.ball(bits) * _length(self.mode, fold)
@@ -83,7 +84,7 @@ class LinearCurve:
 
     @cached_property
     def _tangents(self) -> FloatArray:
-        """The same in floats."""
+        """The tangents in floats."""
         return np.array([float(value) for value in self.exact_tangents(_BITS).values()])
 
     @cached_property
@@ -94,14 +95,15 @@ class LinearCurve:
 
     @property
     def turning(self) -> tuple[Edge, ...]:
-        """None: all folds close together."""
+        """Empty, because all folds close at the same time."""
         return ()
 
     @cached_property
     def ratios(self) -> Mapping[Edge, Number] | None:
-        """c_e exactly, in the field of the coordinates with the roots that the gains need.
+        """The c_e, exactly, in the field of the coordinates with the roots that the gains need.
 
-        None where more than three roots are needed: then the gains are exact, their products not.
+        None if more than three roots are needed: then the gains are exact, but their products are
+        not multiplied out.
         """
         densities = self.mode.densities
         unit = densities[self.driver]
@@ -112,25 +114,25 @@ class LinearCurve:
         return MappingProxyType({fold: simple(turn * r.base) for fold, r in ratios.items()})
 
     def angles(self, driver: FloatArray) -> FloatArray:
-        """2 arctan(c_e length_e T) at T = tan(driver / 2) / its length."""
+        """2 arctan(c_e length_e T), where T = tan(driver / 2) / length of the driver."""
         relative = self._tangents / abs(self._tangents[self.folds.index(self.driver)])
         return np.asarray(2 * np.arctan(np.tan(driver / 2)[:, None] * relative))
 
 
 @dataclass(frozen=True, repr=False)
 class FollowedCurve:
-    """A mode with nonlinear transmissions, in floats from closed formulas (docs/panels.md, All fold
-    angles).
+    """A mode with nonlinear transmissions, followed in floats by closed formulas.
 
-    Up to the first fold at 180 degrees all fold angles of a mode grow strictly with each other
-    (docs/panel_motion.md, 2). `driver` is found by trying: a fold is closed, and where a vertex
-    does not follow, that vertex has a fold that closes before.
+    The formulas are in docs/panels.md, All fold angles. Until the first fold reaches 180 degrees,
+    all fold angles of a mode grow strictly with each other (docs/panel_motion.md, 2). `driver` is
+    found by trial: one fold is closed, and if some vertex cannot follow, a fold at that vertex
+    closes earlier.
     """
 
     mode: PanelMode
 
     def __reduce__(self) -> tuple[object, ...]:
-        return FollowedCurve, (self.mode,)  # what is cached stays behind
+        return FollowedCurve, (self.mode,)  # cached values are not pickled
 
     @property
     def folds(self) -> tuple[Edge, ...]:
@@ -152,11 +154,12 @@ class FollowedCurve:
                 return fold
             fold = self._vertices[late].leader
         raise NotApplicableError(
-            f"mode {self.mode.number}: no fold was found that reaches 180 degrees first"
+            f"mode {self.mode.number} cannot be followed: no fold was found that reaches 180 "
+            "degrees first"
         )
 
     def _late(self, driver: Edge) -> int | None:
-        """A vertex with a fold that closes before the driver does, None if there is none."""
+        """A vertex with a fold that closes before the driver does; None if there is none."""
         tangents = {driver: np.array([CLOSED])}
         for k, fold in self.mode.order_from(driver):
             if not self._vertices[k].spread(fold, tangents):
@@ -164,7 +167,7 @@ class FollowedCurve:
         return None
 
     def angles(self, driver: FloatArray) -> FloatArray:
-        """All fold angles, each found from one at the same vertex."""
+        """All fold angles; each is computed from one at the same vertex."""
         turn = 1 if self.mode.letters[self.driver] == "V" else -1
         tangents = {self.driver: turn * np.tan(driver / 2)}
         for k, fold in self.mode.order_from(self.driver):
@@ -173,7 +176,7 @@ class FollowedCurve:
 
     @cached_property
     def turning(self) -> tuple[Edge, ...]:
-        """The folds opposite to those that close, where these close alone."""
+        """The folds opposite to those that close, where the latter close alone."""
         end = dict(zip(self.folds, np.abs(self.angles(np.array([pi]))[0]), strict=True))
         closed = {fold for fold, angle in end.items() if angle > pi - _AT_180}
         found = set()
@@ -187,16 +190,17 @@ class FollowedCurve:
 class _Vertex:
     """The transmissions of one vertex in floats, between the tangents of half fold angles.
 
-    With `X = tan(start / 2)`, `Y = tan(end / 2) = U X`, U is the root of `(A0 + A1 X^2) U^2 + B U +
-    C = 0` that is the gain at X = 0. It stays the same root up to the first fold that closes:
-    where two roots meet, the fold opposite to `start` is closed.
+    Let X = tan(start / 2) and Y = tan(end / 2) = U X. U is that root of (A0 + A1 X^2) U^2 + B U + C
+    = 0 which is the gain at X = 0. It stays the same root until the first fold closes, because two
+    roots meet only where the fold opposite to `start` is closed.
     """
 
     def __init__(self, star: Star, mode: LocalMode) -> None:
         if len(star.folds) not in (2, 4):
             raise NotApplicableError(
-                f"vertex {star.vertex} has {len(star.folds)} folds that fold, not in proportion: "
-                "only vertices with at most four are followed"
+                f"vertex {star.vertex} has {len(star.folds)} active folds whose half-angle "
+                "tangents are not proportional; only such vertices with at most four active folds "
+                "can be followed"
             )
         self.folds = star.folds
         pairs = list(permutations(star.folds, 2))
@@ -219,7 +223,9 @@ class _Vertex:
         return first
 
     def spread(self, fold: Edge, tangents: dict[Edge, FloatArray]) -> bool:
-        """Add the tangents of all folds, from that of one; false if it cannot be so large."""
+        """Add the tangents of all folds, computed from that of one; False if it cannot be
+        so large.
+        """
         start, reached = fold, True
         if not self.is_linear:
             start = self.leader
@@ -248,7 +254,9 @@ class _Step:
 
     @property
     def _pole(self) -> float | None:
-        """X^2 at which the end is closed, if it is on this root; the start is not closed yet."""
+        """The X^2 at which the end is closed while the start is not; None if there is none on this
+        root.
+        """
         if self.quadratic is None:
             return None
         a0, a1, b, _ = self.quadratic
@@ -257,11 +265,11 @@ class _Step:
 
     @property
     def ends_before(self) -> bool:
-        """Whether the end is closed before the start is."""
+        """Whether the end closes before the start does."""
         return self._pole is not None
 
     def __call__(self, start: FloatArray) -> tuple[FloatArray, bool]:
-        """The tangents of the end; and whether all of them are reached."""
+        """The tangents of the end, and whether all of them are reached."""
         if self.quadratic is None:
             return self.gain * start, True
         a0, a1, b, c = self.quadratic
@@ -282,7 +290,7 @@ class _Step:
 
 
 def curve_of(mode: PanelMode) -> LinearCurve | FollowedCurve:
-    """The motion of a mode: in proportion where that is proved, else followed in floats."""
+    """The motion of a mode: linear if that is proved, otherwise followed in floats."""
     return LinearCurve(mode) if mode.is_linear else FollowedCurve(mode)
 
 

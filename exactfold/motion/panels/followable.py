@@ -32,11 +32,12 @@ _REASONS: Final = 3
 
 @dataclass(frozen=True, repr=False)
 class PanelMode:
-    """One elementary mode of a sheet, as it can be followed: its vertices, their stars and lines.
+    """One elementary mode of a sheet that can be followed.
 
-    `number`: that of the mode in the table of `exactfold count`, from 1; modes that are not listed
-    there follow. `choice[k]` is the local mode at the vertex of `stars[k]`, which has its active
-    folds only. `letters` holds M or V of the active folds on the side that is followed.
+    It consists of its vertices, their stars and their local modes. `number` is that of the mode in
+    the table of `exactfold count`, beginning with 1; modes that are not listed there get the next
+    numbers. `choice[k]` is the local mode at the vertex of `stars[k]`, and this star has only the
+    active folds. `letters` gives M or V of the active folds on the side that is followed.
     """
 
     pattern: PanelPattern
@@ -58,19 +59,20 @@ class PanelMode:
 
     @cached_property
     def is_linear(self) -> bool:
-        """Whether it closes for every T if `tau_e = c_e T` on all folds; proved exactly if it does.
+        """Whether every vertex closes for every T if `tau_e = c_e T` on all folds.
 
-        With `tau = tan(angle / 2) / length` a vertex closes iff the vector part of the product of
-        the quaternions `1 + tau_j d_j` vanishes (docs/panels.md, All fold angles). On the line of
-        its local mode it is a polynomial in T; it is expanded, and all its coefficients are 0.
+        True is proved exactly. With tau = tan(angle / 2) / length, a vertex closes if and only if
+        the vector part of the product of the quaternions 1 + tau_j d_j vanishes (docs/panels.md,
+        All fold angles). On the line of its local mode this is a polynomial in T. It is expanded,
+        and all its coefficients have to be 0.
         """
         pairs = zip(self.stars, self.choice, strict=True)
         return all(closes_always(star.directions, mode.values) for star, mode in pairs)
 
     def order_from(self, start: Edge) -> tuple[tuple[int, Edge], ...]:
-        """A way through all vertices: positions in `stars`, and a fold of each known by then.
+        """A walk through all vertices: positions in `stars`, each with a fold known by then.
 
-        Breadth first from the ends of a fold.
+        The walk is breadth first, from the ends of the fold `start`.
         """
         at: dict[Edge, list[int]] = {}
         for k, star in enumerate(self.stars):
@@ -89,7 +91,9 @@ class PanelMode:
 
     @cached_property
     def densities(self) -> Mapping[Edge, Density]:
-        """Fold angle / length at first order, up to a common factor; the signs are `letters`."""
+        """Fold angle / length to first order, up to a common factor; the signs are those of
+        `letters`.
+        """
         roots = Roots(self.pattern.field)
         first = self.folds[0]
         known = {first: roots.density(Fraction(1 if self.letters[first] == "V" else -1))}
@@ -101,7 +105,7 @@ class PanelMode:
         return MappingProxyType(dict(sorted(known.items())))
 
     def __reduce__(self) -> tuple[object, ...]:
-        # What is cached stays behind.
+        # Cached values are not pickled.
         return PanelMode, tuple(getattr(self, field.name) for field in fields(self))
 
     def __repr__(self) -> str:
@@ -113,11 +117,11 @@ class PanelMode:
 
 @dataclass(frozen=True)
 class PanelComponent:
-    """Modes that share no vertex, each of which truly folds, and the folds that are free.
+    """Modes that share no vertex and all truly fold, together with the free folds.
 
-    The true configurations near the flat state that belong to it are the products of one curve for
-    each mode and an interval for each free fold (docs/panels.md, Which modes truly fold). `modes`
-    are numbers.
+    The true configurations near the flat state that belong to the component are the product of one
+    curve for each mode and one interval for each free fold (docs/panels.md, Which modes truly
+    fold). `modes` are the numbers of the modes.
     """
 
     modes: tuple[int, ...]
@@ -131,10 +135,10 @@ class PanelComponent:
 
 
 def panel_modes(result: Decomposition) -> tuple[PanelMode, ...]:
-    """The modes of a decomposition: first those it lists, in its order, then others it holds.
+    """The modes of a decomposition: first those it lists, in its order, then others it contains.
 
-    Of a set of vertices whose modes are too many to be listed it is the one example that is known.
-    Of parts with more than four folds at a vertex they are the components of dimension one that
+    If a set of vertices has too many modes to be listed, the only known example is given. For parts
+    with more than four folds at some vertex, the modes are the components of dimension one that
     close for all fold angles (`PanelMode.is_linear`).
 
     >>> from exactfold.panels.decomposition import decompose
@@ -170,12 +174,12 @@ def panel_modes(result: Decomposition) -> tuple[PanelMode, ...]:
 def panel_components(
     result: Decomposition, modes: Sequence[PanelMode] | None = None
 ) -> tuple[PanelComponent, ...]:
-    """The components that can be followed, those with most active folds first.
+    """The components that can be followed; those with the most active folds come first.
 
-    Maximal sets of modes that truly fold and share no vertex, together with all free folds. Modes
-    whose extension is refuted or undecided are in none. `modes`: those of `panel_modes`.
-
-    Raises `TooManyModesError` beyond 100,000; then the modes have to be named.
+    They are the maximal sets of modes that truly fold and share no vertex, together with all free
+    folds. Modes whose extension is refuted or undecided belong to none. `modes` are those of
+    `panel_modes`. Raises `TooManyModesError` if there are more than 100,000; then the modes have to
+    be named.
 
     >>> from exactfold.panels.decomposition import decompose
     >>> from exactfold.pattern.families import single_vertex
@@ -203,7 +207,7 @@ def panel_components(
     ]
     if len(found) > MOST_COMPONENTS:
         raise TooManyModesError(
-            f"more than {MOST_COMPONENTS} components: name the modes that are to fold"
+            f"there are more than {MOST_COMPONENTS} components; name the modes that have to fold"
         )
     if not found and result.free:
         found = [PanelComponent((), result.free, len(result.free))]
@@ -211,9 +215,10 @@ def panel_components(
 
 
 def closes_always(directions: Sequence[Point], values: Sequence[Number]) -> bool:
-    """Whether a vertex closes with `tau_j = T values[j]` for every T, exactly.
+    """Whether a vertex closes exactly with tau_j = T values[j] for every T.
 
-    The vector part of `prod_j (1 + T values[j] d_j)`, a quaternion of polynomials in T, is 0.
+    It does if the vector part of prod_j (1 + T values[j] d_j), a quaternion of polynomials in T, is
+    0.
 
     >>> closes_always(((1, 0), (0, 1), (-1, 0), (0, -1)), (1, 0, 1, 0))
     True
@@ -251,13 +256,16 @@ def _lines(part: Part) -> list[Leaf]:
 
 
 def _letters(choice: Sequence[LocalMode]) -> dict[Edge, str]:
-    """M or V of each fold, with a valley for the first fold of the first vertex."""
+    """M or V of each fold, where the first fold of the first vertex is a valley."""
     signs = {choice[0].folds[0]: 1}
     waiting = list(choice)
     while waiting:
         ready = [mode for mode in waiting if signs.keys() & set(mode.folds)]
         if not ready:
-            raise UsageError("the local modes are not connected by active folds")
+            raise UsageError(
+                f"the local modes are not connected by active folds: vertex {waiting[0].vertex} "
+                "shares none with the others"
+            )
         for mode in ready:
             known = next(fold for fold in mode.folds if fold in signs)
             for fold in mode.folds:
@@ -279,24 +287,24 @@ def _on_line(leaf: Leaf, moving: Mapping[int, Star]) -> tuple[LocalMode, ...]:
 
 
 def open_reason(mode: PanelMode) -> str:
-    """Why a mode that is not proved to fold truly is not followed."""
+    """Why a mode that is not proved to truly fold cannot be followed."""
     if mode.extends.verdict is UNDECIDED:
-        return f"whether mode {mode.number} truly folds is undecided: {mode.extends.by}"
+        return f"it is undecided whether mode {mode.number} truly folds: {mode.extends.by}"
     return f"mode {mode.number} does not truly fold: {mode.extends.by}"
 
 
 def why_nothing_follows(result: Decomposition, known: Sequence[PanelMode]) -> str:
-    """Why a sheet without a component (`panel_components`) is not followed."""
+    """Why a sheet without a component (`panel_components`) cannot be followed."""
     if known:
         more = f"; and so on for {len(known) - _REASONS} more" if len(known) > _REASONS else ""
         return "; ".join(open_reason(mode) for mode in known[:_REASONS]) + more
     families = any(d > 1 for d in {**(result.found_true or {}), **(result.true or {})})
     what = (
-        "the sheet folds in families of several dimensions only"
+        "the sheet folds only in families of several dimensions"
         if families
-        else "no motion is known that is one mode"
+        else "no motion with one parameter is known"
     )
     return (
-        f"{what}; where vertices have more than four folds, only motions with one parameter that "
-        "are linear in the half-angle tangents are followed"
+        f"{what}; if vertices have more than four folds, exactfold follows only motions with one "
+        "parameter that are linear in the half-angle tangents"
     )

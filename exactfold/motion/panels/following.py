@@ -48,23 +48,26 @@ def follow_panels(
 ) -> PanelMotion:
     """The motion of a sheet of rigid panels along a component, from the flat sheet until an event.
 
-    A component is a set of elementary modes that truly fold and share no vertex, with the folds
-    that go from border to border (docs/panels.md, Which modes truly fold). A mode all of whose
-    vertices are linear in the half-angle tangents folds in proportion to the flat-folded sheet,
-    which is proved (`PanelMotion.closes`); others are followed in floats by the transmissions of
-    their vertices, up to the first fold at 180 degrees (docs/panel_motion.md).
+    A component is a set of elementary modes that truly fold and share no vertex, together with the
+    folds that go from border to border (docs/panels.md, Which modes truly fold). If all vertices of
+    a mode are linear in the half-angle tangents, all its folds stay in proportion, and this is
+    proved (`PanelMotion.closes`). Other modes are followed in floats by the transmissions of their
+    vertices, until the first fold reaches 180 degrees (docs/panel_motion.md).
 
-    `sheet`: a decomposition, or a pattern to decompose. `component`: its number in
-    `panel_components`, from 1, by default the first, with most active folds; or `modes`, the
-    numbers of modes as in the table of `exactfold count`. `amounts`: the rate of each mode, by its
-    number, and of each free fold, by its ends; negative on the other side of the sheet. By default
-    1 for all modes, while free folds stay flat; or 1 for all free folds if there is no mode.
-    `until`: "contact", the first contact of two panels or fold that closes; or "90deg", the first
-    fold angle of that size, up to "180deg". `frames`: their number, at equal steps of time, or of
-    the angle of the fold `by`. `held`: the number of the panel that does not move.
+    `sheet` is a decomposition, or a pattern to decompose. `component` is its number in
+    `panel_components`, beginning with 1; by default it is the first, which has the most active
+    folds. Alternatively, `modes` are the numbers of modes in the table of `exactfold count`.
+    `amounts` are the rates of the modes, by number, and of the free folds, by their ends; negative
+    rates fold to the other side of the sheet. By default all modes have rate 1 and free folds stay
+    flat; if there is no mode, all free folds have rate 1.
 
-    Raises `NotFollowedError` for a sheet that is rigid or has no mode that can be followed, which
-    does not mean that it cannot fold; `UsageError` for what does not exist or does not fit.
+    `until` is "contact", the first contact of two panels or the first fold that closes, or "90deg",
+    the first fold angle of that size, up to "180deg". `frames` is their number, at equal steps of
+    time, or of the angle of the fold `by`. `held` is the number of the panel that does not move.
+
+    Raises `NotFollowedError` for a sheet that is rigid or has no mode that can be followed; the
+    latter does not mean that it cannot fold. Raises `UsageError` for arguments that do not exist or
+    do not fit.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> from exactfold.pattern.opening import panels
@@ -76,7 +79,7 @@ def follow_panels(
     pattern = result.pattern
     goal = _goal(until)
     if frames < 2:
-        raise UsageError(f"{frames} frames: a motion has at least 2")
+        raise UsageError(f"{frames} frames: a motion needs at least 2")
     number, chosen = _chosen(result, component, modes)
     rates, free_rates = _rates(result, chosen, amounts)
     kept = [(mode, rate) for mode, rate in zip(chosen, rates, strict=True) if rate]
@@ -128,7 +131,7 @@ def follow_panels(
 
 
 def _goal(until: str) -> float:
-    """The angle of a fold at which a motion stops, in radians."""
+    """The fold angle at which a motion stops, in radians."""
     if until == CONTACT:
         return pi
     try:
@@ -143,20 +146,22 @@ def _goal(until: str) -> float:
 def _chosen(
     result: Decomposition, component: int | None, numbers: Sequence[int] | None
 ) -> tuple[int | None, tuple[PanelMode, ...]]:
-    """The modes that are to fold, and the number of their component if one was chosen."""
+    """The modes that have to fold, and the number of their component if one was chosen."""
     if component is not None and numbers is not None:
-        raise UsageError("give a component or modes, not both")
+        raise UsageError("give either a component or modes, but not both")
     known = panel_modes(result)
     if numbers is not None:
         return None, _named_modes(known, numbers)
     if result.rigid is PROVED:
-        raise NotFollowedError("the sheet is rigid - PROVED: there is nothing to follow")
+        raise NotFollowedError("the sheet is rigid - PROVED; there is no motion to follow")
     components = panel_components(result, known)
     if not components:
-        raise NotFollowedError(f"there is nothing to follow: {why_nothing_follows(result, known)}")
+        raise NotFollowedError(
+            f"there is no motion to follow: {why_nothing_follows(result, known)}"
+        )
     at = 1 if component is None else component
     if not 1 <= at <= len(components):
-        raise UsageError(f"there is no component {at}: they are 1 to {len(components)}")
+        raise UsageError(f"there is no component {at}: give a number from 1 to {len(components)}")
     inside = set(components[at - 1].modes)
     return at, tuple(mode for mode in known if mode.number in inside)
 
@@ -165,7 +170,7 @@ def _named_modes(known: Sequence[PanelMode], numbers: Sequence[int]) -> tuple[Pa
     chosen: list[PanelMode] = []
     for number in dict.fromkeys(numbers):
         if not 1 <= number <= len(known):
-            what = f"they are 1 to {len(known)}" if known else "the sheet has none"
+            what = f"give numbers from 1 to {len(known)}" if known else "the sheet has no modes"
             raise UsageError(f"there is no mode {number}: {what}")
         mode = known[number - 1]
         if mode.extends.verdict is not PROVED:
@@ -184,21 +189,25 @@ def _named_modes(known: Sequence[PanelMode], numbers: Sequence[int]) -> tuple[Pa
 def _rates(
     result: Decomposition, modes: Sequence[PanelMode], amounts: Mapping[int | Edge, float] | None
 ) -> tuple[tuple[float, ...], dict[Edge, float]]:
-    """How fast the driver of each mode, and each free fold, turns; the largest is 1 in size."""
+    """The rates of the driver of each mode and of each free fold, scaled to largest size 1."""
     if amounts is None:
         amounts = dict.fromkeys((mode.number for mode in modes), 1.0)
         amounts = amounts or dict.fromkeys(result.free, 1.0)
     numbers = {mode.number for mode in modes}
     for key, value in amounts.items():
         if isinstance(key, int) and key not in numbers:
-            raise UsageError(f"amount of mode {key}: it is not among the modes that are to fold")
+            raise UsageError(
+                f"an amount is given for mode {key}, which is not among the modes that fold"
+            )
         if not isinstance(key, int) and key not in result.free:
-            raise UsageError(f"amount of {key}: not a fold from border to border")
+            raise UsageError(
+                f"an amount is given for {key}, which is not a fold from border to border"
+            )
         if not isfinite(value):
-            raise UsageError(f"amount {value}: give a number")
+            raise UsageError(f"the amount of {key} is {value}: give a finite number")
     largest = max((abs(value) for value in amounts.values()), default=0.0)
     if not largest:
-        raise UsageError("all amounts are 0: nothing is to fold")
+        raise UsageError("all amounts are 0, so nothing folds: give at least one other amount")
     scaled = {key: float(value) / largest for key, value in amounts.items() if value}
     free = {key: rate for key, rate in scaled.items() if not isinstance(key, int)}
     return tuple(scaled.get(mode.number, 0.0) for mode in modes), free
@@ -210,7 +219,7 @@ def _closing(
     curves: Sequence[LinearCurve | FollowedCurve],
     rates: Sequence[float],
 ) -> list[Event]:
-    """What happens at time pi: folds that close, and those that would turn back."""
+    """The events at time pi: folds that close, and folds that would turn back."""
     closed = np.abs(angles_at(np.array([pi]))[0]) > pi - _AT_180
     events = [Event(FLAT_FOLD, (pi, pi), folds=_named(pattern, closed))]
     for curve, rate in zip(curves, rates, strict=True):
@@ -224,7 +233,7 @@ def _named(pattern: PanelPattern, some: BoolArray) -> tuple[Edge, ...]:
 
 
 def _when(angles_at: AnglesAt, goal: float) -> tuple[float, float]:
-    """Two close times round that at which the largest fold angle is the goal."""
+    """Two close times around the time at which the largest fold angle reaches the goal."""
 
     def excess(time: float) -> float:
         return float(np.abs(angles_at(np.array([time]))).max()) - goal
@@ -236,13 +245,16 @@ def _when(angles_at: AnglesAt, goal: float) -> tuple[float, float]:
 def _at_equal_angles(
     pattern: PanelPattern, angles_at: AnglesAt, by: Edge, times: FloatArray
 ) -> FloatArray:
-    """Times at which the angle of a fold has equal steps: fold angles are strictly monotone."""
+    """Times at which the angle of a fold has equal steps; fold angles are strictly monotone."""
     if by not in pattern.folds:
         raise UsageError(not_a_fold(pattern.edges, by, "to make equal steps of"))
     at = pattern.folds.index(by)
     last = float(angles_at(times[-1:])[0, at])
     if not last:
-        raise UsageError(f"fold {by[0]}-{by[1]} stays flat: its angle does not name the frames")
+        raise UsageError(
+            f"fold {by[0]}-{by[1]} stays flat, so frames cannot be spaced by its angle; choose "
+            "another fold"
+        )
 
     def excess(time: float, goal: float) -> float:
         return abs(float(angles_at(np.array([time]))[0, at])) - goal

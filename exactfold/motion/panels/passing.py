@@ -1,4 +1,4 @@
-"""Fold angles of a mode that is not linear, enclosed: each from another one at a vertex."""
+"""Enclosed fold angles of a nonlinear mode: each is computed from another one at a vertex."""
 
 from __future__ import annotations
 
@@ -13,14 +13,15 @@ from exactfold.panels.transmission import Transmission
 from exactfold.pattern.panel_pattern import Edge
 
 Tangent = tuple[arb_series, arb_series]
-"""(c, s), of which s / c is the tangent of half a fold angle; c > 0 until the fold is closed."""
+"""(c, s), where s / c is the tangent of half a fold angle; c > 0 until the fold is closed."""
 
 
 class Passed(NamedTuple):
-    """One transmission: from the tangent of the fold `start` to that of `end`.
+    """One transmission, from the tangent of the fold `start` to that of the fold `end`.
 
-    `quadratic`: (p, q, b, a) with (p + q tau^2) u^2 + b u + a = 0 and tau_end = u tau, where tau is
-    tan(angle / 2) / length; None where u is the constant `gain`. `lengths`: of both folds.
+    With tau = tan(angle / 2) / length, tau_end = u tau. `quadratic` is (p, q, b, a) with (p + q
+    tau^2) u^2 + b u + a = 0, or None if u is the constant `gain`. `lengths` are those of both
+    folds.
     """
 
     start: Edge
@@ -30,10 +31,11 @@ class Passed(NamedTuple):
     lengths: tuple[arb, arb]
 
     def __call__(self, tangent: Tangent) -> Tangent:
-        """With tau = n / c the other is n z / c c = n z, where (p c^2 + q n^2) z^2 + b c z + a = 0.
+        """The tangent of the end, from that of the start.
 
-        Of the roots z that which is the gain where the fold is flat; not finite where it may be
-        double. Raises `ValueError` where the two are not told apart.
+        For tau = n / c it is n z, where (p c^2 + q n^2) z^2 + b c z + a = 0. Of the two roots z, it
+        is the one that equals the gain where the fold is flat. The result is not finite if the root
+        may be double. Raises `ValueError` if the two roots cannot be distinguished.
         """
         c, s = tangent
         n = s / self.lengths[0]
@@ -43,7 +45,7 @@ class Passed(NamedTuple):
         leading, middle = c * c * p + n * n * q, c * b
         first = 2 * p * self.gain + b
         if not (first > 0 or first < 0):
-            raise ValueError("two roots that are not told apart")
+            raise ValueError("two roots cannot be distinguished")
         side = 1 if first > 0 else -1
         root = (middle * middle - 4 * leading * a).sqrt() * side
         if b == 0 or bool(b > 0) == (side > 0):
@@ -53,7 +55,7 @@ class Passed(NamedTuple):
 
 
 def passes_of(mode: PanelMode, driver: Edge, bits: int) -> list[Passed]:
-    """The transmissions from the driver to all other folds, in the order of their use."""
+    """The transmissions from the driver to all other folds, in the order in which they are used."""
     found: list[Passed] = []
     known = {driver}
     with ctx.workprec(bits):
@@ -79,9 +81,9 @@ def passes_of(mode: PanelMode, driver: Edge, bits: int) -> list[Passed]:
 
 
 def spread(passes: list[Passed], driver: Edge, tangent: Tangent) -> dict[Edge, Tangent]:
-    """The tangents of all folds of a mode, from that of its driver.
+    """The tangents of all folds of a mode, computed from that of its driver.
 
-    Raises `ValueError` where a fold may be closed: the mode may end there.
+    Raises `ValueError` if some fold may be closed, because the mode may end there.
     """
     found = {driver: tangent}
     for passed in passes:

@@ -1,17 +1,17 @@
 """A motion of panels as polynomials of its time, each with a proved error.
 
-At time t the half angle of a driver is t / 2 times its rate, and `tan(angle_e / 2) = g_e tan(...)`
-for every fold e of its mode, with the exact gain g_e. With S and C the sine and the cosine of the
-driver's half angle the rotation at e has
+At time t, half the angle of a driver is t / 2 times its rate. For every fold e of its mode,
+`tan(angle_e / 2) = g_e tan(...)` with the exact gain g_e. Let S and C be the sine and the cosine of
+half the driver's angle. The rotation at e has
 
     cos angle_e = (C^2 - g_e^2 S^2) / (C^2 + g_e^2 S^2),
-    sin angle_e = 2 g_e S C / (C^2 + g_e^2 S^2),
+    sin angle_e = 2 g_e S C / (C^2 + g_e^2 S^2).
 
-which are analytic for all t, also where the folds are closed. In modes that are not linear the
-tangents follow from each other by the transmissions at the vertices (`panel_passing`). Arb
-computes the power series of all positions at the middle m of a stretch, and with a ball of all
-times of the stretch in the place of m the next coefficient, which by Taylor's theorem bounds what
-is left out.
+These are analytic for all t, also where the folds are closed. In nonlinear modes, the tangents
+follow from each other by the transmissions at the vertices (`panel_passing`). Arb computes the
+power series of all positions at the middle m of a stretch. It then computes the next coefficient
+with a ball of all times of the stretch in place of m; by Taylor's theorem this bounds the
+remainder.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ from exactfold.pattern.panel_pattern import Edge
 ORDER = 12
 _BITS = 128
 _THIN = 1e-9
-"""The error that a piece may have, in units of twice the sheet."""
+"""The largest error of a piece, in units of twice the sheet."""
 _WIDEST, _NARROWEST = 1 / 8, 2.0**-20
 _CAP = ORDER + 2
 _PARTS = 8
@@ -47,10 +47,10 @@ _PARTS = 8
 
 @dataclass(frozen=True, repr=False)
 class PanelPiece:
-    """Positions of all vertices for |t - middle| <= half: p(t - middle) + e, |e| <= `radius`.
+    """Positions of all vertices for |t - middle| <= half: p(t - middle) + e with |e| <= `radius`.
 
-    `coefficients`: shape (ORDER + 1, V, 3); `radius`: shape (V, 3), proved; in units of `unit`, a
-    power of two, from the first corner of the panel that is held.
+    `coefficients` has shape (ORDER + 1, V, 3). `radius` has shape (V, 3) and is proved. Both are in
+    units of `unit`, a power of two, relative to the first corner of the panel that is held.
     """
 
     middle: float
@@ -65,9 +65,9 @@ class PanelPiece:
 
 @dataclass(frozen=True)
 class PanelPieces:
-    """The pieces of a motion of panels that exists, by `PanelMotion.exists`.
+    """The pieces of a motion of panels that is proved to exist (`PanelMotion.exists`).
 
-    `held`: the panel that stays where it is, by default one in the middle of the sheet.
+    `held` is the panel that does not move; by default it is one in the middle of the sheet.
     """
 
     motion: PanelMotion
@@ -75,7 +75,7 @@ class PanelPieces:
 
     @cached_property
     def unit(self) -> float:
-        """A power of two, more than twice the size of the sheet."""
+        """A power of two that is more than twice the size of the sheet."""
         points = np.array([(float(x), float(y)) for x, y in self.motion.pattern.vertices])
         return float(2.0 ** (frexp(float(np.ptp(points, axis=0).max()))[1] + 1))
 
@@ -87,7 +87,7 @@ class PanelPieces:
 
     @cached_property
     def _flat(self) -> list[tuple[FloatArray, float]]:
-        """The flat vertices in floats, and how far these are off at most."""
+        """The flat vertices in floats, with bounds of their errors."""
         pattern = self.motion.pattern
         x, y = pattern.vertices[pattern.faces[self._placing.held][0]]
         with ctx.workprec(_BITS):
@@ -99,7 +99,7 @@ class PanelPieces:
 
     @cached_property
     def _axes(self) -> dict[Edge, tuple[FloatArray, float]]:
-        """The directions of the folds between the panels, and how far these are off at most."""
+        """The directions of the folds between the panels in floats, with bounds of their errors."""
         found = {}
         for _, _, _, i, j in self._placing.steps:
             d = self.motion.pattern.direction(i, j)
@@ -115,7 +115,7 @@ class PanelPieces:
 
     @cached_property
     def _gains(self) -> list[dict[int, arb]]:
-        """Of each mode that is linear the gains by fold, from its driver; of others nothing."""
+        """For each linear mode, the gains from its driver to every fold; empty for other modes."""
         found: list[dict[int, arb]] = []
         for curve in self.motion.curves:
             found.append({})
@@ -128,16 +128,16 @@ class PanelPieces:
 
     @cached_property
     def _passes(self) -> list[list[Passed]]:
-        """Of each mode that is not linear its transmissions, in the order of their use."""
+        """For each nonlinear mode, its transmissions in the order in which they are used."""
         return [
             [] if isinstance(curve, LinearCurve) else passes_of(curve.mode, curve.driver, _BITS)
             for curve in self.motion.curves
         ]
 
     def between(self, low: float, high: float) -> Iterator[PanelPiece]:
-        """Pieces from one time to another, of which each begins where the one before ends.
+        """Pieces from one time to another; each begins where the previous one ends.
 
-        The last one may be longer. Ends early where no piece is thin enough.
+        The last one may extend beyond the end. The pieces end early if no piece is accurate enough.
         """
         width = _WIDEST
         while low < high:
@@ -153,15 +153,15 @@ class PanelPieces:
                 width *= 2
 
     def around(self, time: float) -> PanelPiece | None:
-        """A piece with exactly this time in its middle, that is narrow.
+        """A narrow piece with exactly this time in its middle, or None.
 
-        None where positions are not known, as beyond a fold that is closed: if there is one the
-        motion exists until then (docs/panel_motion.md, 5).
+        None if the positions are not known, for example beyond a fold that is closed. If there is a
+        piece, the motion exists up to this time (docs/panel_motion.md, 5).
         """
         return self._about(time, _NARROWEST)
 
     def _piece(self, low: float, width: float) -> PanelPiece | None:
-        """The piece of times from `low` on, if it is thin enough."""
+        """The piece of times from `low` on, if it is accurate enough."""
         return self._about(low + width / 2, width / 2)
 
     def _about(self, middle: float, half: float) -> PanelPiece | None:
@@ -169,7 +169,7 @@ class PanelPieces:
             try:
                 here = self._turns(arb(middle))
                 rests = self._rests(middle, half)
-            except ValueError:  # of python-flint, for a divisor that may be 0; or a closed fold
+            except ValueError:  # python-flint: a divisor may be 0; or a fold is closed
                 return None
             turns = {
                 fold: [_polynomial(*both, half) for both in zip(series, rests[fold], strict=True)]
@@ -179,11 +179,13 @@ class PanelPieces:
             coefficients, radius = self._placed(turns)
         if not (np.isfinite(coefficients).all() and radius.max() <= _THIN):
             return None
-        powers = half ** np.arange(ORDER + 1.0)  # half is a power of two: nothing is rounded
+        powers = half ** np.arange(ORDER + 1.0)  # exact, because half is a power of two
         return PanelPiece(middle, half, coefficients / powers[:, None, None], radius, self.unit)
 
     def _turns(self, time: arb) -> dict[int, tuple[arb_series, arb_series]]:
-        """Sine and 1 - cosine of the angles of folds that move, as series in the time after it."""
+        """Sine and 1 - cosine of the angles of the moving folds, as series in the time after
+        `time`.
+        """
         found = {}
         for fold, (c, s) in self._tangents(time).items():
             square = s * s
@@ -192,10 +194,10 @@ class PanelPieces:
         return found
 
     def _rests(self, middle: float, half: float) -> dict[int, list[arb]]:
-        """Bounds of the first coefficients left out, of the sines and of the versines.
+        """Bounds of the first neglected coefficients of the sines and of the versines.
 
-        In modes that are not linear balls grow from vertex to vertex, so that those of parts of the
-        stretch are smaller than one of all of it.
+        In nonlinear modes, balls grow from vertex to vertex. Therefore the stretch is divided into
+        parts, whose balls are smaller than one ball of the whole stretch.
         """
         count = _PARTS if any(self._passes) else 1
         width = half / count
@@ -229,7 +231,9 @@ class PanelPieces:
         return coefficients, radius
 
     def _tangents(self, time: arb) -> dict[int, Tangent]:
-        """By fold (c, s) with s / c = tan(angle / 2), as series about a time or a ball of times."""
+        """By fold: (c, s) with s / c = tan(angle / 2), as series about a time or a ball
+        of times.
+        """
         motion, found = self.motion, dict[int, Tangent]()
 
         def driven(rate: float) -> Tangent:
@@ -254,10 +258,10 @@ _CAPPING = RLock()
 
 @contextmanager
 def _capped() -> Iterator[None]:
-    """Series with as many terms as are needed here.
+    """Set the number of terms of series that is needed here.
 
-    FLINT has one number of terms for all threads, and takes terms beyond it for 0. So only one
-    thread at a time is in here.
+    FLINT has a single number of terms for all threads, and replaces later terms by 0. Therefore
+    only one thread at a time may be here.
     """
     with _CAPPING:
         before, ctx.cap = ctx.cap, _CAP

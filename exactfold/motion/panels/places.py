@@ -1,4 +1,4 @@
-"""Where the panels of a sheet are in space, given all fold angles: in floats, or exactly."""
+"""The places of the panels of a sheet in space for given fold angles, in floats or exactly."""
 
 from __future__ import annotations
 
@@ -17,14 +17,16 @@ from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
 Spot: TypeAlias = tuple[Number, Number, Number]
 Turn: TypeAlias = tuple[Number, Number]
-"""(p, q), the quaternion p + q d of a fold with vector d: q / p is tan(angle / 2) / length."""
+"""(p, q), where p + q d is the quaternion of a fold with vector d; q / p is tan(angle / 2) /
+length.
+"""
 
 
 _TRIES = 4
 
 
 class _Step(NamedTuple):
-    """A panel and the one before it, with the fold between them: the panel is left of i to j."""
+    """A panel, the panel before it, and the fold between them; the panel is left of i to j."""
 
     panel: int
     before: int
@@ -35,11 +37,11 @@ class _Step(NamedTuple):
 
 @dataclass(frozen=True)
 class Placing:
-    """Places all panels one after the other, from the panel `held`, across a fold each.
+    """Places all panels one after the other, beginning with `held`, each across one fold.
 
-    A panel left of its fold i to j is turned about it by the fold angle: a positive angle, a
-    valley, lifts it. Folds that are not crossed on the way close if the fold angles close round
-    every interior vertex.
+    A panel to the left of its fold from i to j is turned about the fold by the fold angle. A
+    positive angle, a valley, lifts it. The folds that are not crossed on the way close if the fold
+    angles close round every interior vertex.
     """
 
     pattern: PanelPattern
@@ -48,13 +50,13 @@ class Placing:
     def __post_init__(self) -> None:
         if not 0 <= self.held < len(self.pattern.faces):
             raise UsageError(
-                f"there is no panel {self.held} to hold: they are 0 to "
+                f"there is no panel {self.held} to hold: give a number from 0 to "
                 f"{len(self.pattern.faces) - 1}"
             )
 
     @cached_property
     def steps(self) -> tuple[_Step, ...]:
-        """The panels in the order in which they are placed, without the one that is held."""
+        """The panels in the order in which they are placed, without the panel that is held."""
         numbers = {fold: k for k, fold in enumerate(self.pattern.folds)}
         seen, waiting = {self.held}, [self.held]
         found: list[_Step] = []
@@ -71,7 +73,10 @@ class Placing:
 
     @property
     def middle(self) -> int:
-        """The largest of the panels from which others are few folds away: few from those tried."""
+        """The largest of those panels from which all others are few folds away.
+
+        Distances are computed only from a few panels.
+        """
         most = np.zeros(len(self.pattern.faces), dtype=np.intp)
         for _ in range(_TRIES):
             first = Placing(self.pattern, int(most.argmin()))
@@ -81,13 +86,13 @@ class Placing:
         return int(max(near, key=lambda panel: self._area(self.pattern.faces[panel])))
 
     def _area(self, face: tuple[int, ...]) -> float:
-        """Twice the area of a panel, to a few digits, so that the same ones are the same."""
+        """Twice the area of a panel to a few digits, so that equal panels have equal areas."""
         x, y = self._flat[0][list(face)].T[:2]
         return float(f"{np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)):.6g}")
 
     @property
     def depths(self) -> IndexArray:
-        """For each panel the number of folds from the one that is held, at least."""
+        """For each panel, the least number of folds between it and the panel that is held."""
         found = np.zeros(len(self.pattern.faces), dtype=np.intp)
         for step in self.steps:
             found[step.panel] = found[step.before] + 1
@@ -95,7 +100,7 @@ class Placing:
 
     @cached_property
     def owners(self) -> Mapping[int, int]:
-        """For each vertex the first panel placed that has it as a corner."""
+        """For each vertex, the first placed panel that has it as a corner."""
         owners: dict[int, int] = {}
         for panel in (self.held, *(step.panel for step in self.steps)):
             for v in self.pattern.faces[panel]:
@@ -104,16 +109,16 @@ class Placing:
 
     @cached_property
     def _flat(self) -> tuple[FloatArray, FloatArray]:
-        """The flat vertices from the first corner of the panel held, and that corner."""
+        """The flat vertices relative to the first corner of the held panel, and that corner."""
         x, y = self.pattern.vertices[self.pattern.faces[self.held][0]]
         flat = [(float(a - x), float(b - y), 0.0) for a, b in self.pattern.vertices]
         return np.array(flat), np.array([float(x), float(y), 0.0])
 
     def positions(self, angles: FloatArray) -> tuple[FloatArray, float]:
-        """All vertices, shape (times, V, 3), at fold angles (times, folds); and the largest gap.
+        """All vertices at fold angles (times, folds), shape (times, V, 3); and the largest gap.
 
-        The gap is between the places that two panels give to a common corner, in the unit of the
-        pattern.
+        A gap is the distance between the places that two panels give to a common corner, in the
+        unit of the pattern.
         """
         flat, origin = self._flat
         times, panels = len(angles), len(self.pattern.faces)
@@ -122,7 +127,7 @@ class Placing:
         turned[self.held], moved[self.held] = np.eye(3), 0.0
         for panel, before, fold, i, j in self.steps:
             axis = flat[j] - flat[i]
-            axis = axis / np.abs(axis).max()  # the square of a very large or small one is no float
+            axis = axis / np.abs(axis).max()  # so that squares neither overflow nor underflow
             spin = _rotations(axis / np.linalg.norm(axis), angles[:, fold])
             turned[panel] = turned[before] @ spin
             shift = flat[i] - spin @ flat[i]
@@ -138,10 +143,10 @@ class Placing:
         return coords + origin, gap
 
     def exactly(self, turns: Mapping[Edge, Turn]) -> tuple[Spot, ...]:
-        """All vertices exactly, from the quaternions p + q d of the folds; others are flat.
+        """All vertices exactly, from the quaternions p + q d of the folds; other folds are flat.
 
-        Raises `UsageError` if two panels give different places to a common corner: then the folds
-        do not close.
+        Raises `UsageError` if two panels give different places to a common corner, because then the
+        folds do not close.
         """
         coordinates = [c for point in self.pattern.vertices for c in point]
         tower = JoinedField([*coordinates, *(x for turn in turns.values() for x in turn)])
@@ -174,7 +179,10 @@ class Placing:
                     simple(row[0] * x + row[1] * y + s) for row, s in zip(rows, shift, strict=True)
                 )
                 if spots.setdefault(v, spot) != spot:
-                    raise UsageError(f"the folds do not close: panel {panel} misses vertex {v}")
+                    raise UsageError(
+                        f"the folds do not close: panel {panel} does not meet the other panels at "
+                        f"vertex {v}"
+                    )
         return tuple(spots[v] for v in range(len(flat)))
 
 

@@ -1,4 +1,4 @@
-"""`prove_panels`: that panels fold as they were followed, and what touches first."""
+"""`prove_panels`: the proof that panels fold as they were followed, and of what touches first."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.certificates.entries import Document, write_certificate
 from exactfold.errors import NotApplicableError
 from exactfold.motion.curves.motion_document import PanelProofDocument
-from exactfold.motion.panels.claims import certificate_of_panel_motion
+from exactfold.motion.panels.certificate import certificate_of_panel_motion
 from exactfold.motion.panels.clearance import PanelClearance, with_proved_contact
 from exactfold.motion.panels.motion import PanelMotion
 
@@ -19,14 +19,12 @@ _AT_ONCE = 1e-9
 
 @dataclass(frozen=True, repr=False)
 class PanelProof:
-    """What is proved of a motion of panels: that they fold so, and what touches first.
+    """What is proved of a motion of panels: that they fold in this way, and what touches first.
 
-    `motion`: with the first contact as it is proved; as it was given where it is not. `contacts`:
-    how far no two panels touch, None where nothing is proved of the motion. `certified`: whether
-    there is a certificate.
-
-    `status` is PROVED if the whole motion is clear, or its first contact is enclosed; else `reason`
-    says what is missing.
+    `motion` has the first contact as it is proved; if it is not proved, the motion is unchanged.
+    `contacts` says until when no two panels touch; it is None if nothing is proved of the motion.
+    `certified` says whether there is a certificate. `status` is PROVED if the whole motion is clear
+    or its first contact is enclosed. Otherwise `reason` says what is missing.
     """
 
     status: Verdict
@@ -37,7 +35,9 @@ class PanelProof:
 
     @property
     def passed(self) -> bool:
-        """Whether the motion goes on after its first contact, through the panels."""
+        """Whether the motion goes on after its first contact, so that panels pass through each
+        other.
+        """
         contacts = self.contacts
         return (
             contacts is not None
@@ -46,13 +46,13 @@ class PanelProof:
         )
 
     def certificate(self) -> Document | None:
-        """The evidence for `exactfold.checker`, None if there is none."""
+        """The certificate for `exactfold.checker`; None if there is none."""
         if self.contacts is None or not self.certified:
             return None
         return certificate_of_panel_motion(self.motion, self.contacts)
 
     def write(self, path: str | os.PathLike[str]) -> bool:
-        """Write the evidence for `exactfold.checker`; False if there is none.
+        """Write the certificate for `exactfold.checker`; return False if there is none.
 
         Raises `UnwritableFileError`.
 
@@ -74,7 +74,7 @@ class PanelProof:
         return True
 
     def to_dict(self) -> PanelProofDocument:
-        """The proof as `exactfold fold --json` prints it."""
+        """The object of the proof in the output of `exactfold fold --json`."""
         contacts = self.contacts
         event = None if contacts is None else contacts.event
         return {
@@ -97,8 +97,9 @@ class PanelProof:
 def prove_panels(motion: PanelMotion) -> PanelProof:
     """Prove a motion of panels as far as it was followed (docs/panel_motion.md, 5 and 6).
 
-    That the panels fold so, and for how long none touch; of a motion that meets a contact also
-    that, its time enclosed. UNDECIDED says nothing against the motion.
+    It is proved that the panels fold in this way, and for how long no two of them touch. If the
+    motion meets a contact, that is proved, too, with bounds of its time. UNDECIDED does not mean
+    that the motion is wrong.
 
     >>> from exactfold.motion.panels.following import follow_panels
     >>> from exactfold.pattern.families import single_vertex
@@ -119,11 +120,14 @@ def prove_panels(motion: PanelMotion) -> PanelProof:
 
 
 def _open(contacts: PanelClearance) -> str:
-    """Which panels are not proved to stay apart, and from when on."""
+    """Which panels are not proved to stay apart, and after which time."""
     pairs = [
         " and ".join("-".join(map(str, panel)) for panel in pair) for pair in contacts.open_panels
     ]
     more = f", and {len(pairs) - _NAMED} more pairs" if len(pairs) > _NAMED else ""
-    which = f"panels {', '.join(pairs[:_NAMED])}{more}" if pairs else "where the panels are"
-    verb = "are not proved to stay apart" if pairs else "is not known well enough"
-    return f"{which} {verb} after the time {contacts.clear:.6g}"
+    if not pairs:
+        return f"the positions are not known well enough after the time {contacts.clear:.6g}"
+    return (
+        f"panels {', '.join(pairs[:_NAMED])}{more} are not proved to stay apart after the time "
+        f"{contacts.clear:.6g}"
+    )

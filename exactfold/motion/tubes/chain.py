@@ -100,17 +100,16 @@ def step_documents(steps: Sequence[Step], leaves: bool) -> list[Document]:
     """The steps in the form of certificates; `leaves` says whether the last tube has an exit."""
     found = []
     for step, after in zip_longest(steps, steps[1:]):
+        if isinstance(step, Passage):
+            found.append(step.document)
+            continue
         tube = step.tube
         entry: Document = {
             "centre": list(tube.coefficients[0]),
             "row": list(tube.row),
             "reach": tube.reach,
         }
-        if isinstance(step, Passage):
-            node = step.tube.node.centre
-            flat = sorted(step.vertices)
-            entry = {"flat": flat, "node": list(node), **entry, "entry": step.entry}
-        if isinstance(step, Passage) or isinstance(after, Link) or (after is None and leaves):
+        if isinstance(after, Link) or (after is None and leaves):
             entry["exit"] = step.exit
         found.append(entry)
     return found

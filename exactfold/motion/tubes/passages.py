@@ -9,6 +9,8 @@ from fractions import Fraction
 import numpy as np
 
 from exactfold._support.arrays import FloatArray
+from exactfold.certificates.entries import Document
+from exactfold.motion.claims import Claim
 from exactfold.motion.curves.crossing_curves import crossing_ahead, flat_vertices
 from exactfold.motion.tubes.arclength import Interval
 from exactfold.motion.tubes.branch_point_tube import ROW_BITS, NodeTube, prove_node_tube
@@ -48,6 +50,11 @@ class Passage:
     left: Interval
 
     @property
+    def ends_at_the_node(self) -> bool:
+        """Whether the motion ends there."""
+        return self.exit == 0
+
+    @property
     def to_the_node(self) -> Passage:
         """The part of the passage that ends at the branch point."""
         return replace(self, exit=0, left=self.time(0))
@@ -63,6 +70,20 @@ class Passage:
             return f"vertex {self.vertices[0]} is flat and another curve crosses"
         names = " and ".join(map(str, self.vertices))
         return f"the vertices {names} are flat and other curves may cross"
+
+    @property
+    def document(self) -> Document:
+        """The arc as certificates have it; `exit` is only that of one that goes on."""
+        arc = self.tube
+        return {
+            "flat": sorted(self.vertices),
+            "node": list(arc.node.centre),
+            "centre": list(arc.coefficients[0]),
+            "row": list(arc.row),
+            "reach": arc.reach,
+            "entry": self.entry,
+            "exit": self.exit,
+        }
 
     def visit(self, unit: Fraction) -> Visit:
         """Where and when the branch point is passed, with times in the unit of the sheet."""
@@ -89,6 +110,17 @@ class Passage:
 
     def __repr__(self) -> str:
         return f"<Passage: flat at {self.vertices}, time {float(self.entered[0]):.4g}>"
+
+
+def through_claim(passages: Sequence[Passage]) -> Claim:
+    """The branch points that a motion goes through, in order; the arcs are among its tubes."""
+    return Claim({"through": [sorted(passage.vertices) for passage in passages]})
+
+
+def node_claim(last: Passage, clear: bool) -> Claim:
+    """That a motion ends at a branch point; `clear`: no two faces touch up to there, nor there."""
+    arc = {key: x for key, x in last.document.items() if key not in ("flat", "exit")}
+    return Claim({"node": {"flat": sorted(last.vertices), "clear": clear}}, {"node": arc})
 
 
 def passage_ahead(

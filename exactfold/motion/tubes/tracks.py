@@ -14,15 +14,16 @@ from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.branches.values.branch import Branch
 from exactfold.certificates.entries import Document
 from exactfold.errors import FlatVertexError, UsageError
-from exactfold.motion.certificate import motion_certificate
-from exactfold.motion.curves.boundary_path import framework_of, problem_of
+from exactfold.motion.claims import Claim
+from exactfold.motion.curves.boundary_path import framework_of, problem_of, rim_claim
 from exactfold.motion.curves.drive import Drive
 from exactfold.motion.curves.framework import Framework
 from exactfold.motion.curves.straight_folds import straight_fold
 from exactfold.motion.tubes.arclength import Interval
-from exactfold.motion.tubes.chain import Chain, Step, chords, point_near, step_documents
+from exactfold.motion.tubes.certificate import motion_certificate
+from exactfold.motion.tubes.chain import Chain, Step, point_near
 from exactfold.motion.tubes.links import Link
-from exactfold.motion.tubes.passages import Passage
+from exactfold.motion.tubes.passages import Passage, node_claim, through_claim
 from exactfold.motion.tubes.piece import Ball
 from exactfold.motion.tubes.tube_start import StartTube, prove_start
 from exactfold.pattern.crease_pattern import CreasePattern, Triangle
@@ -152,10 +153,13 @@ class Track:
         """Bounds of the length of the start tube, in the unit of the framework."""
         return self.start.length(0, self.start.last)
 
-    def certificate(self) -> Document:
+    def certificate(self, *claims: Claim, clear: bool = False) -> Document:
         """The proof as a JSON object for `exactfold.checker` (docs/motion.md, The certificate).
 
-        It claims a length that is slightly smaller than `length`, namely what straight chords show.
+        It claims a length that is slightly smaller than `length`, namely what straight chords show,
+        and what the track itself proves: the border or the drive, and branch points. `claims` are
+        what else is proved of it. `clear`: no two faces touch up to the branch point at which the
+        track ends, which one of the `claims` shows.
 
         >>> from exactfold import checker
         >>> from exactfold.branches.counting.find import find_branch
@@ -164,27 +168,15 @@ class Track:
         >>> checker.check(track.certificate())["vertex_signs"]
         [1]
         """
-        start, drive = self.start, self.drive
-        pinned = [self.labels[v] for v in self.framework.pinned]
-        held = self.labels[int(self.framework.free[start.held // 3])]
+        own = [rim_claim(self.rim)] if self.rim is not None else []
+        if self.drive is not None:
+            own.append(self.drive.claim(self.reached))
+        if self.through:
+            own.append(through_claim(self.through))
+        if self.node is not None:
+            own.append(node_claim(self.node, clear))
         return motion_certificate(
-            self.pattern,
-            self.vertex_signs,
-            self.side,
-            chords(start, self.steps, leaves=True) * self.framework.unit,
-            pinned,
-            start.bits,
-            {
-                "centre": list(start.coefficients[0]),
-                "halvings": start.halvings,
-                "held": held,
-                "reach": start.reach,
-                "exit": start.last,
-            },
-            step_documents(self.steps, leaves=True),
-            ends_at_a_node=self.node is not None,
-            rim=self.rim,
-            drive=None if drive is None else (drive.folds, drive.squares, self.reached),
+            self.pattern, self.labels, self.start, self.steps, [*own, *claims]
         )
 
     def frames(self, times: FloatArray | list[float]) -> list[Frame]:

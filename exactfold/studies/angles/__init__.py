@@ -1,1 +1,1 @@
-"""Angles between the branches of random squares, and what the paper says of them."""
+"""The angles between the branches of random squares, compared with the sentences of the paper."""

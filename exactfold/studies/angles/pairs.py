@@ -1,9 +1,9 @@
-"""Angles between lines, counted in bins with proof that each pair is in its bin.
+"""Counts the angles between lines in bins, with proof that each pair is in its bin.
 
-Most pairs are counted by a table: |cos| falls into one of many cells of equal width, and nearly all
-cells are certainly within one bin. Pairs in other cells are compared with the edges of the bins one
-by one, and those too near an edge for their error bounds are computed anew from sharper roots.
-Products are made tile by tile: memory is bounded whatever the number of pairs.
+A table counts most pairs: |cos| falls into one of many cells of equal width, and nearly all cells
+lie with certainty within one bin. Pairs in other cells are compared with the edges of the bins one
+by one. If a pair is too near an edge for its error bounds, it is computed anew from sharper roots.
+Products are made tile by tile, so that memory is bounded for any number of pairs.
 """
 
 from __future__ import annotations
@@ -18,24 +18,24 @@ from exactfold._support.arrays import BoolArray, FloatArray, IntArray
 from exactfold.studies.running.lines import Lines
 
 BINS = 64
-"""Bins of width pi / 128 from 0, parallel, to pi / 2, orthogonal."""
+"""The number of bins of width pi / 128, from 0 (parallel) to pi / 2 (orthogonal)."""
 
 _CELLS = 1 << 14
-"""Cells of |cos| from 0 to 1, a power of two: telling the cell of a number rounds nothing."""
+"""The number of cells of |cos| from 0 to 1; as a power of two, it makes the cell number exact."""
 _ROWS, _COLUMNS = 128, 2048
 _PENDING = 1 << 14
 _U = 2.0**-53
 _UP = 1.0 + 2.0**-20
 _EDGES: FloatArray = np.cos(np.arange(BINS - 1, 0, -1) * (np.pi / 2 / BINS))
-"""Where bins meet, rising, each within 5 u: |cos| above k of these is in bin BINS - 1 - k."""
+"""The edges of the bins, rising, each within 5 u: |cos| above k of them is in bin BINS - 1 - k."""
 
 
 @dataclass(frozen=True)
 class PairAngles:
     """How many pairs of different branches have an angle in each bin.
 
-    `unclear` of these may be in other bins, as bounds did not tell. `mean_square` approximates
-    the mean of cos^2 of the angle, 0 if there are no pairs.
+    `unclear` of these pairs may be in other bins, as their bounds did not decide. `mean_square`
+    approximates the mean of cos^2 of the angle; it is 0 if there are no pairs.
     """
 
     bins: tuple[int, ...]
@@ -46,11 +46,11 @@ class PairAngles:
 def pair_angles(lines: Lines) -> PairAngles:
     """The angles between all pairs of branches, as lines in the space of fold angles.
 
-    Let u and v be computed directions of F numbers, off by at most e_u and e_v, and of length 1 but
-    for (F + 4) u. Then |u . v| as computed is within t = e_u + e_v + (F + 16) u of the true cosine:
-    F u and a little is the error of a dot product in any order of summation (Higham, Accuracy and
-    Stability of Numerical Algorithms, section 3.1). A pair is in its bin if no edge is within t of
-    it; where one is, u and v are computed anew from sharper roots.
+    Let u and v be computed directions of F numbers, with errors of at most e_u and e_v, whose
+    lengths are 1 up to (F + 4) u. Then the computed |u . v| is within t = e_u + e_v + (F + 16) u of
+    the true cosine; slightly more than F u is the error of a dot product in any order of summation
+    (Higham, Accuracy and Stability of Numerical Algorithms, section 3.1). A pair is certainly in
+    its bin if no edge is within t. Otherwise u and v are computed anew from sharper roots.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> found = pair_angles(Lines.of(single_vertex(4)))
@@ -74,7 +74,7 @@ def pair_angles(lines: Lines) -> PairAngles:
 class _Tile:
     """Some pairs (row, column), as numbers row * width + column from a corner, and their |cos|.
 
-    `scaled` is |cos| times `_CELLS`; `numbers` is None if all pairs of the tile are there.
+    `scaled` is |cos| times `_CELLS`. `numbers` is None if the tile contains all its pairs.
     """
 
     corner: tuple[int, int]
@@ -90,9 +90,9 @@ class _Tile:
 
 
 def _tiles(directions: FloatArray) -> Iterator[_Tile]:
-    """All pairs of different rows, each once; a tile is overwritten by the next."""
+    """Yields all pairs of different rows, each once; the next tile overwrites the arrays."""
     count = len(directions)
-    larger = directions * _CELLS  # a power of two: products are those of `directions`, scaled
+    larger = directions * _CELLS  # scaling by a power of two does not change the rounding
     space = np.empty(_ROWS * _COLUMNS)
     for top in range(0, count, _ROWS):
         rows = larger[top : top + _ROWS]
@@ -111,7 +111,7 @@ def _tiles(directions: FloatArray) -> Iterator[_Tile]:
 
 
 class _Tally:
-    """Pairs by cell and by bin, and those that sharper roots have to decide."""
+    """The numbers of pairs by cell and by bin, and the pairs that sharper roots must decide."""
 
     def __init__(self, lines: Lines) -> None:
         self.lines = lines
@@ -123,7 +123,7 @@ class _Tally:
         self._unsure = _unsure(_reach(lines.directions, *[lines.errors.max(keepdims=True)] * 2))
 
     def add(self, tile: _Tile) -> None:
-        """Count the pairs of a tile, but for those that are put off."""
+        """Counts the pairs of a tile, except those that sharper roots must decide."""
         places = self._places[: tile.scaled.size]
         np.copyto(places, tile.scaled, casting="unsafe")
         self.cells += np.bincount(places, minlength=_CELLS + 1)
@@ -147,7 +147,7 @@ class _Tally:
         return self.bins, self.unclear
 
     def _settle(self) -> None:
-        """Decide what was put off, from sharper roots."""
+        """Decides the pending pairs from sharper roots."""
         if not self._pending:
             return
         pairs = np.concatenate(self._pending, axis=1)
@@ -162,12 +162,12 @@ class _Tally:
 
 
 def _reach(directions: FloatArray, first: FloatArray, second: FloatArray) -> FloatArray:
-    """t of `pair_angles` for directions with these errors."""
+    """The bound t of `pair_angles`, for directions with these errors."""
     return np.asarray((first + second) * _UP + (directions.shape[1] + 16) * _U)
 
 
 def _unsure(reach: FloatArray) -> BoolArray:
-    """The cells with numbers that may be in two bins, if they are off by up to `reach`."""
+    """The cells whose numbers may be in two bins if they have errors of up to `reach`."""
     first, last = (
         np.clip(np.floor((_EDGES + side * reach) * _CELLS), 0, _CELLS).astype(np.int64)
         for side in (-1, 1)
@@ -179,7 +179,7 @@ def _unsure(reach: FloatArray) -> BoolArray:
 
 
 def _bins(cosines: FloatArray, reach: FloatArray) -> tuple[IntArray, BoolArray]:
-    """The bins of numbers, and which of them no edge is within `reach` of."""
+    """The bins of numbers, and for each number whether no edge is within `reach`."""
     above = np.searchsorted(_EDGES, cosines)
     padded = np.concatenate([[-np.inf], _EDGES, [np.inf]])
     gaps = np.minimum(cosines - padded[above], padded[above + 1] - cosines)

@@ -1,4 +1,4 @@
-"""What Appendix D and the Discussion say of the angles between branches, a number for each."""
+"""The sentences of Appendix D and the Discussion on angles between branches, each with a number."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from exactfold.studies.table1 import PAPER
 
 
 def sentences(sizes: list[AnglesOfSize]) -> StudyTable:
-    """A line for each sentence that can be judged from these sizes."""
+    """A line for each sentence that these sizes can judge."""
     by_size = {s.size: s for s in sizes}
     lines: list[tuple[Cell, ...]] = [_less_orthogonal(sizes)]
     if 6 in by_size:
@@ -45,15 +45,15 @@ def sentences(sizes: list[AnglesOfSize]) -> StudyTable:
         ("", "number", "verdict"),
         tuple(lines),
         (
-            "Numbers are those of the tables above, for the squares of this run. A verdict is not "
-            "decided where the interval does not tell. Sizes differ where a p is below 0.01: that "
-            "of the distance, or that of the tails.",
+            "The numbers are those of the tables above, for the squares of this run. A verdict is "
+            "not decided if the interval allows both. Two sizes differ if the p of the distance "
+            "or that of the tails is below 0.01.",
         ),
     )
 
 
 def _apart(first: AnglesOfSize, second: AnglesOfSize, differ: bool) -> tuple[Cell, ...]:
-    """That two sizes very nearly coincide, or differ significantly."""
+    """Tests that two sizes very nearly coincide, or that they differ significantly."""
     words = "differ significantly" if differ else "very nearly coincide"
     seen = apart(first.mean, second.mean)
     p = p_values(seen, exchanged(first, second))
@@ -63,7 +63,7 @@ def _apart(first: AnglesOfSize, second: AnglesOfSize, differ: bool) -> tuple[Cel
 
 
 def _data(seven: AnglesOfSize, eight: AnglesOfSize) -> list[tuple[Cell, ...]]:
-    """That there are enough data for Vi = 8: the squares of the paper, whatever this run has."""
+    """Tests that there are enough data for Vi = 8, with the paper's numbers of squares."""
     squares = PAPER[7][0], PAPER[8][0]
     pairs = [s.pairs / len(s.shares) * n for s, n in zip((seven, eight), squares, strict=True)]
     ratio = pairs[1] / pairs[0]
@@ -87,7 +87,7 @@ def _data(seven: AnglesOfSize, eight: AnglesOfSize) -> list[tuple[Cell, ...]]:
 
 
 def _stands_out(six: AnglesOfSize, seven: AnglesOfSize, eight: AnglesOfSize) -> tuple[Cell, ...]:
-    """That Vi = 8 is further from 7 than 7 is from 6, in the tails."""
+    """Tests that, in the tails, Vi = 8 is further from 7 than 7 is from 6."""
     tails = [s.resampled(s.shares)[:, :TAIL].sum(axis=1) for s in (six, seven, eight)]
     steps = [100 * (a - b) for a, b in pairwise(tails)]
     number = f"tails: 6 to 7 falls {between(steps[0], 2)} %, 7 to 8 {between(steps[1], 2)} %"
@@ -105,7 +105,7 @@ def _less_orthogonal(sizes: list[AnglesOfSize]) -> tuple[Cell, ...]:
 
 
 def _with_itself(sizes: list[AnglesOfSize]) -> tuple[Cell, ...]:
-    """Lines in both directions: a branch has the angles 0 and pi with itself, where pairs count."""
+    """Tests the share of the angles 0 and pi, which each branch has with itself if pairs count."""
     own, others = [], []
     for s in sizes:
         branches = len(s.shares) * (1 << s.size)
@@ -154,14 +154,14 @@ def _six(six: AnglesOfSize) -> list[tuple[Cell, ...]]:
 
 
 def _above(ends: tuple[float, float], value: float) -> bool | None:
-    """Whether an interval lies above a value; None if the value is in it."""
+    """Whether an interval lies above a value; None if it contains the value."""
     if ends[0] > value:
         return True
     return False if ends[1] < value else None
 
 
 def _listed(sizes: list[int]) -> str:
-    """Sizes as a text, three or more in a row by the first and the last."""
+    """Sizes as a text; three or more consecutive sizes are written as first and last."""
     runs: list[list[int]] = []
     for size in sizes:
         if runs and size == runs[-1][-1] + 1:

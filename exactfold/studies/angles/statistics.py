@@ -1,6 +1,6 @@
-"""Statistics of the angles between branches: distributions of sizes, resampled, and compared.
+"""Statistics of the angles between branches: distributions by size, resampled and compared.
 
-Pairs of one square are not independent, but squares are: intervals come from squares drawn again
+Pairs of one square are not independent, but squares are. So intervals come from squares drawn again
 with replacement (bootstrap), and the test of two sizes from squares exchanged between them
 (permutation), with a fixed seed.
 """
@@ -19,28 +19,28 @@ from exactfold.studies.angles.pairs import BINS
 from exactfold.studies.running.study import Row
 
 RESAMPLED: Final = 400
-"""Bootstrap samples, and permutations."""
+"""The number of bootstrap samples, and of permutations."""
 
 WIDTH: Final = np.pi / 2 / BINS
-"""Of a bin."""
+"""The width of a bin."""
 
 TAIL: Final = BINS // 4
-"""Bins next to 0 that are called a tail: up to pi / 8."""
+"""The tail consists of so many bins next to 0: up to pi / 8."""
 
 CENTRE: Final = BINS // 8
-"""Bins next to a right angle that are called orthogonal: up to pi / 16 from it."""
+"""Orthogonal are so many bins next to a right angle: up to pi / 16 from it."""
 
 LEVEL: Final = 0.01
-"""Sizes differ where a p-value is below this."""
+"""Sizes differ if a p-value is below this."""
 
 _FIT = 3 * BINS // 4
-"""Bins whose shape is fitted: from 0 to 3 pi / 8."""
+"""The shape is fitted in so many bins: from 0 to 3 pi / 8."""
 _POWERS = np.arange(0.05, 4.0001, 0.05)
 
 
 @dataclass(frozen=True)
 class AnglesOfSize:
-    """The squares of one size: the share of pairs in each bin, one line a square."""
+    """The squares of one size: the share of pairs in each bin, one row for each square."""
 
     size: int
     shares: FloatArray
@@ -50,11 +50,11 @@ class AnglesOfSize:
 
     @property
     def mean(self) -> FloatArray:
-        """The distribution: squares count alike."""
+        """The mean distribution; every square has the same weight."""
         return np.asarray(self.shares.mean(axis=0))
 
     def resampled(self, values: FloatArray) -> FloatArray:
-        """Means of values of the squares, over squares drawn again with replacement."""
+        """Bootstrap means of one value per square, over squares drawn again with replacement."""
         number = len(values)
         source = np.random.default_rng([self.size, number])
         weights = source.multinomial(number, np.full(number, 1 / number), size=RESAMPLED)
@@ -62,7 +62,7 @@ class AnglesOfSize:
 
 
 def angles_by_size(rows: Iterable[Row]) -> list[AnglesOfSize]:
-    """The rows with pairs of branches, by size."""
+    """The rows that have pairs of branches, by size."""
     groups: dict[int, list[Row]] = defaultdict(list)
     for found in rows:
         if found["angles"] is not None and sum(found["angles"]):
@@ -95,22 +95,22 @@ def uniform(size: int) -> FloatArray:
 
 
 def ends_of(values: FloatArray) -> tuple[float, float]:
-    """The ends of the middle 95 % of values."""
+    """The ends of the interval that contains the middle 95 % of the values."""
     low, high = np.quantile(values, [0.025, 0.975])
     return float(low), float(high)
 
 
 def between(values: FloatArray, digits: int = 3) -> str:
-    """These ends as a text."""
+    """The ends of the middle 95 % of the values, as a text."""
     low, high = ends_of(values)
     return f"{low:.{digits}f} to {high:.{digits}f}"
 
 
 def tail_power(means: FloatArray) -> FloatArray:
-    """For each distribution the p for which log share = a - b x^p fits best, x from pi / 2.
+    """For each distribution, the p for which log share = a - b x^p fits best; x is from pi / 2.
 
-    Least squares in the bins from 0 to 3 pi / 8, weighted by the shares, for p from 0.05 to 4 in
-    steps of 0.05. 1 is an exponential tail, 2 that of a Gaussian.
+    Least squares, weighted by the shares, in the bins from 0 to 3 pi / 8, for p from 0.05 to 4 in
+    steps of 0.05. An exponential tail has p = 1, a Gaussian tail p = 2.
     """
     x = np.pi / 2 - (np.arange(_FIT) + 0.5) * WIDTH
     shares = np.maximum(means[:, :_FIT], 1e-12)
@@ -144,9 +144,9 @@ def apart(first: FloatArray, second: FloatArray) -> FloatArray:
 def exchanged(
     first: AnglesOfSize, second: AnglesOfSize, numbers: tuple[int, int] | None = None
 ) -> FloatArray:
-    """How far chance sets `numbers` of squares `apart`, drawn from both sizes together.
+    """How far random choices of `numbers` squares from both sizes together are `apart`.
 
-    By default as many as there are of each, so that squares are exchanged between the two.
+    By default these are the numbers of squares of the two sizes, so that squares are exchanged.
     """
     number, other = numbers or (len(first.shares), len(second.shares))
     both = np.vstack([first.shares, second.shares])
@@ -160,7 +160,7 @@ def exchanged(
 
 
 def p_values(seen: FloatArray, by_chance: FloatArray) -> FloatArray:
-    """How often chance is at least as far in each column, what is seen counted in.
+    """For each column, the share of random values at least as large as the seen one, plus itself.
 
     >>> p_values(np.array([0.5, 1.0]), np.array([[0.25, 0.5], [0.5, 0.5], [0.75, 0.5]]))
     array([0.75, 0.25])

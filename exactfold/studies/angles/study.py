@@ -1,7 +1,7 @@
-"""Appendix D of the paper: how the branches of random squares lie in the space of fold angles.
+"""Appendix D of the paper: the directions of the branches of random squares in fold angle space.
 
 A row is one random square: its pairs of branches by their angle, as lines, in bins of pi / 128.
-What the paper says of these angles is tested with numbers (`exactfold.studies.angles.statistics`).
+`exactfold.studies.angles.statistics` tests with numbers the sentences of the paper on these angles.
 """
 
 from __future__ import annotations
@@ -45,16 +45,16 @@ from exactfold.studies.running.study import (
 from exactfold.studies.table1 import PAPER
 
 _MANY = 10_000
-"""Pairs, below which chance shows in a histogram, and its line is thin."""
+"""With fewer pairs a histogram shows chance, so that its line is thin."""
 _LAST = max(PAPER)
-"""The last size in the paper's figure of all sizes; larger ones have a panel of their own."""
+"""The last size in the paper's figure of all sizes; larger sizes have their own panel."""
 
 
 def row(recipe: Recipe) -> dict[str, Any]:
     """The angles of all pairs of branches of one random square.
 
-    `angles`: pairs in each bin of pi / 128 from 0 to pi / 2; `unclear`: pairs that may be in the
-    next bin. `mean_square`: the mean of cos^2, to six digits.
+    `angles` are the numbers of pairs in each bin of pi / 128 from 0 to pi / 2. `unclear` counts the
+    pairs that may be in the next bin. `mean_square` is the mean of cos^2, to six digits.
     """
     lines = Lines.of(square_of(recipe))
     found: dict[str, Any] = {
@@ -82,12 +82,12 @@ def tables(rows: Iterable[Row]) -> list[StudyTable]:
 
 
 def _multiple(value: float) -> str:
-    """Four digits, or all before the point."""
+    """A number with four digits, or with all digits before the point."""
     return f"{value:#.4g}" if value < 1000 else f"{value:.0f}"
 
 
 def _multiples(values: FloatArray) -> str:
-    """The same for both ends of an interval."""
+    """Both ends of the interval of values, each as in `_multiple`."""
     return " to ".join(map(_multiple, ends_of(values)))
 
 
@@ -154,7 +154,7 @@ def _powers(sizes: list[AnglesOfSize]) -> StudyTable:
         tuple(lines),
         (
             "1 is exponential, 2 Gaussian; fitted to the angles below 3 pi / 8, for p from 0.05 to "
-            "4. uniform: the same of the uniform prediction.",
+            "4. uniform: the same for the uniform prediction.",
         ),
     )
 
@@ -190,14 +190,14 @@ def _neighbours(sizes: list[AnglesOfSize]) -> StudyTable:
             "chance: the median distance after squares are exchanged at random between the two "
             "sizes. uniform: the distance of the uniform predictions. tails: the difference of the "
             "shares of pairs below pi / 8. p: permutation tests of the distance and of the tails; "
-            "sizes differ where one is below 0.01. Where few squares are drawn the distance is "
-            "large by chance alone, and the interval is not around the true one.",
+            "sizes differ if one of them is below 0.01. With few squares the distance is large by "
+            "chance alone, and the interval is not around the true one.",
         ),
     )
 
 
 def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
-    """The distributions of all sizes, and that of six vertices beside the uniform one."""
+    """The distributions of all sizes; that of six vertices, beside the uniform one."""
     sizes = angles_by_size(rows)
     if not sizes:
         return []

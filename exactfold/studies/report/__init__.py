@@ -1,1 +1,1 @@
-"""The report of a study: one HTML file, and figures drawn by Matplotlib."""
+"""The report of a study: one HTML file with figures that Matplotlib draws."""

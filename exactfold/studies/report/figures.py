@@ -1,4 +1,4 @@
-"""Figures of studies, drawn by Matplotlib in one style: SVG and PDF for print, SVG for pages."""
+"""Draws figures of studies with Matplotlib in one style: SVG and PDF for print, SVG for pages."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ STYLE = {
     "pdf.fonttype": 42,
     "figure.constrained_layout.use": True,
 }
-"""What all figures share; the salt makes files of equal figures equal."""
+"""The style of all figures; the salt makes the files of equal figures equal."""
 
 
 def check_figures() -> None:
-    """Raise `PackageMissingError` unless figures can be drawn."""
+    """Raises `PackageMissingError` unless figures can be drawn."""
     try:
         import matplotlib  # noqa: F401
     except ImportError:
@@ -43,9 +43,9 @@ def check_figures() -> None:
 
 
 def drawn(figure: StudyFigure, kind: str = "svg") -> bytes:
-    """A figure as a file of a kind, "svg", "pdf" or "png", without the time of its making.
+    """A figure as a file of the kind "svg", "pdf" or "png", without a date.
 
-    What is drawn with a label is named in a legend beside its axes, where it hides nothing.
+    A legend beside the axes names everything that is drawn with a label, where it hides nothing.
     Raises `PackageMissingError`.
     """
     check_figures()
@@ -65,7 +65,7 @@ def drawn(figure: StudyFigure, kind: str = "svg") -> bytes:
 
 
 def _name_beside(axes: Any) -> None:
-    """The legend of axes, to their right."""
+    """Puts the legend of axes to their right."""
     handles, labels = axes.get_legend_handles_labels()
     if handles:
         order = sorted(range(len(labels)), key=lambda k: _number_in(labels[k]))
@@ -78,6 +78,6 @@ def _name_beside(axes: Any) -> None:
 
 
 def _number_in(label: str) -> int:
-    """The size that a label names; 0 for one without a size, which keeps its place."""
+    """The size that a label names; 0 for a label without a size, which keeps its place."""
     digits = label.removeprefix("$V_i = ").removesuffix("$")
     return int(digits) if digits.isdecimal() else 0

@@ -1,4 +1,4 @@
-"""The report of a study: one HTML file with its tables and pictures, which needs no other file."""
+"""Writes the report of a study: one HTML file with tables and pictures, complete in itself."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ code { font-size: .9rem; overflow-wrap: anywhere; }
 
 
 def study_page(run: StudyRun, command: str) -> str:
-    """The page of a run; `command` is what made it. Raises `PackageMissingError`."""
+    """The page of a run, made by `command`; raises `PackageMissingError`."""
     study = run.study
     sizes = ", ".join(f"{number} of size {size}" for size, number in run.numbers.items() if number)
     rows = counted(run.total, "row") + (f" ({sizes})" if sizes else "")
@@ -85,7 +85,7 @@ def _table(table: StudyTable) -> str:
 
 
 _LONG = 24
-"""Characters from which on words are broken into lines."""
+"""Texts of more characters than this are broken into lines."""
 
 _TINY = re.compile(r"(\d(?:\.\d+)?)e([+-]\d+)")
 _POWER = re.compile(r"\^(-?\w+|\([^()]*\))")
@@ -94,7 +94,7 @@ _INDEXED = re.compile(r"\bV([it])\b")
 
 
 def _typeset(text: str) -> str:
-    """Plain text of a table as a paper prints it: indices, powers, signs.
+    """Plain text of a table in HTML, with indices, powers and signs as in print.
 
     >>> print(_typeset("2^(Vi - 1) >= 1e-02"))
     2<sup><i>V<sub>i</sub></i> − 1</sup> ≥ 1 × 10<sup>−2</sup>
@@ -106,7 +106,7 @@ def _typeset(text: str) -> str:
 
 
 def _terms(note: str, columns: Iterable[str]) -> str:
-    """A note, with the columns that it explains in italics."""
+    """A note in HTML, in which the names of columns that it explains are in italics."""
     names = "|".join(re.escape(name) for name in columns if name)
     if names:
         words = rf"(?<!\w)((?:{names})(?:(?:, | and )(?:{names}))*)(?=:)"
@@ -125,7 +125,7 @@ def _figure(figure: StudyFigure) -> str:
 
 
 def _named_apart(svg: str, name: str) -> str:
-    """The picture with names of its own: a page holds several, and names are of the page."""
+    """The picture with its own names, as a page contains several pictures."""
     for mark in ('id="', 'href="#', "url(#"):
         svg = svg.replace(mark, f"{mark}{name}-")
     return svg

@@ -1,1 +1,1 @@
-"""What all studies share: recipes, the journal of rows, processes, statistics, and files."""
+"""Everything that studies share: recipes, journals of rows, processes, statistics, and files."""

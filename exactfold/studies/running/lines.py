@@ -30,27 +30,27 @@ from exactfold.solve.numeric.dense_newton import sign_vectors
 SignArray = npt.NDArray[np.int8]
 
 UNKNOWN = 2
-"""In place of the sign of a fold that is not decided."""
+"""Stands in place of the sign of a fold that is not decided."""
 
 _U = 2.0**-53
 _UP = 1.0 + 2.0**-20
 _VALUES = {letter: UNKNOWN if sign is None else sign for sign, letter in LETTERS.items()}
 _BITS = 80
-"""Bits of the bounds that are asked for where branches come one by one, or are sharpened."""
+"""Bounds have so many bits if branches come one by one, or are sharpened."""
 
 
 @dataclass(frozen=True)
 class Lines:
-    """All branches of a pattern with four corners: one row each, seen from any of its two sides.
+    """All branches of a pattern with four corners, one row each, seen from either side.
 
     `signs` (branches, interior vertices): 1 up, -1 down, 0 proved flat. `letters` (branches,
     folds): 1 valley, -1 mountain, 0 proved flat, `UNKNOWN`. `directions` (branches, folds): the
     unit vector of the first-order fold angles of each branch (`fold_angles`), as doubles that are
-    within `errors` of the true ones in the Euclidean norm. Interior vertices and folds in the order
-    of the pattern. If `status` is PROVED these are all branches, each once, and
+    within `errors` of the true ones in the Euclidean norm. Interior vertices and folds have the
+    order of the pattern. If `status` is PROVED, these are all branches, each once, and
     `with_multiplicity` is the number of solutions with multiplicity; otherwise there are no rows.
-    `sharp(rows)` are directions and errors of rows, computed anew from boxes of `_BITS` bits; None
-    where `directions` come from such boxes.
+    `sharp(rows)` computes directions and errors of rows anew, from boxes of `_BITS` bits; it is
+    None if `directions` come from such boxes already.
     """
 
     pattern: CreasePattern
@@ -64,10 +64,10 @@ class Lines:
 
     @classmethod
     def of(cls, pattern: CreasePattern) -> Lines:
-        """All branches, proved as by `count_branches`, and read from arrays where that is possible.
+        """All branches, proved as by `count_branches`, and read from arrays if possible.
 
-        UNDECIDED for more than 2^20 branches, which are not kept in memory. Raises as
-        `count_branches` does.
+        UNDECIDED for more than 2^20 branches, which are not kept in memory. Raises the errors of
+        `count_branches`.
 
         >>> from exactfold.pattern.families import two_vertex
         >>> lines = Lines.of(two_vertex())
@@ -85,9 +85,9 @@ class Lines:
         return _by_blocks(conveyor) or _one_by_one(count_branches(pattern))
 
     def sharper(self, rows: Sequence[int]) -> tuple[FloatArray, FloatArray]:
-        """Directions of some branches, up to sign, with errors of the last bits, and their bounds.
+        """Directions of some branches, up to sign, with errors in the last bits only; the errors.
 
-        Those of `directions` where there are none better.
+        If there are no better ones, these are rows of `directions`.
         """
         if self.sharp is None:
             return self.directions[rows], self.errors[rows]
@@ -95,12 +95,12 @@ class Lines:
 
     @property
     def distinct(self) -> int | None:
-        """The number of branches, None if it is not proved."""
+        """The number of branches; None if it is not proved."""
         return len(self.signs) if self.status is PROVED else None
 
     @property
     def flat_vertices(self) -> int:
-        """How many foldable vertices are flat in some branch."""
+        """How many foldable vertices are flat on some branch."""
         rigid = {v for _, inside in self.pattern.triangulated_triangles for v in inside}
         flat = (self.signs == 0).any(axis=0).tolist()
         interior = self.pattern.interior
@@ -108,7 +108,7 @@ class Lines:
 
 
 def _by_blocks(conveyor: Conveyor) -> Lines | None:
-    """The branches of all blocks; None unless every sign vector has a proved root with letters."""
+    """The branches of all blocks; None unless each sign vector has a proved root with letters."""
     problem, count = conveyor.problem, conveyor.block_size
     pattern = problem.pattern
     total = 1 << conveyor.size
@@ -150,8 +150,8 @@ def _by_blocks(conveyor: Conveyor) -> Lines | None:
 
 
 def _sharpened(problem: Problem, boxes: Sequence[IsolatingBox]) -> list[IsolatingBox]:
-    """Boxes of `_BITS` bits in the given ones, of the same zeros; these if none is proved."""
-    from exactfold.solve.certify.exact_krawczyk import krawczyk  # FLINT, for this alone
+    """Boxes of `_BITS` bits for the same zeros, inside the given ones; else the given ones."""
+    from exactfold.solve.certify.exact_krawczyk import krawczyk  # here: only this needs FLINT
 
     centres = [[Fraction(x, 1 << box.bits) for x in box.real] for box in boxes]
     found = krawczyk(problem.chart.system, centres, precisions=(_BITS,), reach=None)
@@ -163,7 +163,7 @@ def _sharpened(problem: Problem, boxes: Sequence[IsolatingBox]) -> list[Isolatin
 
 @dataclass(frozen=True)
 class _Bend:
-    """The bend of a fold at (x, 1): the row of integers times (x, 1), times `length` / `below`."""
+    """The bend of a fold at (x, 1): the integer row times (x, 1), times `length` / `below`."""
 
     row: tuple[int, ...]
     below: int
@@ -189,10 +189,11 @@ def _bends(problem: Problem) -> list[_Bend]:
 def _sharp_directions(
     problem: Problem, boxes: Sequence[IsolatingBox], letters: SignArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Unit vectors of fold angles in boxes, and error bounds.
+    """Unit vectors of the fold angles in boxes, and error bounds.
 
-    Values at centres are integers, rounded once; a proved flat fold is 0. With the length, off by
-    2 u, and its product a bend is off by at most 4 u of its size and what the box adds.
+    Values at the centres are integers, rounded once; a fold that is proved flat has the value 0.
+    The length has an error of 2 u. After the product, a bend has an error of at most 4 u of its
+    size, plus the part of the box.
     """
     folds = _bends(problem)
     slopes = [sum(map(abs, fold.row[:-1])) for fold in folds]
@@ -211,12 +212,13 @@ def _sharp_directions(
 def _directions(
     problem: Problem, points: FloatArray, radii: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Unit vectors of fold angles at points (x, 1) with boxes of these radii, and error bounds.
+    """Unit vectors of the fold angles at points (x, 1) with boxes of these radii, and error bounds.
 
-    A bend is a row of rationals times the length of the fold. With B the nearest doubles, all off
-    by at most 4 u, z = (x, 1) of n + 1 terms and gamma as in `float_krawczyk`, the error of fl(B z)
-    is at most r sum_k |B_k| + c |B| |z| for c = 3 (n + 5) u; and a vector within e of one of length
-    l has a direction within 2 e / (l - e) of it, to which rounding adds less than (F + 4) u.
+    A bend is a row of rationals times the length of the fold. Let B hold the nearest doubles, all
+    with errors of at most 4 u, let z = (x, 1) have n + 1 terms, and let gamma be as in
+    `float_krawczyk`. Then the error of fl(B z) is at most r sum_k |B_k| + c |B| |z| for
+    c = 3 (n + 5) u. A vector within e of a vector of length l has a direction within 2 e / (l - e)
+    of its direction, to which rounding adds less than (F + 4) u.
     """
     rows = [[x / fold.below * fold.length for x in fold.row] for fold in _bends(problem)]
     matrix, size = np.array(rows), points.shape[1]
@@ -228,7 +230,7 @@ def _directions(
 
 
 def _units(bends: FloatArray, errors: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Vectors scaled to length 1, and what becomes of their error bounds."""
+    """The vectors scaled to length 1, and their error bounds after scaling."""
     lengths = np.sqrt((bends**2).sum(axis=1))
     with np.errstate(all="ignore"):
         spread = np.where(
@@ -238,14 +240,14 @@ def _units(bends: FloatArray, errors: FloatArray) -> tuple[FloatArray, FloatArra
 
 
 def _length(pattern: CreasePattern, fold: tuple[int, int]) -> float:
-    """The length of a fold in integer coordinates: correctly rounded but for two units."""
+    """The length of a fold in integer coordinates, correctly rounded up to two units."""
     points, _ = pattern.integer_vertices
     (ax, ay), (bx, by) = points[fold[0]], points[fold[1]]
     return float(np.sqrt(float((bx - ax) ** 2 + (by - ay) ** 2)))
 
 
 def _one_by_one(result: BranchCount) -> Lines:
-    """The branches of a count, whose roots may be multiple."""
+    """The branches of a count; its roots may be multiple."""
     pattern = result.pattern
     proved = result.status is PROVED and bool(result.branches)
     branches = list(result.branches) if proved else []
@@ -278,7 +280,7 @@ def _measured(pattern: CreasePattern, branches: Sequence[Branch]) -> tuple[Float
             middle = (low + high) / 2
             if middle:
                 errors[k] += float((high - low) / 2) * abs(bend / float(middle)) * _UP
-            elif high > low:  # no bound of the bend follows from its middle
+            elif high > low:  # the middle gives no bound of the bend
                 errors[k] = np.inf
             errors[k] += 4 * _U * abs(bend)
     return _units(bends, errors)

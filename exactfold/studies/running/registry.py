@@ -1,4 +1,4 @@
-"""The studies by name; each is a module of this room with a `STUDY`."""
+"""The studies by name; each is a module of this room with a constant `STUDY`."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ MODULES = {
 
 
 def study_named(name: str) -> Study:
-    """The study with a name; raises `UsageError`, which lists the names.
+    """The study with this name; raises `UsageError`, which lists the names.
 
     >>> study_named("table1").numbers[5]
     1000
     """
     if name not in MODULES:
-        raise UsageError(f"no study {name!r}; there are: {', '.join(MODULES)}")
+        raise UsageError(f"there is no study {name!r}; the studies are: {', '.join(MODULES)}")
     found: Study = import_module(MODULES[name]).STUDY
     return found
 

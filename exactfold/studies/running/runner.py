@@ -1,4 +1,4 @@
-"""Runs of studies: the rows that are missing are computed, on all cores or on a cluster."""
+"""Runs studies: computes the missing rows, on all cores or on a cluster."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from exactfold.studies.running.study import (
 
 @dataclass(frozen=True, repr=False)
 class StudyRun:
-    """A study with the rows of a seed: `rows` can be gone through again, `computed` are new."""
+    """A study with the rows of a seed; `computed` of them are new. `rows` can be read again."""
 
     study: Study
     seed: int
@@ -45,17 +45,17 @@ class StudyRun:
 
     @property
     def figures(self) -> tuple[StudyFigure, ...]:
-        """The figures of the study, to be drawn by `exactfold.app.report`."""
+        """The figures of the study; `exactfold.app.report` draws them."""
         return tuple(self.study.figures(self.rows))
 
     @property
     def total(self) -> int:
-        """How many rows there are."""
+        """The number of rows."""
         return self.study.number(self.seed, self.numbers)
 
     @property
     def undecided(self) -> int:
-        """How many rows are not proved."""
+        """The number of rows that are not proved."""
         return sum(row["status"] == str(UNDECIDED) for row in self.rows)
 
     def __repr__(self) -> str:
@@ -72,15 +72,16 @@ def run_study(
     engine: Pool | None = None,
     progress: Progress | None = None,
 ) -> StudyRun:
-    """The rows of a study for a seed: those that the journal has, and the others computed.
+    """The rows of a study for a seed: rows of the journal are read, the others are computed.
 
-    The result is the same for any number of `workers`. `numbers`: rows by size, by default those of
-    the study. Each row is written to the `journal` as soon as it is ready, so that the same call
-    goes on after an interruption; without a journal they are in memory. An `engine`, such as
-    `dask_pool`, takes the place of the `workers`. `progress("computing", done, total)`.
+    The result is the same for any number of `workers`. `numbers` are the numbers of rows by size,
+    by default those of the study. Each row is written to the `journal` as soon as it is ready, so
+    that the same call continues after an interruption. Without a journal, rows are kept in memory.
+    An `engine`, such as `dask_pool`, replaces the `workers`. `progress("computing", done, total)`
+    is called after each row.
 
-    Raises `UsageError`, the errors of `RowStore`, and, once all others are written,
-    `RowFailedError` for rows that ended with an error.
+    Raises `UsageError`, the errors of `RowStore`, and `RowFailedError` for rows that ended
+    with an error, after all other rows are written.
 
     >>> run = run_study("table1", numbers={2: 3})
     >>> [row["distinct"] for row in run.rows]
@@ -88,7 +89,7 @@ def run_study(
     """
     found = study_named(study) if isinstance(study, str) else study
     if workers < 1:
-        raise UsageError(f"at least one worker is needed, not {workers}")
+        raise UsageError(f"the number of workers must be at least one, not {workers}")
     numbers = dict(found.numbers if numbers is None else numbers)
     recipes = _Plan(found, seed, numbers)
     done = engine or process_pool(workers)
@@ -110,7 +111,7 @@ def run_study(
 
 @dataclass(frozen=True, repr=False)
 class Recomputed:
-    """A row of a journal, computed once more; `agrees` if nothing differs."""
+    """A row of a journal and the same row computed again; `agrees` if nothing differs."""
 
     study: Study
     stored: StoredRow
@@ -121,12 +122,12 @@ class Recomputed:
 
     @property
     def agrees(self) -> bool:
-        """Whether the row is the one in the journal."""
+        """Whether the computed row equals the row in the journal."""
         return canonical(self.row) == canonical(self.stored.row)
 
     @property
     def differing(self) -> tuple[str, ...]:
-        """The names of what differs."""
+        """The names of the values that differ."""
         names = sorted({*self.row, *self.stored.row})
         missing = object()
         return tuple(
@@ -137,9 +138,9 @@ class Recomputed:
 
 
 def recompute_row(study: str | Study, journal: str | os.PathLike[str], name: str) -> Recomputed:
-    """Compute a row of a journal once more, from its recipe alone.
+    """Computes a row of a journal again, from its recipe alone.
 
-    `name` may be cut short. Raises `InputError`, the errors of `RowStore` and those of the
+    `name` may be abbreviated. Raises `InputError`, the errors of `RowStore` and those of the
     row.
     """
     found = study_named(study) if isinstance(study, str) else study
@@ -148,22 +149,24 @@ def recompute_row(study: str | Study, journal: str | os.PathLike[str], name: str
 
 
 def normal(row: Row, recipe: Recipe) -> dict[str, Any]:
-    """A row as it comes back from the journal; raises `UsageError` for one that is no row."""
+    """A row in the form in which the journal returns it; raises `UsageError` if it is not a row."""
     if row.get("status") not in STATUSES:
-        raise UsageError(f"the status of a row is one of {', '.join(STATUSES)}")
+        raise UsageError(f"the status of a row must be one of {', '.join(STATUSES)}")
     shared = {"row", "sha256", *recipe} & set(row)
     if shared:
-        raise UsageError(f"{min(shared)!r} is both of the recipe and of the row")
+        raise UsageError(
+            f"{min(shared)!r} is a name both in the recipe and in the row: rename it in the row"
+        )
     try:
         found: dict[str, Any] = json.loads(canonical(row))
     except (ValueError, TypeError) as error:
-        raise UsageError(f"a row holds what JSON does not: {error}") from None
+        raise UsageError(f"a row contains a value that JSON cannot express: {error}") from None
     return found
 
 
 @dataclass(frozen=True)
 class _Plan:
-    """The recipes of a run, made anew each time they are gone through."""
+    """The recipes of a run; each iteration makes them anew."""
 
     study: Study
     seed: int
@@ -175,7 +178,7 @@ class _Plan:
 
 @dataclass(frozen=True)
 class _Work:
-    """What a worker does with a recipe; an error ends this row and no other."""
+    """The job of a worker for a recipe; an error ends this row and no other."""
 
     row: Callable[[Recipe], Row]
 
@@ -194,7 +197,7 @@ def _compute(
     pool: Pool,
     progress: Progress | None,
 ) -> int:
-    """Compute and keep the rows that are not known; how many there were."""
+    """Computes and keeps the rows that are not known; returns their number."""
 
     def missing() -> Iterator[Recipe]:
         return (recipe for recipe in recipes if study.id_of(recipe) not in known)
@@ -214,7 +217,7 @@ def _compute(
     if failed:
         recipe, error = failed[0]
         raise RowFailedError(
-            f"{counted(len(failed), 'row')} ended with an error, one with the recipe "
+            f"{counted(len(failed), 'row')} ended with an error, the first one with the recipe "
             f"{canonical(recipe)}: {type(error).__name__}: {error}"
         ) from error
     return total

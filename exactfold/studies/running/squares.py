@@ -1,4 +1,4 @@
-"""Recipes of the paper's ensemble: random squares, each named by its size and its own seed."""
+"""Recipes of the paper's ensemble: random squares, each with its size and its own seed."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ from exactfold.pattern.random_squares import random_square
 from exactfold.studies.running.study import Recipe
 
 DENOMINATOR = 1024
-"""Coordinates are multiples of 1/1024."""
+"""Coordinates are multiples of 1/`DENOMINATOR`."""
 
 _SIZES, _MOST = 100, 10_000_000
 
 
 def square_recipes(seed: int, numbers: Mapping[int, int]) -> Iterator[Recipe]:
-    """`numbers[n]` random squares with n interior vertices, for each n.
+    """Yields, for each n, `numbers[n]` random squares with n interior vertices.
 
-    Square k has the seed (100 seed + n) 10^7 + k of `random_square`: no two sizes or seeds of a
-    study share points, and the first squares of a longer list are those of a shorter one. Raises
-    `UsageError` for more than 10^7 squares or for sizes that are not from 1 to 99.
+    Square k has the seed (100 seed + n) 10^7 + k of `random_square`. So no two sizes or seeds of a
+    study share points, and a longer list begins with the squares of a shorter one. Raises
+    `UsageError` for more than 10^7 squares of a size, and for sizes that are not from 1 to 99.
 
     >>> [recipe["seed"] for recipe in square_recipes(0, {2: 1, 3: 2})]
     [20000000, 30000000, 30000001]
@@ -40,5 +40,5 @@ def square_recipes(seed: int, numbers: Mapping[int, int]) -> Iterator[Recipe]:
 
 
 def square_of(recipe: Recipe) -> CreasePattern:
-    """The random square of a recipe, the same on every machine."""
+    """The random square of a recipe; it is the same on every machine."""
     return random_square(int(recipe["interior"]), int(recipe["seed"]), int(recipe["denominator"]))

@@ -7,17 +7,17 @@ from dataclasses import dataclass
 from math import floor, log10
 
 LEVEL = 0.95
-"""Of intervals."""
+"""The confidence level of intervals."""
 
 AGREE = 0.01
-"""Two samples agree where the test would be as far off with at least this probability."""
+"""Two samples agree if chance makes them differ as much with at least this probability."""
 
 
 def interval(found: int, number: int, level: float = LEVEL) -> tuple[float, float]:
     """The interval of Clopper and Pearson for a probability, from `found` of `number` trials.
 
-    Whatever the probability is, the interval holds it in at least `level` of all samples. (0, 1)
-    without trials.
+    For any probability, the interval contains it in at least `level` of all samples. Without trials
+    it is (0, 1).
 
     >>> tuple(round(x, 4) for x in interval(0, 100)), tuple(round(x, 4) for x in interval(17, 1000))
     ((0.0, 0.0362), (0.0099, 0.0271))
@@ -33,7 +33,7 @@ def interval(found: int, number: int, level: float = LEVEL) -> tuple[float, floa
 def same_probability(first: tuple[int, int], second: tuple[int, int]) -> float:
     """Fisher's exact test of two samples (found, number): the two-sided p-value.
 
-    The probability of samples as different as these if one probability is behind both.
+    It is the probability of samples as different as these if both have the same probability.
 
     >>> round(same_probability((17, 1000), (28, 1000)), 3)
     0.131
@@ -53,11 +53,11 @@ class Decay:
 
 
 def decay(samples: Mapping[int, tuple[int, int]]) -> Decay | None:
-    """The most likely ratio where the share of sample k is ratio^k, for k >= 1.
+    """The most likely ratio if the share of sample k is ratio^k, for k >= 1.
 
     `p` is the probability of samples that fit worse, by the chi-squared distribution of the
-    likelihood ratio with one degree of freedom less than there are samples. None for fewer than
-    two, or where a share is 0 or 1 throughout.
+    likelihood ratio, whose degrees of freedom are one less than the number of samples. The result
+    is None for fewer than two samples, and if all shares are 0 or all are 1.
 
     >>> fit = decay({1: (500, 1000), 2: (260, 1000), 3: (120, 1000)})
     >>> round(fit.ratio, 3), round(fit.p, 2)
@@ -89,7 +89,7 @@ def decay(samples: Mapping[int, tuple[int, int]]) -> Decay | None:
 def one_share(samples: Iterable[tuple[int, int]]) -> float:
     """Pearson's chi-squared test that samples (found, number) have one share: the p-value.
 
-    1 where there is nothing to compare: fewer than two samples, or a share of 0 or 1 throughout.
+    It is 1 if there is nothing to compare: fewer than two samples, or all shares 0, or all 1.
 
     >>> round(one_share([(50, 100), (60, 100), (70, 100)]), 3), one_share([(0, 10), (0, 20)])
     (0.016, 1.0)
@@ -105,8 +105,8 @@ def one_share(samples: Iterable[tuple[int, int]]) -> float:
 def trend(samples: Mapping[int, tuple[int, int]]) -> tuple[float, float]:
     """The test of Cochran and Armitage for shares that change with a number: z and its p-value.
 
-    z is positive if samples (found, number) of larger keys have larger shares; the p-value is
-    two-sided, of the normal distribution. (0, 1) where nothing changes.
+    z is positive if samples (found, number) of larger keys have larger shares. The p-value is
+    two-sided and uses the normal distribution. If nothing changes, the result is (0, 1).
 
     >>> z, p = trend({5: (12, 1000), 6: (33, 1000), 7: (43, 1000)})
     >>> round(z, 2), f"{p:.1e}"
@@ -126,7 +126,7 @@ def trend(samples: Mapping[int, tuple[int, int]]) -> tuple[float, float]:
 
 
 def p_text(p: float) -> str:
-    """A p-value with two digits that count.
+    """A p-value with two significant digits.
 
     >>> p_text(0.4519), p_text(0.0), p_text(1.0)
     ('0.45', '< 1e-15', '1')
@@ -135,7 +135,7 @@ def p_text(p: float) -> str:
 
 
 def p_equals(p: float) -> str:
-    """The same as an equation.
+    """A p-value as an equation.
 
     >>> p_equals(0.4519), p_equals(0.0)
     ('p = 0.45', 'p < 1e-15')
@@ -145,7 +145,7 @@ def p_equals(p: float) -> str:
 
 
 def verdict(holds: bool | None) -> str:
-    """What a number says of a sentence; None where it does not tell.
+    """The verdict of a number on a sentence; None means that the number does not decide.
 
     >>> verdict(True), verdict(False), verdict(None)
     ('agreed', 'not agreed', 'not decided')
@@ -154,7 +154,7 @@ def verdict(holds: bool | None) -> str:
 
 
 def percent(part: float) -> str:
-    """A share in per cent, with two digits that count, without a sign.
+    """A share in per cent, with two significant digits, without the sign %.
 
     >>> percent(0.0271), percent(0.885), percent(0.0), percent(0.00031), percent(1.0)
     ('2.7', '88', '0', '0.031', '100')
@@ -164,7 +164,7 @@ def percent(part: float) -> str:
 
 
 def interval_text(found: int, number: int) -> str:
-    """The interval of a share in per cent, with as many digits as its width makes sense of.
+    """The interval of a share in per cent, with as many digits as its width justifies.
 
     >>> interval_text(17, 1000), interval_text(7131, 20000), interval_text(8, 50)
     ('0.99 to 2.7', '35.0 to 36.3', '7.2 to 29')
@@ -176,5 +176,5 @@ def interval_text(found: int, number: int) -> str:
 
 
 def agreement(p: float) -> str:
-    """Whether a test with this p-value lets two samples agree."""
+    """Whether two samples agree or differ, by the p-value of a test."""
     return "agree" if p >= AGREE else "differ"

@@ -1,4 +1,4 @@
-"""Rows of a study in an SQLite file: the journal that an interrupted run goes on with."""
+"""Rows of a study in an SQLite file: the journal with which an interrupted run continues."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ CREATE TABLE rows (
 
 @dataclass(frozen=True, repr=False)
 class StoredRow:
-    """A row of a journal: its name, what made it, and what was found."""
+    """A row of a journal: its name, its recipe, and its values."""
 
     id: str
     recipe: Recipe
@@ -41,7 +41,7 @@ class StoredRow:
 
     @property
     def sha256(self) -> str:
-        """The SHA-256 of recipe and row as JSON, which the journal has beside them."""
+        """The SHA-256 of recipe and row as JSON; the journal stores it beside them."""
         return digest([self.recipe, self.row])
 
     @property
@@ -51,12 +51,12 @@ class StoredRow:
 
 
 class RowStore:
-    """The journal of a study, open for more rows; one process at a time writes it.
+    """The journal of a study, open for more rows; only one process at a time writes it.
 
-    Each row is committed by itself (SQLite, write-ahead log): a run that is killed loses the rows
-    under way and no other, and none is there twice. Raises `JournalInUseError`,
-    `UnwritableFileError`, and `ForeignJournalError` for the journal of another study or version and
-    for what is no journal; such files are left as they are.
+    Each row is committed by itself (SQLite, write-ahead log). A run that is killed loses only the
+    rows under way, and no row is there twice. Raises `JournalInUseError`, `UnwritableFileError`,
+    and `ForeignJournalError` for the journal of another study or version and for a file that is not
+    a journal. Such files are not changed.
     """
 
     def __init__(self, path: str | os.PathLike[str], study: Study) -> None:
@@ -96,14 +96,14 @@ class RowStore:
             return int(self._rows.execute("SELECT count(*) FROM rows").fetchone()[0])
 
     def add(self, recipe: Recipe, row: Row) -> None:
-        """Write one row, whole; raises `UnwritableFileError`."""
+        """Writes one row completely; raises `UnwritableFileError`."""
         stored = StoredRow(self.study.id_of(recipe), recipe, row)
         values = (stored.id, canonical(recipe), canonical(row), stored.sha256)
         with _told(self.path):
             self._rows.execute("INSERT INTO rows VALUES (?, ?, ?, ?)", values)
 
     def close(self) -> None:
-        """Fold the write-ahead log into the file and let others have it."""
+        """Merges the write-ahead log into the file, and releases the file."""
         if hasattr(self, "_rows"):
             self._rows.close()
         self._lock.close()
@@ -111,10 +111,10 @@ class RowStore:
 
 @dataclass(frozen=True)
 class StoredRows:
-    """The rows of some recipes in a journal, read each time they are gone through, in that order.
+    """The rows of some recipes in a journal, in the order of the recipes.
 
-    Recipes without a row are left out. Raises `ForeignJournalError` for a row that is not what was
-    written.
+    Each iteration reads them from the file. Recipes without a row are left out. Raises
+    `ForeignJournalError` for a row that differs from what was written.
     """
 
     path: str
@@ -130,9 +130,9 @@ class StoredRows:
 
 
 def read_row(path: str | os.PathLike[str], study: Study, name: str) -> StoredRow:
-    """The row whose name begins with a text.
+    """The row whose name begins with a given text.
 
-    Raises `InputError` if there is none or are several, and as `RowStore`.
+    Raises `InputError` if there is no such row or several, and the errors of `RowStore`.
     """
     path = os.fspath(path)
     if not os.path.exists(path):
@@ -145,7 +145,7 @@ def read_row(path: str | os.PathLike[str], study: Study, name: str) -> StoredRow
             what = "no row" if not found else "more than one row"
             raise InputError(f"{path} has {what} whose name begins with {name!r}")
         row = _row(rows, path, study, found[0][0])
-    if row is None:  # the name was read a moment ago
+    if row is None:  # although its name was read a moment ago
         raise ForeignJournalError(f"{path} lost the row {name}")
     return row
 
@@ -174,7 +174,7 @@ def _row(rows: sqlite3.Connection, path: str, study: Study, name: str) -> Stored
     except (ValueError, TypeError):
         good = False
     if not good:
-        raise ForeignJournalError(f"{path}: the row {name} is not what was written")
+        raise ForeignJournalError(f"{path}: the row {name} differs from what was written")
     return stored
 
 
@@ -197,13 +197,13 @@ def _check_about(rows: sqlite3.Connection, path: str, study: Study) -> None:
     if found != _about(study):
         other = f"{found.get('study')}, version {found.get('study version')}"
         raise ForeignJournalError(
-            f"{path} holds rows of the study {other}, not of {study.name}, version "
+            f"{path} contains rows of the study {other}, not of {study.name}, version "
             f"{study.version}: name another file"
         )
 
 
 def _check_kind(path: str) -> bool:
-    """Whether a journal is to be begun; raises for a file of another kind, which is not touched."""
+    """Whether the journal is new; raises an error for a file of another kind, and leaves it."""
     try:
         with open(path, "rb") as file:
             begin = file.read(len(_MAGIC))
@@ -218,7 +218,7 @@ def _check_kind(path: str) -> bool:
 
 @contextmanager
 def _told(path: str) -> Iterator[None]:
-    """Say what SQLite says of a file in errors of this package."""
+    """Turns errors of SQLite into errors of this package."""
     try:
         yield
     except sqlite3.DatabaseError as error:

@@ -1,4 +1,4 @@
-"""What a study is: recipes, a row for each, and tables and figures made of the rows."""
+"""The parts of a study: recipes, a row for each, and tables and figures made of the rows."""
 
 from __future__ import annotations
 
@@ -13,12 +13,13 @@ from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.errors import UsageError
 
 Recipe: TypeAlias = Mapping[str, int | str]
-"""What makes a row: numbers and texts by name, such as a size and a seed."""
+"""The numbers and texts, by name, from which a row is made, such as a size and a seed."""
 
 Row: TypeAlias = Mapping[str, Any]
-"""What was found, by name; where tables and figures are made, with the recipe and its `row`."""
+"""The values that were found, by name; for tables and figures also the recipe and its `row`."""
 
 Cell: TypeAlias = int | str | None
+"""The content of a cell of a table; None for an empty cell."""
 
 
 class TableDocument(TypedDict):
@@ -31,10 +32,8 @@ class TableDocument(TypedDict):
     notes: list[str]
 
 
-"""What stands in a table; None where there is nothing to say."""
-
 STATUSES = (str(PROVED), str(UNDECIDED))
-"""What the key `status` of a row may be."""
+"""The possible values of the key `status` of a row."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -55,14 +54,14 @@ class StudyTable:
 
     @property
     def words(self) -> tuple[bool, ...]:
-        """Which columns hold words and not numbers: these are flush left."""
+        """Which columns contain words instead of numbers; these are flush left."""
         return tuple(
             any(isinstance(row[k], str) and row[k][:1].isalpha() for row in self.rows)  # type: ignore[index]
             for k in range(len(self.columns))
         )
 
     def to_dict(self) -> TableDocument:
-        """The table as `exactfold study --json` has it."""
+        """The table in the form of `exactfold study --json`."""
         return {
             "name": self.name,
             "title": self.title,
@@ -76,10 +75,9 @@ class StudyTable:
 class StudyFigure:
     """A figure of a study: `draw(axes)` draws it on axes of Matplotlib, in the style of the report.
 
-    `name` names its file. `width` and `height` are in inches. With `panels` = (rows, columns) other
-    than (1, 1), `draw` gets a list of axes, row by row. What is drawn with a label is named in a
-    legend beside its axes. What is drawn is a picture; the numbers that are proved stand in the
-    tables.
+    `name` names its file. `width` and `height` are in inches. If `panels` = (rows, columns) is not
+    (1, 1), `draw` gets a list of axes, row by row. A legend beside the axes names everything that
+    is drawn with a label. The figure is only a picture; the proved numbers are in the tables.
     """
 
     name: str
@@ -93,13 +91,14 @@ class StudyFigure:
 
 @dataclass(frozen=True, repr=False)
 class Study:
-    """A function from a seeded recipe to a row, and from rows to tables and figures.
+    """A function that makes a row from a seeded recipe, and functions for tables and figures.
 
     `recipes(seed, numbers)` yields the recipes of `numbers[size]` rows of each size; different
-    sizes and seeds share none. `row(recipe)` is a function of a module, as it is sent to other
-    processes; it depends on the recipe only. Its mapping has a `status`, "proved" or "undecided".
-    `tables` and `figures` get rows with their recipes. `numbers` are those of the paper, and
-    `extended` go past it. Rows of another `version` are not read: it rises when `row` changes.
+    sizes and seeds share no recipe. `row(recipe)` must be a function of a module, as it is sent to
+    other processes, and must depend on the recipe only. Its mapping has a `status`, "proved" or
+    "undecided". `tables` and `figures` get rows with their recipes. `numbers` are those of the
+    paper, and `extended` go beyond it. `version` rises when `row` changes; rows of another version
+    are not read.
     """
 
     name: str
@@ -116,7 +115,9 @@ class Study:
         return f"<Study: {self.name}, version {self.version}>"
 
     def id_of(self, recipe: Recipe) -> str:
-        """The name of the row of a recipe: 16 hexadecimal digits of the SHA-256 of all it means.
+        """The name of the row of a recipe: 16 hexadecimal digits of a SHA-256.
+
+        The digest is that of the study's name and version and of the recipe.
 
         >>> from exactfold.studies.running.registry import study_named
         >>> study_named("table1").id_of({"interior": 4, "seed": 0, "denominator": 1024})
@@ -125,7 +126,7 @@ class Study:
         return digest([self.name, self.version, recipe])[:16]
 
     def number(self, seed: int, numbers: Mapping[int, int]) -> int:
-        """How many rows a run has."""
+        """The number of rows of a run."""
         return sum(1 for _ in self.recipes(seed, numbers))
 
     def chosen(
@@ -135,11 +136,11 @@ class Study:
         *,
         extend: bool = False,
     ) -> dict[int, int]:
-        """How many rows of each size: those of the study, of these `sizes` only, or this `number`.
+        """The number of rows of each size: that of the study, only for `sizes`, or `number`.
 
-        A `number` by size replaces those of the study for the sizes that it names; with neither
-        `sizes` nor `extend` these are all sizes. Raises `UsageError` for a size that has no
-        number, and for a number of a size that is not among `sizes`.
+        If `number` is a mapping, it replaces the study's numbers for the sizes that it names; and
+        without `sizes` and `extend` only these sizes are used. Raises `UsageError` for a size
+        without a number, and for a number of a size that is not among `sizes`.
 
         >>> from exactfold.studies.running.registry import study_named
         >>> study_named("table1").chosen(range(2, 6), {4: 30, 5: 7})
@@ -158,8 +159,8 @@ class Study:
         beside = sorted(by_size.keys() - set(wanted))
         if beside:
             raise UsageError(
-                f"there is a number of rows for size {beside[0]}, which is not one of the sizes "
-                "asked for"
+                f"there is a number of rows for size {beside[0]}, but this size is not among the "
+                "chosen sizes"
             )
         known.update(by_size)
         missing = [size for size in wanted if size not in known]
@@ -171,7 +172,7 @@ class Study:
 
 
 def canonical(value: object) -> str:
-    """The one JSON text of a value; raises `ValueError` for NaN and infinities.
+    """The canonical JSON text of a value; raises `ValueError` for NaN and infinities.
 
     >>> canonical({"b": 1, "a": [True, None]})
     '{"a":[true,null],"b":1}'
@@ -190,9 +191,9 @@ _COLOURS = ("#440154", "#3b4cc0", "#2a8fd0", "#1fa187", "#5fae2c", "#d9a400", "#
 
 
 def of_size(size: int) -> dict[str, str]:
-    """The colour of a number of interior vertices in figures: violet to red, 2 to 9.
+    """The colour of a number of interior vertices in figures, from violet (2) to red (9).
 
-    From 10 on the same again, with dashes; 1 is grey.
+    From 10 on the same colours come again, dashed; 1 is grey.
 
     >>> of_size(2), of_size(10)
     ({'color': '#440154'}, {'color': '#440154', 'linestyle': '--'})

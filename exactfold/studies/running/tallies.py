@@ -1,4 +1,4 @@
-"""What several studies do with their rows: adding them up by size, and kinds of curves."""
+"""Functions that several studies share: they sum up rows by size, and draw kinds of curves."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from exactfold.studies.running.study import Row, of_size
 
 class _Tally(Protocol):
     def add(self, row: Row) -> None:
-        """One more row."""
+        """Adds a row."""
 
 
 T = TypeVar("T", bound=_Tally)
@@ -20,7 +20,7 @@ K = TypeVar("K", int, tuple[int, int])
 
 
 def tallied(rows: Iterable[Row], empty: Callable[[], T], key: Callable[[Row], K]) -> dict[K, T]:
-    """The rows of each key added to a tally of their own, in the order of the keys."""
+    """Adds the rows of each key to a tally of this key; the tallies in the order of the keys."""
     found: dict[K, T] = {}
     for row in rows:
         found.setdefault(key(row), empty()).add(row)
@@ -28,12 +28,12 @@ def tallied(rows: Iterable[Row], empty: Callable[[], T], key: Callable[[Row], K]
 
 
 def interior_of(row: Row) -> int:
-    """The key of studies whose sizes are numbers of interior vertices."""
+    """The number of interior vertices of a row, which is the size in most studies."""
     return int(row["interior"])
 
 
 def draw_distribution(axes: Any, values: Sequence[float], **style: Any) -> None:
-    """The share of values, in per cent, that are no larger, as a curve of steps from 0 to 100."""
+    """Draws the share of values, in per cent, that are at most x, as a step curve from 0 to 100."""
     ordered = sorted(values)
     shares = [100 * k / len(ordered) for k in range(len(ordered) + 1)]
     ordered = [*ordered[:1], *ordered]
@@ -41,7 +41,7 @@ def draw_distribution(axes: Any, values: Sequence[float], **style: Any) -> None:
 
 
 def draw_distributions(axes: Any, values: Mapping[int, Sequence[float]]) -> None:
-    """The distribution of each size, all curves from the least value of all to the largest."""
+    """Draws the distribution of each size; all curves span from the least value to the largest."""
     every = [value for some in values.values() for value in some]
     for size, some in values.items():
         ordered = [min(every), *sorted(some), max(every)]
@@ -55,9 +55,9 @@ def draw_distributions(axes: Any, values: Mapping[int, Sequence[float]]) -> None
 def draw_rare(
     axes: Any, places: Sequence[float], counts: Sequence[tuple[int, int]], **style: Any
 ) -> None:
-    """Shares (found, number) in per cent on a logarithmic axis, with exact 95 % intervals.
+    """Draws shares (found, number) in per cent on a logarithmic axis, with exact 95 % intervals.
 
-    Where none was found, an open triangle is the upper end of the interval.
+    If nothing was found, an open triangle marks the upper end of the interval.
     """
     style = {"marker": "o", **style}
     label = style.pop("label")
@@ -82,7 +82,7 @@ def draw_rare(
 def draw_shares(
     axes: Any, places: Sequence[float], counts: Sequence[tuple[int, int]], unit: float, **style: Any
 ) -> None:
-    """Shares (found, number) with exact 95 % intervals; `unit` is 100 for per cent."""
+    """Draws shares (found, number) with exact 95 % intervals; `unit` is 100 for per cent."""
     middle = [unit * found / number for found, number in counts]
     bounds = [interval(found, number) for found, number in counts]
     below = [m - unit * low for m, (low, _) in zip(middle, bounds, strict=True)]

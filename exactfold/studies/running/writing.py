@@ -1,4 +1,4 @@
-"""Rows of a study as files of other programs: CSV, Parquet, and frames of pandas."""
+"""Writes the rows of a study as files for other programs: CSV, Parquet, and frames of pandas."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _BATCH = 10_000
 
 
 def columns(rows: Iterable[Row]) -> list[str]:
-    """The names of all values, in the order in which they are met."""
+    """The names of all values, in the order of their first occurrence."""
     found: dict[str, None] = {}
     for row in rows:
         found.update(dict.fromkeys(row))
@@ -26,9 +26,9 @@ def columns(rows: Iterable[Row]) -> list[str]:
 
 
 def write_csv(rows: Iterable[Row], path: str | os.PathLike[str]) -> None:
-    """Write rows as CSV (RFC 4180, UTF-8): a header, None as an empty field, lists as JSON.
+    """Writes rows as CSV (RFC 4180, UTF-8): a header, None as an empty field, lists as JSON.
 
-    Raises `UsageError` for another ending than .csv, and `UnwritableFileError`.
+    Raises `UsageError` if the file name does not end in .csv, and `UnwritableFileError`.
     """
     checked_target(Path(path), (".csv",), "a table")
     text = io.StringIO(newline="")
@@ -44,7 +44,7 @@ def _field(value: Any) -> Any:
 
 
 def check_parquet() -> None:
-    """Raise `PackageMissingError` unless Parquet files can be written."""
+    """Raises `PackageMissingError` unless Parquet files can be written."""
     try:
         import pyarrow.parquet  # noqa: F401
     except ImportError:
@@ -52,10 +52,10 @@ def check_parquet() -> None:
 
 
 def write_parquet(rows: Iterable[Row], path: str | os.PathLike[str]) -> None:
-    """Write rows as a Parquet file, with pyarrow, which is in the extra `exactfold[study]`.
+    """Writes rows as a Parquet file, with pyarrow, which is in the extra `exactfold[study]`.
 
-    Raises `PackageMissingError` without it, `UsageError` for another ending than .parquet, and
-    `UnwritableFileError`.
+    Raises `PackageMissingError` without pyarrow, `UsageError` if the file name does not end in
+    .parquet, and `UnwritableFileError`.
     """
     checked_target(Path(path), (".parquet",), "a table")
     check_parquet()
@@ -74,9 +74,9 @@ def write_parquet(rows: Iterable[Row], path: str | os.PathLike[str]) -> None:
 
 
 def frame(rows: Iterable[Row]) -> Any:
-    """Rows as a frame of pandas, which is in the extra `exactfold[study]`.
+    """The rows as a frame of pandas, which is in the extra `exactfold[study]`.
 
-    Raises `PackageMissingError` without it.
+    Raises `PackageMissingError` without pandas.
     """
     try:
         import pandas as pd

@@ -195,7 +195,7 @@ def test_undecided_table_lists_what_is_open(tmp_path, monkeypatch):
     path = tmp_path / "flat.fold"
     write_fold(FAMILIES["flat-vertex"](), path)
     monkeypatch.setattr(
-        "exactfold.branches.counting.fallback.flat_vertices", lambda chart, points: iter(())
+        "exactfold.branches.counting.lines.flat_vertices", lambda chart, points: iter(())
     )
     result = run("count", path, "--method", "popping")
     assert result.exit_code == UNDECIDED

@@ -173,9 +173,9 @@ def test_free_folds_fold_where_nothing_else_can(tmp_path):
         (["--branch", "1"], "--branch is for branches"),
         (["--side", "-"], "--side is for branches"),
         (["--through-nodes"], "--through-nodes is for branches"),
-        (["--component", "4"], "there is no component 4: they are 1 to 3"),
+        (["--component", "4"], "there is no component 4: give a number from 1 to 3"),
         (["--modes", "1,2"], "modes 1 and 2 cannot fold together"),
-        (["--modes", "9"], "there is no mode 9: they are 1 to 5"),
+        (["--modes", "9"], "there is no mode 9: give numbers from 1 to 5"),
         (["--until", "return"], "give contact, or an angle"),
         (["--by", "8-9"], "fold 8-9 stays flat"),
     ],
@@ -253,7 +253,7 @@ def test_wrong_usage_is_one_line(options, words, tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("pattern", "words"),
     [
-        (scrambled(1, HEXAGON, 2, loose=True), "the sheet folds in families of several dimensions"),
+        (scrambled(1, HEXAGON, 2, loose=True), "the sheet folds only in families of several"),
         (scrambled(1, TRIANGLE, 3), "boundary"),
     ],
     ids=["hexagon", "triangle"],

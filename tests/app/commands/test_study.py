@@ -171,7 +171,7 @@ def test_a_row_that_differs_is_said(here, done, monkeypatch):
 @pytest.mark.parametrize(
     ("arguments", "code", "cause", "said"),
     [
-        (("nothing",), USAGE, "UsageError", "no study 'nothing'; there are: table1"),
+        (("nothing",), USAGE, "UsageError", "no study 'nothing'; the studies are: table1"),
         (("table1", "--row", "00"), BAD_INPUT, "InputError", "there is no journal table1.sqlite"),
         (("table1", "--sizes", "40"), USAGE, "UsageError", "has no number of rows for size 40"),
         (
@@ -187,7 +187,7 @@ def test_a_row_that_differs_is_said(here, done, monkeypatch):
             "UsageError",
             "--row goes with",
         ),
-        (("--seed", "2"), USAGE, "UsageError", "name a study; there are"),
+        (("--seed", "2"), USAGE, "UsageError", "name a study; the studies are"),
         (
             ("table1", "--csv", "a.txt"),
             USAGE,

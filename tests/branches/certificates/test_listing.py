@@ -11,7 +11,7 @@ import pytest
 from old_listing import old_listing
 from sheets import SQUARE, TRIANGLE, dart, reflex_corners, scrambled, straight_side, with_point
 
-from exactfold import PROVED, CreasePattern, checker, random_square
+from exactfold import PROVED, CreasePattern, check, checker, random_square
 from exactfold.branches import certificate, count_branches, stream_branches
 from exactfold.branches.certificates import listing
 from exactfold.branches.certificates.check import check_compact
@@ -56,6 +56,7 @@ def test_a_count_writes_what_a_stream_writes(tmp_path: Path, name: str) -> None:
     assert counted.read_bytes() == streamed.read_bytes()
     assert json.loads(made[0])["version"] == CHAMBERS
     assert check_compact(counted) == checker.check(made)
+    assert check(made) == check(counted)
     assert checker.check(made)["distinct"] == result.distinct
 
 

@@ -18,7 +18,7 @@ from exactfold.branches import Joint, Pieces, count_branches, find_pieces
 from exactfold.branches.connected_components import flat_stars, joining
 from exactfold.branches.connected_components.cubes import components
 from exactfold.branches.connected_components.no_zero import have_no_common_zero
-from exactfold.branches.counting import fallback as hand_over
+from exactfold.branches.counting import lines
 from exactfold.branches.counting.true_bounds import with_true_bounds
 from exactfold.errors import NotApplicableError
 from exactfold.motion import follow_proved
@@ -222,8 +222,8 @@ def test_forms_without_a_common_zero():
     circle, cross = form((1, 0), (0, 1)), form((0, 1), (1, 0))
     assert have_no_common_zero([circle, cross])
     # Two complex zeros in common, and a third form that has not both.
-    lines = form((1, 0), (0, 1))
-    assert not have_no_common_zero([circle, lines])
+    pair = form((1, 0), (0, 1))
+    assert not have_no_common_zero([circle, pair])
     assert not have_no_common_zero([cross, form((0, 3), (3, 0))])
     assert not have_no_common_zero([circle])
     assert have_no_common_zero(
@@ -293,7 +293,7 @@ def test_a_vertex_whose_sign_is_not_decided_leaves_the_joint_open(monkeypatch):
 
 
 def test_true_branches_are_bounded_also_where_the_count_is_undecided(monkeypatch):
-    monkeypatch.setattr(hand_over, "flat_vertices", lambda chart, points: iter(()))
+    monkeypatch.setattr(lines, "flat_vertices", lambda chart, points: iter(()))
     result = count_branches(flat_vertex_square(), method="popping")
     assert (result.status, result.true_bounds) == (UNDECIDED, (1, 4))
     large = count_branches(sample_random_square(60, seed=1, redraw=True).pattern)

@@ -28,7 +28,7 @@ from sheets import (
 from exactfold import PROVED, UNDECIDED, random_square
 from exactfold.branches import count_branches
 from exactfold.branches.counting.find import BranchFinder, find_branch, find_branches, neighbours
-from exactfold.errors import NotApplicableError, UsageError
+from exactfold.errors import BadRimError, NotApplicableError, UsageError
 from exactfold.pattern import degenerate, families
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.rigidity.equations.branch_system import BranchSystem
@@ -303,10 +303,10 @@ def test_a_rim_that_does_not_fit_is_refused() -> None:
     pattern = scrambled(5, HEXAGON, 3)
     with pytest.raises(NotApplicableError, match="four boundary vertices"):
         BranchFinder(pattern).problem.require_foldable()
-    with pytest.raises(UsageError, match="each boundary vertex"):
+    with pytest.raises(BadRimError, match="each boundary vertex"):
         find_branch(pattern, "+++", rim={0: 1})
     flat = {v: 2 * pattern.vertices[v][0] + 7 for v in pattern.boundary}
-    with pytest.raises(NotApplicableError, match="boundary is flat"):
+    with pytest.raises(BadRimError, match="boundary is flat"):
         find_branch(pattern, "+++", rim=flat)
     with pytest.raises(NotApplicableError, match="convex"):
         find_branch(dart(), "+", rim=dict.fromkeys(dart().boundary, 1))

@@ -278,7 +278,7 @@ def test_errors_of_deficits_name_the_vertex() -> None:
         find_branch(TWO, "++", curvature={0: 1})
     with pytest.raises(BadCurvatureError, match="deficit of vertex 7: 'x'"):
         find_branch(TWO, "++", curvature={7: "x"})
-    with pytest.raises(BadRimError, match="the rim is flat"):
+    with pytest.raises(BadRimError, match="the boundary is flat"):
         find_branch(TWO, "++", curvature={})
     with pytest.raises(NotApplicableError, match="reflex"):
         find_branch(dart(), "+", curvature={4: 1})

@@ -10,8 +10,7 @@ from sheets import TRIANGLE, scrambled, two_triangles
 
 from exactfold import PROVED, UNDECIDED, checker
 from exactfold.branches import count_branches
-from exactfold.branches.counting import fallback as hand_over
-from exactfold.branches.counting import multiple_roots
+from exactfold.branches.counting import lines, multiple_roots
 from exactfold.branches.values import classify
 from exactfold.checker.branches import listing
 from exactfold.pattern.degenerate import DEGENERATE
@@ -46,9 +45,9 @@ def test_undecided_where_a_multiplicity_is_too_small(monkeypatch):
 
 
 def test_undecided_where_the_engine_finds_a_curve_of_solutions(monkeypatch):
-    real = hand_over.groebner
+    real = lines.groebner
     monkeypatch.setattr(
-        hand_over, "groebner", lambda system: dataclasses.replace(real(system), dimension=None)
+        lines, "groebner", lambda system: dataclasses.replace(real(system), dimension=None)
     )
     result = count_branches(two_vertex(), method="groebner")
     assert result.status is UNDECIDED
@@ -78,7 +77,7 @@ def test_open_folds_cost_their_letters_and_not_the_count(monkeypatch, name):
     pattern = DEGENERATE[name]()
     known = count_branches(pattern)
     assert not known.undecided_folds
-    monkeypatch.setattr(hand_over, "recognised", lambda chart, found, undecided: None)
+    monkeypatch.setattr(lines, "recognised", lambda chart, found, undecided: None)
     monkeypatch.setattr(classify, "flat_folds", lambda pattern, signs: frozenset())
     result = count_branches(pattern, method="popping")
     assert result.status is PROVED

@@ -162,11 +162,11 @@ def test_how_many_sign_vectors_are_tried():
 
 
 def test_what_is_refused():
-    with pytest.raises(NotCountedError, match="this one has 4"):
+    with pytest.raises(NotCountedError, match="this sheet has 4"):
         match_rim(random_square(2, seed=1), {})
     with pytest.raises(UsageError, match="1 letters for 5 folds"):
         match_rim(single_vertex(5), "M")
-    with pytest.raises(NotCountedError, match="no vertex can pop"):
+    with pytest.raises(NotCountedError, match="no vertex of this sheet can pop"):
         match_rim(CreasePattern(CORNERS, [(0, 1, 2), (0, 2, 3), (0, 3, 4)]), {})
 
 

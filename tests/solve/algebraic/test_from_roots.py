@@ -176,7 +176,7 @@ def test_too_little_precision_gives_none(monkeypatch):
     [
         ("polynomial", "does not vanish on the root class"),
         ("numerators", "does not vanish on the root class"),
-        ("separating", "not the stated form"),
+        ("separating", "not the stated linear form"),
     ],
 )
 def test_verification_refuses_changes(place, said):

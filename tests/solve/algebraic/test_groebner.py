@@ -247,7 +247,7 @@ def test_numerators_and_coordinates_describe_the_same_class():
     [
         ("polynomial", "does not vanish on the root class"),
         ("numerators", "does not vanish on the root class"),
-        ("separating", "not the stated form"),
+        ("separating", "not the stated linear form"),
         ("square", "not squarefree"),
     ],
 )

@@ -134,7 +134,7 @@ def test_an_oracle_that_tells_the_truth(tmp_path, monkeypatch):
     [
         (("48", "49"), "does not vanish on the root class"),
         (("36", "35"), "does not vanish on the root class"),
-        (("[1,2,1]", "[2,1,1]"), "not the stated form"),
+        (("[1,2,1]", "[2,1,1]"), "not the stated linear form"),
     ],
 )
 def test_an_oracle_that_errs_is_found_out_error(change, said, tmp_path, monkeypatch):

@@ -7,12 +7,13 @@ for each claim (docs/panel_motion.md, 5 and 6).
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, cast
 
 from ...core.kinds import DocumentKind
 from ...core.reading import refusing
 from ...sheets.panels import read_panels
 from ..claims import read_claims, words
+from ..documents import VerifiedPanelMotion
 from .contacts import Clear, Contact
 from .folding import Driven, Folding, OwnRates, PanelClaim
 
@@ -24,7 +25,7 @@ PLAIN, RATED = 1, 2
 
 
 @refusing()
-def check(data: dict[str, Any]) -> dict[str, Any]:
+def check(data: dict[str, Any]) -> VerifiedPanelMotion:
     """Verify every claim of a loaded certificate; raises `CertificateError` at the first failure.
 
     What is claimed is that of the classes in `CLAIMS`. Returns the claims and the SHA-256 of the
@@ -37,19 +38,19 @@ def check(data: dict[str, Any]) -> dict[str, Any]:
     folding = Folding(sheet, data["claims"], data["evidence"])
     for claim in claims:
         claim.check(folding)
-    return {"sha256": digest, **data["claims"]}
+    return cast("VerifiedPanelMotion", {"sha256": digest, **data["claims"]})
 
 
-def summary(claims: dict[str, Any]) -> str:
+def summary(claims: VerifiedPanelMotion) -> str:
     """One line for verified claims."""
-    return f"VALID: {words(CLAIMS, claims)}; sha256 {claims['sha256']}"
+    return f"VALID: {words(CLAIMS, dict(claims))}; sha256 {claims['sha256']}"
 
 
 PANEL_MOTION = DocumentKind(
     format="exactfold panel motion",
     versions=(PLAIN, RATED),
     names="format version pattern claims evidence",
-    claims=dict[str, Any],
+    claims=VerifiedPanelMotion,
     check=check,
     summary=summary,
 )

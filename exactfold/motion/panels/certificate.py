@@ -1,0 +1,216 @@
+"""The certificate of a motion of panels and of its first contact (docs/panel_motion.md, 6)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from math import ceil, cos, floor, sin
+
+from exactfold.certificates.entries import Document
+from exactfold.checker.motion.panels.certificate import PANEL_MOTION, PLAIN, RATED
+from exactfold.checker.motion.panels.times import Clock, OneRate, Rates, time_of
+from exactfold.errors import NotApplicableError
+from exactfold.exact.numbers import format_rational
+from exactfold.exact.surds import Number, Surd, SurdField, simple
+from exactfold.motion.claims import Claim, joined
+from exactfold.motion.curves.events import CONTACT, Event
+from exactfold.motion.panels.clearance import PanelClearance
+from exactfold.motion.panels.motion import PanelMotion
+from exactfold.panels.certificate import number_document, panels_document
+from exactfold.panels.densities import split
+from exactfold.panels.local import LocalMode
+from exactfold.pattern.panel_pattern import Edge
+
+_PARAMETER_BITS = 40
+_SLACK = Fraction(1, 1 << 22)
+"""The claim ends this much of the parameter early, because the checker has coarser separating
+planes.
+"""
+_PLACES = 44
+"""Times are rounded to this many binary places."""
+
+
+def certificate_of_panel_motion(motion: PanelMotion, contacts: PanelClearance) -> Document:
+    """The certificate of a motion and its contacts, as a JSON object for `exactfold.checker`.
+
+    It claims that the panels fold in this way, and a time before which no two of them touch. If a
+    contact is proved, it also claims a time by which some panels touch. The times are those of
+    `contacts`, made slightly weaker.
+
+    Raises `NotApplicableError` if a vertex needs more than one square root besides those of the
+    coordinates.
+
+    >>> from exactfold import checker
+    >>> from exactfold.motion.panels.clearance import prove_contacts
+    >>> from exactfold.motion.panels.following import follow_panels
+    >>> from exactfold.pattern.families import single_vertex
+    >>> from exactfold.pattern.opening import panels
+    >>> motion = follow_panels(panels(single_vertex(4)), until="90deg", frames=2)
+    >>> checker.check(certificate_of_panel_motion(motion, prove_contacts(motion)))["drivers"]
+    [[0, 4]]
+    """
+    timing = Timing.of(motion)
+    claims = [driven_claim(motion)]
+    if timing.rates is not None:
+        claims.append(Claim({"rates": timing.rates}))
+    clear, clear_claimed = clear_claim(motion, contacts, timing)
+    claims.append(clear_claimed)
+    if contacts.event is not None:
+        claims.append(contact_claim(contacts.event, clear, timing))
+    return {
+        "format": PANEL_MOTION.format,
+        "version": PLAIN if timing.rates is None else RATED,
+        "pattern": panels_document(motion.pattern),
+        **joined(claims),
+    }
+
+
+@dataclass(frozen=True)
+class Timing:
+    """The parameter of the times of a motion, as the checker has it.
+
+    `rates` are those of the drivers, None if all are 1.
+    """
+
+    clock: Clock
+    rates: list[str] | None
+
+    @classmethod
+    def of(cls, motion: PanelMotion) -> Timing:
+        """That of a motion."""
+        drivers = _drivers(motion)
+        sizes = [Fraction(abs(rate)) for rate in (*motion.rates, *motion.free_rates.values())]
+        if min(sizes) >= 1:
+            return cls(OneRate(), None)
+        rates = [format_rational(size) for size in sizes]
+        return cls(Rates(drivers, rates), rates)
+
+    def parameter(self, time: float) -> float:
+        """A quarter of the time, or x with x / (1 - x) = tan(time / 2)."""
+        if self.rates is not None:
+            return time / 4
+        s, c = sin(time / 2), cos(time / 2)
+        return s / (s + c)
+
+
+def driven_claim(motion: PanelMotion) -> Claim:
+    """How the panels fold, and what drives them."""
+    pattern, letters = motion.pattern, motion.assignment
+    vertices = [
+        _vertex(pattern.field, mode, folds)
+        for curve in motion.curves
+        for mode, folds in zip(curve.mode.choice, curve.mode.vertices, strict=True)
+    ]
+    return Claim(
+        {
+            "assignment": "".join(letters[fold] for fold in pattern.folds),
+            "drivers": _drivers(motion),
+        },
+        {"vertices": vertices},
+    )
+
+
+def clear_claim(
+    motion: PanelMotion, contacts: PanelClearance, timing: Timing
+) -> tuple[Fraction, Claim]:
+    """A time before which no two panels touch, and this claim."""
+    last = max(_at_most(timing.parameter(contacts.clear)) - _SLACK, Fraction(0))
+    if contacts.clear >= motion.duration:
+        last = _at_least(timing.parameter(motion.duration))
+        clear = min(Fraction(motion.duration), timing.clock.time(last)[0])
+    else:
+        clear = _rounded(timing.clock.time(last)[0], -1)
+    return clear, Claim({"clear": format_rational(clear)}, {"clear": _in_places(last)})
+
+
+def contact_claim(event: Event, clear: Fraction, timing: Timing) -> Claim:
+    """Which panels touch or folds are closed, by when; and from when on that may be."""
+    latest, evidence = time_of(Fraction(1))[1], {}
+    if event.kind == CONTACT:
+        end = _at_least(timing.parameter(event.time[1]))
+        latest, evidence = timing.clock.time(end)[1], {"contact": _in_places(end)}
+    return Claim(
+        {
+            "contact": {
+                "kind": event.kind,
+                "time": [format_rational(clear), format_rational(_rounded(latest, 1))],
+                "faces": [list(face) for face in event.faces],
+                "folds": [list(fold) for fold in event.folds],
+            }
+        },
+        evidence,
+    )
+
+
+def _drivers(motion: PanelMotion) -> list[list[int]]:
+    """The folds that drive it: those of the modes, then those that are free."""
+    return [list(fold) for fold in (*motion.drivers, *motion.free_rates)]
+
+
+def _vertex(field: SurdField, mode: LocalMode, v: int) -> Document:
+    """The densities of the active folds at a vertex, in the sheet's field or with one root more."""
+    radicand, values = _in_field(field, mode.values)
+    return {
+        "vertex": v,
+        "radicand": None if radicand is None else number_document(radicand, radicand.field),
+        "densities": [
+            [_other(fold, v), number_document(value, value.field)]
+            for fold, value in zip(mode.folds, values, strict=True)
+        ],
+    }
+
+
+def _in_field(field: SurdField, values: tuple[Number, ...]) -> tuple[Surd | None, list[Surd]]:
+    """The numbers in a field, or in the field with the square root of a number; also this
+    number.
+    """
+    found: list[Surd | tuple[Surd, Surd]] = []
+    radicand: Surd | None = None
+    for value in map(simple, values):
+        if not isinstance(value, Surd) or _extends(field, value.field):
+            found.append(field.number(value))
+            continue
+        square, low, high = split(value)
+        if not _extends(field, square.field) or radicand not in (None, field.number(square)):
+            raise NotApplicableError(
+                "no certificate: a vertex needs more than one square root of its own"
+            )
+        radicand = field.number(square)
+        found.append((field.number(low), field.number(high)))
+    if radicand is None:
+        return None, [value for value in found if isinstance(value, Surd)]
+    root = field.square_root(radicand)
+    above = field if root is not None else field.adjoined(radicand)
+    root = above.square_root(radicand)
+    if root is None:
+        raise ArithmeticError("a field does not contain the square root that was adjoined to it")
+    pairs = (value if isinstance(value, tuple) else (value, 0) for value in found)
+    numbers = [above.number(low + root * high) for low, high in pairs]
+    return None if above is field else radicand, numbers
+
+
+def _extends(field: SurdField, below: SurdField) -> bool:
+    return field.radicands[: len(below.radicands)] == below.radicands
+
+
+def _other(fold: Edge, v: int) -> int:
+    return sum(fold) - v
+
+
+def _at_most(x: float) -> Fraction:
+    """A number with few digits that is at most a parameter."""
+    return Fraction(floor(x * 2.0**_PARAMETER_BITS) - 1, 1 << _PARAMETER_BITS)
+
+
+def _at_least(x: float) -> Fraction:
+    return Fraction(ceil(x * 2.0**_PARAMETER_BITS) + 1, 1 << _PARAMETER_BITS)
+
+
+def _in_places(x: Fraction) -> int:
+    return int(x * (1 << _PARAMETER_BITS))
+
+
+def _rounded(value: Fraction, direction: int) -> Fraction:
+    """A number with few digits near another: at most (-1) or at least (1) that number."""
+    scaled = value * (1 << _PLACES)
+    return Fraction(floor(scaled) if direction < 0 else ceil(scaled), 1 << _PLACES)
