@@ -1,7 +1,8 @@
-"""Every exception of exactfold: one class for each kind of cause, which its message names.
+"""Every exception of exactfold: one class for each kind of cause; the message names the cause.
 
-All derive from `ExactfoldError`. `InputError` means that the input is at fault (exit code 3 on the
-command line); where a vertex, edge or face is to blame, its indices are attributes of the error.
+All exceptions derive from `ExactfoldError`. `InputError` means that the input is at fault (exit
+code 3 on the command line). If a vertex, edge or face is to blame, its index is an attribute of the
+error.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from collections.abc import Sequence
 
 
 class ExactfoldError(Exception):
-    """Base class of every error raised on purpose by exactfold."""
+    """The base class of all errors that exactfold raises on purpose."""
 
 
 class InputError(ExactfoldError):
@@ -20,16 +21,16 @@ class InputError(ExactfoldError):
 class UsageError(ExactfoldError):
     """The call asks for something that does not exist or does not apply (exit code 2).
 
-    Such as an unknown study, numbers of rows that do not fit the sizes, or mountain-valley letters
-    that do not fit the folds.
+    Examples are an unknown study, numbers of rows that do not fit the sizes, and mountain-valley
+    letters that do not fit the folds.
     """
 
 
 class SolverError(ExactfoldError):
-    """A solver failed, or what it returned is malformed or does not hold; the input is in order.
+    """A solver failed, or its result is malformed or false; the input is in order.
 
-    Such as points of the wrong shape, a parametrisation or a dual space that does not satisfy its
-    system, or an answer of msolve that is not understood.
+    Examples are points of the wrong shape, a parametrisation or a dual space that does not satisfy
+    its system, and an answer of msolve that cannot be read.
     """
 
 
@@ -37,11 +38,11 @@ class SolverError(ExactfoldError):
 
 
 class NumberError(InputError, ValueError):
-    """Text, NaN, Infinity or another object that is not a rational number."""
+    """A text, NaN, Infinity or another object is not a rational number."""
 
 
 class FloatRefusedError(NumberError, TypeError):
-    """A binary float was given where an exact number is needed."""
+    """A binary float was given, but an exact number is needed."""
 
 
 # --- files ---------------------------------------------------------------------------------------
@@ -50,24 +51,24 @@ class FloatRefusedError(NumberError, TypeError):
 class UnreadableFileError(InputError):
     """A file does not exist or cannot be read.
 
-    For text that is neither a file nor the name of an example the message lists the names.
+    If a text is neither a file nor the name of an example, the message lists the names.
     """
 
 
 class UnwritableFileError(InputError):
-    """An output path cannot be written."""
+    """An output file cannot be written."""
 
 
 class FoldError(InputError):
-    """A FOLD file that this reader does not accept.
+    """A reader does not accept a FOLD file.
 
-    Coordinates off the plane or irrational, faces with more than three sides, edges that cross, are
-    no side of a face, or are cut.
+    Coordinates are irrational or not in one plane, or faces have more than three sides, or edges
+    cross, are cut, or are not a side of a face.
     """
 
 
 class NotFoldError(FoldError):
-    """A file that is not JSON or is cut off, or JSON without the structure of a FOLD file."""
+    """A file is not JSON or is cut off, or its JSON does not have the structure of a FOLD file."""
 
 
 class MissingCoordinatesError(FoldError):
@@ -79,38 +80,38 @@ class StaleExactCoordinatesError(FoldError):
 
 
 class FoldedStateError(FoldError):
-    """The coordinates of a folded state where a crease pattern is needed."""
+    """The coordinates are those of a folded state, but a crease pattern is needed."""
 
 
 class TooLargeError(InputError):
-    """A file asks for more than a limit; the message names the limit, and what the file has."""
+    """A file exceeds a limit; the message names the limit, and the number in the file."""
 
 
 class UnknownFormatError(InputError):
-    """A file in no format that is read; the message lists those that are."""
+    """A file has none of the formats that exactfold reads; the message lists these formats."""
 
 
 class MalformedDrawingError(InputError):
-    """A file of a known format without lines of a crease pattern that can be understood.
+    """A file of a known format does not contain readable lines of a crease pattern.
 
-    Lines are damaged, there are none, or a crease is curved: panels between curved creases cannot
-    be rigid.
+    Lines are damaged, or there are none, or a crease is curved: panels between curved creases
+    cannot be rigid.
     """
 
 
 class SeveralSheetsError(InputError):
-    """A drawing holds several sheets and none was chosen, or one that is not there was."""
+    """A drawing has several sheets and none was chosen, or the chosen sheet does not exist."""
 
 
 class CertificateFormatError(InputError):
-    """The file is not a certificate of a known format and version."""
+    """A file is not a certificate of a known format and version."""
 
 
 class BadRimError(InputError):
-    """Heights of the border that cannot be taken; `vertices` are those to blame.
+    """Boundary heights cannot be used; `vertices` are the vertices to blame.
 
-    A boundary vertex has none, they belong to other vertices, they are not numbers, or they lie in
-    one plane: without angle deficits the sheet is flat then.
+    A boundary vertex has no height, or other vertices have one, or a height is not a number, or all
+    heights lie in one plane. In the last case the sheet is flat, unless there are angle deficits.
     """
 
     def __init__(self, message: str, vertices: Sequence[int] = ()) -> None:
@@ -119,7 +120,7 @@ class BadRimError(InputError):
 
 
 class BadDriveError(InputError):
-    """Folds or angles that cannot be driven; `folds` are those to blame."""
+    """Folds or angles cannot be driven; `folds` are the folds to blame."""
 
     def __init__(self, message: str, folds: Sequence[tuple[int, int]] = ()) -> None:
         super().__init__(message)
@@ -127,10 +128,10 @@ class BadDriveError(InputError):
 
 
 class BadCurvatureError(InputError):
-    """Angle deficits that cannot be taken; `vertices` are those to blame.
+    """Angle deficits cannot be used; `vertices` are the vertices to blame.
 
-    They are not numbers, belong to no interior vertex, or are negative: vertex signs do not name a
-    shape then.
+    A deficit is not a number, belongs to a vertex that is not interior, or is negative. For a
+    negative deficit, vertex signs do not name a shape.
     """
 
     def __init__(self, message: str, vertices: Sequence[int] = ()) -> None:
@@ -139,34 +140,34 @@ class BadCurvatureError(InputError):
 
 
 class ClusterError(InputError):
-    """A cluster that does not answer, has no workers, or workers that cannot do the work."""
+    """A cluster does not answer, has no workers, or its workers cannot do the work."""
 
 
 class ForeignJournalError(InputError):
-    """A file to be resumed or read belongs to another pattern, study or version, or is damaged.
+    """A file to be continued or read belongs to another pattern, study or version, or is damaged.
 
-    It may also be of another kind, that is no journal.
+    It may also be a file of another kind, which is not a journal.
     """
 
 
 class JournalInUseError(InputError):
-    """Another run is writing the file; this one has left it alone."""
+    """Another run is writing the file; this run did not change it."""
 
 
 # --- studies -------------------------------------------------------------------------------------
 
 
 class RowFailedError(ExactfoldError):
-    """Rows of a study ended with an error; all others were written."""
+    """Rows of a study ended with an error; all other rows were written."""
 
 
 # --- patterns ------------------------------------------------------------------------------------
 
 
 class PatternError(InputError):
-    """The vertices and triangles are not a flat triangulated disk.
+    """The vertices and triangles do not form a flat triangulated disk.
 
-    Attributes `vertices`, `edges` and `faces` hold the indices to blame (possibly empty).
+    The attributes `vertices`, `edges` and `faces` hold the indices to blame; they may be empty.
     """
 
     def __init__(
@@ -184,31 +185,31 @@ class PatternError(InputError):
 
 
 class MalformedPatternError(PatternError):
-    """Vertices or triangles that make no list of corners.
+    """The vertices or triangles do not form a list of points and corners.
 
-    They are not pairs or not triples, an index is out of range, two vertices lie at the same point,
-    a vertex belongs to no triangle, or the points span no triangle.
+    Vertices are not pairs, triangles are not triples, an index is out of range, two vertices are at
+    the same point, a vertex belongs to no triangle, or the points span no triangle.
     """
 
 
 class DegenerateFaceError(PatternError):
-    """A triangle of zero area or with a repeated vertex."""
+    """A triangle has zero area or repeats a vertex."""
 
 
 class OverlapError(PatternError):
-    """Faces overlap, some of them clockwise, or the boundary of the sheet meets itself."""
+    """Faces overlap, or some of them are clockwise, or the boundary of the sheet meets itself."""
 
 
 class NotADiskError(PatternError):
     """The faces do not form one disk.
 
-    An edge lies on three or more faces, the sheet has a hole, or it hangs together at a vertex by a
-    point only.
+    An edge belongs to three or more faces, or the sheet has a hole, or parts of it hang together
+    only by a vertex.
     """
 
 
 class DisconnectedError(NotADiskError):
-    """Two or more separate sheets."""
+    """There are two or more separate sheets."""
 
 
 class NotApplicableError(ExactfoldError):
@@ -216,25 +217,25 @@ class NotApplicableError(ExactfoldError):
 
 
 class FlatVertexError(NotApplicableError):
-    """A branch with a vertex that is proved flat is a multiple root: no curve is known there."""
+    """A vertex is proved flat on the branch, which is then a multiple root: no curve is known."""
 
 
 class NotProvedAtTheFlatStateError(NotApplicableError):
-    """No tube was proved from the flat state, or not which branch it belongs to."""
+    """No tube was proved from the flat state, or it was not proved to which branch it belongs."""
 
 
 class NotCountedError(NotApplicableError):
-    """The sheet is in order, but of a kind whose branches are not listed or named (exit code 4).
+    """The sheet is in order, but exactfold does not list or name its branches (exit code 4).
 
-    It has larger panels or irrational coordinates where triangles are needed, no interior vertex,
-    or more branches than torques for one of them can be compared on.
+    Triangles are needed, but the sheet has larger panels or irrational coordinates; or it has no
+    interior vertex; or it has too many branches to compare torques for one of them.
     """
 
 
 class NotFollowedError(NotApplicableError):
-    """A sheet that is not followed: a branch that is not simple, or no mode that truly folds.
+    """A sheet cannot be followed: its branch is not simple, or no mode extends to a finite flex.
 
-    Or no branch was found on which the driven folds `folds` start in their ratio.
+    It is also raised if no branch was found on which the driven `folds` start in the given ratio.
     """
 
     def __init__(self, message: str, folds: Sequence[tuple[int, int]] = ()) -> None:
@@ -243,14 +244,14 @@ class NotFollowedError(NotApplicableError):
 
 
 class UndecidedBranchError(ExactfoldError):
-    """A branch that is not proved was to be exported, followed or compared (exit code 4).
+    """A branch was to be exported, followed or compared, but is not proved (exit code 4).
 
-    Torques for a branch need all others proved, too, and told apart from it.
+    Torques for a branch also need proofs of all other branches, and that these differ from it.
     """
 
 
 class TooManyModesError(ExactfoldError):
-    """A search for the motions of a sheet of panels was given up; the message says where."""
+    """A search for the motions of a sheet of panels was stopped; the message says where."""
 
 
 # --- processes and packages ----------------------------------------------------------------------
@@ -261,8 +262,8 @@ class WorkerDiedError(ExactfoldError):
 
 
 class NotEnoughMemoryError(WorkerDiedError):
-    """Memory is limited, and there is not enough of it; nothing that was written is lost."""
+    """Memory is limited, and there is not enough; nothing that was written is lost."""
 
 
 class PackageMissingError(ExactfoldError):
-    """An optional package or program is not installed; the message says how to get it."""
+    """An optional package or program is not installed; the message says how to install it."""

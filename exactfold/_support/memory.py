@@ -1,7 +1,7 @@
 """Limited memory: whether it is limited, which errors mean a shortage, and room for libraries.
 
-Libraries written in C do not always report that memory is short. NumPy and SciPy contain OpenBLAS.
-If there is no room for it when it is loaded, it ends the process or waits forever.
+Libraries written in C do not always report that memory is short. NumPy and SciPy contain OpenBLAS,
+which ends the process or waits forever if there is no room when it is loaded.
 """
 
 from __future__ import annotations

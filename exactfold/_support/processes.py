@@ -1,7 +1,7 @@
 """Worker processes: their environment and interrupts, and work shared among them without threads.
 
-`concurrent.futures` manages its processes in threads, and waits for ever where one of these cannot
-be started: a shortage of memory is an error here, never a wait. The main thread hands a job to each
+`concurrent.futures` manages its processes in threads, and waits forever if one of these cannot be
+started. Here a shortage of memory is an error, never a wait: the main thread gives a job to each
 process and waits for all of them.
 """
 
@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 from exactfold._support.memory import memory_is_limited, require_room
 from exactfold.errors import NotEnoughMemoryError, WorkerDiedError
 
-# Commands that start no processes do without `multiprocessing`, which takes long to load.
+# Only commands that start processes need `multiprocessing`, which takes long to load.
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection
 
@@ -120,18 +120,19 @@ def as_they_end(
     jobs: Iterable[J],
     room: Callable[[], bool] = lambda: True,
 ) -> Generator[tuple[J, R | WorkerDiedError], None, None]:
-    """Each job with its result, from up to `processes` processes, in the order in which they end.
+    """Yields each job with its result, from up to `processes` processes, in the order of ending.
 
-    `work`, jobs and results pickle. A job whose process died has a `WorkerDiedError` as its result,
-    and the others go on. A job is taken when a process is free for it and there is `room`.
+    `work`, jobs and results must be picklable. If the process of a job died, the result of the job
+    is a `WorkerDiedError`, and the other jobs continue. The next job is taken only when a process
+    is free and `room()` is true.
 
-    Raises what `work` raises, and `WorkerDiedError` if not one process could be started.
+    Raises the errors of `work`, and `WorkerDiedError` if no process could be started.
     """
     workers = _Workers(processes, pickle.dumps(work), iter(jobs), room)
     try:
         while workers.is_busy():
             ended = workers.collect()
-            workers.hand_out()  # so that nobody is idle while the results are used
+            workers.hand_out()  # so that no process is idle while the results are used
             yield from ended
     finally:
         workers.end()

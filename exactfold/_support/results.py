@@ -1,7 +1,8 @@
-"""What every result has: a status, a reason, a document; and what some have besides.
+"""What every result offers (`Result`), and what only some results offer (`Ways`, `Certified`).
 
-A result says how much is known by `status`, why by `reason`, and all of it by `to_dict`. Some are
-sequences of ways (`Ways`), and of some a certificate can be written (`Certified`).
+The `status` of a result says how much is known, its `reason` says why, and `to_dict` returns
+everything as one document. Some results are sequences of ways (`Ways`). For some results a
+certificate can be written (`Certified`).
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ W_co = TypeVar("W_co", covariant=True)
 
 @runtime_checkable
 class Result(Protocol):
-    """What a verb returns when it has found something out.
+    """What a verb such as `count` returns.
 
     >>> import exactfold
     >>> result = exactfold.count("two-vertex")
@@ -36,7 +37,7 @@ class Result(Protocol):
 
     @property
     def reason(self) -> str:
-        """What was proved, or what is missing, in words; empty where there is no more to say."""
+        """What was proved, or what is missing for a proof; empty if `status` says it all."""
 
     def to_dict(self) -> Mapping[str, object]:
         """The document that the command prints with `--json`."""
@@ -45,12 +46,12 @@ class Result(Protocol):
 class Ways(Generic[W_co]):
     """A result that is a sequence of ways: it has a length, an order, and a way at each place.
 
-    It is true also if it lists no way. Places are from 0, as in any sequence; `way=3` of a verb is
-    the way at place 2.
+    In a condition the result is true, even if it lists no way. Indices start at 0, as in any
+    sequence. The argument `way` of a verb starts at 1: `way=3` is the way at index 2.
     """
 
     def listed(self) -> tuple[W_co, ...]:
-        """All ways that are listed, in their order."""
+        """All listed ways, in their order."""
         raise NotImplementedError
 
     def __len__(self) -> int:
@@ -71,10 +72,10 @@ class Ways(Generic[W_co]):
 
 
 class Certified:
-    """A result of which a certificate can be written.
+    """A result for which a certificate can be written.
 
-    `WRITER` names the function that writes it, as "module:function". It is imported when it is
-    called: writers lie above the results that they take.
+    `WRITER` names the function that writes it, as "module:function". It is imported only when
+    it is called, as the modules of the writers import those of the results.
     """
 
     WRITER: ClassVar[str]

@@ -99,7 +99,7 @@ class QuadraticForm:
 
     @cached_property
     def matrix(self) -> tuple[tuple[Fraction, ...], ...]:
-        """M, row by row."""
+        """The rows of the matrix M as fractions."""
         return tuple(tuple(Fraction(x, self.denominator) for x in row) for row in self.integers)
 
     @cached_property
@@ -169,7 +169,7 @@ class QuadraticForm:
 
     @property
     def inertia(self) -> Inertia:
-        """(positive, negative, zero), exactly."""
+        """The exact numbers of positive, negative and zero eigenvalues of M."""
         from exactfold.exact.linalg import inertia  # here: only this property needs FLINT
 
         return inertia(self.matrix)

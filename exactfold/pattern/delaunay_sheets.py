@@ -20,8 +20,8 @@ def delaunay(points: Iterable[Sequence[RationalLike]]) -> CreasePattern:
     their polygon. So the order of the points changes only the labels of the result. Points on the
     sides of the hull are boundary vertices with an angle of pi.
 
-    Raises `MalformedPatternError` if all points are collinear, and this or a `NumberError` if they
-    are not distinct pairs of exact numbers.
+    Raises `MalformedPatternError` if all points are collinear. Raises `MalformedPatternError` or a
+    `NumberError` if they are not distinct pairs of exact numbers.
 
     >>> delaunay([(0, 0), (2, 0), (2, 2), (0, 2), (1, "1/2")]).triangles
     ((0, 1, 4), (0, 4, 3), (1, 2, 4), (2, 3, 4))

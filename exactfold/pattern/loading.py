@@ -1,4 +1,4 @@
-"""The one way in for sheets: a pattern, what was read, FOLD, a path, or the name of an example."""
+"""The one way in for sheets: patterns, sheets read before, FOLD, paths, and names of examples."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ PatternLike: TypeAlias = (
     "CreasePattern | PanelPattern | FoldFile | Opened | Drawing | Mapping[str, Any] | str | "
     "PathLike[str]"
 )
-"""What every public function accepts where it asks for a sheet."""
+"""All forms in which a public function accepts a sheet."""
 
 _TEXT = "FOLD text"
 
@@ -46,13 +46,13 @@ def open_sheet(
     steps: Steps = "all",
     merge: Fraction | None = None,
 ) -> Opened:
-    """The sheet that `sheet` stands for, read if it is in a file or in FOLD.
+    """The sheet that `sheet` stands for; files and FOLD are read.
 
     A text that is a name in `EXAMPLES` stands for this shipped pattern, even if there is a file of
     the same name (write "./two-vertex" for that). A text that begins with "{" is the text of a FOLD
     file, and a mapping is its JSON object. Every other text and every `Path` is the path of a file
-    of any format. `number`, from 1, chooses among the sheets of a drawing with several; the rest is
-    as for `open_pattern`.
+    of any format. If a drawing has several sheets, `number` chooses one, counted from 1. The other
+    arguments are those of `open_pattern`.
 
     Raises the errors of `open_pattern`; `UnreadableFileError`, which lists the names, if a text is
     neither a name nor a file; `SeveralSheetsError` if a pattern is given and `number` is not 1;
@@ -91,7 +91,7 @@ def open_sheet(
 
 
 def load(what: PatternLike, snap: Snap | None = None) -> CreasePattern:
-    """The triangulated sheet that `what` stands for, as for `open_sheet`.
+    """The triangulated sheet that `what` stands for; `open_sheet` reads it.
 
     The sheet must have triangles and rational coordinates. With `snap`, all coordinates are rounded
     to multiples of 1/snap.
@@ -119,7 +119,7 @@ def as_pattern(what: PatternLike) -> CreasePattern:
 
 
 def _located(sheet: str | PathLike[str]) -> str | PathLike[str]:
-    """The path of the file that is meant."""
+    """The path of the file that a text or a path stands for."""
     if not isinstance(sheet, str):
         return sheet
     if sheet in EXAMPLES:
@@ -136,7 +136,7 @@ def _dumped(document: Mapping[str, Any]) -> str:
     try:
         return json.dumps(document, default=dict)
     except (TypeError, ValueError) as error:
-        raise UsageError(f"the dictionary is no FOLD document: {error}") from None
+        raise UsageError(f"the dictionary is not a FOLD document: {error}") from None
 
 
 def _of_text(
@@ -160,6 +160,9 @@ def _snapped(pattern: CreasePattern, snap: Snap | None) -> Opened:
 
 
 def _is_panels(sheet: object) -> TypeGuard[PanelPattern]:
-    """Asked of the module, as a pattern that is there has loaded it."""
+    """Whether `sheet` is a `PanelPattern`, without importing that class.
+
+    If its module has not been loaded, no panel pattern exists.
+    """
     module = sys.modules.get("exactfold.pattern.panel_pattern")
     return module is not None and isinstance(sheet, module.PanelPattern)

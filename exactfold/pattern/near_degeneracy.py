@@ -1,4 +1,4 @@
-"""Warns of numbers that are almost, but not exactly, those of a simpler pattern.
+"""Warns if numbers almost, but not exactly, agree with a simpler pattern.
 
 If a coordinate is rounded, a straight crease path, a flat vertex or a corner of 180 degrees is
 lost. The count of the rounded pattern is right, but says nothing about the pattern that was meant.

@@ -43,7 +43,7 @@ Steps: TypeAlias = "Literal['all', 'least'] | Collection[str]"
 # These errors of the strict reader are final: reading the file as a drawing cannot mend them.
 _FINAL = (NumberError, StaleExactCoordinatesError)
 _OF_EDGES = (MalformedPatternError, DisconnectedError)
-"""What can be wrong with a triangulated sheet and not with a drawing, or is said better of that."""
+"""For these errors of the strict reader, the error of the reader of drawings is raised instead."""
 _LEAST = ("merge", "duplicates", "split", "dangling")
 """Some drawings have no panels without these steps; the other steps only change the panels."""
 
@@ -96,7 +96,7 @@ class Opened(Picture):
         """What was read, repaired and snapped, as JSON; None if the file needed nothing."""
         lines = list(self.lines)
         if self.snapped:
-            lines.append(f"coordinates moved by up to {float(self.snapped):.1g} by rounding")
+            lines.append(f"rounding moved coordinates by up to {float(self.snapped):.1g}")
         if not lines:
             return None
         return {

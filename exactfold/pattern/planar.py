@@ -28,9 +28,9 @@ def trace_faces(points: Sequence[AnyPoint], edges: Iterable[Edge]) -> list[tuple
     by direction. A face continues each edge with the next edge clockwise at its head (the rotation
     system of the embedding). The one cycle that is not counter-clockwise bounds the outer face.
 
-    Raises `MalformedPatternError` for two vertices at one point or one on no edge, `FoldError` for
-    edges that cross, a vertex inside an edge and an edge with one face on both its sides, and
-    `DisconnectedError`.
+    Raises `MalformedPatternError` for two vertices at one point and for a vertex on no edge;
+    `FoldError` for edges that cross, for a vertex inside an edge, and for an edge with the same
+    face on both sides; and `DisconnectedError`.
 
     >>> trace_faces([(0, 0), (2, 0), (2, 2), (0, 2)], [(0, 1), (1, 2), (2, 3), (3, 0), (0, 2)])
     [(0, 1, 2), (0, 2, 3)]

@@ -16,7 +16,7 @@ CORNERS: Final = ((0, 0), (1, 0), (1, 1), (0, 1))
 
 @dataclass(frozen=True)
 class RandomSquare:
-    """A sampled pattern with the numbers that reproduce it; `attempts` is the accepted sample."""
+    """A sampled pattern with the numbers that reproduce it; `attempts` counts the samples drawn."""
 
     pattern: CreasePattern
     seed: int

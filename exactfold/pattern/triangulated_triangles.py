@@ -15,9 +15,9 @@ def find_triangulated_triangles(
 ) -> tuple[tuple[Triangle, tuple[int, ...]], ...]:
     """The maximal 3-cycles with vertices inside, each with the sorted vertices inside it.
 
-    `points` are integer multiples of the vertices, `edges` are all (i, j) with i < j, `triangles`
-    are counter-clockwise from their smallest index, and `following[v][a]` is b for every triangle
-    (v, a, b).
+    `points` are the vertices times an integer. `edges` are all edges (i, j) with i < j. `triangles`
+    are counter-clockwise and start with their smallest index. `following[v][a]` is b for every
+    triangle (v, a, b).
 
     For each edge, the common neighbours of its ends give every 3-cycle of the graph through it. The
     vertices inside a 3-cycle are found by walking from its sides over the faces inside. So the work

@@ -147,7 +147,7 @@ def oriented_triangles(
 
 
 def incidence(count: int, triangles: Sequence[Triangle]) -> None:
-    """Checks that no vertex is isolated, no edge has three faces, and no side of one has two."""
+    """Checks that every vertex has a face, and that no edge has three faces or two on one side."""
     sides: dict[tuple[int, int], list[int]] = {}
     directed: dict[tuple[int, int], int] = {}
     doubled: tuple[int, int, int, int] | None = None

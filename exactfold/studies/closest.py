@@ -27,7 +27,7 @@ _U = 2.0**-53
 class ClosestPair:
     """Bounds of the least distance, and a pair of rows that has it, or nearly so.
 
-    `rows` are the rows of all pairs that may be the closest pair, as far as the bounds tell.
+    `rows` are the rows of all pairs that may, by the bounds, be the closest pair.
     """
 
     low: float

@@ -53,11 +53,11 @@ def recipes(seed: int, numbers: Mapping[int, int]) -> Iterator[Recipe]:
 def row(recipe: Recipe) -> dict[str, Any]:
     """Whether a branch of one random square has flat vertices outside triangulated triangles.
 
-    `flat` lists each connected set of such vertices once, by the degrees of its vertices without
-    folds inside triangulated triangles: [[4]] is one vertex of degree four. `straight` says whether
-    two folds continue each other at some interior vertex. `path` says whether folds make a straight
-    path between two boundary vertices. For a measured square, `distance` is a bound of the distance
-    to an exception, in sides of the square, with six digits; it is 0 if the square is one.
+    `flat` lists each connected set of such vertices once, as the list of their degrees: [[4]] is
+    one vertex of degree four. Folds inside triangulated triangles do not count. `straight` says
+    whether two folds continue each other at some interior vertex. `path` says whether folds make a
+    straight path between two boundary vertices. For a measured square, `distance` is a bound of the
+    distance to an exception, in sides of the square, with six digits; it is 0 if the square is one.
     `distance_straight` says whether that exception may have straight folds. Both are None if no
     exception was found.
     """

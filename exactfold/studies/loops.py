@@ -217,7 +217,7 @@ def _rules(tallies: dict[int, _Tally]) -> StudyTable:
     )
     return StudyTable(
         "rules",
-        "Which half-branches are joined: how many loops follow each rule",
+        "Which rays are joined: how many loops follow each rule",
         ("Vi", "parity", "fans", "H1", "plain", "saddle", "two wind", "all alike"),
         lines,
         (

@@ -36,7 +36,7 @@ Vector = tuple[Fraction, Fraction]
 Product = Callable[[Vector, Vector], Fraction]
 
 _TRIED = 6
-"""So many saddles, those that vanish nearest to first order, are followed to where they vanish."""
+"""So many saddles are followed to where they vanish: the nearest ones, to first order."""
 _STEPS = 12
 _BEYOND = 1.001
 """The compared sheet is so far on the way, as a multiple of the way to where a saddle vanishes."""

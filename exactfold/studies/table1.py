@@ -254,7 +254,7 @@ def _distances(tallies: dict[int, _Tally]) -> StudyTable:
             "sign; all branches of a square are told apart by so many decimals of these. The "
             "paper used up to 690.",
             *(
-                [f"squares whose branches are not all told apart, so not counted here: {left}."]
+                [f"squares whose branches are not all told apart, not counted here: {left}."]
                 * (left > 0)
             ),
         ),

@@ -115,7 +115,7 @@ def test_what_is_no_fold_document_says_so(what, here):
 
 
 def test_a_dictionary_that_is_no_json_is_refused(here):
-    with pytest.raises(UsageError, match="the dictionary is no FOLD document: "):
+    with pytest.raises(UsageError, match="the dictionary is not a FOLD document: "):
         open_sheet({"vertices_coords": object()})
 
 

@@ -130,9 +130,7 @@ def test_the_journal_of_another_study_is_left_alone(tmp_path, other):
     path = tmp_path / "a.sqlite"
     run_study(TOY, path)
     before = path.read_bytes()
-    with pytest.raises(
-        ForeignJournalError, match="contains rows of the study toy, version 1, not of"
-    ):
+    with pytest.raises(ForeignJournalError, match="rows of the study toy, version 1, not of"):
         run_study(replace(TOY, **other), path)
     assert path.read_bytes() == before
 

@@ -272,9 +272,7 @@ def test_squares_that_are_not_told_apart_are_named():
     row |= {"with_multiplicity": 64, "pairs_of_signs": True, "with_letters": 0, "with_signs": 0}
     measured = row | {"closest": 0.1, "digits": 1, "seed": 1}
     table = table1.STUDY.tables([measured, row | {"closest": None, "digits": None}])[-1]
-    assert (
-        table.notes[-1] == "squares whose branches are not all told apart, so not counted here: 1."
-    )
+    assert table.notes[-1] == "squares whose branches are not all told apart, not counted here: 1."
     assert len(table1.STUDY.tables([measured])[-1].notes) == len(table.notes) - 1
 
 

@@ -1,4 +1,4 @@
-"""A sheet as it folds and unfolds, as one picture that moves: SVG with a style sheet, no script."""
+"""A sheet as it folds and unfolds, as one moving picture: SVG with a style sheet, no script."""
 
 from __future__ import annotations
 
@@ -17,19 +17,21 @@ if TYPE_CHECKING:
 
 _SIZE, _MARGIN = 360.0, 12.0
 _REST: Final = 0.08
-"""The part of a round for which the sheet rests, flat and folded."""
+"""The share of a round for which the sheet rests, both flat and folded."""
 _EARLIER: Final = 0.02
-"""Of the way back to the frame before: layers that meet are still apart there."""
+"""Depths are taken this share of the way back to the previous frame, where layers are
+still apart.
+"""
 
 
 def motion_animation(
     motion: SheetInMotion, *, frames: int = 40, seconds: float = 8, title: str = ""
 ) -> str:
-    """A motion from the flat sheet to its end and back, again and again, as an SVG file.
+    """A motion from the flat sheet to its end and back, repeated for ever, as an SVG file.
 
-    `frames` pictures are shown one after the other at equal steps of time, in rounds of `seconds`.
-    They are moved by a style sheet, so that any browser shows them, also as an image of a page;
-    where less motion is asked for (`prefers-reduced-motion`), the sheet stands half-way.
+    `frames` pictures are shown in turn at equal steps of time, in rounds of `seconds`. A style
+    sheet moves them, so every browser shows them, also as an image in a page. If the reader asks
+    for less motion (`prefers-reduced-motion`), the sheet stands still half-way.
 
     >>> from exactfold.branches import find_branch
     >>> from exactfold.motion import follow
@@ -50,7 +52,7 @@ def motion_animation(
 def _frames(
     motion: SheetInMotion, shapes: list[FloatArray], earlier: list[FloatArray]
 ) -> tuple[list[str], float]:
-    """A group for each shape, all in one scale and place, and the height of the picture."""
+    """A group for each shape, all at one scale and place, and the height of the picture."""
     seen = [seen_from_above(shape) for shape in shapes]
     low = np.min([view.min(axis=0) for view in seen], axis=0)[:2]
     high = np.max([view.max(axis=0) for view in seen], axis=0)[:2]
@@ -69,7 +71,7 @@ def _frames(
 
 
 def _style(frames: int, seconds: float) -> str:
-    """When each frame is seen: once on the way there and once on the way back."""
+    """The times at which each frame is seen: once on the way there, and once on the way back."""
     lines = [
         f".f{{visibility:hidden;animation-duration:{number(seconds)}s;"
         "animation-iteration-count:infinite;animation-timing-function:step-end}"

@@ -19,17 +19,19 @@ from exactfold.app.pictures.crease_style import Style, mark
 from exactfold.pattern.crease_pattern import Edge
 
 SIZE, LARGEST = 440.0, 960.0
-"""The longer side of the sheet in a picture; up to the second one where there are many lines."""
+"""The longer side of the sheet in a picture; up to the second size if there are many lines."""
 _APART: Final = 30.0
-"""Pixels between neighbouring points that a picture grows for."""
+"""A picture grows until neighbouring points are this many pixels apart."""
 MOST: Final = 4000
-"""Beyond so many lines those of one kind are one element."""
+"""If there are more lines than this, lines of the same kind are one element."""
 _STEPS: Final = 8
-"""Kinds of width where lines are joined."""
+"""The number of different widths if lines are joined."""
 _LABELLED: Final = 1500
-"""Beyond so many vertices none has its number: no font is small enough."""
+"""If there are more vertices than this, no vertex has its number, because no font is
+small enough.
+"""
 _ORDER: Final = "FUVMB"
-"""Lines later in this order lie over those before."""
+"""Lines whose letter comes later in this order are drawn over earlier ones."""
 
 
 def pattern_picture(
@@ -44,19 +46,20 @@ def pattern_picture(
     keyed: bool = True,
     joined: bool | None = None,
 ) -> str:
-    """A crease pattern as an SVG file: the lines by their letters, the vertices by their signs.
+    """A crease pattern as an SVG file: lines by their letters, and vertices by their signs.
 
-    `letters`: of the folds (i, j), i < j; those not named are drawn as folds without a letter, and
-    J as flat. `signs`: of interior vertices, 1, -1 or 0. `angles`: of the folds, in any unit; the
-    width of a line grows with the size of its angle. A `Drawing`, which need not be a sheet, has
-    letters of its own. `labelled`: with the numbers of vertices, where they find room; `keyed`:
-    with a legend below. `size`: the longer side of the sheet in pixels; by default from 440 to 960,
-    by how close the lines are.
+    `letters` are those of the folds (i, j), i < j. Folds without an entry are drawn as folds
+    without a letter, and J is drawn as flat. `signs` are those of interior vertices: 1, -1 or 0.
+    `angles` are those of the folds, in any unit; a line is the wider, the larger its angle. A
+    `Drawing`, which need not be a sheet, has its own letters. `labelled` adds the numbers of
+    vertices where there is room, and `keyed` adds a legend below. `size` is the longer side of the
+    sheet in pixels; by default it is between 440 and 960, depending on how close the lines are.
 
-    Every line is an element with the class M, V, F, U or B and `data-edge`, its place in
-    `pattern.edges`; folds have `data-fold`, as "4-9". Interior vertices are groups with the class
-    up, down, flat or vertex and `data-vertex`. `joined`: all lines of one kind and width are one
-    element, without these; by default beyond 4000 lines.
+    Every line is an element with the class M, V, F, U or B, and with `data-edge`, its place in
+    `pattern.edges`; folds also have `data-fold`, such as "4-9". Interior vertices are groups with
+    the class up, down, flat or vertex, and with `data-vertex`. If `joined` is true, all lines of
+    one kind and width form one element without these attributes; this is the default beyond 4000
+    lines.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> text = pattern_picture(single_vertex(4), {(0, 4): "M", (1, 4): "V"}, signs={4: 1})
@@ -72,13 +75,13 @@ def pattern_picture(
 
 
 def natural_size(lines: CreaseLines) -> float:
-    """The longer side of a sheet, for lines that can be told apart."""
+    """The longer side of a sheet at which its lines can be distinguished."""
     return min(max(SIZE, _APART / max(lines.spacing, 1e-9)), LARGEST)
 
 
 @dataclass(frozen=True)
 class CreaseDrawing:
-    """Lines at their places in a picture, with all that depends on how many there are."""
+    """Lines at their places in a picture, and everything that depends on how many there are."""
 
     lines: CreaseLines
     signs: Mapping[int, int]
@@ -89,7 +92,7 @@ class CreaseDrawing:
 
     @cached_property
     def margin(self) -> float:
-        """Round the sheet: room for the numbers of the boundary."""
+        """The margin round the sheet, which has room for the numbers of the boundary vertices."""
         return 20.0 if self.labelled and self.font else max(4.0, 0.02 * self.size)
 
     @cached_property
@@ -107,7 +110,7 @@ class CreaseDrawing:
 
     @property
     def room(self) -> float:
-        """How far apart neighbouring points are in the picture."""
+        """The distance of neighbouring points in the picture."""
         return self.lines.spacing * self.size
 
     @cached_property
@@ -117,7 +120,7 @@ class CreaseDrawing:
 
     @cached_property
     def font(self) -> float:
-        """The size of the numbers; 0 where none could be read."""
+        """The font size of the numbers; 0 if they would be illegible."""
         wanted = min(0.3 * self.room, 12.0)
         few = len(self.lines.points) <= _LABELLED and self.lines.vertices
         return max(wanted, 7.0) if self.labelled and few and wanted >= 5.0 else 0.0
@@ -127,9 +130,10 @@ class CreaseDrawing:
         return self.style.width(letter, self._share(edge))
 
     def _share(self, edge: Edge) -> float | None:
-        """The width for a fold angle, from 0 to 1 for the largest; None where it is not known.
+        """The relative width for a fold angle, from 0 to 1; None if the angle is not known.
 
-        The root of its part of the largest: else one narrow triangle makes all others alike.
+        It is the square root of the angle over the largest angle. Without the root, one narrow
+        triangle would make all other lines look alike.
         """
         if not self.largest or edge not in self.angles:
             return None
@@ -198,7 +202,7 @@ class CreaseDrawing:
         return "\n".join(found)
 
     def _few(self, letter: str, chosen: list[int]) -> str:
-        """The same lines, those of nearly the same width in one element."""
+        """The same lines, where those of nearly the same width form one element."""
         rows: dict[float, list[str]] = {}
         for k in chosen:
             edge = self.lines.edges[k]
@@ -215,12 +219,14 @@ class CreaseDrawing:
         return f"M{svg.number(a)} {svg.number(b)}L{svg.number(c)} {svg.number(d)}"
 
     def _short(self, edge: Edge) -> str:
-        """The same to a tenth of a pixel, the second end as seen from the first."""
+        """The same line to a tenth of a pixel, with the second end relative to the first."""
         (a, b), (c, d) = self.places[list(edge)].round(1).tolist()
         return f"M{svg.number(a)} {svg.number(b)}l{svg.number(c - a)} {svg.number(d - b)}"
 
     def _vertices(self) -> str:
-        """A group for each interior vertex that has room, and the numbers of the boundary."""
+        """A group for each interior vertex that has room, and the numbers of the boundary
+        vertices.
+        """
         marked = self._marked
         numbers = {label.vertex: label for label in self._numbers(marked)}
         found = []
@@ -243,9 +249,10 @@ class CreaseDrawing:
 
     @cached_property
     def _marked(self) -> dict[int, float]:
-        """The interior vertices with a marker, and its radius; none where markers would meet.
+        """The interior vertices with a marker, and its radius.
 
-        None at all beside more than 4000 lines, for the size of the file.
+        A vertex has no marker if markers would meet. With more than 4000 lines there are no
+        markers, in order to keep the file small.
         """
         from scipy.spatial import cKDTree
 
@@ -261,7 +268,9 @@ class CreaseDrawing:
         return found
 
     def _numbers(self, marked: Mapping[int, float]) -> list[Label]:
-        """The numbers that find room: inside near their vertices, of the boundary outside."""
+        """The numbers that find room: near interior vertices, and outside the sheet for boundary
+        vertices.
+        """
         if not self.font:
             return []
         inside, outward = set(self.lines.interior), {}
@@ -272,9 +281,9 @@ class CreaseDrawing:
         return labels(self.places, self.lines.edges, marked, asked, self.font, outward)
 
     def _outward(self, vertex: int, near: Sequence[int]) -> float:
-        """The middle of the sector between two lines of the border, the wider one if there are two.
+        """The middle direction of the widest sector between two border lines at a vertex.
 
-        In radians, y downwards.
+        It is in radians, with y downwards.
         """
         border = self._border
         around = gaps(self.places, vertex, near)

@@ -1,4 +1,4 @@
-"""Where the numbers of vertices stand in a picture, and which of them find room."""
+"""The places of the vertex numbers in a picture, and which numbers find room."""
 
 from __future__ import annotations
 
@@ -13,10 +13,13 @@ from exactfold._support.arrays import FloatArray
 from exactfold.app.pictures.svg import Point
 
 _WIDE: Final = 0.58
-"""Of the size of the font: the width of a digit."""
+"""The width of a digit as a share of the font size."""
 _DIRECTIONS: Final = 16
 _CLEAR, _ENOUGH = 0.9, 1.3
-"""How near a line may come to the middle of a label, in half sizes of it, and what is far."""
+"""The least distance of a line from the middle of a label, and the distance that is far enough.
+
+Both are in half sizes of the label.
+"""
 
 
 @dataclass(frozen=True)
@@ -37,9 +40,10 @@ def labels(
 ) -> list[Label]:
     """The numbers of the vertices `asked` that find room near them, in a font of this size.
 
-    `points`: shape (V, 2), in the picture. `radii`: of the markers, by vertex. A number stands
-    where it is clearest of lines, markers and numbers placed before; none is placed over these.
-    `outward`: vertices whose numbers stand in one direction only, an angle in radians.
+    `points` are those of the picture, shape (V, 2). `radii` are those of the markers, by vertex. A
+    number is placed as far as possible from lines, markers and earlier numbers, and never over
+    them. `outward` gives, for some vertices, the only direction in which their number may stand, an
+    angle in radians.
 
     >>> square = np.array([[0, 0], [90, 0], [90, 90], [0, 90]], dtype=float)
     >>> sides = [(0, 1), (1, 2), (2, 3), (3, 0)]
@@ -100,10 +104,10 @@ def _shortest(points: FloatArray, edges: Sequence[tuple[int, int]]) -> dict[int,
 
 
 def gaps(points: FloatArray, vertex: int, near: Sequence[int]) -> list[tuple[int, float, float]]:
-    """The sectors between lines at a vertex: the line before each, its angle, and its middle.
+    """The sectors between lines at a vertex: number of the first line, angle, and middle.
 
-    Angles are in radians; the lines of a sector are that to `near[k]` and the next one
-    counter-clockwise in the coordinates given.
+    Angles are in radians. Sector k lies between the line to `near[k]` and the next line,
+    counter-clockwise in the given coordinates.
     """
     x, y = _point(points[vertex])
     angles = [atan2(float(points[v][1]) - y, float(points[v][0]) - x) for v in near]
@@ -118,7 +122,7 @@ def gaps(points: FloatArray, vertex: int, near: Sequence[int]) -> list[tuple[int
 
 
 def _ways(points: FloatArray, vertex: int, near: Sequence[int]) -> list[float]:
-    """Directions in which the number of a vertex could stand, the widest sector first."""
+    """Directions in which the number of a vertex may stand, beginning with the widest sector."""
     wide = sorted(gaps(points, vertex, near), key=lambda gap: -gap[1])
     return [middle for _, _, middle in wide] + [
         2 * pi * k / _DIRECTIONS for k in range(_DIRECTIONS)
@@ -126,17 +130,19 @@ def _ways(points: FloatArray, vertex: int, near: Sequence[int]) -> list[float]:
 
 
 def _places(vertex: Point, ways: Sequence[float], half: Point, radius: float) -> Iterator[Point]:
-    """Where the middle of a number could stand, the nearest places first."""
+    """Possible places for the middle of a number, the nearest first."""
     for far in (1.0, 1.4, 2.0):
         for way in ways:
             c, s = cos(way), sin(way)
-            # The distance at which the box of the label leaves the marker, in this direction.
+            # `out` is the distance in this direction at which the label is clear of the marker.
             out = min(half[0] / max(abs(c), 1e-9), half[1] / max(abs(s), 1e-9)) + radius + 1.5
             yield vertex[0] + far * out * c, vertex[1] + far * out * s
 
 
 def _clearance(place: Point, half: Point, ends: FloatArray) -> float:
-    """How near lines come to the middle of a box, where its inscribed ellipse is of size 1."""
+    """The distance of the nearest line from the middle of a box, in units of its
+    inscribed ellipse.
+    """
     if not len(ends):
         return float("inf")
     flat = (ends - np.array(place)) / np.array(half)

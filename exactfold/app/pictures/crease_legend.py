@@ -1,4 +1,4 @@
-"""The legend of a crease pattern: the kinds of lines and vertices that are in the picture."""
+"""The legend of a crease pattern: the kinds of lines and vertices that occur in the picture."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ _ROW: Final = 18.0
 _SIGN: Final = 5.0
 _SAMPLE: Final = 24.0
 _LETTER: Final = 0.52
-"""Of the size of the font: the mean width of a letter."""
+"""The mean width of a letter as a share of the font size."""
 
 
 @dataclass(frozen=True)
 class _Item:
-    """A sample `wide` pixels wide, drawn at 0, and what it means."""
+    """A sample that is `wide` pixels wide, drawn at 0, and its meaning."""
 
     sample: str
     wide: float
@@ -36,17 +36,17 @@ class _Item:
 
 @dataclass(frozen=True)
 class Legend:
-    """What a legend holds, to be set in rows."""
+    """The items of a legend, which are set in rows."""
 
     items: tuple[_Item, ...]
 
     @property
     def natural(self) -> float:
-        """The width of all in one row."""
+        """The width of all items in a single row."""
         return sum(item.width for item in self.items) + 12
 
     def placed(self, width: float, top: float) -> tuple[list[str], float]:
-        """Elements in rows of this width below `top`, and where the last row ends."""
+        """Elements in rows of this width below `top`, and the place where the last row ends."""
         if not self.items:
             return [], top
         rows: list[list[_Item]] = [[]]
@@ -78,9 +78,10 @@ def legend(
     by_angle: bool = False,
     of_way: bool = True,
 ) -> Legend:
-    """The legend of a picture with these letters and signs; `by_angle`: widths mean angles.
+    """The legend of a picture with these letters and signs.
 
-    `of_way`: the letters are those of a way to fold, where one that is missing is undecided.
+    With `by_angle`, the widths of lines show angles. With `of_way`, the letters are those of a way
+    to fold, and a missing letter is undecided.
 
     >>> shown = legend("BMV", [1], Style.of(50))
     >>> [item.name for item in shown.items]
@@ -89,7 +90,7 @@ def legend(
     there = set(letters)
     names = _NAMES if of_way else {**_NAMES, "U": "unassigned"}
     items = [_line(letter, name) for letter, name in names.items() if letter in there]
-    if not there & set("MV"):  # nothing to tell apart
+    if not there & set("MV"):  # without mountains and valleys the lines need no explanation
         items = []
     if by_angle and items:
         items.append(_Item(_wedge(), _SAMPLE, "wide: folds more"))

@@ -1,4 +1,4 @@
-"""A crease pattern as a picture shows it: places in the picture, and a letter for each line."""
+"""A crease pattern as a picture shows it: points in the picture, and a letter for each line."""
 
 from __future__ import annotations
 
@@ -21,17 +21,20 @@ Drawable: TypeAlias = "CreasePattern | PanelPattern | Drawing"
 """What can be drawn: sheets of both kinds, and drawings that need not be sheets."""
 
 _SHOWN: Final = {**{letter: letter for letter in "BMVF"}, "J": "F", "C": "B"}
-"""Letters of FOLD as they are drawn; all others are U."""
+"""The FOLD letters as they are drawn; all other letters are drawn as U."""
 _ROUGH: Final = 1 << 60
-"""Parts of the width of a picture in which places are rounded, to become floats."""
+"""Before exact points become floats, they are rounded to this fraction of the width of
+the picture.
+"""
 
 
 @dataclass(frozen=True)
 class CreaseLines:
-    """Lines between numbered points; `letters[k]`, one of B, M, V, F and U, is that of `edges[k]`.
+    """Lines between numbered points; `letters[k]`, one of B, M, V, F and U, belongs to `edges[k]`.
 
-    `points`: shape (V, 2), y upwards, the lower left corner at 0 and the longer side 1. `interior`
-    are the vertices inside the sheet; `vertices` says whether points are vertices of a sheet.
+    `points` have shape (V, 2) with y upwards; the lower left corner is 0, and the longer side has
+    length 1. `interior` are the vertices inside the sheet. `vertices` says whether the points are
+    vertices of a sheet.
     """
 
     points: FloatArray
@@ -50,7 +53,9 @@ class CreaseLines:
 
     @cached_property
     def spacing(self) -> float:
-        """How far apart neighbouring points are: a low one of the lengths of the lines."""
+        """The typical distance of neighbouring points: a low quantile of the lengths of
+        the lines.
+        """
         if not self.edges:
             return 1.0
         i, j = np.array(self.edges, dtype=np.intp).T
@@ -59,7 +64,7 @@ class CreaseLines:
 
     @cached_property
     def neighbours(self) -> Mapping[int, Sequence[int]]:
-        """The other ends of the lines at each point that has any."""
+        """For each point with lines, the other ends of these lines."""
         around: dict[int, list[int]] = {}
         for i, j in self.edges:
             around.setdefault(i, []).append(j)
@@ -70,7 +75,7 @@ class CreaseLines:
 def crease_lines(pattern: Drawable, letters: Mapping[Edge, str] | None = None) -> CreaseLines:
     """The lines of a pattern or a drawing, with the letters of its folds.
 
-    Folds that `letters` does not name have the letter U; a drawing has letters of its own.
+    Folds without an entry in `letters` have the letter U. A drawing has its own letters.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> lines = crease_lines(single_vertex(4), {(0, 4): "M"})
@@ -94,8 +99,8 @@ def crease_lines(pattern: Drawable, letters: Mapping[Edge, str] | None = None) -
 def _unit(points: Sequence[tuple[Any, Any]]) -> FloatArray:
     """Exact points as floats, with the lower left corner at 0 and the longer side 1.
 
-    Differences are taken before numbers become floats: a small sheet may lie far away, and
-    coordinates may be larger than floats.
+    Differences are computed before numbers become floats, because a small sheet may lie far away,
+    and coordinates may exceed the range of floats.
     """
     if not points:
         return np.zeros((0, 2))
@@ -105,7 +110,7 @@ def _unit(points: Sequence[tuple[Any, Any]]) -> FloatArray:
         moved = [[x - low for x, low in zip(point, lows, strict=True)] for point in points]
         span = max(max(point) for point in moved) or 1
         rows = [[int(x * _ROUGH / span) / _ROUGH for x in point] for point in moved]
-    else:  # square roots, of a sheet that a person drew
+    else:  # the coordinates contain square roots
         first = points[0]
         rows = [[float(x - low) for x, low in zip(point, first, strict=True)] for point in points]
     found = np.array(rows, dtype=np.float64)

@@ -1,4 +1,4 @@
-"""How lines and vertices of a crease pattern look, by letter, sign and the room there is."""
+"""The look of lines and vertices of a crease pattern, by letter, sign and available room."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from exactfold._support.arrays import FloatArray
 from exactfold.app.pictures import svg
 
 UNKNOWN: Final = "#5c6670"
-"""Folds without a letter, or whose letter is undecided."""
+"""The colour of folds without a letter, or with an undecided letter."""
 COLOUR: Final = {
     "M": svg.MOUNTAIN,
     "V": svg.VALLEY,
@@ -19,12 +19,16 @@ COLOUR: Final = {
     "B": "#000000",
 }
 DASH: Final = {"V": (5.0, 3.0), "F": (0.1, 2.6), "U": (7.0, 2.2, 1.2, 2.2)}
-"""Lengths of strokes and gaps; mountains are solid."""
+"""Lengths of dashes and gaps; mountains are solid."""
 _NARROW, _WIDE, _USUAL = 0.9, 3.8, 1.9
-"""Widths of a fold that hardly folds, of the one that folds most, and where this is not known."""
+"""The widths of a fold that hardly folds, of the one that folds most, and of one with unknown
+angle.
+"""
 _THIN: Final = {"F": 1.1, "B": 1.4, "U": 1.4}
 FULL, LEAST = 28.0, 0.3
-"""Pixels between neighbours from which on lines have their full width; the least part of it."""
+"""With this many pixels between neighbours, lines have their full width; and the least
+share of it.
+"""
 
 
 @dataclass(frozen=True)
@@ -36,12 +40,12 @@ class Style:
 
     @classmethod
     def of(cls, room: float) -> Style:
-        """For a picture in which neighbouring points are about `room` pixels apart."""
+        """The style of a picture in which neighbouring points are about `room` pixels apart."""
         marker = min(0.17 * room, 7.0)
         return cls(min(max(room / FULL, LEAST), 1.0), marker if marker >= 1.4 else 0.0)
 
     def width(self, letter: str, share: float | None) -> float:
-        """The width of a line that folds by `share` of the largest angle; None: not known.
+        """The width of a line that folds by `share` of the largest angle; None means not known.
 
         >>> style = Style.of(100)
         >>> style.width("M", 0.0) < style.width("V", 0.5) < style.width("M", 1.0)
@@ -52,7 +56,7 @@ class Style:
         return round(self.scale * (_NARROW + share * (_WIDE - _NARROW)), 2)
 
     def attributes(self, letter: str, *, alone: bool = False) -> dict[str, str | float | None]:
-        """The attributes of a group of lines; `alone`: there are no other letters to tell apart."""
+        """The attributes of a group of lines; `alone` means that no other letters occur."""
         dash = () if alone and letter == "U" else DASH.get(letter, ())
         scale = max(self.scale, 0.5)
         return {
@@ -65,7 +69,7 @@ class Style:
 
 
 def mark(place: FloatArray, sign: int | None, radius: float) -> str:
-    """A filled triangle that points up or down; a ring for a flat vertex, a dot without a sign.
+    """A filled triangle that points up or down; a ring for a flat vertex; a dot without a sign.
 
     >>> import numpy as np
     >>> mark(np.array([10.0, 10.0]), 1, 4)

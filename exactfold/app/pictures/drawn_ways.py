@@ -1,4 +1,4 @@
-"""What a picture shows of one way to fold: letters, vertex signs, sizes of the fold angles."""
+"""What a picture shows of one way to fold: letters, vertex signs, and sizes of fold angles."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ if TYPE_CHECKING:
 
 _LONG: Final = 24
 _NOTES: Final = {"refuted": "does not truly fold", "undecided": "truly folds: undecided"}
-"""Of modes, by what is known of how they go on."""
+"""Notes on modes, by what is known about whether they truly fold."""
 
 
 @dataclass(frozen=True)
 class DrawnWay:
     """One way to fold, as it is drawn; `number` is its place in the list of `exactfold count`.
 
-    `angles` are in proportion to the fold angles, empty where nothing is proved of them. `note`
-    says if it is not known that the sheet truly folds so, or that it does not.
+    `angles` are proportional to the fold angles; they are empty if nothing is proved of the fold
+    angles. `note` says if the sheet does not truly fold in this way, or if this is not known.
     """
 
     pattern: CreasePattern | PanelPattern
@@ -42,18 +42,19 @@ class DrawnWay:
 
     @property
     def text(self) -> str:
-        """The letters in the order of the folds; a point for a fold of panels that stays flat."""
+        """The letters in the order of the folds; a fold of panels that stays flat is a point."""
         flat = "F" if isinstance(self.pattern, CreasePattern) else "."
         found = (self.letters.get(fold, "U") for fold in self.pattern.folds)
         return "".join(flat if letter == "F" else letter for letter in found)
 
     @property
     def shared(self) -> str:
-        """The same on both sides of the sheet: the smaller text of the two."""
+        """A text that is the same for both sides of the sheet: the smaller of their two texts."""
         return min(self.text, self.text.translate(UPSIDE_DOWN))
 
     def turned(self, side: int) -> DrawnWay:
-        """The way itself for side 1; for -1 its mirror image, with all signs and letters reversed.
+        """The way itself for side 1; its mirror image, with all signs and letters reversed, for
+        side -1.
 
         >>> from exactfold.branches.counting.find import find_branch
         >>> branch_way(find_branch("two-vertex", "+-")).turned(-1).text
@@ -67,7 +68,7 @@ class DrawnWay:
         return replace(self, letters=letters, signs=signs, angles=angles)
 
     def drawing(self, size: float | None = None, *, small: bool = False) -> CreaseDrawing:
-        """The drawing of the pattern with this way; `small`: without the numbers of vertices."""
+        """The drawing of the pattern with this way; with `small`, vertices have no numbers."""
         lines = crease_lines(self.pattern, self.letters)
         joined = True if small else None
         wide = size or natural_size(lines)
@@ -80,7 +81,7 @@ class DrawnWay:
 
 
 def branch_way(branch: Branch, number: int | None = None) -> DrawnWay:
-    """A branch, by the ray that is shown.
+    """A branch, drawn by the ray that represents it.
 
     >>> from exactfold.branches.counting.find import find_branch
     >>> way = branch_way(find_branch("two-vertex", "+-"))
@@ -95,7 +96,7 @@ def branch_way(branch: Branch, number: int | None = None) -> DrawnWay:
 
 
 def mode_way(mode: PanelMode) -> DrawnWay:
-    """An elementary mode of a sheet of panels; the folds it does not fold are flat.
+    """An elementary mode of a sheet of panels; all folds that are not active are flat.
 
     >>> from exactfold.panels.decomposition import decompose
     >>> from exactfold.motion.panels.followable import panel_modes
@@ -118,9 +119,10 @@ def mode_way(mode: PanelMode) -> DrawnWay:
 
 
 def ways_of(result: BranchCount | Decomposition, most: int | None = None) -> Sequence[DrawnWay]:
-    """The ways that a count lists, in its order, all or the first `most`.
+    """The ways that a count lists, in its order: all of them or the first `most`.
 
-    Where a sheet of panels has families only, of which none is listed: the ways known in them.
+    If a sheet of panels has only families, no way is listed; then the result has the known ways in
+    these families.
 
     >>> from exactfold.branches.counting.collect import count_branches
     >>> [way.number for way in ways_of(count_branches("two-vertex"))]
@@ -135,7 +137,7 @@ def ways_of(result: BranchCount | Decomposition, most: int | None = None) -> Seq
 
 
 def shortened(text: str, most: int = _LONG) -> str:
-    """Signs or letters, cut where there are many.
+    """Signs or letters, truncated if there are many.
 
     >>> shortened("+-+-+-", 5)
     '+-+-…'

@@ -1,4 +1,4 @@
-"""A still of a sheet folded by a given amount, along the motion of a way to fold."""
+"""A still picture of a sheet folded by a given amount along the motion of a way to fold."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ _CLOSE: Final = 1e-9
 class Amount:
     """How far a sheet is folded: its largest fold angle in degrees, or a part of its motion.
 
-    The motion ends at the first contact of two faces or fold that closes; a part is one of its
-    time.
+    The motion ends at the first contact of two faces or the first fold that closes. A part is a
+    share of its time.
     """
 
     degrees: float | None = None
@@ -31,7 +31,7 @@ class Amount:
 
     @classmethod
     def of(cls, text: str) -> Amount:
-        """From what a user gives, such as 60deg or 0.5; raises `UsageError`.
+        """The amount that a user gives, such as 60deg or 0.5; raises `UsageError`.
 
         >>> Amount.of("60deg"), Amount.of("0.5")
         (Amount(degrees=60.0, part=None), Amount(degrees=None, part=0.5))
@@ -43,13 +43,13 @@ class Amount:
         is_angle = text.endswith("deg")
         if not (isfinite(number) and 0 < number <= (180 if is_angle else 1)):
             raise UsageError(
-                f"folded {text!r}: give the largest fold angle such as 60deg, up to 180deg, or a "
-                "part of the motion up to 1, such as 0.5"
+                f"folded {text!r}: give the largest fold angle, such as 60deg, up to 180deg; or a "
+                "share of the motion, such as 0.5, up to 1"
             )
         return cls(degrees=number) if is_angle else cls(part=number)
 
     def time(self, motion: SheetInMotion) -> float:
-        """The time at which the sheet is folded so far; the end if it does not fold so far.
+        """The time at which the sheet is folded this far; the end if it never is.
 
         >>> from exactfold.branches.counting.find import find_branch
         >>> from exactfold.motion.following import follow
@@ -75,8 +75,8 @@ class Amount:
 class Folded:
     """A picture of a sheet at one time of a motion; `degrees` is the largest fold angle there.
 
-    `reached` says whether that is as far as was asked for, or the motion ends before, and `end` is
-    the kind of event at which it ends.
+    `reached` says whether the sheet is folded as far as was asked for; otherwise the motion ends
+    earlier. `end` is the kind of event at which it ends.
     """
 
     degrees: float
@@ -86,7 +86,7 @@ class Folded:
 
 
 def folded(motion: SheetInMotion, amount: Amount, title: str = "") -> Folded:
-    """The sheet folded by an amount along a motion, in space, faces shaded, as SVG.
+    """The sheet in space, folded by an amount along a motion, with shaded faces, as SVG.
 
     >>> from exactfold.branches.counting.find import find_branch
     >>> from exactfold.motion.following import follow
@@ -104,6 +104,6 @@ def folded(motion: SheetInMotion, amount: Amount, title: str = "") -> Folded:
 
 
 def _largest(motion: SheetInMotion) -> tuple[FloatArray, FloatArray]:
-    """Times, and the largest fold angle at each, in degrees."""
+    """Times, and the largest fold angle at each time, in degrees."""
     times, angles = motion.sampled(400)
     return times, np.degrees(np.abs(angles).max(axis=1, initial=0.0))

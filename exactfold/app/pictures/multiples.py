@@ -1,4 +1,4 @@
-"""All ways to fold on one sheet: small crease patterns in the order in which they are listed."""
+"""All ways to fold in one picture: small crease patterns in the order in which they are listed."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from exactfold.app.pictures.drawn_ways import DrawnWay, shortened
 from exactfold.errors import UsageError
 
 MOST: Final = 64
-"""Ways on one sheet, unless more are asked for."""
+"""The default for the largest number of ways in one picture."""
 
 _CELL: Final = 148.0
 _INNER: Final = 132.0
@@ -25,20 +25,20 @@ _NOTE: Final = 12.0
 _HEAD: Final = 30.0
 _TITLE: Final = 14.0
 _LETTER: Final = 0.5
-"""Of the size of the title: the mean width of a letter, rather more than less."""
+"""The mean width of a letter as a share of the size of the title, slightly overestimated."""
 _FRAME: Final = 18.0
-"""Room for the words on the frame of ways with the same letters."""
+"""Room for the words on the frame round ways with the same letters."""
 _MOST_COLUMNS: Final = 8
 _FAINT: Final = 0.45
-"""How strongly a way is drawn that is not known to be one."""
+"""The opacity of a way that is not known to truly fold."""
 _GREY: Final = "#666666"
 _EVEN: Final = {"font_family": "monospace"}
-"""For signs and letters, which are compared place by place."""
+"""A fixed-width font for signs and letters, which are compared place by place."""
 
 
 @dataclass(frozen=True)
 class _Block:
-    """Ways side by side: one alone, or all that share their letters, in a frame."""
+    """Ways side by side: a single one, or all that share their letters, in a frame."""
 
     ways: tuple[DrawnWay, ...]
 
@@ -49,14 +49,12 @@ class _Block:
 
 
 def sheet_of_multiples(ways: Sequence[DrawnWay], title: str, *, number: int | None = None) -> str:
-    """Ways to fold one pattern as small multiples, with their numbers, signs and letters, as SVG.
+    """Ways to fold one pattern as small multiples, with numbers, signs and letters, as SVG.
 
-    They stand in the order given. Ways that share their mountain-valley letters, maybe seen from
-    opposite sides, stand in one frame where the first of them belongs. `number`: of all ways, if
-    these are the first of more; the sheet says how many are left out. Each is a group with
-    `data-way`.
-
-    Raises `UsageError` if there are none.
+    They stand in the given order. Ways that share their mountain-valley letters, possibly seen from
+    opposite sides, stand in one frame at the place of the first of them. `number` is the number of
+    all ways, if these are only the first; then the picture says how many are left out. Each way is
+    a group with `data-way`. Raises `UsageError` if there are no ways.
 
     >>> from exactfold.branches.counting.collect import count_branches
     >>> from exactfold.app.pictures.drawn_ways import ways_of
@@ -99,14 +97,17 @@ def sheet_of_multiples(ways: Sequence[DrawnWay], title: str, *, number: int | No
 
 
 def _columns(number: int, high: float) -> int:
-    """Of cells so high, for a sheet about as high as wide and, if that can be, a full last row."""
+    """The number of columns for cells of this height.
+
+    The picture is about as high as wide; if possible, the last row is full.
+    """
     usual = min(max(ceil(sqrt(number * high / _CELL)), 3), _MOST_COLUMNS)
     near = range(max(2, usual - 1), min(usual + 1, _MOST_COLUMNS) + 1)
     return 1 if number == 1 else min(near, key=lambda c: (-number % c, abs(c - usual), -c))
 
 
 def _blocks(ways: Sequence[DrawnWay]) -> list[_Block]:
-    """Ways with the same letters together; where a letter is undecided none is taken for shared."""
+    """Ways with the same letters in one block; a way with an undecided letter has its own block."""
     groups: dict[str, list[DrawnWay]] = {}
     for k, way in enumerate(ways):
         groups.setdefault(str(k) if "U" in way.text else way.shared, []).append(way)
@@ -114,7 +115,7 @@ def _blocks(ways: Sequence[DrawnWay]) -> list[_Block]:
 
 
 def _rows(blocks: Sequence[_Block], columns: int) -> list[list[_Block]]:
-    """Blocks in rows that are full or nearly so, in their order."""
+    """Blocks in rows that are full or nearly full, in the given order."""
     rows: list[list[_Block]] = []
     used = columns
     for block in blocks:
@@ -128,7 +129,7 @@ def _rows(blocks: Sequence[_Block], columns: int) -> list[list[_Block]]:
 
 
 def _cell(way: DrawnWay, x: float, y: float, high: float) -> str:
-    """A small crease pattern and two lines below it."""
+    """A small crease pattern with two lines of text below it."""
     drawing = way.drawing(_INNER, small=True)
     aside = x + (_CELL - drawing.extent[0]) / 2
     at = f"translate({svg.number(aside)} {svg.number(y)})"
@@ -146,7 +147,7 @@ def _cell(way: DrawnWay, x: float, y: float, high: float) -> str:
 
 
 def _frame(block: _Block, x: float, y: float, width: float, height: float) -> str:
-    """A frame round ways with the same letters, and the words on it."""
+    """A frame round ways with the same letters, with the words on it."""
     numbers = ", ".join(str(way.number) for way in block.ways[:6])
     numbers += ", ..." if len(block.ways) > 6 else ""
     same = len({way.text for way in block.ways}) == 1

@@ -1,4 +1,4 @@
-"""The order in which faces are drawn so that nearer ones cover those behind them."""
+"""The order in which faces are drawn, so that nearer faces cover those behind them."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ import numpy as np
 from exactfold._support.arrays import FloatArray
 
 _SAME: Final = 1e-7
-"""Of the size of a picture: shorter lengths and smaller overlaps are none."""
+"""Lengths and overlaps below this share of the size of a picture count as 0."""
 
 Triangle = Sequence[int]
 
 
 def back_to_front(view: FloatArray, pieces: Sequence[Sequence[Triangle]]) -> list[int]:
-    """The faces, by their numbers, in an order in which each may be drawn over those before it.
+    """The numbers of the faces in an order in which each may be drawn over the earlier ones.
 
-    `view`, shape (V, 3): right, up, and towards the eye. `pieces[k]`: the triangles of face k. Of
-    two faces that overlap in the picture, the one that is nearer in the middle of the overlap is
-    drawn later (M. E. Newell, R. G. Newell and T. L. Sancha, 1972); where this goes round in a
-    circle, and for faces that do not overlap, the mean depth decides.
+    `view` has shape (V, 3): right, up, and towards the eye. `pieces[k]` are the triangles of face
+    k. If two faces overlap in the picture, the face that is nearer in the middle of the overlap is
+    drawn later (M. E. Newell, R. G. Newell and T. L. Sancha, 1972). Where this order is cyclic, and
+    for faces that do not overlap, the mean depth decides.
 
     >>> near = [[0, 0, 1], [1, 0, 1], [0, 1, 1]]
     >>> far = [[0, 0, 0], [1, 0, 0], [0, 1, 9]]
@@ -48,7 +48,9 @@ def back_to_front(view: FloatArray, pieces: Sequence[Sequence[Triangle]]) -> lis
 def _overlaps(
     view: FloatArray, pieces: Sequence[Sequence[Triangle]]
 ) -> Iterator[tuple[int, int, float]]:
-    """Two faces and by how much the first is nearer, times the area, for triangles that overlap."""
+    """For triangles that overlap: their two faces, and how much nearer the first is, times the
+    area.
+    """
     triangles = view[np.array([t for piece in pieces for t in piece], dtype=np.intp)]
     owner = np.array([k for k, piece in enumerate(pieces) for _ in piece], dtype=np.intp)
     low, high = triangles[:, :, :2].min(axis=1), triangles[:, :, :2].max(axis=1)

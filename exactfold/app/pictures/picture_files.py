@@ -1,4 +1,4 @@
-"""Pictures as files: SVG as it is, PNG and PDF by CairoSVG."""
+"""Pictures as files: SVG directly, PNG and PDF by CairoSVG."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ from exactfold.pattern.fold_writing import checked_target, write_bytes
 
 ENDINGS: Final = (".svg", ".png", ".pdf")
 _SCALE: Final = 2.0
-"""Pixels of a PNG file for one of the SVG file."""
+"""A PNG file has this many pixels for each pixel of the SVG file."""
 
 
 def checked_picture(path: Path) -> str:
-    """The format that the path of a picture names; raises as `checked_target`."""
+    """The format that the path of a picture names; raises the errors of `checked_target`."""
     return checked_target(path, ENDINGS, "a picture")
 
 
 def write_picture(text: str, path: str | PathLike[str]) -> None:
     """Write an SVG picture in the format that the ending of the path names.
 
-    ".svg": as it is. ".png", two pixels for one, and ".pdf": with CairoSVG, which is in the extra
-    `exactfold[pictures]`. Raises `UsageError` for another ending, `PackageMissingError` without
-    CairoSVG, and `UnwritableFileError`.
+    ".svg" is written as it is. ".png", with twice the number of pixels, and ".pdf" are written by
+    CairoSVG, which is in the extra `exactfold[pictures]`. Raises `UsageError` for another ending,
+    `PackageMissingError` without CairoSVG, and `UnwritableFileError`.
     """
     ending = checked_picture(Path(path))
     if ending == ".svg":

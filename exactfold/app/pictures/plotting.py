@@ -25,12 +25,12 @@ from exactfold.motion.curves.in_motion import SheetInMotion
 _WIDTH, _HEIGHT = 960.0, 600.0
 _LEFT, _RIGHT, _TOP, _BOTTOM = 64.0, 92.0, 150.0, 52.0
 _LABELLED: Final = 28
-"""Folds that still have colours and labels of their own."""
+"""With up to this many folds, each fold has its own colour and label."""
 _DRAWN: Final = 600
 _APART: Final = 18.0
-"""Pixels between the names of events."""
+"""Names of events are at least this many pixels apart."""
 _LONGEST: Final = 36
-"""Characters of such a name."""
+"""The name of an event has at most this many characters."""
 _DASHES: Final = (None, "7 3", "2 2.5", "9 3 2 3")
 _NAMES: Final = {
     CONTACT: "contact",
@@ -44,15 +44,15 @@ _NAMES: Final = {
 def angles_plot(motion: SheetInMotion, title: str = "") -> str:
     """All fold angles in degrees along a motion, as the text of an SVG file.
 
-    Valleys are above 0 and mountains below. Up to 28 folds have lines and
-    labels of their own; of more, each line has the colour of its direction at the start, and of
-    more than 600 those with the largest angles are drawn. Events are thin vertical lines.
+    Valleys are above 0, and mountains below. With up to 28 folds, each line has its own colour and
+    label. With more, the colour of a line shows the direction in which the fold starts. With more
+    than 600 folds, only those with the largest angles are drawn. Events are thin vertical lines.
     """
     times, angles = motion.sampled()
     degrees = np.degrees(angles)
     shown = _shown(degrees)
     reach = max(float(np.max(np.abs(degrees), initial=0.0)), 1.0)
-    # A scale from the least to the largest angle with the line 0 always in it, and some air.
+    # The scale reaches from the least to the largest angle, with a margin; 0 is always in it.
     low, high = min(0.0, float(degrees.min())), max(0.0, float(degrees.max()))
     across = svg.Scale(0.0, motion.duration, _LEFT, _WIDTH - _RIGHT)
     down = svg.Scale(high + 0.04 * reach, low - 0.04 * reach, _TOP, _HEIGHT - _BOTTOM)
@@ -107,7 +107,9 @@ def _axes(across: svg.Scale, down: svg.Scale, time_text: str) -> list[str]:
 
 
 def _events(motion: SheetInMotion, across: svg.Scale) -> list[str]:
-    """A vertical line for every time, and a name for those that are not too close together."""
+    """A vertical line for every time of events, and names for times that are not too close
+    together.
+    """
     parts, labels = [], []
     placed = [(across(event.time[1]), event) for event in motion.events]
     for x, group in groupby(placed, key=lambda item: round(item[0], 1)):
@@ -125,7 +127,7 @@ def _events(motion: SheetInMotion, across: svg.Scale) -> list[str]:
         labels.append((x, events))
     middle = across(0.7 * across.high)
     for x, events in _apart(labels):
-        # Names lean away from the border that is near.
+        # Names lean away from the nearer border.
         turn, anchor = (-40, "start") if x < middle else (40, "end")
         where = f"translate({svg.number(x)} {svg.number(_TOP - 7)}) rotate({turn})"
         parts.append(svg.text(_name(events), 0, 0, size=11, anchor=anchor, transform=where))
@@ -133,7 +135,7 @@ def _events(motion: SheetInMotion, across: svg.Scale) -> list[str]:
 
 
 def _apart(labels: list[tuple[float, list[Event]]]) -> list[tuple[float, list[Event]]]:
-    """Labels with some pixels between them: closer ones are joined."""
+    """Labels with some pixels between them; labels that are closer are joined."""
     joined: list[tuple[float, list[Event]]] = []
     for x, events in labels:
         if joined and x - joined[-1][0] < _APART:
@@ -144,7 +146,7 @@ def _apart(labels: list[tuple[float, list[Event]]]) -> list[tuple[float, list[Ev
 
 
 def _name(events: list[Event]) -> str:
-    """Events at about one time, in a few words."""
+    """A few words for events at about the same time."""
     words = []
     for kind, group in groupby(sorted(events, key=lambda e: e.kind == TURNING), lambda e: e.kind):
         found = list(group)
@@ -198,7 +200,7 @@ def _dash(place: int) -> str:
 
 
 def _direction(angles: FloatArray) -> str:
-    """The colour of a valley or a mountain, as the fold starts."""
+    """The colour of a valley or a mountain, depending on how the fold starts."""
     first = float(angles[min(1, len(angles) - 1)])
     return svg.VALLEY if first > 0 else svg.MOUNTAIN
 
@@ -208,7 +210,7 @@ def _labels(
 ) -> list[str]:
     """The name of each fold beside the end of its line."""
     right, folds = _WIDTH - _RIGHT, motion.pattern.folds
-    # Lines that end in one place are named in the order in which they come there.
+    # The names of lines that end in one place are in the order in which the lines arrive there.
     late = degrees[len(degrees) * 2 // 3 :].mean(axis=0)
     ends = [down(float(degrees[-1, k] + 1e-3 * late[k])) for k in shown]
     parts = []

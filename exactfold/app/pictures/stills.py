@@ -1,4 +1,4 @@
-"""Pictures of a sheet in space: shaded faces with two colours, nearer ones over others, as SVG."""
+"""Pictures of a sheet in space as SVG: shaded faces in two colours, nearer faces over others."""
 
 from __future__ import annotations
 
@@ -20,20 +20,22 @@ if TYPE_CHECKING:
 
 _UPPER: Final = (86, 180, 233)
 _LOWER: Final = (240, 228, 66)
-"""Blue and yellow of Okabe and Ito: the side that is +z in the flat sheet, and the other."""
+"""Blue and yellow of Okabe and Ito: blue for the side that is +z in the flat sheet."""
 _AZIMUTH, _ELEVATION = -62.0, 34.0
 _LIGHT = (0.35, -0.5, 0.79)
 _PANEL, _MARGIN, _CAPTION = 200.0, 12.0, 22.0
 _EARLIER: Final = 0.02
-"""Of the way back to the frame before: layers that meet are still apart there."""
+"""Depths are taken this share of the way back to the previous frame, where layers are
+still apart.
+"""
 
 
 def motion_stills(motion: SheetInMotion, number: int = 5, title: str = "") -> str:
     """A row of stills of a motion, from the flat sheet to its end, as an SVG file.
 
-    All have the same scale and point of view; below each stand the largest fold angle and the time.
-    Layers that lie on each other are drawn as they came there. A motion of fewer frames than
-    `number` has each of them once.
+    All stills have the same scale and point of view. Below each are the largest fold angle and the
+    time. Layers that lie on each other are drawn in the order in which they arrived. A motion with
+    fewer frames than `number` shows each frame once.
     """
     count = min(len(motion.times), max(2, number))
     places = np.linspace(0, len(motion.times) - 1, count).round().astype(int)
@@ -71,11 +73,11 @@ def stills(
     layered: Sequence[FloatArray] | None = None,
     panel: float = _PANEL,
 ) -> str:
-    """Shapes of one sheet side by side, each of shape (V, 3), with a caption each.
+    """Shapes of one sheet side by side, each of shape (V, 3) and with a caption.
 
-    `pieces`: the triangles of each face, needed if there are others. `layered`: shapes close to
-    these in which no faces lie on each other, which say what is drawn over what. `panel`: the width
-    of each still.
+    `pieces` are the triangles of each face; they are needed if some faces are not triangles.
+    `layered` are shapes close to these, in which no faces lie on each other; they decide which face
+    is drawn over which. `panel` is the width of each still.
 
     >>> flat = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.5]])
     >>> stills([flat], [(0, 1, 2), (0, 2, 3)], ["a & b"], "two faces").count("<path")
@@ -105,7 +107,7 @@ def stills(
 
 
 def levelled(shape: FloatArray, flat: FloatArray) -> FloatArray:
-    """The shape moved and turned to be as close to the flat sheet as can be (Kabsch)."""
+    """The shape moved and turned as close to the flat sheet as possible (Kabsch)."""
     a, b = shape - shape.mean(axis=0), flat - flat.mean(axis=0)
     u, _, v = np.linalg.svd(a.T @ b)
     turn = u @ np.diag([1.0, 1.0, float(np.sign(np.linalg.det(u @ v)))]) @ v
@@ -127,7 +129,7 @@ def faces_of(pattern: CreasePattern | PanelPattern) -> Sequence[Sequence[int]]:
 
 
 def shaded(shape: FloatArray, flat: FloatArray, faces: Sequence[Sequence[int]]) -> str:
-    """The faces in this order, each in the colour of the side that is seen."""
+    """The faces in this order, each in the colour of its visible side."""
     towards = seen_from_above(np.eye(3))[:, 2]
     light = np.array(_LIGHT) / np.linalg.norm(_LIGHT)
     drawn = []

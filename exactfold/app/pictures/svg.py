@@ -9,9 +9,9 @@ from math import ceil, floor, log10
 from typing import Final
 
 COLOURS: Final = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#4d4d4d")
-"""Colours that people with any kind of colour blindness tell apart (Okabe and Ito, 2008)."""
+"""Colours that people with any kind of colour blindness can distinguish (Okabe and Ito, 2008)."""
 VALLEY, MOUNTAIN, FLAT = COLOURS[0], "#c8202f", "#999999"
-"""Blue and red, of much the same grey: valleys are dashed, too, where both are drawn."""
+"""Blue and red are of about the same grey; where both are drawn, valleys are also dashed."""
 
 INK, FAINT = "#222222", "#dddddd"
 
@@ -21,7 +21,8 @@ Point = tuple[float, float]
 
 
 def escape(text: str) -> str:
-    """Text as it may stand in an element or in an attribute; what XML cannot hold is marked.
+    """Text for an element or an attribute; characters that XML does not allow are replaced by a
+    mark.
 
     >>> escape('<a & "b">')
     '&lt;a &amp; &quot;b&quot;&gt;'
@@ -43,7 +44,7 @@ def number(value: float) -> str:
 
 
 def element(name: str, content: str = "", **attributes: str | float | None) -> str:
-    """An element; `_` in the name of an attribute stands for `-`, a last one is dropped.
+    """An element; in names of attributes `_` stands for `-`, and a final `_` is dropped.
 
     >>> element("rect", width=2.5, stroke_width=1, class_="a")
     '<rect width="2.5" stroke-width="1" class="a"/>'
@@ -62,7 +63,7 @@ def element(name: str, content: str = "", **attributes: str | float | None) -> s
 def text(
     content: str, x: float, y: float, *, anchor: str = "start", size: float = 12, **more: str
 ) -> str:
-    """A line of text with its baseline at y; `anchor`: start, middle or end.
+    """A line of text with its baseline at y; `anchor` is start, middle or end.
 
     >>> text("a < b", 1, 2)
     '<text x="1" y="2" text-anchor="start" font-size="12">a &lt; b</text>'
@@ -87,7 +88,7 @@ def path(points: Sequence[Point], *, closed: bool = False, **more: str | float) 
 
 
 def picture(width: float, height: float, parts: Iterable[str], title: str) -> str:
-    """A whole SVG file with a white ground; `title` is read out where pictures are not seen."""
+    """A whole SVG file with a white background; screen readers read `title`."""
     head = (
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{number(width)}" '
         f'height="{number(height)}" viewBox="0 0 {number(width)} {number(height)}" '
@@ -100,7 +101,7 @@ def picture(width: float, height: float, parts: Iterable[str], title: str) -> st
 def ticks(low: float, high: float, most: int, steps: Sequence[float] = ()) -> list[float]:
     """Round numbers from low to high, at most `most` of them, in equal steps.
 
-    The step is the first of `steps` that will do, else 1, 2 or 5 times a power of ten.
+    The step is the first of `steps` that fits, or else 1, 2 or 5 times a power of ten.
 
     >>> ticks(-100, 190, 8, (30, 45, 90))
     [-90, -45, 0, 45, 90, 135, 180]
@@ -119,9 +120,10 @@ def ticks(low: float, high: float, most: int, steps: Sequence[float] = ()) -> li
 
 
 def spread(places: Sequence[float], gap: float, low: float, high: float) -> list[float]:
-    """Places moved as little as needed to lie at least `gap` apart, from low to high, if they fit.
+    """Places moved as little as necessary, so that they are at least `gap` apart.
 
-    The order is kept: neighbours that are too close share their mean place.
+    They lie between low and high if they fit. The order is kept. Neighbours that are too close are
+    spread around their mean place.
 
     >>> spread([5, 5, 20], 4, 0, 30)
     [3.0, 7.0, 20]
@@ -154,7 +156,7 @@ def _bottom(group: tuple[float, list[int]], gap: float) -> float:
 
 @dataclass(frozen=True)
 class Scale:
-    """A linear map of numbers to places in a picture: `low` to `start`, `high` to `end`.
+    """A linear map from numbers to places in a picture: `low` to `start`, `high` to `end`.
 
     >>> Scale(0, 10, 100, 200)(5)
     150.0

@@ -1,4 +1,4 @@
-"""The sheet of all ways that a count lists, under a title that says what is known of them."""
+"""The picture of all ways that a count lists, with a title that says what is known of them."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ if TYPE_CHECKING:
     from exactfold.panels.result import Decomposition
 
 MOST_NAMED: Final = 6
-"""Free folds that are named."""
+"""At most this many free folds are named."""
 
 
 def number_listed(result: BranchCount | Decomposition) -> int:
-    """How many ways there are to draw: the branches, or the modes that are listed or known.
+    """The number of ways to draw: the branches, or the modes that are listed or known.
 
     >>> from exactfold.branches.counting.collect import count_branches
     >>> number_listed(count_branches("two-vertex"))
@@ -35,9 +35,9 @@ def number_listed(result: BranchCount | Decomposition) -> int:
 def sheet_of_ways(
     result: BranchCount | Decomposition, name: str = "", most: int | None = MOST
 ) -> str:
-    """All ways that a count lists, or the first `most`, as `sheet_of_multiples` draws them.
+    """All ways that a count lists, or the first `most`, drawn by `sheet_of_multiples`.
 
-    `name`: of the pattern, for the title. Raises `UsageError` if the count lists no way.
+    `name` is that of the pattern, for the title. Raises `UsageError` if the count lists no way.
 
     >>> from exactfold.branches.counting.collect import count_branches
     >>> text = sheet_of_ways(count_branches("two-vertex"), "two-vertex")
@@ -61,7 +61,7 @@ def why_no_way(result: BranchCount | Decomposition) -> str:
     """
     if isinstance(result, BranchCount):
         if result.status is PROVED and result.dimension:
-            return "the ways to fold are infinitely many, a family that has no list"
+            return "there are infinitely many ways to fold; they form a family and are not listed"
         return "no single way to fold is known"
     if result.rigid is PROVED:
         return "the sheet is rigid: no fold can fold while the panels stay rigid"
@@ -72,15 +72,15 @@ def why_no_way(result: BranchCount | Decomposition) -> str:
         more = len(result.free) - MOST_NAMED
         return (
             f"the only folds that can fold are {named}{f' and {more} more' if more > 0 else ''}, "
-            "from border to border, and each is free, whatever the others do"
+            "from border to border, and each of them can fold independently of the others"
         )
     if sum((result.true or result.second_order or result.found or {}).values()):
-        return "the sheet folds in families, or along curves, of which none is listed"
+        return "the sheet folds in families or along curves, and none of them is listed"
     return "no single way to fold is known"
 
 
 def _title(result: BranchCount | Decomposition, ways: Sequence[DrawnWay], number: int) -> str:
-    """How many ways a count lists, in words; `ways` are the first of them."""
+    """The number of ways that a count lists, in words; `ways` are the first of them."""
     if isinstance(result, BranchCount):
         known = "proved" if result.status is PROVED else "proved to exist"
         return f"{counted(number, 'way')} to start folding, {known}"

@@ -1,4 +1,4 @@
-"""Answers in plain words and tables, with rich."""
+"""Answers in plain words and tables, printed with rich."""
 
 from exactfold._support.lazy import attached as _attached
 

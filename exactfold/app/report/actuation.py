@@ -16,11 +16,11 @@ if TYPE_CHECKING:
     from exactfold.design.actuation.result import Actuation, Bounds
 
 _FIRST = 8
-"""Branches of the ranking that are shown unless all are asked for."""
+"""The number of branches of the ranking that are shown, unless all are asked for."""
 
 
 def actuation_report(found: Actuation, *, everything: bool = False) -> Group:
-    """The torques, what is proved of them, and the branches in the order of their power."""
+    """The torques, what is proved of them, and the branches sorted by power."""
     branch = found.branch
     rows: list[tuple[str, str | Text]] = [
         ("status", Text.assemble(status_text(found.status), f" ({found.reason})")),
@@ -58,11 +58,13 @@ def _alone(found: Actuation) -> str:
     if high == 0:
         listed = ", ".join(names[:3]) + (f" and {len(names) - 3} more" if len(names) > 3 else "")
         return (
-            "no torques do work on this branch only: of the others "
+            "no torques do work on this branch only: the other branches "
             f"{listed} are linearly independent and span all first-order motions"
         )
     if low == 0:
-        return f"torques that do work on this branch only: undecided, dimension 0 to {high}"
+        return (
+            f"torques that do work on this branch only: undecided, their dimension is 0 to {high}"
+        )
     size = str(low) if low == high else f"{low} to {high}"
     share = ""
     if found.orthogonal is not None:
@@ -98,7 +100,7 @@ def _ranking(found: Actuation, everything: bool) -> list[Text | Table]:
     shown = ranking if everything else ranking[:_FIRST]
     for place, row in enumerate(shown, 1):
         last = place == len(ranking)
-        note = "" if row.above_next or last else "not proved to exceed those below"
+        note = "" if row.above_next or last else "not proved to exceed the next one"
         note += ("; " if note and row.ray < 0 else "") + ("turned over" if row.ray < 0 else "")
         middle = (row.power[0] + row.power[1]) / 2
         table.add_row(str(place), row.signs, decimal_near(middle, 6), note)

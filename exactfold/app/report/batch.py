@@ -13,13 +13,13 @@ from exactfold._support.plurals import counted
 from exactfold.app.report.terminal import SHOWN, more_text, status_text
 
 BatchRow = tuple[str, str, int | None, str]
-"""Name, status, number of branches, and what is missing or wrong or to be known."""
+"""Name, status, number of branches, and a message: what is missing, wrong, or worth knowing."""
 
 
 def batch_report(
     rows: list[BatchRow], summary: Mapping[str, Any], jsonl: str | None, everything: bool
 ) -> Group:
-    """A line for each pattern, and how many are proved; `jsonl`: where the results are."""
+    """A line for each pattern, and the number of patterns that are proved."""
     table = Table(box=None, pad_edge=False)
     table.add_column("", overflow="fold")
     table.add_column("ways", justify="right")
@@ -35,7 +35,7 @@ def batch_report(
     if summary["warned"]:
         text += f"; {summary['warned']} with a warning"
     if summary["skipped"]:
-        text += f"; {summary['skipped']} counted before"
+        text += f"; {summary['skipped']} counted in an earlier run"
     if jsonl is not None:
         text += f"; results in {jsonl}"
     return Group(*parts, Text(text))

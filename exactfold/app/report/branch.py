@@ -24,9 +24,9 @@ Row = tuple[str, str, str, str]
 
 
 def branch_report(result: Branch, driven: Driven | None = None) -> Group:
-    """One branch: what is proved, which vertices pop up, and the folds.
+    """One branch: what is proved of it, which vertices pop up, and the folds.
 
-    `driven`: the folds by which it was found, if it was.
+    `driven` has the driven folds by which it was found, if it was found in this way.
     """
     rows: list[tuple[str, str | Text]] = [
         ("status", Text.assemble(status_text(result.status), f" ({result.reason})")),
@@ -43,7 +43,7 @@ def branch_report(result: Branch, driven: Driven | None = None) -> Group:
         if straight := result.straight_border:
             rows.append(("on a straight side", f"{_vertices(straight)}: the side may bend there"))
     if driven is not None:
-        ratio = cut(f"{driven.drive.ratio}: exactly so on a solution near it, ")
+        ratio = cut(f"{driven.drive.ratio}; this ratio is exact on a solution near it, ")
         rows.append(("folds start as", Text.assemble(ratio, status_text(driven.status))))
     if result.radius is not None:
         rows.append(("mountain-valley", letters_text(cut(result.assignment_text))))
@@ -68,7 +68,7 @@ def _vertices(chosen: Sequence[int]) -> str:
 
 
 def rim_text(heights: Mapping[int, Fraction]) -> str:
-    """Heights by vertex, those that are not 0.
+    """Heights by vertex; heights that are 0 are not listed.
 
     >>> rim_text({0: Fraction(1), 1: Fraction(0), 3: Fraction(-11, 20)})
     '0: 1, 3: -11/20, others 0'
@@ -106,7 +106,7 @@ def branch_row(name: str, result: Branch) -> Row:
 
 
 def branches_report(rows: list[Row]) -> Group:
-    """The table for a batch or for neighbours."""
+    """The table for several patterns, or for a branch and its neighbours."""
     table = Table(box=None, pad_edge=False)
     table.add_column("")
     table.add_column("status")
@@ -118,7 +118,7 @@ def branches_report(rows: list[Row]) -> Group:
 
 
 def export_report(output: str, branch: Branch, export: BranchExport) -> Table:
-    """What `exactfold export` prints of the file it wrote."""
+    """What `exactfold export` prints about the file that it wrote."""
     sizes = [abs(angle) for angle in export.angles.values()]
     return facts_table(
         [

@@ -15,27 +15,27 @@ _SHOWN: Final = 8
 
 
 def graphs(pieces: Pieces) -> str:
-    """The graphs and their pieces, in one sentence.
+    """The graphs and their connected components, in one sentence.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> from exactfold.branches import find_pieces
     >>> graphs(find_pieces(single_vertex(6)))
-    'for every rim exactly one shape for each of 2 choices of vertices that pop up or down; these
-    2 graphs of dimension 3 fall into 2 pieces'
+    'for all heights of the border there is exactly one shape for each of 2 choices of the vertices
+    that pop up; these 2 graphs of dimension 3 form 2 connected components'
     """
     number = _power(len(pieces.vertices))
     one = len(pieces.vertices) == 0
     choices = "1 choice" if one else f"{number} choices"
     kinds = "this graph" if one else f"these {number} graphs"
     return (
-        f"for every rim exactly one shape for each of {choices} of vertices that pop up or down; "
-        f"{kinds} of dimension {pieces.dimension} {'falls' if one else 'fall'} into "
-        f"{_range(pieces.low, pieces.high)}"
+        f"for all heights of the border there is exactly one shape for each of {choices} of the "
+        f"vertices that pop up; {kinds} of dimension {pieces.dimension} "
+        f"{'forms' if one else 'form'} {_range(pieces.low, pieces.high)}"
     )
 
 
 def piece_notes(result: BranchCount) -> list[str]:
-    """What is known of the joints, of true motions and of irreducible families."""
+    """What is known of joints, of true motions, and of irreducible families."""
     pieces = result.pieces
     if pieces is None:
         return []
@@ -50,17 +50,17 @@ def piece_notes(result: BranchCount) -> list[str]:
         rest = f" and {more} more (--json)" if more > 0 else ""
         dots = ", ..." if len(pieces.vertices) > _SHOWN else ""
         notes.append(
-            "graphs meet where stars are flat, 0 in these signs of the vertices "
-            f"{order}{dots}, and in their reflections: {shown}{rest}"
+            "graphs meet at solutions on which some stars are flat; these have the following signs "
+            f"of the vertices {order}{dots}, 0 where flat, or the opposite signs: {shown}{rest}"
         )
     if pieces.never_flat:
         names = ", ".join(map(str, list(pieces.never_flat)[:_SHOWN]))
         names += ", ..." if len(pieces.never_flat) > _SHOWN else ""
         which = counted(len(pieces.never_flat), "vertex")
         are = agreeing(len(pieces.never_flat), "is")
-        notes.append(f"{which} {are} flat in no way to start folding: {names}")
+        notes.append(f"{which} {are} never flat when the sheet starts to fold: {names}")
     true = _range(pieces.low, pieces.true_high)
-    notes.append(f"the true motions near the flat state form as many graphs, in {true}")
+    notes.append(f"the true motions near the flat state form as many graphs, with {true}")
     families = result.families
     if families is not None and families.status is PROVED and families.second_order is not None:
         kinds = ", ".join(f"{n} of dimension {d}" for d, n in families.second_order.items())
@@ -72,8 +72,8 @@ def piece_notes(result: BranchCount) -> list[str]:
 
 def _range(low: int, high: int) -> str:
     if low == high:
-        return "1 piece" if low == 1 else f"{_long(low)} pieces"
-    return f"{_long(low)} to {_long(high)} pieces"
+        return "1 connected component" if low == 1 else f"{_long(low)} connected components"
+    return f"{_long(low)} to {_long(high)} connected components"
 
 
 def _power(exponent: int) -> str:

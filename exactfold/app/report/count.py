@@ -36,13 +36,15 @@ METHODS = {
     "streaming": "Newton, one start per sign vector, block by block",
     "theorem": "no enumeration",
 }
-"""Methods in words."""
+"""The methods in words."""
 
 COLUMNS = 8
-"""Most interior vertices that have a column each; of more, those that pop up are listed."""
+"""With up to this many interior vertices, each has a column; with more, those that pop up are
+listed.
+"""
 
 NAMED = 12
-"""Most folds that are named below the table."""
+"""At most this many folds are named below the table."""
 
 
 def count_report(
@@ -53,7 +55,7 @@ def count_report(
     streamed: StreamedCount | None = None,
     verbose: bool = False,
 ) -> Group:
-    """The answer, the branches, and what is open; with `verbose` also how it was found."""
+    """The answer, the branches, and what is undecided; with `verbose` also how it was found."""
     parts: list[Any] = [answer(result)]
     notes = _notes(result, certificate, streamed)
     if notes:
@@ -71,7 +73,7 @@ def count_report(
 
 
 def answer(result: BranchCount) -> Text:
-    """In how many ways the sheet starts to fold, in one sentence.
+    """The number of ways in which the sheet starts to fold, in one sentence.
 
     >>> from exactfold.branches.counting.collect import count_branches
     >>> from exactfold.pattern.families import single_vertex
@@ -128,8 +130,8 @@ def _motion(result: BranchCount) -> str:
         return ("it" if result.real == 1 else "every one") + " continues to a true motion"
     if result.true_bounds is not None:
         low, high = result.true_bounds
-        return f"every one continues to a true motion, of which there are {low} to {high}"
-    return "not decided whether each continues to a true motion"
+        return f"every one continues to a true motion, and there are {low} to {high} true motions"
+    return "it is undecided whether each continues to a true motion"
 
 
 def _undecided(result: BranchCount, took: str) -> Text:
@@ -174,7 +176,9 @@ def _notes(
 
 
 def _exception(result: BranchCount) -> str:
-    """That the vertices have an exceptional position, and what is usual."""
+    """A sentence: the vertices have an exceptional position, and what happens at almost
+    all others.
+    """
     vertices, pattern = result.exceptional_vertices, result.pattern
     named = ", ".join(str(v) for v in vertices[:NAMED]) + (", ..." if len(vertices) > NAMED else "")
     word = "vertex" if len(vertices) == 1 else "vertices"
@@ -185,7 +189,7 @@ def _exception(result: BranchCount) -> str:
 
 
 def _lettered(found: Lettered) -> str:
-    """Which ways have the letters of the file, in a sentence."""
+    """A sentence that says which ways have the letters of the file."""
     sure = found.status is PROVED
     if not found.ways:
         if not sure:
@@ -287,7 +291,7 @@ def _stream_rows(streamed: StreamedCount) -> list[tuple[str, str]]:
 
 
 def branch_table(branches: Sequence[Branch], most: int | None = None) -> list[Any]:
-    """A line for each branch, with its number; at most so many, and how many more there are."""
+    """A line for each of at most `most` branches, with its number, and how many more there are."""
     pattern, limit = branches[0].pattern, len(branches) if most is None else most
     vertices, wide = pattern.interior, pattern.Vi <= COLUMNS
     counts = any(branch.multiplicity != 1 for branch in branches)

@@ -19,10 +19,10 @@ if TYPE_CHECKING:
     from exactfold.rigidity.facts import PatternFacts
 
 DIGITS = 6
-"""Significant digits of a number that need not be exact."""
+"""Numbers that need not be exact have this many significant digits."""
 
 LISTED = 8
-"""Entries of a list in the table of `exactfold info`."""
+"""A list in the table of `exactfold info` has at most this many entries."""
 
 
 def info_report(
@@ -30,7 +30,7 @@ def info_report(
 ) -> Table:
     """The table; with `exact` also ranks, stresses, forms, the digest and the exact area.
 
-    `motions` are given where `count` decomposes the motions of the sheet.
+    `motions` are given if `count` decomposes the motions of the sheet.
     """
     pattern = facts.pattern
     rows = [
@@ -102,7 +102,7 @@ def _motion_rows(facts: PanelFacts) -> list[tuple[str, str]]:
 
 
 def _number(value: Fraction, exact: bool) -> str:
-    """The number itself, or, where it is long and need not be exact, a decimal near it."""
+    """The number itself; if it is long and need not be exact, a decimal near it."""
     text = format_rational(value)
     if exact or len(text) <= DIGITS + 1:
         return text
@@ -117,7 +117,9 @@ def _listed(entries: list[str], separator: str = "; ") -> str:
 
 
 def expectation(facts: PatternFacts, motions: PanelFacts | None = None) -> str:
-    """What `count` will find, from the numbers of vertices and from `motions` if it has them."""
+    """What `count` will find, from the numbers of vertices, and from `motions` if these
+    are given.
+    """
     pattern = facts.pattern
     free = pattern.Vi - pattern.Vt
     if motions is not None:
@@ -137,7 +139,7 @@ def expectation(facts: PatternFacts, motions: PanelFacts | None = None) -> str:
 
 
 def examples_report(examples: Mapping[str, str]) -> Group:
-    """The shipped patterns, and how to use their names."""
+    """The shipped patterns, and how their names are used."""
     table = Table(box=None, show_header=False, pad_edge=False)
     table.add_column(style="bold", no_wrap=True)
     table.add_column()

@@ -16,15 +16,15 @@ if TYPE_CHECKING:
     from exactfold.branches.values.branch import Bounds, Branch
 
 DIGITS = 12
-"""Significant digits of the bounds of a height."""
+"""The bounds of a height have this many significant digits."""
 
 ANGLE_DIGITS = 6
 
 
 def listing_report(branches: Sequence[Branch], *, heights: bool) -> Group:
-    """The branches as `count` lists them; with `heights` also what each looks like in space."""
+    """The branches as `count` lists them; with `heights` also the heights and angles of each."""
     if not branches:
-        return Group("", Text("No way is a line of its own, so that none is listed."))
+        return Group("", Text("No way to fold is a single line, so none is listed."))
     parts: list[Any] = ["", *branch_table(branches)]
     if heights:
         parts += ["", *(Text(line) for line in _heights(branches))]
@@ -33,8 +33,8 @@ def listing_report(branches: Sequence[Branch], *, heights: bool) -> Group:
 
 def _heights(branches: Sequence[Branch]) -> Iterator[str]:
     yield (
-        "Heights of the vertices, between bounds that are rounded outwards; angles at which the "
-        "folds start to bend, in proportion to the largest, about."
+        "Heights are given by bounds that are rounded outwards. Angles are approximate: how fast "
+        "the folds start to bend, relative to the largest."
     )
     for k, branch in enumerate(branches, 1):
         bounds = ", ".join(f"{v}: {bounds_text(b)}" for v, b in sorted(branch.heights.items()))
@@ -44,7 +44,7 @@ def _heights(branches: Sequence[Branch]) -> Iterator[str]:
 
 
 def bounds_text(bounds: Bounds) -> str:
-    """Bounds as decimal numbers, rounded outwards; one number if they agree and it is short.
+    """Bounds as decimals, rounded outwards; a single number if they are equal and it is short.
 
     >>> bounds_text((Fraction(1, 2), Fraction(1, 2))), bounds_text((Fraction(1, 3), Fraction(2, 3)))
     ('1/2', '0.333333333333 to 0.666666666667')
@@ -56,7 +56,7 @@ def bounds_text(bounds: Bounds) -> str:
 
 
 def angles_of(branch: Branch) -> dict[str, str]:
-    """How fast each fold i-j starts to bend, in proportion to the largest; a valley is positive.
+    """How fast each fold i-j starts to bend, relative to the largest; a valley is positive.
 
     >>> from exactfold.branches.counting.collect import count_branches
     >>> angles_of(count_branches("single-vertex-4")["+"])["0-4"]

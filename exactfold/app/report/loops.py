@@ -23,7 +23,7 @@ _REASONS = 10
 
 
 def motions_report(found: Loops) -> Group:
-    """The matching of the half-branches, loop by loop."""
+    """The matching of the rays, loop by loop."""
     halves = 2 ** (len(found.pattern.foldable_vertices) + 1)
     matched = f"{len(found.matching)} of {counted(halves, 'half-branch')}"
     rows: list[tuple[str, RenderableType]] = [
@@ -36,7 +36,7 @@ def motions_report(found: Loops) -> Group:
 
 
 def _graph(loops: Loops) -> list[tuple[str, RenderableType]]:
-    """What can be reached from the flat state, in a line or two."""
+    """What can be reached from the flat state, in one or two lines."""
     graph = loops.graph
     arcs = counted(len(graph.arcs), "arc")
     nodes = counted(len(graph.nodes), "node") if graph.nodes else "no nodes"
@@ -66,7 +66,7 @@ def _table(loops: Iterable[Loop]) -> Table:
 
 
 def _changes(source: HalfBranch, target: HalfBranch) -> str:
-    """How many signs differ, and whether the saddle does."""
+    """The number of signs that differ, and whether the saddle differs."""
     signs = zip(source.vertex_signs, target.vertex_signs, strict=True)
     number = sum(a != b for a, b in signs)
     parts = [counted(number, "sign")] if number else []
@@ -76,7 +76,7 @@ def _changes(source: HalfBranch, target: HalfBranch) -> str:
 
 
 def _within(low: Fraction, high: Fraction) -> str:
-    """The digits of a number that both of its bounds share."""
+    """The digits that both bounds of a number have in common."""
     a, b = float(low), float(high)
     for digits in range(12, 0, -1):
         if f"{a:.{digits}g}" == f"{b:.{digits}g}":
@@ -87,7 +87,8 @@ def _within(low: Fraction, high: Fraction) -> str:
 def _notes(found: Loops) -> list[RenderableType]:
     notes = [
         "",
-        "One of each pair of mirror images, in one of its two directions; contact is ignored.",
+        "One loop of each pair of mirror images is listed, in one of its two directions; contact "
+        "is ignored.",
     ]
     if found.pattern.reflex_corner is not None:
         notes.append(

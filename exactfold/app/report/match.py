@@ -1,4 +1,4 @@
-"""What `exactfold match` prints: which branches have the letters, or why none has, and the next."""
+"""What `exactfold match` prints: the branches with the letters, or why there are none."""
 
 from __future__ import annotations
 
@@ -23,14 +23,16 @@ if TYPE_CHECKING:
     from exactfold.design.panels.match import PanelMatch
 
 _NEAR = 8
-"""Of the nearest branches so many are shown unless all are asked for."""
+"""The number of nearest branches that are shown, unless all are asked for."""
 _LETTERS = {"M": "mountain", "V": "valley", "F": "flat fold", "U": "free fold"}
 
 
 def match_report(
     found: Match, nearest: Nearest | None, seconds: float, *, everything: bool = False
 ) -> Group:
-    """The answer, the letters, the branches that have them; or the reasons and the nearest."""
+    """The answer, the letters, and the branches that have them; or the reasons, and the nearest
+    ones.
+    """
     parts: list[Any] = [_answer(found, seconds), "", Text(_asked(found))]
     if found.matches:
         shown = found.matches if everything else found.matches[:SHOWN]
@@ -55,7 +57,7 @@ def match_report(
 
 
 NAMED = 12
-"""Creases that are named unless all are asked for."""
+"""The number of creases that are named, unless all are asked for."""
 
 
 def panel_match_report(found: PanelMatch, *, everything: bool = False) -> Group:
@@ -69,7 +71,7 @@ def panel_match_report(found: PanelMatch, *, everything: bool = False) -> Group:
 
 
 def _first_order(found: PanelMatch, everything: bool) -> list[str | Text]:
-    """Which creases can fold their way together at the first instant, and which never."""
+    """Which creases can bend their way together to first order, and which never can."""
     if found.first_order is None:
         return []
     first, asked = found.first_order, sum(x in "MV" for x in found.letters.values())
@@ -123,7 +125,7 @@ def _asked(found: Match | PanelMatch | RimMatch) -> str:
 
 
 def _why(found: Match) -> list[str]:
-    """Reasons in plain words: single vertices where they are enough, else what was refuted."""
+    """Reasons in plain words: single vertices if these are enough, otherwise what was refuted."""
     alone = found.conflicts
     lines = [f"vertex {v} can pop {text}" for v, text in sorted(alone.items())]
     pairs = ((found.labels[i], found.labels[j]) for i, j in found.sheet.folds)
@@ -154,8 +156,8 @@ def _why(found: Match) -> list[str]:
     if found.leaves:
         lines.append(
             f"{counted(found.leaves, 'choice')} of the signs of all vertices "
-            f"{agreeing(found.leaves, 'is')} left: the branches were found, and their letters "
-            "are others"
+            f"{agreeing(found.leaves, 'is')} left: their branches were found, and have other "
+            "letters"
         )
     if found.open_signs:
         lines.append(
@@ -168,7 +170,7 @@ def _why(found: Match) -> list[str]:
 def _nearest(nearest: Nearest, everything: bool) -> list[Any]:
     least = counted(nearest.at_least, "crease")
     if nearest.distance is None:
-        return [Text(f"No branch was found near; all differ at {least} or more: proved.")]
+        return [Text(f"No near branch was found; it is proved that all differ at {least} or more.")]
     far = counted(nearest.distance, "crease")
     if nearest.status is PROVED:
         text = f"Nearest: {far} to change - "

@@ -47,9 +47,9 @@ def motion_report(
     written: Sequence[str] = (),
     proof: MotionProof | PanelProof | None = None,
 ) -> Group:
-    """A motion: what it goes along, where it ends and why, its events, and what was written.
+    """A motion: what it goes along, where and why it ends, its events, and what was written.
 
-    `proof`: what is proved of it, if that was asked for.
+    `proof` says what is proved of it, if that was asked for.
     """
     letters = "".join(motion.assignment[fold] for fold in motion.pattern.folds)
     along = _branch_rows(motion) if isinstance(motion, Motion) else _mode_rows(motion)
@@ -96,7 +96,7 @@ def _mode_rows(motion: PanelMotion) -> list[tuple[str, RenderableType]]:
 
 
 def _proof(proof: MotionProof | PanelProof) -> RenderableType:
-    """What is proved of a motion, in a sentence or two."""
+    """What is proved of a motion, in one or two sentences."""
     if proof.status is not PROVED:
         return Text.assemble(status_text(proof.status), f": {proof.reason}")
     if not isinstance(proof.motion, Motion):
@@ -119,7 +119,7 @@ def _proof(proof: MotionProof | PanelProof) -> RenderableType:
 
 
 def _proof_of_panels(proof: PanelProof) -> RenderableType:
-    """The same of panels."""
+    """What is proved of a motion of panels."""
     touching = "no two panels touch on it"
     if proof.contacts is not None and proof.contacts.event is not None:
         touching = _enclosed(proof.contacts.event, passed=proof.passed)
@@ -127,7 +127,7 @@ def _proof_of_panels(proof: PanelProof) -> RenderableType:
 
 
 def _enclosed(event: Event, *, passed: bool) -> str:
-    """Between which times a first contact is, with so many digits that they differ."""
+    """Bounds of the time of a first contact, with so many digits that they differ."""
     low, high = event.time
     digits = next((n for n in range(8, 17) if f"{low:.{n}g}" != f"{high:.{n}g}"), 17)
     after = ", where the motion goes on" if passed else ""
@@ -140,7 +140,7 @@ def _proved(motion: Motion | PanelMotion) -> RenderableType:
     if motion.exists is not PROVED:
         return "followed in floats: not proved"
     if motion.closes is not PROVED:
-        said = ": it exists until a fold is at 180 degrees; its angles and contacts are floats"
+        said = ": it exists until a fold reaches 180 degrees; its angles and contacts are floats"
         return Text.assemble(status_text(PROVED), said)
     return Text.assemble(
         status_text(PROVED), f": {motion.reason}; contacts are not (--certificate proves them)"
@@ -203,7 +203,7 @@ def _largest(motion: SheetInMotion) -> str:
 
 
 def _events(motion: SheetInMotion) -> list[RenderableType]:
-    """The table of events; of many folds that turn back the first are listed."""
+    """The table of events; if many folds turn back, only the first of them are listed."""
     turning = [event for event in motion.events if event.kind == TURNING]
     left_out = turning[_TURNINGS:]
     shown = [event for event in motion.events if event not in left_out]

@@ -1,4 +1,4 @@
-"""What notebooks show: pictures of patterns, branches and motions, tables of counts."""
+"""What notebooks show: pictures of patterns, branches and motions, and tables of counts."""
 
 from __future__ import annotations
 
@@ -16,8 +16,7 @@ from exactfold.app.report.panels import panels_answer
 from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.result import BranchCount
 from exactfold.design.assignments.result import Match
-from exactfold.motion.curves.motion import Motion
-from exactfold.motion.panels.motion import PanelMotion
+from exactfold.motion.curves.in_motion import SheetInMotion
 from exactfold.panels.result import Decomposition
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.drawing.drawing import Drawing
@@ -28,10 +27,8 @@ from exactfold.pattern.panel_pattern import PanelPattern
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from exactfold.motion.curves.in_motion import SheetInMotion
-
 ROWS: Final = 30
-"""Ways with a row each; of more only the number is told."""
+"""At most this many ways have a row each; the others are only counted."""
 _THUMBNAIL: Final = 120.0
 
 
@@ -55,7 +52,7 @@ def _branch(branch: Branch) -> str:
     return branch_way(branch).picture()
 
 
-@shows("svg", Motion, PanelMotion)
+@shows("svg", SheetInMotion)
 def _motion(motion: SheetInMotion) -> str:
     return motion_stills(motion)
 
@@ -112,7 +109,9 @@ def _page(
     number: int,
     warning: str | None,
 ) -> str:
-    """The answer, a table with a picture in each row, how many are left out, and the warning."""
+    """The answer, a table with a picture in each row, how many rows are left out, and the
+    warning.
+    """
     parts = [f"<p>{head}</p>"]
     if rows:
         titles = "".join(f"<th>{escape(title)}</th>" for title in heads)

@@ -19,13 +19,13 @@ if TYPE_CHECKING:
     from exactfold.pattern.panel_pattern import Edge
 
 NAMED = 12
-"""Most folds that are named in a line."""
+"""At most this many folds are named in a line."""
 
 
 def panels_report(
     result: Decomposition, certificate: str | None, *, everything: bool, verbose: bool = False
 ) -> Group:
-    """The answer, the modes, what stays flat, and what is open."""
+    """The answer, the modes, what stays flat, and what is undecided."""
     parts: list[Any] = [panels_answer(result)]
     notes = _notes(result, everything)
     if notes:
@@ -69,8 +69,8 @@ def panels_answer(result: Decomposition) -> Text:
         return Text.assemble(
             f"{_ways(result.second_order)} - ",
             status_text(PROVED),
-            f"{took}; {'it' if one else 'each'} truly folds, and that there are no others is "
-            "proved to second order only",
+            f"{took}; {'it' if one else 'each'} truly folds; it is proved only to second order "
+            "that there are no others",
         )
     if result.second_order is not None:
         ways = _ways(result.second_order).replace(" to fold", " to start to fold")
@@ -110,7 +110,7 @@ def _notes(result: Decomposition, everything: bool) -> list[str]:
     notes = []
     if result.true is not None and result.second_order != result.true:
         notes.append(
-            f"to second order there are more, which do not all truly fold: "
+            "to second order there are more, but not all of them truly fold: "
             f"{_ways(result.second_order or {})}"
         )
     if result.found is not None:
@@ -131,8 +131,8 @@ def _notes(result: Decomposition, everything: bool) -> list[str]:
         notes.append("each mode listed below truly folds, and there may be others")
     if result.second_order is None and result.rigid is not PROVED:
         notes.append(
-            "whether it starts to fold with given mountains and valleys is often known even so: "
-            "see `exactfold match`"
+            "even so, it is often known whether the sheet starts to fold with given mountains and "
+            "valleys: see `exactfold match`"
         )
     if result.warning is not None:
         notes.append(f"warning: {result.warning}")

@@ -26,7 +26,7 @@ def studies_report(studies: Mapping[str, Study]) -> Table:
 
 
 def study_report(run: StudyRun, written: Iterable[str]) -> Group:
-    """The tables of a study, and where the rows are."""
+    """The tables of a study, and where its rows are stored."""
     parts: list[Any] = []
     for table in run.tables:
         parts += [Text(table.title, "bold"), "", table_of(table), *map(Text, table.notes), ""]
@@ -38,7 +38,7 @@ def study_report(run: StudyRun, written: Iterable[str]) -> Group:
 
 
 def table_of(table: StudyTable) -> Table:
-    """A table of a study; columns of numbers are flush right."""
+    """A table of a study; columns of numbers are aligned to the right."""
     shown = Table(box=None, pad_edge=False)
     for name, words in zip(table.columns, table.words, strict=True):
         shown.add_column(name, justify="left" if words else "right")
@@ -48,7 +48,7 @@ def table_of(table: StudyTable) -> Table:
 
 
 def row_report(row: Recomputed) -> Group:
-    """A row of a journal beside what was computed again."""
+    """A row of a journal beside the row that was computed again."""
     table = Table(box=None, pad_edge=False)
     table.add_column("", style="bold")
     table.add_column("in the journal", overflow="fold")

@@ -1,4 +1,4 @@
-"""Where reports are printed, and the colours of what they name."""
+"""Where reports are printed, and the colours of signs, letters and statuses."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from exactfold._support.plurals import visible
 from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 
 SHOWN = 32
-"""Branches, files and open questions listed unless all are asked for."""
+"""The number of branches, files and questions that are listed, unless all are asked for."""
 
 STYLES = {"M": "red", "V": "blue", "F": "dim", "U": "yellow"}
 UP, DOWN, FLAT = Text("up", "green"), Text("down", "magenta"), Text("flat", "dim")
@@ -36,7 +36,7 @@ def letters_text(letters: str) -> Text:
 
 
 def cut(text: str, most: int = 160) -> str:
-    """Text that may be long, cut where it is."""
+    """Text, truncated if it is long."""
     return text if len(text) <= most else f"{text[:most]}... (--json has all)"
 
 
@@ -51,12 +51,14 @@ def facts_table(rows: list[tuple[str, RenderableType]]) -> Table:
 
 
 def more_text(count: int) -> list[Any]:
-    """That more could be shown, if there is more."""
+    """A line that says how many more there are, if there are more."""
     return [Text(f"... and {count} more (--all shows them)")] if count > 0 else []
 
 
 def show(content: RenderableType) -> None:
-    """Print to stdout; off a terminal without styles and trailing blanks, 80 columns wide."""
+    """Print to stdout; if that is no terminal, without styles and trailing blanks, 80
+    columns wide.
+    """
     out = console()
     if out.is_terminal:
         out.print(content)
@@ -67,12 +69,12 @@ def show(content: RenderableType) -> None:
 
 
 def console(*, stderr: bool = False) -> Console:
-    """A console without highlighting, so that text and tables stay as written."""
+    """A console without highlighting, so that text and tables stay as they are written."""
     return _Console(stderr=stderr, highlight=False, emoji=False, markup=False)
 
 
 class _Console(Console):
-    """Names of files, which may hold anything, do not steer the terminal."""
+    """A console on which file names, which may contain anything, cannot control the terminal."""
 
     def render(
         self, renderable: RenderableType, options: ConsoleOptions | None = None

@@ -1,4 +1,4 @@
-"""Frames of a motion as short text: levelled, rounded to 24 bits, coded by their differences."""
+"""Frames of a motion as short text: levelled, rounded to 24 bits, and coded by differences."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ class CodedFrames(TypedDict):
 def coded_frames(coords: FloatArray) -> CodedFrames:
     """Frames of shape (frames, V, 3) as JSON: their number, a scale, and base64 text.
 
-    Coordinates are rounded to multiples of scale / 2^23, where the largest is the scale in size.
-    Along the frames their fourth differences are small where a motion is smooth; these are written
-    frame by frame as integers, the sign in the lowest bit, seven bits a byte, lowest first, with
-    the highest bit of a byte set where more follow.
+    Coordinates are rounded to multiples of scale / 2^23, where the scale is the largest size of a
+    coordinate. For a smooth motion, the fourth differences along the frames are small. These are
+    written frame by frame as integers. The lowest bit of an integer is its sign. Each byte holds
+    seven bits, the lowest first; its highest bit is set if another byte follows.
 
     >>> line = np.linspace(0, 1, 5)[:, None, None] * np.array([[0.0, 1.0, -2.0]])
     >>> coded = coded_frames(line)
@@ -50,7 +50,7 @@ def coded_frames(coords: FloatArray) -> CodedFrames:
 
 
 def decoded_frames(coded: CodedFrames) -> FloatArray:
-    """The frames that `coded_frames` wrote, shape (frames, V, 3), as the page reads them."""
+    """The frames that `coded_frames` wrote, shape (frames, V, 3), decoded as the page does it."""
     raw = np.frombuffer(b64decode(coded["data"]), dtype=np.uint8).astype(np.int64)
     last = np.flatnonzero(raw < 128)
     first = np.concatenate([[0], last[:-1] + 1])
@@ -63,9 +63,9 @@ def decoded_frames(coded: CodedFrames) -> FloatArray:
 
 
 def levelled(coords: FloatArray) -> FloatArray:
-    """Frames moved and turned, each to be as close to the one before as can be (Kabsch).
+    """Frames moved and turned, each as close to the previous one as possible (Kabsch).
 
-    So the sheet stays in the middle of the picture, and turns no more than it has to.
+    So the sheet stays in the middle of the picture and turns no more than necessary.
     """
     found = [coords[0] - coords[0].mean(axis=0)]
     for shape in coords[1:]:
@@ -77,7 +77,7 @@ def levelled(coords: FloatArray) -> FloatArray:
 
 
 def _bytes(values: np.ndarray[Any, np.dtype[np.int64]]) -> bytes:
-    """Numbers from 0 on, each in as many groups of seven bits as it takes."""
+    """Nonnegative numbers, each in as many groups of seven bits as it needs."""
     shifts = 7 * np.arange(_BYTES)
     groups = (values[:, None] >> shifts) & 127
     more = (values[:, None] >> (shifts + 7)) > 0

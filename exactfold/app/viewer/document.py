@@ -1,4 +1,4 @@
-"""What the page shows, as one JSON document: the sheet, its ways to fold, what is proved."""
+"""What the page shows, as one JSON document: the sheet, its ways to fold, and what is proved."""
 
 from __future__ import annotations
 
@@ -40,16 +40,16 @@ if TYPE_CHECKING:
     from exactfold.branches.values.result import BranchCount
 
 MOST_LISTED: Final = 10
-"""Foldable vertices up to which all branches are listed."""
+"""With up to this many foldable vertices, all branches are listed."""
 MOST_NEIGHBOURS: Final = 24
 MOST_COMPONENTS: Final = 200
 FRAMES: Final = 32
 MOST_FRAMES: Final = 1000
 
 _WORTH_A_PROCESS: Final = 6
-"""Motions that take about as long as to start a process."""
+"""Following this many motions takes about as long as starting a process."""
 _LETTER: Final = {"M": "M", "V": "V", "F": "F", "J": "F"}
-"""Letters of a file as the page draws them; all others are not assigned."""
+"""Letters of a file as the page draws them; all other letters are drawn as unassigned."""
 _SECONDS: Final = re.compile(r" \(\d+\.\d+ s\)")
 
 J = TypeVar("J")
@@ -106,20 +106,22 @@ def view_document(
     workers: int = 1,
     progress: Progress | None = None,
 ) -> ViewDocument:
-    """All that the page shows of a sheet, as JSON: `view_page` puts it into one HTML file.
+    """All that the page shows of a sheet, as JSON; `view_page` puts it into one HTML file.
 
-    Of a triangulated sheet with four corners: its branches, each of which is one of two mirror
-    images. Up to ten foldable vertices all of them; of larger sheets the one on which all vertices
-    pop up and its neighbours; or those with the vertex signs `branches`. Of any other sheet the
-    components of the motions of its rigid panels, up to 200, and the modes that are not followed.
-    Each is followed in `frames` frames to the first contact; one that cannot be has the reason.
-    With `proving`, motions along branches are proved, too (`prove`), and the first contacts of
-    motions of panels that are proved to exist (`prove_contacts`). `workers`: processes that
-    share the work. `name` names the sheet.
+    For a triangulated sheet with four corners, the document has its branches, each of which
+    represents two mirror images. With up to ten foldable vertices these are all branches. For
+    larger sheets they are the branch on which all vertices pop up, and its neighbours. `branches`
+    selects branches by their vertex signs instead. For any other sheet, the document has the
+    components of the motions of its rigid panels, up to 200, and the modes that cannot be followed.
+    Each way is followed in `frames` frames to the first contact; if it cannot be followed, the
+    document says why.
+
+    With `proving`, motions along branches are proved, too (`prove`), and so are the first contacts
+    of motions of panels that are proved to exist (`prove_contacts`). `workers` is the number of
+    processes that share the work. `name` names the sheet.
 
     Raises the errors of `open_sheet`, `UsageError` for signs that do not fit, and
-    `WorkerDiedError`. A sheet of which nothing can be counted has a document all the same, with the
-    reason.
+    `WorkerDiedError`. If nothing can be counted of a sheet, its document says why.
 
     >>> document = view_document("two-vertex", branches=["+-"], frames=5)
     >>> [(way["signs"], way["letters"], way["motion"]["end"]) for way in document["ways"]]
@@ -134,10 +136,10 @@ def view_document(
 
 @dataclass(frozen=True)
 class Known:
-    """A sheet and the ways in which it folds, not yet followed.
+    """A sheet and the ways in which it folds, which have not been followed yet.
 
-    `listed` holds a way as JSON and the job that follows it, None where it is not followed.
-    `follower` does such a job. `facts` are keys of the document.
+    Each entry of `listed` is a way as JSON and the job that follows it, or None if it is not
+    followed. `follower` does such a job. `facts` are keys of the document.
     """
 
     opened: Opened
@@ -157,9 +159,11 @@ class Known:
         proving: bool = False,
         progress: Progress | None = None,
     ) -> Known:
-        """What is known of a sheet; see `view_document`."""
+        """Compute what is known of a sheet; see `view_document`."""
         if not 2 <= frames <= MOST_FRAMES:
-            raise UsageError(f"{frames} frames: a motion in a page has 2 to {MOST_FRAMES}")
+            raise UsageError(
+                f"{frames} frames: a motion in a page needs at least 2 and at most {MOST_FRAMES}"
+            )
         opened = open_sheet(sheet)
         title = name or (
             Path(sheet).stem if isinstance(sheet, str | PathLike) else "crease pattern"
@@ -168,8 +172,8 @@ class Known:
         folds_along_branches = isinstance(pattern, CreasePattern) and has_branches(pattern)
         if branches is not None and not folds_along_branches:
             raise UsageError(
-                "branches are named by vertex signs, and this sheet folds along modes of rigid "
-                "panels: all of these are shown"
+                "vertex signs name branches, but this sheet folds along modes of rigid panels; "
+                "leave the signs out, and all modes are shown"
             )
         try:
             if isinstance(pattern, CreasePattern) and folds_along_branches:
@@ -183,7 +187,7 @@ class Known:
         except ExactfoldError as error:
             nothing: Facts = {
                 "kind": "branches" if folds_along_branches else "panels",
-                "answer": "nothing is known of how this sheet folds",
+                "answer": "nothing is known about how this sheet folds",
                 "status": "undecided",
                 "complete": False,
                 "reason": str(error),
@@ -202,7 +206,7 @@ class Known:
         return ways
 
     def document(self, ways: Sequence[Way], served: bool = False) -> ViewDocument:
-        """The whole document; `served`: motions that are missing can be asked for."""
+        """The whole document; `served` means that the page can ask for missing motions."""
         return {
             "format": "exactfold view result",
             "version": 1,
@@ -217,7 +221,7 @@ class Known:
 
 @dataclass(frozen=True)
 class _Branches:
-    """Branches of a triangulated sheet, and the count that they come from, if all were counted."""
+    """Branches of a triangulated sheet, and their count if all branches were counted."""
 
     pattern: CreasePattern
     branches: tuple[Branch, ...]
@@ -225,7 +229,7 @@ class _Branches:
 
 
 class _Numbered:
-    """The work on a job that has a number."""
+    """Does the work of a job that has a number."""
 
     def __init__(self, work: Callable[[Any], Followed]) -> None:
         self.work = work
@@ -240,7 +244,7 @@ def _numbered(
     listed: Sequence[tuple[Any, Any]],
     jobs: Iterable[int],
 ) -> Iterable[tuple[int, Followed]]:
-    """The number of each job with its result, in the order in which they end."""
+    """The number of each job with its result, in the order in which the jobs end."""
     results = pool(_Numbered(work), ((k, listed[k][1]) for k in jobs))
     with closing(results):
         for (k, _), found in results:
@@ -290,9 +294,9 @@ def _branch_facts(found: _Branches) -> Facts:
         "answer": f"{counted(len(found.branches), 'branch')} of a sheet with {vertices}",
         "status": str(PROVED if proved else UNDECIDED),
         "complete": False,
-        "reason": "each branch was asked for by its vertex signs "
-        f"{'and proved alone' if proved else 'alone, and some are not proved'}; how many there are "
-        "was not asked",
+        "reason": "each branch was found by its vertex signs, and "
+        f"{'all are' if proved else 'not all are'} proved; the branches of the sheet were not "
+        "counted",
         "notes": [],
     }
 
@@ -338,9 +342,9 @@ def _panels(
 
 
 def _sheet_json(opened: Opened) -> FlatSheet:
-    """The flat sheet: a FOLD object without letters, and what the page needs beside it.
+    """The flat sheet: a FOLD object without letters, and everything else the page needs.
 
-    `letters`: of the file, by fold, shown where there is no way to fold.
+    `letters` are those of the file, by fold; they are shown if there is no way to fold.
     """
     pattern = opened.sheet
     if isinstance(pattern, CreasePattern):

@@ -1,8 +1,9 @@
-"""The page: one HTML file with everything in it, which opens without a network or a server."""
+"""The page: one HTML file that contains everything and needs neither a network nor a server."""
 
 from __future__ import annotations
 
 import base64
+import colorsys
 import hashlib
 import html
 import json
@@ -14,8 +15,8 @@ from pathlib import Path
 from typing import Any, Final
 
 from exactfold._support.progress import Progress
+from exactfold.app.pictures import crease_style
 from exactfold.app.viewer.document import FRAMES, ViewDocument, view_document
-from exactfold.app.viewer.look import look_css, look_script
 from exactfold.pattern.fold_writing import checked_target, write_text
 from exactfold.pattern.loading import PatternLike
 
@@ -27,13 +28,16 @@ _IMPORT: Final = re.compile(r'^import \{[^}]*\} from "\./(\w+\.js)";\n', re.MULT
 _EXPORT: Final = re.compile(r"^export (?=async function|function|class|const|let)", re.MULTILINE)
 _SELF, _NOBODY = "'self'", "'none'"
 _PLACE: Final = re.compile(r"\{\{(\w+)\}\}")
+_DARK: Final = {"B": 0.92}
+_LIGHTNESS: Final = 0.66
+"""Least lightness of a line on dark ground; the border is lighter still."""
 
 
 def view_page(document: Mapping[str, Any]) -> str:
     """The HTML text of the page that shows a `view_document`.
 
-    Its scripts and styles are allowed by their digests and nothing else is, so that no text of a
-    pattern can run as code, and the page asks nothing of any network.
+    A content security policy allows its scripts and styles by their digests, and nothing else. So
+    no text in a pattern can run as code, and the page sends no requests to any network.
 
     >>> page = view_page(view_document("single-vertex-4", name="</script>", frames=3))
     >>> page.count("</script>")
@@ -64,9 +68,9 @@ def write_view(
     workers: int = 1,
     progress: Progress | None = None,
 ) -> ViewDocument:
-    """Write the page of a sheet to a file; the document that it shows (see `view_document`).
+    """Write the page of a sheet to a file, and return the document that it shows.
 
-    Raises the errors of `view_document`, and `UnwritableFileError`.
+    See `view_document`. Raises the errors of `view_document`, and `UnwritableFileError`.
 
     >>> import os, tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -88,7 +92,7 @@ def write_view(
 
 
 def checked_page(path: Path) -> str:
-    """The ending of the path of a page; raises as `checked_target`."""
+    """The ending of the path of a page; raises the errors of `checked_target`."""
     return checked_target(path, _ENDINGS, "a page")
 
 
@@ -103,7 +107,7 @@ def script_json(value: object) -> str:
 
 @cache
 def _script() -> str:
-    """The modules of the page joined into one, each after those that it imports."""
+    """The modules of the page joined into one; each comes after the modules that it imports."""
     done: list[str] = []
     parts: list[str] = []
 
@@ -121,7 +125,7 @@ def _script() -> str:
 
 
 def _policy(scripts: Sequence[str], style: str, served: bool) -> str:
-    """A content security policy that allows these texts only."""
+    """A content security policy that allows only these texts."""
     allowed = " ".join(_digest(text) for text in scripts)
     return (
         f"default-src 'none'; script-src {allowed}; style-src {_digest(style)}; "
@@ -133,3 +137,51 @@ def _policy(scripts: Sequence[str], style: str, served: bool) -> str:
 def _digest(text: str) -> str:
     digest = base64.b64encode(hashlib.sha256(text.encode("utf-8")).digest()).decode("ascii")
     return f"'sha256-{digest}'"
+
+
+# --- colours, widths and dashes: those of the pictures ------------------------------------------
+
+
+def look_css() -> str:
+    """The colours of lines by letter as CSS custom properties, lighter on dark ground.
+
+    >>> look_css().split(";")[0]
+    ':root { --M: #c8202f'
+    """
+    light = "; ".join(f"--{letter}: {c}" for letter, c in crease_style.COLOUR.items())
+    dark = "; ".join(f"--{letter}: {_dark(letter)}" for letter in crease_style.COLOUR)
+    return (
+        f":root {{ {light} }}\n@media (prefers-color-scheme: dark) {{\n  :root {{ {dark} }}\n}}\n"
+    )
+
+
+def look_script() -> str:
+    """The widths and dashes of lines as a constant in the page's script.
+
+    >>> look_script()[:14]
+    'const LOOK = {'
+    """
+    style = crease_style.Style.of(crease_style.FULL)
+    letters = {}
+    for letter in crease_style.COLOUR:
+        attributes = style.attributes(letter)
+        letters[letter] = {
+            "width": style.width(letter, None),
+            "least": style.width(letter, 0.0),
+            "most": style.width(letter, 1.0),
+            "dash": list(crease_style.DASH.get(letter, ())),
+            "cap": attributes["stroke_linecap"],
+        }
+    look = {"letters": letters, "full": crease_style.FULL, "smallest": crease_style.LEAST}
+    return f"const LOOK = {json.dumps(look, separators=(',', ':'))};\n"
+
+
+def _dark(letter: str) -> str:
+    """The colour of a letter on dark ground: the same hue, but light enough to be seen."""
+    text = crease_style.COLOUR[letter]
+    hue, lightness, saturation = colorsys.rgb_to_hls(
+        *(int(text[k : k + 2], 16) / 255 for k in (1, 3, 5))
+    )
+    lightness = max(lightness, _DARK.get(letter, _LIGHTNESS))
+    parts = colorsys.hls_to_rgb(hue, lightness, saturation)
+    return "#" + "".join(f"{round(255 * part):02x}" for part in parts)

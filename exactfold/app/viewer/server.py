@@ -22,7 +22,7 @@ from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.loading import PatternLike
 
 HEADER: Final = "X-Exactfold"
-"""Sent by the page with each request: no other page may send it without leave."""
+"""The page sends this header with each request; other pages may not send it without permission."""
 _LOOPBACK: Final = "127.0.0.1"
 _MOST_PORT: Final = 65535
 
@@ -37,20 +37,19 @@ def view_server(
     port: int = 0,
     progress: Progress | None = None,
 ) -> ViewServer:
-    """A server on the loopback address whose page asks for branches as they are looked at.
+    """A server on the loopback address whose page requests branches when they are looked at.
 
-    `serve_forever` runs it, `address` is where; port 0 is any that is free. Branches are listed as
-    by `view_document`; none is followed before the page asks, and any other is found by its signs.
-
-    Raises the errors of `view_document`, `UsageError` for a number that is no port, and `OSError`
-    for a port that is taken.
+    `serve_forever` runs it, and `address` is where it runs; port 0 means any free port. Branches
+    are listed as by `view_document`. None is followed before the page asks for it. Any other branch
+    is found by its signs. Raises the errors of `view_document`, `UsageError` for a number that is
+    not a port, and `OSError` for a port that is in use.
 
     >>> with view_server("two-vertex") as server:
     ...     server.address.startswith("http://127.0.0.1:")
     True
     """
     if not 0 <= port <= _MOST_PORT:
-        raise UsageError(f"port {port}: ports are numbers up to {_MOST_PORT}")
+        raise UsageError(f"port {port}: give a number from 0 to {_MOST_PORT}")
     known = Known.of(
         sheet, name=name, branches=branches, frames=frames, proving=proving, progress=progress
     )
@@ -58,10 +57,10 @@ def view_server(
 
 
 class ViewServer(ThreadingHTTPServer):
-    """Answers the requests of one page; refuses those that came by another name of this machine.
+    """Answers the requests of one page; refuses requests that use another name for this machine.
 
-    A browser sends the name it asked for. Pages of the network that make their own name mean the
-    loopback address are refused by it.
+    A browser sends the name that it asked for. A page from the network may make its own name
+    resolve to the loopback address; the server refuses such requests.
     """
 
     daemon_threads = True
@@ -76,28 +75,32 @@ class ViewServer(ThreadingHTTPServer):
 
     @property
     def address(self) -> str:
-        """Where the page is."""
+        """The address of the page."""
         return f"http://{_LOOPBACK}:{self.server_port}/"
 
     def is_ours(self, hosts: Sequence[str]) -> bool:
-        """Whether a request names this server as the page does, once."""
+        """Whether a request has exactly one Host header, with the name by which the page uses the
+        server.
+        """
         ours = (f"{_LOOPBACK}:{self.server_port}", f"localhost:{self.server_port}")
         return len(hosts) == 1 and hosts[0] in ours
 
     @property
     def page(self) -> bytes:
-        """The page."""
+        """The page as bytes."""
         return self._page
 
     def handle_error(self, request: Any, client_address: Any) -> None:
-        """Say nothing of a browser that left before its answer ended; of anything else, say it."""
+        """Report an error, unless a browser has left before its answer was complete."""
         if not isinstance(sys.exception(), ConnectionError):
             super().handle_error(request, client_address)
 
     def motion(self, number: int) -> Way:
-        """The motion of the way with a number, from 0; raises `UsageError` if there is none."""
+        """The motion of the way with this number, from 0 on; raises `UsageError` if there
+        is none.
+        """
         if not 0 <= number < len(self._known.listed):
-            raise UsageError(f"there is no way {number}")
+            raise UsageError(f"there is no way {number}; the page has {len(self._known.listed)}")
         way, job = self._known.listed[number]
         if job is None:
             return way
@@ -105,10 +108,14 @@ class ViewServer(ThreadingHTTPServer):
             return {**way, **self._known.follower(job)}
 
     def branch(self, signs: str) -> Way:
-        """The branch with vertex signs, and its motion; raises the errors of `BranchFinder`."""
+        """The branch with these vertex signs, and its motion; raises the errors of
+        `BranchFinder`.
+        """
         pattern = self._known.opened.sheet
         if not isinstance(pattern, CreasePattern):
-            raise UsageError("this sheet folds along modes of rigid panels, which have no signs")
+            raise UsageError(
+                "this sheet folds along modes of rigid panels, and modes have no vertex signs"
+            )
         with self._lock:
             if self._finder is None:
                 self._finder = BranchFinder(pattern)
@@ -122,7 +129,7 @@ class _Handler(BaseHTTPRequestHandler):
     def do_GET(self) -> None:
         """Answer with the page, a motion, or a branch."""
         if not self.server.is_ours(self.headers.get_all("Host", [])):
-            self._send(HTTPStatus.FORBIDDEN, b"this server is for this machine", "text/plain")
+            self._send(HTTPStatus.FORBIDDEN, b"this server only answers this machine", "text/plain")
             return
         url = urlsplit(self.path)
         if url.path == "/":
@@ -134,7 +141,7 @@ class _Handler(BaseHTTPRequestHandler):
 
     def _way(self, path: str, query: dict[str, str]) -> None:
         if HEADER not in self.headers:
-            self._send(HTTPStatus.FORBIDDEN, b"only the page may ask this", "text/plain")
+            self._send(HTTPStatus.FORBIDDEN, b"only the page itself may ask this", "text/plain")
             return
         status = HTTPStatus.OK
         found: Way | dict[str, str]
@@ -162,7 +169,7 @@ class _Handler(BaseHTTPRequestHandler):
         self.wfile.write(body)
 
     def log_message(self, format: str, *args: object) -> None:
-        """Write nothing: the page shows what went wrong."""
+        """Write nothing, because the page shows what went wrong."""
 
 
 def _whole(text: str) -> int:

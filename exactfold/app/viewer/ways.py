@@ -1,4 +1,4 @@
-"""The ways in which a sheet folds, as the page shows them: letters, what is proved, the motion."""
+"""The ways in which a sheet folds, as the page shows them: letters, proofs, and motions."""
 
 from __future__ import annotations
 
@@ -82,16 +82,16 @@ class Way(TypedDict):
 
 @dataclass(frozen=True)
 class Following:
-    """Follows branches; it pickles, so that several processes can share the work.
+    """Follows branches. It can be pickled, so that several processes can share the work.
 
-    `proving`: each motion and its first contact are proved, too, where that is possible.
+    With `proving`, each motion and its first contact are proved, too, if possible.
     """
 
     frames: int
     proving: bool = False
 
     def __call__(self, branch: Branch) -> Followed:
-        """The motion along a branch to the first contact, or why there is none."""
+        """The motion along a branch up to the first contact, or the reason why there is none."""
         try:
             motion = follow(branch, frames=self.frames)
             proof = _proof(motion) if self.proving else _in_floats(motion)
@@ -104,9 +104,9 @@ class Following:
 
 @dataclass(frozen=True)
 class FollowingPanels:
-    """The same for the components of the motions of rigid panels, by their numbers from 1.
+    """Follows the components of the motions of rigid panels, given by their numbers, from 1 on.
 
-    `proving`: the first contact of a motion that is proved to exist is proved, too.
+    With `proving`, the first contact of a motion that is proved to exist is proved, too.
     """
 
     ways: Decomposition
@@ -114,7 +114,7 @@ class FollowingPanels:
     proving: bool = False
 
     def __call__(self, component: int) -> Followed:
-        """The motion along a component to the first contact, or why there is none."""
+        """The motion along a component up to the first contact, or the reason why there is none."""
         from exactfold.motion.panels.following import follow_panels
 
         try:
@@ -169,7 +169,7 @@ def _proof(motion: Motion) -> _Known:
     """What is proved of a motion along a branch."""
     proof = prove(motion)
     if proof.status is not PROVED:
-        return _Known(False, False, f"followed in floats; its proof is undecided: {proof.reason}")
+        return _Known(False, False, f"followed in floats; it could not be proved: {proof.reason}")
     event = None if proof.contact is None else proof.contact.event
     parts = [f"it exists, without a gap, in {counted(proof.tubes, 'tube')}"]
     for text in filter(None, (proof.through_text, proof.end_text)):
@@ -188,16 +188,16 @@ def _proof_of_panels(motion: PanelMotion, contacts: bool) -> _Known:
         said = (
             "every vertex closes exactly at all fold angles"
             if motion.curves
-            else "only folds from border to border turn, and they may turn by any angles"
+            else "only folds from border to border turn, and they may turn by any angle"
         )
         touching = _proved_contact(motion) if contacts else "contacts were found in floats"
         return _Known(True, True, f"{said}; {touching}")
     if motion.exists is PROVED:
-        said = "until a fold is at 180 degrees, all angles growing"
+        said = "it exists until a fold reaches 180 degrees, and all angles grow"
         if contacts:
-            said = f"{said}; {_proved_contact(motion)}; what is drawn is"
+            said = f"{said}; {_proved_contact(motion)}; the drawing is computed in"
         else:
-            said = f"{said}; what is drawn, and contacts, are"
+            said = f"{said}; the drawing and the contacts are computed in"
         return _Known(False, True, f"{said} floats; {_kept(motion)}")
     return _in_floats(motion)
 
@@ -209,9 +209,9 @@ def _proved_contact(motion: PanelMotion) -> str:
     if found.status is not PROVED:
         return f"its contacts are undecided: {found.reason}"
     if found.event is None:
-        return "no panels touch on the way: proved"
+        return "it is proved that no panels touch on the way"
     low, high = found.event.time
-    return f"its first contact is between the times {low:.12g} and {high:.12g}: proved"
+    return f"its first contact is proved to be between the times {low:.12g} and {high:.12g}"
 
 
 def not_followed(why: str) -> Followed:
@@ -232,7 +232,7 @@ def branch_way(branch: Branch) -> Way:
         "saddle": branch.saddle,
         "multiplicity": branch.multiplicity,
         "status": str(branch.status),
-        "reason": branch.reason or "it exists, with these vertex signs and letters",
+        "reason": branch.reason or "a branch with these vertex signs and letters exists",
         "angles": _angles(branch.pattern, leading),
         "motion": None,
         "why": "",
@@ -264,18 +264,22 @@ def component_way(
 
 
 def _shown_by(by: str) -> str:
-    """Why a mode truly folds, in a sentence (docs/panels.md, 4)."""
+    """The reason why a mode truly folds, in words (docs/panels.md, 4)."""
     if by == "forest":
         return "its vertices form no loop"
     if by == LINEAR:
-        return "all its fold angles stay in proportion, as half-angle tangents"
+        return "the tangents of half its fold angles stay in proportion"
     return f"its loops of vertices close ({by})"
 
 
 def mode_way(mode: PanelMode, why: str) -> Way:
-    """A mode that is in no component that can be followed, with the reason."""
+    """A mode that belongs to no component that can be followed, with the reason."""
     verdict = mode.extends.verdict
-    said = "whether it truly folds is undecided" if verdict is UNDECIDED else "it does not fold"
+    said = (
+        "it is undecided whether it truly folds"
+        if verdict is UNDECIDED
+        else "it does not truly fold"
+    )
     way = _panel_way(
         mode.pattern,
         f"mode {mode.number}",
@@ -287,7 +291,7 @@ def mode_way(mode: PanelMode, why: str) -> Way:
 
 
 def letters_of(pattern: CreasePattern | PanelPattern, assignment: Mapping[Edge, str]) -> str:
-    """A letter for each fold in the order of `pattern.folds`, F where none is given."""
+    """A letter for each fold in the order of `pattern.folds`; F if none is given."""
     return "".join(assignment.get(fold, "F") for fold in pattern.folds)
 
 
@@ -309,7 +313,7 @@ def _panel_way(
 
 
 def _angles(pattern: CreasePattern | PanelPattern, leading: Mapping[Edge, float]) -> list[float]:
-    """Angles in degrees by fold to three digits; none at all where they are not known."""
+    """Angles in degrees by fold, to three digits; empty if they are not known."""
     if not leading:
         return []
     return [float(f"{leading.get(fold, 0.0):.3g}") for fold in pattern.folds]

@@ -43,10 +43,12 @@ class FramesDocument(TypedDict):
 class FrameKeys(TypedDict):
     """The keys that do not depend on what the sheet folds along."""
 
-    status: Annotated[str, Keywords(enum=["proved", "followed", "undecided"])]
+    status: ProvedOrNot
     """Proved: of a branch, every frame is enclosed, so that a true configuration is near it; of
-    panels, all vertices close exactly at all fold angles. Followed: in floating point, along a
-    proved branch or modes that truly fold. Undecided: the branch is not proved."""
+    panels, all vertices close exactly at all fold angles. Undecided: the frames are floats."""
+    reason: str
+    """What is proved of the frames, or how they were found: in floats along a proved branch, or
+    along modes that truly fold."""
     pinned: Face
     """The face that is held."""
     frames: FramesDocument
@@ -145,12 +147,10 @@ class MotionDocument(FrameKeys):
     """A motion along a branch; what belongs to panels is null."""
 
     format: Literal["exactfold motion result"]
-    version: Literal[1]
+    version: Literal[2]
     pattern: PatternDocument
     theory: Literal["branches"]
     """What the sheet folds along."""
-    reason: str
-    """What is proved of the branch, or what is missing."""
     vertex_signs: VertexSigns
     """By interior vertex: 1 up, -1 down, 0 flat; of the branch as it was named."""
     assignment: Assignment
@@ -175,12 +175,10 @@ class PanelMotionDocument(FrameKeys):
     """A motion of rigid panels; what belongs to branches is null."""
 
     format: Literal["exactfold motion result"]
-    version: Literal[1]
+    version: Literal[2]
     pattern: PanelsDocument
     theory: Literal["modes"]
     """What the sheet folds along."""
-    reason: str
-    """What is proved of the motion."""
     vertex_signs: None
     assignment: Assignment
     """By fold i-j: mountain, valley, flat, seen from +z; as the panels fold."""

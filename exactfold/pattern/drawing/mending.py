@@ -169,7 +169,7 @@ def without_duplicates(drawing: Drawing) -> tuple[Drawing, list[Repair]]:
         drawing.points,
         f"{counted(len(short), 'line')} without length dropped",
     )
-    sentence = f"{counted(count, 'line')} drawn again dropped"
+    sentence = f"{counted(count, 'repeated line')} dropped"
     if unlike:
         sentence += (
             f"; {len(unlike)} with different letters, of which the border wins over creases, "

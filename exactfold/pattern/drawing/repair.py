@@ -111,9 +111,9 @@ def exact_sheets(
 
     Without `merge`, the merging distance is the finest clear one (`clear_distances`) up to 1/300 of
     the size. If the sheet then has holes or loose ends, the next two are tried. The first of the
-    repairs says so if the distance is larger than that of `repaired`. If nothing can be read,
-    coarser distances up to 1/100 are tried, but only to name in the error message the first one
-    that would work.
+    repairs mentions a distance that is larger than the default of `repaired`. If nothing can be
+    read, coarser distances up to 1/100 are tried, but only to name in the error message the first
+    one that would work.
 
     Raises the errors of `repaired`, `exact_coordinates` and `sheets`.
 

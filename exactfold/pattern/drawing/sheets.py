@@ -169,8 +169,8 @@ def _check_inside(part: _Part, places: FloatArray) -> None:
     a, b, letter = inside[0]
     raise FoldError(
         f"line {a}-{b} from ({places[a][0]:.6g}, {places[a][1]:.6g}) to ({places[b][0]:.6g}, "
-        f"{places[b][1]:.6g}) is {'a cut' if letter == 'C' else 'border'} between two panels "
-        f"({counted(len(inside), 'such line')})"
+        f"{places[b][1]:.6g}) is {'a cut' if letter == 'C' else 'a boundary line'} between "
+        f"two panels ({counted(len(inside), 'such line')})"
     )
 
 

@@ -108,7 +108,7 @@ def notch_chart(pattern: CreasePattern) -> Chart:
 
 
 def chamber_chart(pattern: CreasePattern) -> Chart:
-    """The chart in which its vertex signs alone name each branch.
+    """The chart in which vertex signs alone name each branch.
 
     (docs/theorem.md, Four boundary vertices.) For a convex boundary it is `saddle = 1`, for one
     with a reflex corner the chart of the closed notch. Neither has a branch at infinity. Raises
@@ -198,7 +198,7 @@ class Chart:
         return rows | {self.eliminated: {k: int(a * unit) for k, a in row if a}}
 
     def row(self, vertex: int) -> dict[int, Fraction]:
-        """The height of a vertex as an affine function of x: coefficients by position, n for 1."""
+        """The height of a vertex as coefficients of x by position; position n is the constant."""
         return {k: Fraction(a, self._unit) for k, a in self._integer_rows[vertex].items()}
 
     def heights(self, x: Sequence[Fraction]) -> dict[int, Fraction]:

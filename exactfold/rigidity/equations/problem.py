@@ -73,7 +73,7 @@ class Problem:
         return self.sheet.Vi
 
     def require_foldable(self) -> None:
-        """Raises `NotCountedError` if all interior vertices stay flat or there is none."""
+        """Raises `NotCountedError` if there is no interior vertex, or all stay flat."""
         if not self.pattern.interior:
             raise NotCountedError("no vertex can pop: the pattern has no interior vertex")
         if not self.sheet.interior:
@@ -96,7 +96,7 @@ class Problem:
 
     @cached_property
     def chart(self) -> Chart:
-        """The chart in which its vertex signs alone name each of the 2^n branches."""
+        """The chart in which vertex signs alone name each of the 2^n branches."""
         return chamber_chart(self.sheet)
 
     @cached_property

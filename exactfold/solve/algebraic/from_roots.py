@@ -113,7 +113,7 @@ def _parametrised(system: QuadraticSystem, refined: RefinedRoots) -> RootClass |
 
 
 def _separating_form(roots: RefinedRoots) -> tuple[int, ...] | None:
-    """A form whose values differ at all zeros, as far as their accuracy shows."""
+    """A form whose values differ at all zeros, within their accuracy; None if none is found."""
     for form in islice(separating_forms(roots.system.size), _FORMS_TRIED):
         with ctx.workprec(roots.accuracy + _magnitude(roots, form)):
             values = [acb(_value(form, row)) for row in (*roots.real, *roots.upper)]
@@ -279,7 +279,7 @@ def _integers(polynomials: Sequence[arb_poly], common: int) -> list[list[int]] |
 
 
 def _without_zeros(line: list[int]) -> list[int]:
-    """The coefficients without zeros at the end, where the leading ones stand."""
+    """The coefficients, constant term first, without the zeros after the leading one."""
     length = len(line)
     while length and line[length - 1] == 0:
         length -= 1

@@ -373,7 +373,10 @@ def _text(value: int, bits: int) -> str:
 
 
 def _rounded(x: Column, precision: int) -> tuple[int, list[int]]:
-    """The bits after the point that show the largest entry to `precision` digits, and x in them."""
+    """A number of bits after the binary point, and x rounded to it as integers.
+
+    The largest entry then has about `precision` bits.
+    """
     values = []
     for entry in x.entries():
         mantissa, exponent = map(int, entry.man_exp())

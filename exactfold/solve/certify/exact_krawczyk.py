@@ -11,7 +11,7 @@ from operator import mul
 import numpy as np
 from flint import fmpq, fmpq_mat, fmpz, fmpz_mat
 
-from exactfold._support.arrays import FloatArray
+from exactfold._support.arrays import FloatArray, inverses
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.rigidity.equations.quadratic import QuadraticSystem
 from exactfold.solve.certify.box import IsolatingBox, Uncertified
@@ -238,16 +238,7 @@ class _Kernel:
         z = np.hstack([points, np.ones((len(points), 1))])
         with np.errstate(all="ignore"):
             jacobians = np.einsum("pij,bj->bpi", self.float_stack, z)[:, :, :n]
-        try:
-            inverses = np.linalg.inv(jacobians)
-        except np.linalg.LinAlgError:
-            inverses = np.full_like(jacobians, np.nan)
-            for k, jacobian in enumerate(jacobians):
-                try:
-                    inverses[k] = np.linalg.inv(jacobian)
-                except np.linalg.LinAlgError:
-                    continue
-        return np.asarray(inverses)
+        return inverses(jacobians)
 
     def _attempt(self, m: list[int], bits: int, entries: list[int], q: int) -> IsolatingBox | str:
         """Newton steps with a fixed float Y = entries / 2^q, and then the test."""
@@ -265,7 +256,7 @@ class _Kernel:
         return self._test(m, jacobian, values, bits, y, entries, shift)
 
     def _attempt_exactly(self, m: list[int], bits: int) -> IsolatingBox | str:
-        """Newton steps with the rounded exact inverse; doubles cannot separate clusters."""
+        """Newton steps with the rounded exact inverse, for clusters that doubles cannot resolve."""
         n = self.system.size
         result: IsolatingBox | str = "no Newton step was possible"
         length: int | None = None
@@ -365,7 +356,7 @@ class _Kernel:
 
 
 def _fixed_point(matrices: FloatArray) -> tuple[list[int], list[list[int]]]:
-    """Shifts q, and entries times 2^q of at most `_Y_BITS` bits, of finite nonzero matrices."""
+    """For finite nonzero matrices: shifts q, and entries times 2^q of at most `_Y_BITS` bits."""
     sizes = np.frexp(np.abs(matrices).max(axis=(1, 2)))[1]
     shifts = _Y_BITS - sizes
     entries = np.rint(np.ldexp(matrices, shifts[:, None, None])).astype(np.int64)

@@ -18,7 +18,7 @@ All gammas on the right are at most c = 3 (n + 3) u. The bounds themselves (|Y| 
 |R|, |Y| times Hessian norms) are sums of non-negative terms. They are computed with a relative
 error below 2^-30 for n <= 1024, which the factor 1 + 2^-20 covers. Underflow adds less than 2^-500,
 which is added to the bounds. This holds because |z| <= 2^100, |Y| <= 2^300 and nonzero coefficients
-are at least 2^-900, all of which is checked. Then nothing overflows, and a NaN fails every
+are at least 2^-900; the code checks all three. Then nothing overflows, and a NaN fails every
 comparison.
 """
 

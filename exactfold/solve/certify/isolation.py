@@ -128,7 +128,7 @@ def _prove_meeting(
 
 
 def disjoint(boxes: Iterable[IsolatingBox]) -> list[IsolatingBox]:
-    """The boxes in order, without those that meet an earlier one; not compared pairwise.
+    """The boxes in order, without boxes that meet an earlier one.
 
     Boxes are sorted by a fixed integer functional. Only boxes whose values may coincide are
     compared in all coordinates. Two boxes that meet may contain the same zero, so one is dropped.

@@ -1,4 +1,4 @@
-"""Refines heights so that every curvature is slightly above its target; this proposes only.
+"""Refines heights so that every curvature is slightly above its target; nothing is proved.
 
 The equations are those of `solve.numeric.sparse_newton`. Its float steps are computed here from
 exact bends and residuals, so that each step gains as many digits as a float has.

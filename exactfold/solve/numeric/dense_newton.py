@@ -215,9 +215,9 @@ class NappeSystem:
         """The zeros for the sign vectors number `first` to `first + count - 1`, in fewer steps.
 
         `count` is a power of two and divides `first`. The zeros of the first few sign vectors are
-        found from the linear start. Let r be a number without a certain bit. The zero of r + bit
-        starts from x(r), moved as this bit moved the zero of an earlier row: it starts from
-        x(r) + x(q + bit) - x(q), where q is r without its top bit.
+        found from the linear start. Write x(r) for the zero of row r, and let `bit` be a power of
+        two above r. Row r + bit starts from x(r), moved as `bit` moved the zero of an earlier row:
+        from x(r) + x(q + bit) - x(q), where q is r without its top bit.
         """
         e = self.full_signs(sign_vectors(first, count, self.chart.system.size))
         x, converged = np.empty_like(e), np.zeros(count, dtype=bool)

@@ -93,7 +93,10 @@ class _Problem:
 
 
 def _track(problem: _Problem, signs: FloatArray) -> tuple[FloatArray, BoolArray, int]:
-    """Follows every row of `signs`: end points, which arrived, and the steps of the longest."""
+    """Follows the path of every row of `signs`.
+
+    Returns the end points, which paths arrived, and the number of steps of the longest path.
+    """
     n = problem.size
     lines, level = problem.lines, problem.level
     # At T = 0 the system is linear: l_v(x) = e_v sqrt(k).

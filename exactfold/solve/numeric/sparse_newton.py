@@ -1,4 +1,4 @@
-"""Newton's method on the nappes for one sign vector, on a sparse sheet; this proposes only.
+"""Newton's method on the nappes for one sign vector, on a sparse sheet; nothing is proved.
 
 The equations are those of `dense_newton`, in floats, with K_v instead of N_v. As K_v is a sum over
 folds, the Jacobian is as sparse as the sheet; the squares of N_v would fill it star by star.

@@ -1,4 +1,4 @@
-"""The equations in floats, with sparse Jacobians of one fixed pattern; this proposes only."""
+"""The equations in floats, with sparse Jacobians of one fixed pattern; nothing is proved."""
 
 from __future__ import annotations
 

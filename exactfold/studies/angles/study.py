@@ -1,7 +1,7 @@
 """Appendix D of the paper: the directions of the branches of random squares in fold angle space.
 
 A row is one random square: its pairs of branches by their angle, as lines, in bins of pi / 128.
-`exactfold.studies.angles.statistics` tests with numbers the sentences of the paper on these angles.
+The statistics (`exactfold.studies.angles.statistics`) test the paper's sentences on these angles.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ def row(recipe: Recipe) -> dict[str, Any]:
 
 
 def tables(rows: Iterable[Row]) -> list[StudyTable]:
-    """Orthogonality, tails, neighbouring sizes, and what the paper says of them."""
+    """Orthogonality, tails, neighbouring sizes, and the sentences of the paper."""
     sizes = angles_by_size(rows)
     if not sizes:
         return []
@@ -197,7 +197,7 @@ def _neighbours(sizes: list[AnglesOfSize]) -> StudyTable:
 
 
 def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
-    """The distributions of all sizes; that of six vertices, beside the uniform one."""
+    """Two figures: the distributions of all sizes, and of six vertices beside the uniform one."""
     sizes = angles_by_size(rows)
     if not sizes:
         return []
@@ -237,7 +237,7 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
         StudyFigure(
             "one",
             f"Angles between branches, Vi = {one.size}",
-            "Pairs of different branches, each line in both directions, against independent "
+            "Pairs of different branches, each line in both directions, compared with independent "
             "uniform directions.",
             single,
         ),

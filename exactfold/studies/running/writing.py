@@ -81,7 +81,7 @@ def frame(rows: Iterable[Row]) -> Any:
     try:
         import pandas as pd
     except ImportError:
-        raise PackageMissingError(f"frames need pandas: {_INSTALL}") from None
+        raise PackageMissingError(f"data frames need pandas: {_INSTALL}") from None
     return pd.DataFrame.from_records([dict(row) for row in rows], columns=columns(rows))
 
 

@@ -147,11 +147,11 @@ def test_json_says_what_was_written(out):
         (["--up", "0"], "vertex 0 is not an interior vertex"),
         (["--up", "a"], "--up takes vertex indices"),
         (["--branch", "5"], "--branch 5: `exactfold count` lists 4 branches"),
-        (["--signs", "++", "--amount", "0"], "largest fold angle is 0.0 degrees"),
-        (["--signs", "++", "--amount", "200"], "largest fold angle is 200.0 degrees"),
+        (["--signs", "++", "--amount", "0"], "largest fold angle cannot be 0.0 degrees"),
+        (["--signs", "++", "--amount", "200"], "largest fold angle cannot be 200.0 degrees"),
         (["--signs", "++", "--amount", "nan"], "--amount: 'nan' is not a number"),
         (["--signs", "++", "--amount", "1_0"], "--amount: '1_0' is not a number"),
-        (["--signs", "++", "--amount", "1e400"], "largest fold angle is inf degrees"),
+        (["--signs", "++", "--amount", "1e400"], "largest fold angle cannot be inf degrees"),
     ],
 )
 def test_wrong_usage_is_one_line_and_writes_nothing(out, options, words):

@@ -178,7 +178,7 @@ def test_a_row_that_differs_is_said(here, done, monkeypatch):
             ("table1", "--sizes", "2", "--number", "3:1"),
             USAGE,
             "UsageError",
-            "rows for size 3, which is",
+            "rows for size 3, but this",
         ),
         (("table1", "--number", "3:0"), USAGE, "UsageError", "a study without rows says nothing"),
         (

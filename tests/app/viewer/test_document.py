@@ -132,13 +132,14 @@ def test_documents_are_what_their_schema_says(name):
 
 def test_it_says_what_is_proved_of_a_motion_of_panels():
     said = [way["motion"]["said"] for way in document_of("zigzags")["ways"][:3]]
-    assert said[0].startswith("until a fold is at 180 degrees, all angles growing; what is drawn")
+    growing = "it exists until a fold reaches 180 degrees, and all angles grow; "
+    assert said[0].startswith(f"{growing}the drawing and the contacts are computed in floats")
     exact = "every vertex closes exactly at all fold angles; "
     assert said[2] == exact + "contacts were found in floats"
     ways = view_document("zigzags", frames=2, proving=True)["ways"]
-    growing = "until a fold is at 180 degrees, all angles growing; its first contact is between "
-    assert ways[0]["motion"]["said"].startswith(f"{growing}the times ")
-    assert ": proved; what is drawn is floats; faces stay rigid" in ways[0]["motion"]["said"]
+    proved = f"{growing}its first contact is proved to be between the times "
+    assert ways[0]["motion"]["said"].startswith(proved)
+    assert "; the drawing is computed in floats; faces stay rigid" in ways[0]["motion"]["said"]
     assert (ways[0]["motion"]["proved"], ways[0]["motion"]["exists"]) == (False, True)
     way = ways[2]
     event = prove_contacts(follow_panels(count_ways("zigzags"), component=3)).event

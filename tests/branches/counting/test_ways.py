@@ -89,7 +89,7 @@ def test_rounding_is_never_silent(tmp_path: Path) -> None:
     assert count_ways(path).read is None
     rounded = count_ways(path, snap=1)
     assert rounded.pattern == PENTAGON
-    assert rounded.read["lines"] == ["coordinates moved by up to 6e-06 by rounding"]
+    assert rounded.read["lines"] == ["rounding moved coordinates by up to 6e-06"]
 
 
 def test_what_is_no_sheet_is_refused(tmp_path: Path) -> None:

@@ -278,7 +278,7 @@ def test_a_hole_between_creases_is_named():
 def test_a_cut_is_named():
     with pytest.raises(FoldError, match=r"line 0-2 from \(0, 0\) to \(4, 4\) is a cut between"):
         sheets(drawing(CORNERS, [*RIM, (0, 2, "C")]))
-    with pytest.raises(FoldError, match="is border between two panels"):
+    with pytest.raises(FoldError, match="is a boundary line between two panels"):
         sheets(drawing(CORNERS, [*RIM, (0, 2, "B")]))
 
 

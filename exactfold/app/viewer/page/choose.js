@@ -1,4 +1,4 @@
-// Which branches agree with what is asked for, and which is next to another.
+// Which branches agree with the letters and signs asked for, and which branch is next to another.
 
 const TURNED = { M: "V", V: "M", "+": "-", "-": "+" };
 
@@ -15,8 +15,8 @@ export function seen(way, mirrored) {
   return { signs: turned(way.signs), letters: turned(way.letters), saddle: -way.saddle };
 }
 
-// The ways that agree with letters asked of folds (a Map) and a text, each with the side on which
-// it does; as listed if both do. `all`: ways in the order of the list.
+// The ways that agree with the letters asked of folds (a Map) and with a text, each with the side
+// on which it agrees; if both sides agree, the side that is listed.
 export function agreeing(ways, asks, text) {
   const found = [];
   ways.forEach((way, k) => {
@@ -36,7 +36,7 @@ function keepsTo(letters, asks) {
   return true;
 }
 
-// Signs are compared from the first on, letters anywhere; `?` is any.
+// Signs are compared from the first vertex on, letters at any place; `?` stands for any of them.
 function reads(way, side, text, k) {
   const wanted = text.trim().toUpperCase().replaceAll("−", "-").replaceAll(/[\s,]/g, "");
   if (!wanted) return true;
@@ -55,8 +55,8 @@ function fits(text, wanted) {
   return text.length === wanted.length && [...wanted].every((c, k) => c === "?" || c === text[k]);
 }
 
-// The way that differs from what is shown at one vertex: of several the one on the same side of the
-// boundary saddle, then with the letters that differ least. Null if none is listed.
+// The way that differs from the shown way at one vertex. Of several, the one on the same side of the
+// boundary saddle is preferred, then the one whose letters differ least. Null if none is listed.
 export function popped(ways, shown, mirrored, at) {
   const here = seen(ways[shown], mirrored);
   if (!here.signs) return null;
@@ -75,7 +75,7 @@ export function popped(ways, shown, mirrored, at) {
   return best;
 }
 
-// Signs that differ from others at one place, a flat one popped up.
+// The signs with the one at a given place reversed; a flat vertex pops up.
 export function poppedSigns(signs, at) {
   return signs.slice(0, at) + (signs[at] === "+" ? "-" : "+") + signs.slice(at + 1);
 }

@@ -1,4 +1,4 @@
-// What is proved of what is seen, and what is only drawn.
+// The facts beside the picture: what is proved, and what is only drawn.
 
 import { svg } from "./pattern.js";
 
@@ -35,9 +35,9 @@ function wayFacts(page, way) {
   const noun = page.kind === "branches" ? "branch" : "way to fold";
   const facts = [];
   if (way.status === "proved") facts.push(["good", `This ${noun}: proved`, way.reason]);
-  else if (way.status === "refuted") facts.push(["good", "It starts to fold, and does not fold on: proved", way.reason]);
+  else if (way.status === "refuted") facts.push(["good", "Proved: it starts to fold but does not truly fold", way.reason]);
   else facts.push(["open", `This ${noun}: ${way.status}`, way.reason]);
-  if (way.multiplicity > 1) facts.push(["note", `Counted ${way.multiplicity} times`, "as flat vertices count double"]);
+  if (way.multiplicity > 1) facts.push(["note", `Counted ${way.multiplicity} times`, "because flat vertices count double"]);
   if (way.motion) {
     const drawn = way.motion.said;
     if (way.motion.proved) facts.push(["good", "The motion: proved", drawn]);
@@ -50,7 +50,7 @@ function wayFacts(page, way) {
   return facts;
 }
 
-// How the drawing was read, to be opened: it is the same for every way.
+// How the drawing was read; it is the same for every way, and the user opens it.
 function reading(lines) {
   const node = item(["note", "", ""]);
   node.className = "wide";

@@ -1,10 +1,10 @@
-// A way as a FOLD file (version 1.2): the exact flat sheet, and after it the frames in space.
+// A way as a FOLD file (version 1.2): the exact flat sheet, followed by the frames in space.
 
 import { decodeFrames } from "./frames.js";
 import { foldAngles } from "./sheet.js";
 import { seen } from "./choose.js";
 
-const NOISE = 1e-4;  // degrees: coordinates are rounded to about 1e-7 of the sheet
+const NOISE = 1e-4;  // degrees; coordinates are rounded to about 1e-7 of the sheet
 
 export function foldFile(page, sheet, way, mirrored) {
   const { letters } = seen(way, mirrored);
@@ -23,7 +23,7 @@ export function foldFile(page, sheet, way, mirrored) {
       vertex_signs: way.signs || null,
       vertices: sheet.interior,
       side: mirrored ? -1 : 1,
-      status: way.motion ? (way.motion.proved ? "proved" : "followed") : null,
+      status: way.motion ? (way.motion.proved ? "proved" : "undecided") : null,
       end: way.motion ? way.motion.end : null,
       coordinates: "rounded to 24 bits; every edge keeps its length to that",
     },
@@ -55,7 +55,7 @@ function spaceFrames(sheet, way, mirrored, letters, byEdge, name) {
   });
 }
 
-// Between -180 and 180; a fold that is closed keeps the side it came from.
+// The angle between -180 and 180; a closed fold keeps the side from which it came.
 function principal(angle) {
   if (Math.abs(angle) < NOISE) return 0;
   const turns = Math.abs(angle) > 180 + NOISE ? 360 * Math.round(angle / 360) : 0;

@@ -1,9 +1,9 @@
-// Frames of a motion: decoded from text (exactfold/app/viewer/coding.py), and the sheet between them.
+// The frames of a motion, decoded from text (exactfold/app/viewer/coding.py), and the sheet between frames.
 
 const STEPS = 1 << 23;
 const ORDER = 4;
 
-// The frames one after the other, three numbers a vertex.
+// All frames in turn, with three numbers for each vertex.
 export function decodeFrames(motion) {
   const raw = atob(motion.data);
   const numbers = [];
@@ -27,8 +27,8 @@ export function decodeFrames(motion) {
   return { count: motion.frames, size, values: Float64Array.from(numbers, (n) => n * unit) };
 }
 
-// The sheet at a part of the time, 0 to 1, into `out`; a cubic through the frames around it.
-// The mirror image is the same sheet seen from below.
+// Write the sheet at a share of the time, 0 to 1, into `out`, by a cubic through the neighbouring
+// frames. The mirror image is the same sheet seen from below.
 export function positionsAt(frames, part, mirrored, out) {
   const { count, size, values } = frames;
   const place = Math.min(Math.max(part, 0), 1) * (count - 1);
@@ -46,7 +46,7 @@ export function positionsAt(frames, part, mirrored, out) {
   return out;
 }
 
-// The frame that would stand before the first or after the last: the parabola through three.
+// A frame before the first or after the last one, by the parabola through three frames.
 function edge(values, k, step, size, i, count = Infinity) {
   const at = (n) => values[n * size + i];
   const third = k + 2 * step;

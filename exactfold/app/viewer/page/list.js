@@ -1,4 +1,4 @@
-// The list of ways: those that agree with what is asked for, one of them shown.
+// The list of the ways that agree with what is asked for; one of them is shown.
 
 import { agreeing, difference, seen } from "./choose.js";
 import { sentence } from "./facts.js";
@@ -38,7 +38,7 @@ export function createList(page, store) {
     return `${of} ${wish}. "Clear" shows all again.`;
   }
 
-  // If what is shown is no longer in the list, the most similar that is.
+  // If the shown way is no longer in the list, show the most similar way that is.
   function settle() {
     const { ways, way, mirrored, asks, search: text } = store.get();
     if (!found.length || (!asks.size && !text.trim())) return;

@@ -1,4 +1,4 @@
-// The page: reads its data, and ties its parts together.
+// The page: it reads its data and connects its parts.
 
 import { popped, poppedSigns, seen } from "./choose.js";
 import { decodeFrames, positionsAt } from "./frames.js";
@@ -13,7 +13,7 @@ import { createStore } from "./store.js";
 import { createTransport } from "./transport.js";
 
 const OPENING = 0.55;
-const APART = 0.003;  // layers that meet at the end are drawn as they come there
+const APART = 0.003;  // layers that meet at the end are drawn in the order in which they arrive
 
 const page = JSON.parse(document.getElementById("data").textContent);
 const sheet = readSheet(page.sheet);
@@ -53,7 +53,7 @@ function paintSheet() {
   transport.angle(frames ? foldAngles(sheet, positions).reduce((most, angle) => Math.max(most, Math.abs(angle)), 0) : null);
 }
 
-// The first picture holds the flat sheet and the motion that is shown first.
+// The first view contains the flat sheet and the motion that is shown first.
 function fitScene() {
   const frames = framesOf(store.get().ways[store.get().way]);
   const shapes = frames ? [0.35, 0.7, 1].flatMap((part) => [false, true].map(
@@ -216,7 +216,7 @@ document.addEventListener("keydown", (event) => {
   event.preventDefault();
 });
 
-// For tests and for the console of the browser.
+// Used by tests and in the console of the browser.
 window.exactfold = {
   page, store, foldFile: () => foldFile(page, sheet, store.get().ways[store.get().way], store.get().mirrored),
   positions: () => Array.from(positions), drawn: () => scene?.drawn() ?? 0,

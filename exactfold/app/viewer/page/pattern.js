@@ -1,4 +1,4 @@
-// The crease pattern: letters as colours, vertex signs as marks, both to be clicked.
+// The crease pattern: colours show letters, marks show vertex signs; both can be clicked.
 
 import { NAMES, seen, turned } from "./choose.js";
 
@@ -15,7 +15,7 @@ export function svg(tag, attributes = {}, ...children) {
   return node;
 }
 
-// A line as pictures draw it (`LOOK` is made from them): `share` of the largest angle, null: not known.
+// A line as pictures draw it (`LOOK` is made from them). `share` is that of the largest angle; null if not known.
 function drawLine(node, letter, share, scale = 1) {
   const { width, least, most, dash, cap } = LOOK.letters[letter];
   const wide = share === null || !"MVU".includes(letter) ? width : least + share * (most - least);
@@ -101,7 +101,7 @@ export function createPattern(holder, sheet, store, { onVertex, onHint, poppable
     else onVertex(Number(node.dataset.place));
   }
 
-  // What is under the pointer or has the focus, and what a click does there.
+  // Say what is under the pointer or has the focus, and what a click does there.
   function hint({ target }) {
     onHint(target?.closest?.("[data-fold], [data-vertex]")?.getAttribute("aria-label") ?? "");
   }
@@ -126,7 +126,7 @@ export function createPattern(holder, sheet, store, { onVertex, onHint, poppable
   layout();
 }
 
-// Only one node of a group is a stop of the Tab key; arrows go round the others.
+// The Tab key stops at only one node of a group; the arrow keys go to the others.
 function roam(nodes, from, step) {
   const to = nodes[(from + step + nodes.length) % nodes.length];
   nodes[from].setAttribute("tabindex", -1);
@@ -142,7 +142,7 @@ function fitted(points, width, height) {
   return ([x, y]) => [left + scale * (x - low[0]), height - top - scale * (y - low[1])].map((c) => Math.round(c * 100) / 100);
 }
 
-// Pixels between neighbouring vertices: lines and marks are as large as these leave room for.
+// The pixels between neighbouring vertices; they limit the size of lines and marks.
 function roomOf(sheet, at) {
   const lengths = sheet.folds.map(([i, j]) => Math.hypot(at[i][0] - at[j][0], at[i][1] - at[j][1])).sort((a, b) => a - b);
   return lengths[Math.floor(lengths.length / 5)] ?? 100;
@@ -187,7 +187,7 @@ function widestGap(angles) {
   return best[1];
 }
 
-// Up and down as filled triangles, flat as an empty circle; a dot where vertices have no sign.
+// The mark of a vertex: a filled triangle for up or down, an empty circle for flat, a dot without a sign.
 export function mark(sign, size, foldable = true) {
   const s = size;
   const paths = {
@@ -205,13 +205,13 @@ function name(node, text) {
   node.querySelector("title").textContent = text;
 }
 
-// `letters` and `signs`: all that are shown; `letters` of the file where there are no ways to fold.
+// `letters` and `signs` are all that are shown. Without ways to fold, `letters` are those of the file.
 export function legendItems(letters, signs, ofFile) {
   const line = (letter, text) => [svg("svg", { "aria-hidden": "true" }, drawLine(svg("path", { d: "M0 5H24" }), letter, null)), text];
   const point = (sign, text) => [svg("svg", { "aria-hidden": "true", class: "small", viewBox: "-6 -6 12 12" }, mark(sign, 5)), text];
   const names = { M: "mountain", V: "valley", F: "flat", U: ofFile ? "no letter" : "undecided" };
   const marks = { "+": "vertex up", "-": "vertex down", "0": "vertex flat" };
-  const seenBoth = (text) => text + turned(text);  // a mirror image is one click away
+  const seenBoth = (text) => text + turned(text);  // the mirror image can be shown, too
   return [
     ...Object.keys(names).filter((letter) => seenBoth(letters).includes(letter)).map((letter) => line(letter, names[letter])),
     ...Object.keys(marks).filter((sign) => seenBoth(signs).includes(sign)).map((sign) => point(sign, marks[sign])),

@@ -1,11 +1,11 @@
-// The sheet in space, drawn with three.js: two colours, edges, a camera that goes round it.
+// The sheet in space, drawn with three.js: two colours, edges, and a camera that moves round it.
 
-const UPPER = 0x56b4e9, LOWER = 0xf0e442;  // the side that is +z in the flat sheet, and the other
+const UPPER = 0x56b4e9, LOWER = 0xf0e442;  // UPPER is the side that is +z in the flat sheet
 const EDGE = 0x1d1c1a;
 const AZIMUTH = -62, ELEVATION = 34, VIEW = 30;
 const TURNS = [0, 18, -18, 36, -36, 54, 72, 90, 108, 126, 144, 162, 180, 198, 216, 234, 252, 270, 288];
-const FOLD = 1.3, FINEST = 0.3, ROOM = 14;  // pixels: a line of the sheet, and between lines this wide
-const FILLED = 0.9;  // of the picture
+const FOLD = 1.3, FINEST = 0.3, ROOM = 14;  // pixels: widths of lines, and the distance for full width
+const FILLED = 0.9;  // the sheet fills this share of the picture
 
 export function createScene(canvas, sheet, flat, radius) {
   const renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
@@ -29,7 +29,7 @@ export function createScene(canvas, sheet, flat, radius) {
   const inner = lines(sheet.folds, FOLD), outer = lines(sheet.boundary, 2.4);
   scene.add(inner.object, outer.object);
 
-  // Fixed to the sheet, so that faces of different directions differ and keep their shade.
+  // The light is fixed to the sheet, so faces of different directions differ and keep their shade.
   scene.add(new THREE.HemisphereLight(0xffffff, 0xffffff, 1.1));
   for (const [strength, ...from] of [[2.1, -0.55, -0.35, 0.76], [0.75, 0.8, 0.1, -0.6], [0.5, 0.2, 0.9, 0.3]]) {
     const lamp = new THREE.DirectionalLight(0xffffff, strength);
@@ -37,7 +37,7 @@ export function createScene(canvas, sheet, flat, radius) {
     scene.add(lamp);
   }
 
-  // The border in the colour of text, so that it is seen on light and on dark ground.
+  // The border has the colour of text, so that it is visible on light and on dark ground.
   const dark = matchMedia("(prefers-color-scheme: dark)");
   const colour = () => outer.material.color.set(getComputedStyle(document.body).color);
   dark.addEventListener("change", () => (colour(), want()));
@@ -60,14 +60,14 @@ export function createScene(canvas, sheet, flat, radius) {
     draw();
   }
 
-  // Pixels between the lines of the flat sheet, about: a share of its area for each of them.
+  // The approximate distance of lines in pixels: each line gets a share of the area of the flat sheet.
   function room(pixels) {
     const area = sheet.triangles.reduce((sum, corners) => sum + Math.hypot(...normalOf(flat, corners)) / 2, 0);
     const length = sheet.folds.reduce((sum, [i, j]) => sum + Math.hypot(flat[3 * i] - flat[3 * j], flat[3 * i + 1] - flat[3 * j + 1]), 0);
     return (area / Math.max(length, 1e-12)) * (pixels / (2 * radius));
   }
 
-  // From where a picture of a fold is usually seen, with all of these shapes in the picture.
+  // Place the camera where pictures of folds are usually taken, with all these shapes in the picture.
   function home() {
     const e = ELEVATION * (Math.PI / 180), a = azimuth(e);
     const towards = [Math.cos(e) * Math.cos(a), Math.cos(e) * Math.sin(a), Math.sin(e)];
@@ -90,7 +90,7 @@ export function createScene(canvas, sheet, flat, radius) {
     camera.userData.touched = false;
   }
 
-  // Of directions round the sheet the one from which much of it is seen, and of both its sides.
+  // Choose the direction round the sheet from which much of it and of both its sides is visible.
   function azimuth(e) {
     const shape = fitted[Math.min(2, fitted.length - 1)];
     const normals = sheet.triangles.map((corners) => normalOf(shape, corners));
@@ -109,7 +109,7 @@ export function createScene(canvas, sheet, flat, radius) {
     return (AZIMUTH + TURNS[best]) * (Math.PI / 180);
   }
 
-  // The camera on a sphere round its target.
+  // Place the camera on a sphere round its target.
   function place(azimuth, polar, distance) {
     const p = Math.min(Math.max(polar, 0.01), Math.PI - 0.01);
     const { x, y, z } = controls.target;
@@ -119,7 +119,7 @@ export function createScene(canvas, sheet, flat, radius) {
     want();
   }
 
-  // Turned by angles, and nearer by a factor.
+  // Turn the camera by angles, and move it nearer by a factor.
   function move(turn, tilt, factor = 1) {
     const [x, y, z] = camera.position.clone().sub(controls.target).toArray();
     const distance = Math.hypot(x, y, z);
@@ -128,7 +128,7 @@ export function createScene(canvas, sheet, flat, radius) {
     camera.userData.touched = true;
   }
 
-  // The shapes that are to be in the picture at first; the picture moves there if it is as it was.
+  // Set the shapes that fill the picture at first; the camera moves there unless the user has moved it.
   function fit(shapes) {
     fitted = shapes;
     if (width && !camera.userData.touched) home();
@@ -170,7 +170,7 @@ export function createScene(canvas, sheet, flat, radius) {
   return { show, move, home, fit, drawn: () => drawn };
 }
 
-// At right angles to a triangle, as long as twice its area.
+// The normal of a triangle; its length is twice the area of the triangle.
 function normalOf(shape, [a, b, c]) {
   const side = (v) => [0, 1, 2].map((k) => shape[3 * v + k] - shape[3 * a + k]);
   const [[x, y, z], [u, v, w]] = [side(b), side(c)];

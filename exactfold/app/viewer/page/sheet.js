@@ -21,7 +21,7 @@ export function readSheet(json) {
   };
 }
 
-// For each fold i-j its ends, and the corners across it to the left and to the right.
+// For each fold i-j, its ends and the opposite corners of the faces to its left and right.
 function hingesOf(folds, triangles) {
   const across = new Map();
   for (const [a, b, c] of triangles) {
@@ -30,7 +30,7 @@ function hingesOf(folds, triangles) {
   return folds.map(([i, j]) => [i, j, across.get(`${i}-${j}`), across.get(`${j}-${i}`)]);
 }
 
-// Degrees by fold, positive for a valley, between -180 and 180.
+// The angle of each fold in degrees, positive for a valley, between -180 and 180.
 export function foldAngles(sheet, positions) {
   const point = (v) => [positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]];
   return sheet.hinges.map(([i, j, left, right]) => {

@@ -1,4 +1,4 @@
-// What is shown, in one place: parts of the page read it and are told what has changed.
+// What is shown, in one place. The parts of the page read it and are told what has changed.
 
 export function createStore(values) {
   const listeners = [];
@@ -9,7 +9,7 @@ export function createStore(values) {
       const changed = Object.keys(patch).filter((key) => values[key] !== patch[key]);
       if (!changed.length) return;
       values = { ...values, ...patch };
-      if (queued) {  // a listener has set something: it is told after what is under way
+      if (queued) {  // a listener has set something: listeners are told after the current change
         changed.forEach((key) => queued.add(key));
         return;
       }

@@ -16,9 +16,9 @@ ORIPA_TYPES: Final = {"0": "", "1": "B", "2": "M", "3": "V", "4": ""}
 def read_cp(text: str) -> Drawing:
     """The drawing in a `.cp` file of rows `type x1 y1 x2 y2`, with the numbers exactly as written.
 
-    Type 1 is a border, 2 a mountain, 3 a valley; 0 and 4 are auxiliary lines, which are left out.
-    Coordinates are kept as they stand, as the converter of the FOLD project keeps them. Raises
-    `MalformedDrawingError`, which names the line of the file, also for a file without lines.
+    Type 1 is the boundary, 2 a mountain, 3 a valley; 0 and 4 are auxiliary lines, which are left
+    out. Coordinates are not transformed; the converter of the FOLD project does the same. Raises
+    `MalformedDrawingError`, which names the line of the file, and also for a file without lines.
 
     >>> drawing = read_cp("1 0 0 1 0\\n3 0 0 0.5 0.1\\n")
     >>> drawing.lines[1], drawing.points[2]

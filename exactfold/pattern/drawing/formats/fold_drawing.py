@@ -85,7 +85,7 @@ def _source(document: Mapping[str, Any], frame: Mapping[str, Any], k: int) -> st
 
 
 def _frames(document: Mapping[str, Any]) -> list[Mapping[str, Any]]:
-    """The top level and the frames, without what they inherit."""
+    """The top level and the frames, without the keys that they inherit."""
     stated: list[Mapping[str, Any]] = [document]
     for k, frame in enumerate(list_at(document, "file_frames"), 1):
         if not isinstance(frame, dict):
@@ -95,7 +95,7 @@ def _frames(document: Mapping[str, Any]) -> list[Mapping[str, Any]]:
 
 
 def _chain(stated: Sequence[Mapping[str, Any]], k: int) -> list[int]:
-    """The numbers of a frame, of its parent, of the parent's parent, and so on."""
+    """A frame, its parent, the parent's parent, and so on, each by its number."""
     chain = [k]
     while chain[-1] and stated[chain[-1]].get("frame_inherit") is True:
         parent = stated[chain[-1]].get("frame_parent", 0)

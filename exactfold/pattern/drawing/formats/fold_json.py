@@ -56,7 +56,7 @@ def _integer(digits: str) -> int:
 
 
 def json_object(text: str) -> dict[str, Any]:
-    """The one JSON object of a text; raises `NotFoldError` for text that is no JSON object."""
+    """The only JSON object in a text; raises `NotFoldError` for any other text."""
     try:
         document = json.loads(
             text.removeprefix("\ufeff"),
@@ -81,7 +81,7 @@ def json_object(text: str) -> dict[str, Any]:
 
 
 def fold_document(text: str) -> dict[str, Any]:
-    """The JSON object of a FOLD file; raises `NotFoldError`, also where it has no FOLD keys."""
+    """The JSON object of a FOLD file; raises `NotFoldError`, also if it has no FOLD keys."""
     document = json_object(text)
     if not any(key.startswith(_PREFIXES) for key in document):
         raise NotFoldError(

@@ -20,8 +20,8 @@ def read_opx(text: str) -> Drawing:
     """The drawing in an `.opx` file, with the numbers exactly as written.
 
     Each line is an object `OriLineProxy` with the properties `type`, `x0`, `y0`, `x1`, `y1`; Java
-    leaves out those that are 0. The types are those of `read_cp`. Raises `MalformedDrawingError`,
-    which numbers the line from 0, also for a file without lines.
+    leaves out properties that are 0. The types are those of `read_cp`. Raises
+    `MalformedDrawingError`, which counts lines from 0, and also for a file without lines.
 
     >>> number = '<void property="{}"><double>{}</double></void>'.format
     >>> line = '<void property="type"><int>2</int></void>' + number("x1", 1.5) + number("y1", 2)

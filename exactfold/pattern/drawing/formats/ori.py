@@ -22,10 +22,10 @@ LINES: Final = "<線分集合>"
 def read_ori(text: str) -> Drawing:
     """The drawing in an `.ori` file: `lineSegments` with ends "x,y" and colours, exactly.
 
-    Black lines are the border, red ones mountains, blue ones valleys; lines in other colours and
-    `auxLineSegments` are auxiliary lines, which are left out. Coordinates are kept as they stand,
-    as in Oriedita's own FOLD files. Raises `NotFoldError`, `MalformedDrawingError`, which numbers
-    the line from 0, also for a file without lines.
+    Black lines are the boundary, red ones mountains, blue ones valleys. Lines in other colours and
+    `auxLineSegments` are auxiliary lines, which are left out. Coordinates are not transformed, as
+    in Oriedita's own FOLD files. Raises `NotFoldError` for text that is not a JSON object. Raises
+    `MalformedDrawingError`, which counts lines from 0, and also for a file without lines.
 
     >>> line = '{"a": "0.0,0.0", "b": "0.1,-2", "color": "RED_1"}'
     >>> read_ori('{"lineSegments": [' + line + ']}').points[1]
@@ -71,9 +71,10 @@ def _place(what: str, parts: Sequence[str]) -> Place:
 def read_orh(text: str) -> Drawing:
     """The drawing in an `.orh` file of Orihime, with the numbers exactly as written.
 
-    After the heading of the lines, each line of the drawing has a row "色,colour" (0 border,
-    1 mountain, 2 valley, others auxiliary, which are left out) and a row "座標,x1,y1,x2,y2". Raises
-    `MalformedDrawingError`, which names the row of the file, also for a file without lines.
+    After the heading of the lines, each line of the drawing has a row "色,colour" and a row
+    "座標,x1,y1,x2,y2". The colours are 0 for the boundary, 1 for mountains and 2 for valleys; lines
+    of other colours are auxiliary and left out. Raises `MalformedDrawingError`, which names the row
+    of the file, and also for a file without lines.
 
     >>> read_orh("<線分集合>\\n番号,1\\n色,2\\n座標,0.0,0.0,10.5,0.0\\n").points[1]
     (Fraction(21, 2), Fraction(0, 1))

@@ -53,8 +53,8 @@ def parse_drawing(content: str | bytes, name: str) -> Drawing:
     """The drawing in the content of a file; if the content shows no format, `name` decides.
 
     Bytes are decoded as UTF-8, as UTF-16 if there is a byte order mark, or as an XML declaration
-    says. Raises `UnknownFormatError`, which lists the formats, the errors of the reader of the
-    format, and `TooLargeError`.
+    says. Raises `UnknownFormatError`, whose message lists the formats, and `TooLargeError`. Also
+    raises the errors of the reader of the format.
 
     >>> parse_drawing("1 0 0 1 0", "edge").source
     'read edge: CP, 1 line (1 border)'

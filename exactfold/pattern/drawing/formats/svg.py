@@ -57,8 +57,8 @@ def read_svg(text: str) -> Drawing:
     `polygon`, `rect` and `path` are read. The size of the picture (`width`, `height`, `viewBox`) is
     not applied. Numbers are read from their text; only transforms are products of floats.
 
-    Raises `MalformedDrawingError`, also for a file without lines and for curves; for these it names
-    the element.
+    Raises `MalformedDrawingError`, also for a file without lines and for curves. For a curve the
+    message names the element.
 
     >>> drawing = read_svg('<svg><g stroke="red"><line x2="0.1" y2="3"/></g></svg>')
     >>> drawing.points[1], drawing.lines[0].letter

@@ -23,9 +23,9 @@ _BEND: Final = Fraction(1, 1000)
 def path_lines(data: str) -> tuple[list[tuple[Place, Place]], int]:
     """The lines of path data, and how many of them are written as curves that do not bend.
 
-    Numbers are read through their text, and relative places are added exactly. Raises
-    `MalformedDrawingError` for arcs, and for Bezier curves that leave their chord by more than a
-    thousandth of its length, and for data that is not understood.
+    Numbers are read from their text, and relative places are added exactly. Raises
+    `MalformedDrawingError` for arcs, for Bezier curves that leave their chord by more than a
+    thousandth of its length, and for invalid data.
 
     >>> lines, curves = path_lines("m.1.2h1v1z")
     >>> lines[1], curves
