@@ -91,10 +91,10 @@ class Driven:
         signs = tuple(self.side * branch.vertex_signs[v] for v in problem.foldable)
         return PROVED if start.vertex_signs == signs else UNDECIDED
 
-    def report(self, name: str | None = None) -> DrivenBranchDocument:
+    def to_dict(self, name: str | None = None) -> DrivenBranchDocument:
         """The object printed by `exactfold branch --drive --json`: `schema("branch")`."""
         return {
-            **self.branch.report(name),
+            **self.branch.to_dict(name),
             "drive": {
                 "folds": self.drive.to_dict(),
                 "side": self.side,
