@@ -1,6 +1,9 @@
-"""Types of NumPy arrays by the kind of their entries, and a fast cross product."""
+"""Types of NumPy arrays by the kind of their entries, a fast cross product, inverses of stacks."""
 
 from __future__ import annotations
+
+from contextlib import suppress
+from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -12,6 +15,8 @@ BoolArray = npt.NDArray[np.bool_]
 IndexArray = npt.NDArray[np.intp]
 BigArray = npt.NDArray[np.object_]
 """An array of Python integers of any length."""
+
+A = TypeVar("A", FloatArray, ComplexArray)
 
 
 def cross(a: FloatArray, b: FloatArray) -> FloatArray:
@@ -26,3 +31,19 @@ def cross(a: FloatArray, b: FloatArray) -> FloatArray:
         i, j = (k + 1) % 3, (k + 2) % 3
         found[..., k] = a[..., i] * b[..., j] - a[..., j] * b[..., i]
     return found
+
+
+def inverses(matrices: A) -> A:
+    """Inverses of a stack of matrices, shape (count, n, n); NaN where LAPACK finds one singular.
+
+    >>> inverses(np.array([[[2.0]], [[0.0]]])).tolist()
+    [[[0.5]], [[nan]]]
+    """
+    try:
+        return np.asarray(np.linalg.inv(matrices), dtype=matrices.dtype)
+    except np.linalg.LinAlgError:
+        found = np.full_like(matrices, np.nan)
+        for k, matrix in enumerate(matrices):
+            with suppress(np.linalg.LinAlgError):
+                found[k] = np.linalg.inv(matrix)
+        return found

@@ -132,7 +132,7 @@ def verify(
             text = (first + stream.read(MOST_BYTES + 1 - len(first))).decode()
         except UnicodeDecodeError as error:
             raise FormatError(error) from None
-    at_most(len(text), MOST_BYTES, "the bytes of the file")
+    at_most(len(text), MOST_BYTES, "the bytes of the file", "MOST_BYTES")
     return check(load(text))
 
 

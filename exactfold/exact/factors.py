@@ -1,4 +1,4 @@
-"""Degrees of irreducible factors over Q, and Galois groups, proved by factoring modulo primes.
+"""Degrees of irreducible factors over Q, proved by factoring modulo primes.
 
 Let p be a prime that does not divide the leading coefficient of f, and let f be squarefree modulo
 p. Then the degrees of the factors of f modulo p are the cycle lengths of an element of the Galois
@@ -74,38 +74,6 @@ def factor_degrees(polynomial: Sequence[int]) -> tuple[int, ...]:
         return (len(polynomial) - 1,)
     factors = fmpz_poly(list(polynomial)).factor()[1]
     return tuple(sorted(int(factor.degree()) for factor, _ in factors))
-
-
-def symmetric_group_primes(
-    polynomial: Sequence[int], tried: int = _TRIED
-) -> tuple[int, ...] | None:
-    """Primes that prove the Galois group of a polynomial to be the symmetric group S_d.
-
-    The primes prove three things. The polynomial is irreducible, so the group is transitive. Some
-    prime has a factor of prime degree l with d/2 < l < d - 2; this gives an l-cycle, which makes
-    the transitive group primitive, and by Jordan's theorem (Wielandt, Finite Permutation Groups,
-    theorem 13.9) the group then contains the alternating group. Some prime gives an odd
-    permutation. For d >= 5 the roots are then not expressible by radicals. The result is None if
-    the primes tried prove nothing; for d < 8 there is no such l, and the result is always None.
-
-    >>> symmetric_group_primes((-1, -1, 0, 0, 0, 0, 0, 0, 1))  # T^8 - T - 1
-    (1009, 1013, 1021)
-    >>> symmetric_group_primes((2, 0, 0, 0, 0, 0, 0, 0, 1)) is None
-    True
-    """
-    first = irreducibility_primes(polynomial, tried)
-    if first is None:
-        return None
-    degree = len(polynomial) - 1
-    cycle = odd = None
-    for prime, degrees in _patterns(polynomial, tried):
-        if cycle is None and any(degree < 2 * k < 2 * degree - 4 and _is_prime(k) for k in degrees):
-            cycle = prime
-        if odd is None and sum(k - 1 for k in degrees) % 2:
-            odd = prime
-        if cycle is not None and odd is not None:
-            return tuple(sorted({*first, cycle, odd}))
-    return None
 
 
 def _patterns(polynomial: Sequence[int], tried: int) -> Iterator[tuple[int, tuple[int, ...]]]:

@@ -1,4 +1,4 @@
-"""Integer polynomials in one variable: exact signs and values on intervals.
+"""Integer polynomials in one variable: exact values on intervals.
 
 A polynomial is the tuple of its coefficients, constant term first.
 """
@@ -16,32 +16,6 @@ from exactfold.exact.numbers import over_common_denominator
 
 IntPolynomial: TypeAlias = tuple[int, ...]
 Interval: TypeAlias = tuple[Fraction, Fraction]
-
-
-def sign_at(polynomial: Sequence[int], x: Fraction) -> int:
-    """The sign of p(x), -1, 0 or 1, by Horner's rule in integers.
-
-    >>> sign_at((-2, 0, 1), Fraction(3, 2)), sign_at((-1, 1), Fraction(1))
-    (1, 0)
-    """
-    value, power = 0, 1
-    for coefficient in reversed(polynomial):
-        value = value * x.numerator + coefficient * power
-        power *= x.denominator
-    return (value > 0) - (value < 0)
-
-
-def evaluate_on_interval(polynomial: Sequence[Fraction | int], interval: Interval) -> Interval:
-    """Bounds of p on [low, high] by Horner's rule in exact interval arithmetic.
-
-    The result contains every value p(t) with low <= t <= high. It is exact if low = high; in
-    general it is wider than the range of p by O(high - low).
-
-    >>> evaluate_on_interval((0, 0, 1), (Fraction(-1), Fraction(2)))
-    (Fraction(-2, 1), Fraction(4, 1))
-    """
-    bottom, top, scale = _integer_bounds(polynomial, interval)
-    return Fraction(bottom, scale), Fraction(top, scale)
 
 
 def _integer_bounds(

@@ -14,8 +14,6 @@ from exactfold.interop.fold_frames import MotionFrame, motion_document
 from exactfold.interop.meshes import animated_gltf, gltf_bytes, obj_text
 from exactfold.motion.curves.events import RETURN
 from exactfold.motion.curves.in_motion import SheetInMotion
-from exactfold.motion.curves.motion import Motion
-from exactfold.motion.panels.motion import PanelMotion
 from exactfold.pattern.fold_writing import checked_target, document_text, write_bytes, write_text
 from exactfold.pattern.triangulating import triangles_of
 
@@ -44,7 +42,7 @@ def write_motion(
     ...     [file.name for file in files]
     ['two_0000.obj', 'two_0001.obj', 'two_0002.obj']
     """
-    if not isinstance(motion, Motion | PanelMotion):
+    if not isinstance(motion, SheetInMotion):
         raise UsageError(
             f"write_motion(motion, path): {shown(motion)} is not a motion: `follow` and "
             "`follow_panels` return one"

@@ -100,7 +100,16 @@ def source_of(module: str) -> str:
 # --- refusals taken out --------------------------------------------------------------------------
 
 
-_REFUSING = ("require", "keys", "check_", "_check", "_raise", "self._check", "self._disk")
+_REFUSING = (
+    "require",
+    "at_most",
+    "keys",
+    "check_",
+    "_check",
+    "_raise",
+    "self._check",
+    "self._disk",
+)
 _METHODS = (".check", ".check_root")
 
 

@@ -25,7 +25,13 @@ import pytest
 from exactfold import checker
 from exactfold.checker.branches import compact, listing
 from exactfold.checker.core.lines import digest, lines
-from exactfold.checker.core.reading import CertificateError, FormatError, require
+from exactfold.checker.core.reading import (
+    CertificateError,
+    FormatError,
+    LimitError,
+    at_most,
+    require,
+)
 from exactfold.checker.sheets.boxes import Box
 from exactfold.checker.sheets.sheet import read_sheet
 
@@ -35,7 +41,7 @@ Lines = list[Document]
 RULES = sorted(
     ".".join(path.relative_to(Path(checker.__file__).parent).with_suffix("").parts)
     for path in Path(checker.__file__).parent.rglob("*.py")
-    if "require(" in path.read_text(encoding="utf-8")
+    if re.search(r"\b(require|at_most)\(", path.read_text(encoding="utf-8"))
 )
 """The modules of the checker that refuse."""
 
@@ -68,10 +74,21 @@ def with_one_key_more(document: Document, place: tuple[str | int, ...]) -> Docum
 
 
 def refused(document: Any, message: str) -> None:
-    """The checker refuses the claims, with exactly this message."""
-    with pytest.raises(CertificateError) as caught:
+    """The checker refuses the claims, or does not check them, with exactly this message."""
+    with pytest.raises(refusal(message)) as caught:
         verified(document)
     assert str(caught.value) == message
+
+
+def refusal(message: str) -> type[Exception]:
+    """The error with this message: files beyond a limit are not checked."""
+    return LimitError if message.startswith("not checked: ") else CertificateError
+
+
+def beyond(what: str, found: int, most: int, limit: str) -> str:
+    """The message for a file that asks for more than a limit."""
+    said = f"{what}, {found}, are more than the limit, {most}"
+    return f"not checked: {said} ({limit} in checker/core/limits.py)"
 
 
 def unreadable(text: str, message: str) -> None:
@@ -94,14 +111,24 @@ def stopped_by(document: Document, message: str) -> Document:
 
 @contextlib.contextmanager
 def without(message: str) -> Iterator[None]:
-    """The checker with the `require` of one message taken out."""
+    """The checker with the `require`, or the limit, of one message taken out."""
 
     def weaker(condition: object, said: str) -> None:
         require(condition or said == message, said)
 
+    def higher(found: int, most: int, what: str, limit: str) -> None:
+        try:
+            at_most(found, most, what, limit)
+        except LimitError:
+            if not (message.startswith(f"not checked: {what}, ") and f" ({limit} in " in message):
+                raise
+
     with pytest.MonkeyPatch.context() as patch:
         for name in RULES:
-            patch.setattr(import_module(f"exactfold.checker.{name}"), "require", weaker)
+            module = import_module(f"exactfold.checker.{name}")
+            for line, other in (("require", weaker), ("at_most", higher)):
+                if hasattr(module, line):
+                    patch.setattr(module, line, other)
         yield
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import cos, pi, sin
 
 import pytest
-from forge import Document, given, refused, verified, with_one_key_more, without
+from forge import Document, beyond, given, refused, verified, with_one_key_more, without
 from sheets import wheel
 
 from exactfold import CreasePattern, checker
@@ -122,7 +122,7 @@ def test_some_vertex_can_pop_and_not_too_many(monkeypatch: pytest.MonkeyPatch) -
     refused(document, "no vertex can pop")
     monkeypatch.setattr(assignments, "MOST_VERTICES", 1)
     verified(listed("side"))
-    stopped(listed(), "more than 1 vertices can pop")
+    stopped(listed(), beyond("the vertices that can pop", 2, 1, "ASSIGNED_VERTICES"))
 
 
 def test_there_are_circles_for_all_signs() -> None:
@@ -191,7 +191,7 @@ def test_all_letters_between_two_points_occur() -> None:
 
 def test_what_is_open_is_not_too_much(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(arcs, "MOST_OPEN", 1)
-    stopped(listed(), "too many letters are open")
+    stopped(listed(), beyond("the words that open letters may become", 3, 1, "MOST_OPEN"))
 
 
 def test_an_ear_is_one_face() -> None:

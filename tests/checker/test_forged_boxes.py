@@ -6,15 +6,7 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
-from forge import (
-    Document,
-    drop_roots,
-    entry_of,
-    given,
-    refused,
-    stopped_by,
-    verified,
-)
+from forge import Document, beyond, drop_roots, entry_of, given, refused, stopped_by, verified
 
 from exactfold.checker.core.reading import CertificateError
 from exactfold.checker.sheets.boxes import Box, check_disjoint, read_box
@@ -102,7 +94,8 @@ def test_boxes_that_meet_are_found_as_by_comparing_all_pairs() -> None:
 def test_numbers_of_a_box_are_bounded() -> None:
     """As large as they may be, they are checked; one more is refused before any arithmetic."""
     most = 1 << 14
-    for bits, message in ((most, None), (most + 1, "bits are out of range")):
+    too_many = beyond("the bits of a box", most + 1, most, "MOST_BITS")
+    for bits, message in ((most, None), (most + 1, too_many)):
         forged = given(ONE)
         root = forged["evidence"]["roots"][0]
         box = read_box(root, 1)
@@ -131,7 +124,8 @@ def test_numbers_of_a_box_are_bounded() -> None:
             if length == most:
                 verified(forged)
             else:
-                stopped_by(forged, "a number of a box is out of range")
+                what = "the digits of a number of a box"
+                stopped_by(forged, beyond(what, most + 1, most, "MOST_BITS"))
 
 
 @pytest.mark.parametrize(

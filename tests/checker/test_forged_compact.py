@@ -12,6 +12,7 @@ import pytest
 from forge import (
     FIXTURES,
     Lines,
+    beyond,
     chained,
     given,
     given_lines,
@@ -26,7 +27,7 @@ from exactfold.checker.branches import compact
 from exactfold.checker.branches.compact_blocks import CompactSheet
 from exactfold.checker.core import parts as sharing
 from exactfold.checker.core.lines import digest, lines, read_object
-from exactfold.checker.core.reading import CertificateError, FormatError
+from exactfold.checker.core.reading import CertificateError, FormatError, LimitError
 
 
 def test_roots_may_be_given_exactly() -> None:
@@ -214,7 +215,8 @@ def test_unknowns_are_at_most_forty() -> None:
     sheet = CompactSheet(forged[0])
     assert (sheet.size, sheet.blocks) == (40, 1 << 24)
     forged[0]["evidence"]["block"] = 1 << 17
-    refused_lines(forged, "the size of a block does not divide the number of roots")
+    message = beyond("the roots in a block", 1 << 17, 1 << 16, "MOST_BLOCK")
+    refused_lines(forged, message, LimitError)
     from fractions import Fraction
 
     a, b, c = pattern["triangles"].pop()
@@ -222,7 +224,7 @@ def test_unknowns_are_at_most_forty() -> None:
     middle = [str(sum(axis) / 3) for axis in zip(*points, strict=True)]
     pattern["vertices"].append(middle)
     pattern["triangles"] += [[a, b, 44], [b, c, 44], [c, a, 44]]
-    refused_lines(forged, "the number of unknowns is out of range")
+    refused_lines(forged, beyond("the unknowns", 41, 40, "MOST_UNKNOWNS"), LimitError)
 
 
 # --- the end -------------------------------------------------------------------------------------

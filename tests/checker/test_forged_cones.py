@@ -5,13 +5,13 @@ from __future__ import annotations
 import json
 
 import pytest
-from forge import refused, verified
+from forge import beyond, refused, verified
 from forge_panels import Document, stopped
 from panel_sheets import crossed_stars, ring_of_fives, row_of_stars, two_stars
 from test_forged_spaces import certified, leaves_of, spaces_of
 
 from exactfold.checker.core.intervals import Interval
-from exactfold.checker.core.reading import CertificateError
+from exactfold.checker.core.reading import LimitError
 from exactfold.checker.panels import cones as panel_cones
 from exactfold.checker.panels.cones import Place, cone_motion
 from exactfold.checker.panels.leaves import complete
@@ -78,7 +78,8 @@ def test_a_form_of_rank_two_is_no_cone() -> None:
 def test_number_of_forms(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(panel_cones, "MOST_FORMS", 2)
     verified(certified("joined stars"))
-    stopped(certified("row of stars"), "the forms of 3 vertices are more than 2")
+    message = beyond("the vertices whose forms one space has", 3, 2, "CONE_FORMS")
+    stopped(certified("row of stars"), message)
 
 
 def test_the_forms_that_are_left_are_compared() -> None:
@@ -107,5 +108,5 @@ def test_too_much_work_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     found = spaces(crossed_stars())
     [first, _] = found.leaves()
     monkeypatch.setattr("exactfold.checker.panels.spaces.MOST_STEPS", found.work.steps)
-    with pytest.raises(CertificateError, match="the spaces of motions take over"):
+    with pytest.raises(LimitError, match="the steps to the spaces of motions, "):
         cone_motion(found, first.basis, first.cones)

@@ -10,7 +10,7 @@ from functools import cache
 from typing import Any
 
 import pytest
-from forge import Document, refused, verified, without
+from forge import Document, beyond, refusal, refused, verified, without
 
 from exactfold import checker
 from exactfold.branches.counting.find import find_branch
@@ -83,7 +83,7 @@ def forged(name: str, change: Change) -> Document:
 def stopped(name: str, message: str, change: Change) -> None:
     """Refused with this message, and accepted with the line that says so taken out."""
     document = forged(name, change)
-    with pytest.raises(CertificateError) as caught:
+    with pytest.raises(refusal(message)) as caught:
         judged(document, name)
     assert str(caught.value) == message
     with without(message):
@@ -244,7 +244,7 @@ def test_the_work_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
         pass
 
     monkeypatch.setattr(motion_contacts, "MOST_TESTS", 100)
-    stopped("corner", "the contacts take too much work", nothing)
+    stopped("corner", beyond("the tests of contacts", 102, 100, "MOST_TESTS"), nothing)
 
 
 # --- false places --------------------------------------------------------------------------------

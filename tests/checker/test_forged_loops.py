@@ -12,10 +12,15 @@ from typing import Any, cast
 
 import numpy as np
 import pytest
-from forge import Document, Lines, chained, given_lines
+from forge import Document, Lines, beyond, chained, given_lines
 
 from exactfold.checker.core.lines import lines
-from exactfold.checker.core.reading import CertificateError, FormatError, UnfinishedError
+from exactfold.checker.core.reading import (
+    CertificateError,
+    FormatError,
+    LimitError,
+    UnfinishedError,
+)
 from exactfold.checker.motion import branch_points as motion_nodes
 from exactfold.checker.motion import loops as motion_loops
 from exactfold.checker.motion import patches as motion_patches
@@ -230,9 +235,9 @@ def test_keys() -> None:
 def test_numbers_out_of_range() -> None:
     forged = given_lines(ONE)
     forged[1]["evidence"]["steps"] = [None] * 4097
-    refused(forged, "loop 0: there are too many tubes")
+    refused(forged, beyond("the tubes", 4097, 4096, "MOST_TUBES"), LimitError)
     forged[1]["evidence"]["steps"] = [{"flat": []}] * 257
-    refused(forged, "loop 0: there are too many tubes")
+    refused(forged, beyond("the tubes", 257 * 16, 4096, "MOST_TUBES"), LimitError)
     for key in ("halvings", "held"):
         forged = given_lines(ONE)
         forged[1]["evidence"]["landing"][key] = 10**6
@@ -248,7 +253,7 @@ def test_numbers_out_of_range() -> None:
             verified(forged)
     forged = given_lines(ONE)
     forged[0]["bits"] = 4096
-    refused(forged, "bits are out of range")
+    refused(forged, beyond("the bits", 4096, 2048, "MOTION_BITS"), LimitError)
 
 
 # --- where a loop begins and ends ----------------------------------------------------------------

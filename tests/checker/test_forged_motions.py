@@ -10,12 +10,12 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from forge import Document, refused, verified, with_one_key_more
+from forge import Document, beyond, refused, verified, with_one_key_more
 from sheets import nested_triangles, reflex_corners, star_in
 
 from exactfold import checker
 from exactfold.branches.counting.find import find_branch
-from exactfold.checker.core.reading import CertificateError, FormatError, shown
+from exactfold.checker.core.reading import CertificateError, FormatError, LimitError, shown
 from exactfold.checker.motion import bounds as motion_bounds
 from exactfold.checker.motion import certificate as motion
 from exactfold.checker.motion.bounds import Bounds
@@ -157,10 +157,10 @@ def test_only_sheets_whose_branches_have_names() -> None:
 
 def test_numbers_out_of_range() -> None:
     for change, message in (
-        ({"bits": 2049}, "bits are out of range"),
+        ({"bits": 2049}, beyond("the bits", 2049, 2048, "MOTION_BITS")),
         ({"bits": 59}, "the coordinates need more bits"),
         ({"bits": -1}, "bits is not a natural number"),
-        ({"tubes": [None] * 4097}, "there are too many tubes"),
+        ({"tubes": [None] * 4097}, beyond("the tubes", 4097, 4096, "MOST_TUBES")),
         ({"tubes": {}}, "tubes is not a list"),
         ({"pinned": [0, 1, 2]}, "what is pinned is no face"),
         ({"pinned": [0, 0, 1]}, "what is pinned is no face"),
@@ -211,9 +211,11 @@ def test_the_work_is_bounded() -> None:
         {"corners": list(corners), "inside": list(inside)}
         for corners, inside in pattern.triangulated_triangles
     ]
-    refused(forged, "the work is out of range")
+    with pytest.raises(LimitError, match="the products of numbers that are needed, "):
+        verified(forged)
     forged["evidence"] |= {"tubes": [None] * 100, "bits": 2048}
-    refused(forged, "the work is out of range")
+    with pytest.raises(LimitError, match="the products of numbers that are needed, "):
+        verified(forged)
 
 
 # --- pieces that prove nothing -------------------------------------------------------------------

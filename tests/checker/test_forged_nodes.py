@@ -9,7 +9,7 @@ from functools import cache
 from typing import Any
 
 import pytest
-from forge import Document, refused, verified, with_one_key_more, without
+from forge import Document, beyond, refused, verified, with_one_key_more, without
 from forge_motions import pieces_once
 
 from exactfold import checker
@@ -137,7 +137,7 @@ def test_numbers() -> None:
         refused(forged, message)
     forged = given()
     forged["evidence"]["tubes"] = [None] * 4090
-    refused(forged, "there are too many tubes")
+    refused(forged, beyond("the tubes", 4106, 4096, "MOST_TUBES"))
 
 
 # --- the node ------------------------------------------------------------------------------------

@@ -6,7 +6,7 @@ import json
 from typing import Any
 
 import pytest
-from forge import Document, given_lines, refused, unreadable, verified
+from forge import Document, beyond, given_lines, refused, unreadable, verified
 from test_forged_loops import ONE
 from test_forged_loops import refused as refused_loops
 from test_forged_motions import given
@@ -186,11 +186,11 @@ def test_no_length_is_gained_by_a_tube_that_comes_twice() -> None:
 
 def test_numbers_of_thousands_of_digits() -> None:
     huge = int("9" * 3999)
-    beyond = "a motion leaves a tube beyond its reach"
+    left = "a motion leaves a tube beyond its reach"
     for place, message in (
-        ((*FIRST, "exit"), beyond),
-        (("evidence", "tubes", 0, "exit"), beyond),
-        (("evidence", "bits"), "bits are out of range"),
+        ((*FIRST, "exit"), left),
+        (("evidence", "tubes", 0, "exit"), left),
+        (("evidence", "bits"), beyond("the bits", huge, 2048, "MOTION_BITS")),
         ((*FIRST, "halvings"), "halvings are out of range"),
         ((*FIRST, "reach"), "the reach is out of range"),
         ((*FIRST, "held"), "the vertex held at its height is pinned, or none"),

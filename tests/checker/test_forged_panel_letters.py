@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from forge import Document, given, refused, verified, with_one_key_more, without
+from forge import Document, beyond, given, refused, verified, with_one_key_more, without
 
 from exactfold import checker
 from exactfold.checker.letters import panels_motion as panel_letters_motion
@@ -342,12 +342,14 @@ def test_numbers_of_a_motion_are_not_too_long() -> None:
     densities = [c << longer for c in motion["densities"]]
     stopped(regular(bits=129, densities=densities, radius=motion["radius"] << longer), message)
     inverse = [[x << 1100 for x in row] for row in motion["inverse"]]
-    stopped(regular(shift=motion["shift"] + 1100, inverse=inverse), message)
+    shift = motion["shift"] + 1100
+    message = beyond("the bits by which numbers are moved", shift, 1024, "MOST_SHIFT")
+    stopped(regular(shift=shift, inverse=inverse), message)
 
 
 def test_conditions_are_not_too_many(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(panel_letters_motion, "MOST_CONDITIONS", 2)
-    stopped(regular(), "there are more than 2 conditions")
+    stopped(regular(), beyond("the conditions", 3, 2, "MOST_CONDITIONS"))
 
 
 def test_a_fold_is_shown_to_go_its_way() -> None:

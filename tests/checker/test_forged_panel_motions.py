@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from forge import Document, refused, unreadable, verified
+from forge import Document, beyond, refused, unreadable, verified
 from forge_panel_motions import MOTIONS, at_rest, forged, given, stopped, whole
 
 from exactfold import checker
@@ -316,7 +316,7 @@ def test_keys() -> None:
 
 def test_the_work_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(panel_folding, "MOST_TESTS", 100)
-    stopped(given("vertex"), "the contacts take too much work")
+    stopped(given("vertex"), beyond("the tests of contacts", 192, 100, "MOST_TESTS"))
 
 
 # --- where the panels are ------------------------------------------------------------------------

@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
-from forge import Document, given, refused, verified, with_one_key_more, without
+from forge import Document, beyond, given, refused, verified, with_one_key_more, without
 from sheets import HEXAGON, scrambled, wheel, with_point
 
 from exactfold import CreasePattern, checker, random_square
@@ -136,7 +136,7 @@ def test_bounds_are_said_as_such() -> None:
 
 def test_no_certificate_without_vertices_or_of_too_many() -> None:
     fan = CreasePattern(HEXAGON[:5], [(0, 1, 2), (0, 2, 3), (0, 3, 4)])
-    with pytest.raises(NotApplicableError, match="one to 16 vertices that can pop; here are 0"):
+    with pytest.raises(NotApplicableError, match="1 to 16 vertices that can pop; this sheet has 0"):
         pieces_certificate(fan, find_pieces(fan))
 
 
@@ -183,7 +183,8 @@ def test_the_border_is_convex() -> None:
 def test_how_many_vertices_can_pop(monkeypatch: pytest.MonkeyPatch) -> None:
     with monkeypatch.context() as patch:
         patch.setattr(pieces, "MOST_VERTICES", 1)
-        stopped(foreign(SHEETS["pentagon"]), "more than 1 vertices can pop")
+        message = beyond("the vertices that can pop", 2, 1, "PIECE_VERTICES")
+        stopped(foreign(SHEETS["pentagon"]), message)
     fan = foreign(CreasePattern(HEXAGON[:5], [(0, 1, 2), (0, 2, 3), (0, 3, 4)]))
     fan["evidence"]["chord"] = [0, 2]
     stopped(fan, "no vertex can pop")
@@ -384,7 +385,7 @@ def test_limits_and_open_signs(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(pieces_flat, "MOST_UNKNOWNS", 5)
     needed(boxes(), "more than 5 unknowns", OPEN)
     found = find_pieces(ANTIPRISM)
-    with pytest.raises(NotApplicableError, match="does not follow the proof: not all solutions"):
+    with pytest.raises(NotApplicableError, match="refuses the proof: not all solutions"):
         pieces_certificate(ANTIPRISM, found)
     monkeypatch.undo()
     monkeypatch.setattr(pieces_flat, "signs_of", lambda *_: None)

@@ -10,6 +10,7 @@ from compact_files import bodies
 from forge import (
     FIXTURES,
     Lines,
+    beyond,
     chained,
     given,
     given_lines,
@@ -172,14 +173,14 @@ def test_files_that_are_not_finished() -> None:
 
 def test_how_much_a_file_may_ask_for(monkeypatch: pytest.MonkeyPatch) -> None:
     parts = header(CHORD, roots=2**20 + 1)
-    message = "not checked: the roots, 1048577, are more than the limit, 1048576"
+    message = beyond("the roots", 1048577, 1048576, "MOST_ENTRIES")
     refused_lines(parts, message, LimitError)
     parts = given_lines(FOURS)
     size = sum(len(json.dumps(part, separators=(",", ":"))) for part in parts[1:-1])
     monkeypatch.setattr(compact_roots, "MOST_BYTES", size)
     assert verified_lines(parts)["distinct"] == 26
     monkeypatch.setattr(compact_roots, "MOST_BYTES", size - 1)
-    message = f"not checked: the bytes of the blocks, {size}, are more than the limit, {size - 1}"
+    message = beyond("the bytes of the blocks", size, size - 1, "MOST_BYTES")
     refused_lines(parts, message, LimitError)
 
 

@@ -166,5 +166,6 @@ def test_the_command_tells_a_limit_from_a_false_claim(
     file.write_text(json.dumps(data))
     assert checker.main([str(file)]) == 3
     said = capsys.readouterr()
-    message = "not checked: the digits of a coordinate, 20000, are more than the limit, 10000\n"
-    assert (said.out, said.err) == ("", message)
+    message = "not checked: the digits of a coordinate, 20000, are more than the limit, 10000"
+    where = " (MOST_COORDINATE in checker/core/limits.py)\n"
+    assert (said.out, said.err) == ("", message + where)

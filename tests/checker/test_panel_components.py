@@ -9,7 +9,7 @@ from math import prod
 
 import pytest
 
-from exactfold.checker.core.reading import CertificateError
+from exactfold.checker.core.reading import LimitError
 from exactfold.checker.panels import components as panel_components
 from exactfold.checker.panels.components import components, times
 from exactfold.checker.sheets.panels import connected
@@ -56,7 +56,7 @@ def test_the_bound_of_the_search(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(panel_components, "MOST_SETS", 2)
     assert components([((1, 2), 3)], 0) == {"1": 3}
     monkeypatch.setattr(panel_components, "MOST_SETS", 1)
-    with pytest.raises(CertificateError, match="the components take more than 1 steps"):
+    with pytest.raises(LimitError, match="the steps to the components, 2, are more than the limit"):
         components([((1, 2), 3)], 0)
 
 

@@ -7,7 +7,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
-from forge import refused, verified
+from forge import beyond, refused, verified
 from forge_panels import SHEETS, Document, certified, drawn, matched, stopped
 from panel_sheets import grid, joined_twists, ring_of_fives
 
@@ -155,7 +155,10 @@ def test_edges_are_sorted() -> None:
         ([["4"]], "radicand 0 is a square"),
         ([["-2"]], "the square root of a number that is not positive"),
         ([["2"], ["3", "2"]], "radicand 1 is a square"),
-        ([[str(p)] for p in (2, 3, 5, 7, 11, 13, 17)], "the field has more than 6 square roots"),
+        (
+            [[str(p)] for p in (2, 3, 5, 7, 11, 13, 17)],
+            beyond("the square roots of the field", 7, 6, "MOST_ROOTS"),
+        ),
     ],
 )
 def test_fields(radicands: list[list[str]], message: str) -> None:
@@ -369,22 +372,37 @@ def test_folds_that_are_held() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "module", "limit", "value", "message"),
+    ("name", "module", "limit", "value", "what", "known_as"),
     [
-        ("strip", panels, "MOST_LISTED", 31, "the modes of {} are too many"),
-        ("two rows", panels, "MOST_SUPPORTS", 4, "there are more than 4 supports"),
-        ("two rows", panel_modes, "MOST_STEPS", 27, "the search takes more than 27 steps"),
-        ("tiling", panel_modes, "MOST_ROWS", 15, "the loop 5-9-10-6 has too many choices"),
-        ("tiling", panel_modes, "MOST_ROOTS", 0, "the loop 5-9-10-6 needs too many square roots"),
+        ("strip", panels, "MOST_LISTED", 31, "modes of {}", "MOST_LISTED"),
+        ("two rows", panels, "MOST_SUPPORTS", 4, "supports", "MOST_SUPPORTS"),
+        (
+            "two rows",
+            panel_modes,
+            "MOST_STEPS",
+            27,
+            "steps of the search for supports",
+            "MODE_STEPS",
+        ),
+        ("tiling", panel_modes, "MOST_ROWS", 15, "choices of modes round 5-9-10-6", "MODE_ROWS"),
+        (
+            "tiling",
+            panel_modes,
+            "MOST_ROOTS",
+            0,
+            "square roots that the loop 5-9-10-6 needs",
+            "MODE_ROOTS",
+        ),
         (
             "tiling",
             panel_loops,
             "MOST_BENT",
             3,
-            "the loop 5-9-10-6 has too many transmissions not linear",
+            "transmissions of the loop 5-9-10-6 that are not linear",
+            "MOST_BENT",
         ),
-        ("strip", panel_modes, "MOST_ROWS", 31, "{} takes more than 31 rows"),
-        ("two rows", panel_components, "MOST_SETS", 5, "the components take more than 5 steps"),
+        ("strip", panel_modes, "MOST_ROWS", 31, "rows of {}", "MODE_ROWS"),
+        ("two rows", panel_components, "MOST_SETS", 5, "steps to the components", "MOST_SETS"),
     ],
 )
 def test_limits(
@@ -392,13 +410,15 @@ def test_limits(
     module: object,
     limit: str,
     value: int,
-    message: str,
+    what: str,
+    known_as: str,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     made = certified(name)
     where = "-".join(map(str, supports_of(made)[0]["vertices"]))
+    asked = f"the {what}".format(f"the support of vertices {where}")
     monkeypatch.setattr(module, limit, value)
-    stopped(made, message.format(f"the support of vertices {where}"))
+    stopped(made, beyond(asked, value + 1, value, known_as))
     monkeypatch.setattr(module, limit, value + 1)
     verified(made)
 

@@ -12,7 +12,7 @@ from test_forged_spaces import certified, cone, leaves_of, sheet, spaces_of, tri
 
 from exactfold.checker import check, load
 from exactfold.checker.core.intervals import Interval
-from exactfold.checker.core.reading import CertificateError
+from exactfold.checker.core.reading import CertificateError, LimitError
 from exactfold.checker.core.towers import Number, Tower
 from exactfold.checker.panels import reduction as panel_reduction
 from exactfold.checker.panels import spaces as panel_spaces
@@ -164,16 +164,16 @@ def test_bounds_are_kept_at_their_last_value(monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setattr(panel_spaces, "MOST_STEPS", used)
     assert len(spaces(triangle()).leaves()) == 8
     monkeypatch.setattr(panel_spaces, "MOST_STEPS", used - 1)
-    with pytest.raises(CertificateError, match=f"the spaces of motions take over {used - 1} steps"):
+    with pytest.raises(LimitError, match=f"steps to the spaces of motions, {used}, are more than"):
         spaces(triangle()).leaves()
     monkeypatch.setattr(panel_spaces, "MOST_STEPS", used)
     monkeypatch.setattr(panel_spaces, "MOST_LEAVES", 7)
-    with pytest.raises(CertificateError, match="there are more than 7 spaces of motions"):
+    with pytest.raises(LimitError, match="the spaces of motions, 8, are more than the limit, 7"):
         spaces(triangle()).leaves()
     monkeypatch.setattr(panel_reduction, "MOST_ROOTS", 1)
     two, root = RATIONAL.adjoined(number(2))
     assert Joined().of(root).tower.size == 2
-    with pytest.raises(CertificateError, match="two spaces need too many square roots"):
+    with pytest.raises(LimitError, match="the square roots that two spaces need, 2, are more"):
         Joined().of(two.adjoined(two.number(3))[1])
 
 

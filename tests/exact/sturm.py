@@ -8,7 +8,20 @@ from itertools import pairwise
 
 from flint import fmpq_poly
 
-from exactfold.exact.univariate import IntPolynomial, sign_at
+from exactfold.exact.univariate import IntPolynomial
+
+
+def sign_at(polynomial: Sequence[int], x: Fraction) -> int:
+    """The sign of p(x), -1, 0 or 1, by Horner's rule in integers.
+
+    >>> sign_at((-2, 0, 1), Fraction(3, 2)), sign_at((-1, 1), Fraction(1))
+    (1, 0)
+    """
+    value, power = 0, 1
+    for coefficient in reversed(polynomial):
+        value = value * x.numerator + coefficient * power
+        power *= x.denominator
+    return (value > 0) - (value < 0)
 
 
 def sturm_sequence(polynomial: Sequence[int]) -> list[IntPolynomial]:

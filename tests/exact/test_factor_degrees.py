@@ -6,13 +6,9 @@ import pytest
 from flint import fmpz_poly
 from hypothesis import given
 from hypothesis import strategies as st
+from symmetric_groups import symmetric_group_primes
 
-from exactfold.exact.factors import (
-    factor_degrees,
-    irreducibility_primes,
-    modular_degrees,
-    symmetric_group_primes,
-)
+from exactfold.exact.factors import factor_degrees, irreducibility_primes, modular_degrees
 
 
 def multiplied(*polynomials):

@@ -84,7 +84,7 @@ def test_parse_rational(text, value):
     ],
 )
 def test_parse_rational_error(text):
-    with pytest.raises(NumberError, match="^" + re.escape(repr(text.strip()))):
+    with pytest.raises(NumberError, match=re.escape(repr(text.strip()))):
         parse_rational(text)
 
 

@@ -8,10 +8,9 @@ import pytest
 from flint import fmpz_poly
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from sturm import sturm_count
+from sturm import sign_at, sturm_count
 
 from exactfold.exact.real_roots import isolate_real_roots
-from exactfold.exact.univariate import sign_at
 
 rationals = st.fractions(min_value=-20, max_value=20, max_denominator=30)
 root_sets = st.sets(rationals, min_size=1, max_size=5).map(sorted)

@@ -1,16 +1,28 @@
 """Signs, Sturm counts and values on intervals against polynomials with known roots."""
 
+from collections.abc import Sequence
 from fractions import Fraction
 from itertools import pairwise
 
 from hypothesis import given
 from hypothesis import strategies as st
-from sturm import sturm_count, sturm_sequence
+from sturm import sign_at, sturm_count, sturm_sequence
 
-from exactfold.exact.univariate import evaluate_on_interval, quotients_on_interval, sign_at
+from exactfold.exact import univariate
+from exactfold.exact.univariate import Interval, quotients_on_interval
 
 rationals = st.fractions(min_value=-20, max_value=20, max_denominator=30)
 root_sets = st.sets(rationals, min_size=1, max_size=5).map(sorted)
+
+
+def evaluate_on_interval(polynomial: Sequence[Fraction | int], interval: Interval) -> Interval:
+    """Bounds of p on [low, high] by Horner's rule in exact interval arithmetic.
+
+    The result contains every value p(t) with low <= t <= high. It is exact if low = high; in
+    general it is wider than the range of p by O(high - low).
+    """
+    bottom, top, scale = univariate._integer_bounds(polynomial, interval)
+    return Fraction(bottom, scale), Fraction(top, scale)
 
 
 def product(*factors):

@@ -52,7 +52,8 @@ def test_the_flat_frame_is_exact_and_all_others_follow(motion, tmp_path):
     facts = document["frame_exactfold:motion"]
     assert facts["vertex_signs"] == motion.branch.sign_text
     assert (facts["side"], facts["end"]) == (motion.side, motion.end)
-    assert facts["status"] == "followed"
+    assert (facts["status"], facts["reason"]) == (str(motion.status), motion.reason)
+    assert motion.reason == "followed in floats along a proved branch"
     assert facts["pattern"] == pattern.sha256
     assert max(map(abs, document["edges_foldAngle"])) == 30
     frames = document["file_frames"]

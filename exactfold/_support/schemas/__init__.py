@@ -18,7 +18,7 @@ VERSIONS: Final = {
     "match": 1,
     "starting": 1,
     "export": 1,
-    "motion": 1,
+    "motion": 2,
     "motions": 1,
     "view": 1,
     "actuate": 1,

@@ -12,17 +12,24 @@ import typer
 
 from exactfold._support.processes import one_thread
 from exactfold._support.schemas import headed
-from exactfold.app.cli.branches import COMMANDS as BRANCHES
-from exactfold.app.cli.motions import COMMANDS as MOTIONS
-from exactfold.app.cli.pictures import COMMANDS as PICTURES
-from exactfold.app.cli.studies import COMMANDS as STUDIES
+from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.app.options.branches import (
+    AssignmentsOptions,
+    BranchOptions,
+    ExportOptions,
+    MatchOptions,
+)
+from exactfold.app.options.motions import ActuateOptions, FoldOptions, MotionsOptions
 from exactfold.app.options.patterns import ConvertOptions, CountOptions, InfoOptions
+from exactfold.app.options.pictures import DrawOptions, ViewOptions
+from exactfold.app.options.studies import StudyOptions
 from exactfold.app.shell.parameters import (
     Json,
     flag,
     number,
 )
 from exactfold.app.shell.shell import (
+    EXIT,
     OUTPUT_FAILED,
     Bar,
     output_failed,
@@ -100,8 +107,150 @@ def check(
     raise typer.Exit(0 if done else 1)
 
 
-for command in (*PICTURES, *BRANCHES, *MOTIONS, *STUDIES):
-    app.command(cls=Command)(command)
+@app.command(cls=Command)
+@taking(DrawOptions)
+def draw(**options: Any) -> int:
+    """Draw a crease pattern, one way to fold it, or all ways, as SVG, PNG or PDF.
+
+    Mountains are red, valleys blue and dashed; the wider a fold, the more it
+    folds. Triangles point up at vertices that pop up. Without a way, the letters
+    of the file are drawn. A file that is no sheet is drawn as it is.
+    """
+    from exactfold.app.commands.draw import Wanted
+
+    return Wanted(**options).answer()
+
+
+@app.command(cls=Command)
+@taking(ViewOptions)
+def view(**options: Any) -> int:
+    """Show a sheet and its ways to fold in the browser: one HTML file that needs no network.
+
+    The crease pattern stands beside the sheet in space, with a slider from flat
+    to the first contact. A click on a vertex pops it through, a click on a fold
+    asks for a mountain or a valley.
+    """
+    from exactfold.app.commands.view import Wanted
+
+    Wanted(**options).run()
+    return 0
+
+
+@app.command(cls=Command)
+@taking(BranchOptions)
+def branch(**options: Any) -> int:
+    """Find and prove the one branch with given vertex signs, and no other.
+
+    Signs are those of the side with boundary saddle +1 (with a reflex corner:
+    on which the corner pops up); the other side has all of them reversed. With
+    more corners they are those of the way with these heights of the border, or of
+    one on which folds start in the ratio of --drive. With --json, one object a line.
+    """
+    from exactfold.app.commands.branch import Asked
+
+    return EXIT[PROVED if Asked(**options).answer() else UNDECIDED]
+
+
+@app.command(cls=Command)
+@taking(MatchOptions)
+def match(**options: Any) -> int:
+    """Find the ways to start folding that have the mountains and valleys of a file, with proof.
+
+    All of them; or that there is none and why, and then those that differ at the
+    fewest creases. Exit code 1: proved that there is none.
+    """
+    from exactfold.app.commands.match import Asked
+
+    return Asked(**options).answer()
+
+
+@app.command(cls=Command)
+@taking(ExportOptions)
+def export(**options: Any) -> int:
+    """Write one branch as a FOLD file that simulators can fold, or a sheet for Coq.
+
+    The fold angles in it are in proportion to those of the branch, so that a
+    simulator that is driven by them stays on it. A second frame shows the sheet
+    in space, to second order. With --coq the file is one that Coq verifies: what
+    is proved of every sheet is stated for this one, and of the branches asked for.
+    """
+    from exactfold.app.commands.export import Wanted, write_coq
+
+    asked = Wanted(**options)
+    return write_coq(asked) if asked.coq else asked.answer()
+
+
+@app.command(cls=Command)
+@taking(AssignmentsOptions)
+def assignments(**options: Any) -> int:
+    """List every mountain-valley assignment with which a sheet with five corners starts to fold.
+
+    For a convex border of five vertices and up to six vertices inside that can
+    pop. The list is proved to be complete. With four corners, `count` lists
+    them with the branches.
+    """
+    from exactfold.app.commands.assignments import Listed
+
+    return Listed(**options).answer()
+
+
+@app.command(cls=Command)
+@taking(FoldOptions)
+def fold(**options: Any) -> int:
+    """Fold a sheet in space, faces rigid, until something happens.
+
+    A triangulated sheet with four corners follows a branch: the one named by
+    --signs, --up or --branch, else that on which all vertices pop up. With more
+    corners it does so if --signs, --up or --rim is given (its border then moves
+    in the ratio of the rim), or --drive (chosen folds then drive it). Any other
+    sheet follows modes of rigid panels: --component or --modes. That the branch
+    or mode exists is proved; the answer says what is proved of the motion.
+    """
+    from exactfold.app.commands.fold import Wanted
+
+    return Wanted(**options).answer()
+
+
+@app.command(cls=Command)
+@taking(MotionsOptions)
+def motions(**options: Any) -> int:
+    """Follow every branch, with proof, until the sheet is flat again.
+
+    A sheet with n foldable vertices leaves the flat state along 2^(n+1)
+    half-branches. True motions join them in pairs, contact ignored: this says
+    which with which.
+    """
+    from exactfold.app.commands.loops import Wanted
+
+    return Wanted(**options).answer()
+
+
+@app.command(cls=Command)
+@taking(ActuateOptions)
+def actuate(**options: Any) -> int:
+    """Find torques on the creases that drive the sheet along one branch and not along the others.
+
+    All torques have size at most 1, and a positive one folds towards a valley.
+    The sheet is driven to the side on which the vertex signs are those given;
+    opposite torques drive it to the other side.
+    """
+    from exactfold.app.commands.actuate import Driven
+
+    return Driven(**options).answer()
+
+
+@app.command(cls=Command)
+@taking(StudyOptions)
+def study(**options: Any) -> int:
+    """Run a study: a table or figure of the paper, each number in it proved.
+
+    Rows are kept as they are ready; the same command goes on after an
+    interruption, and computes no row twice. The result depends on the seed, not
+    on the number of processes.
+    """
+    from exactfold.app.commands.study import Wanted
+
+    return Wanted(**options).answer()
 
 
 @app.command("random", cls=Command)

@@ -80,7 +80,7 @@ class Wanted(FoldOptions):
             bar("writing")
             written = self._written(motion, proof)
         if self.as_json:
-            found = motion.report(name_of(self.file), written)
+            found = motion.to_dict(name_of(self.file), written)
             print(json.dumps(found | {"proof": None if proof is None else proof.to_dict()}))
         else:
             report.show(report.motion_report(motion, written, proof))

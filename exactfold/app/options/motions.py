@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from exactfold.app.shell.parameters import (
+    Dask,
     Drive,
     Json,
     Pattern,
@@ -134,14 +135,7 @@ class MotionsOptions:
         int | None,
         number("Processes. Default: all cores."),
     ] = None
-    dask: Annotated[
-        str | None,
-        typer.Option(
-            metavar="ADDRESS",
-            help="Run on the dask.distributed cluster with this scheduler; `local` starts one "
-            "here.",
-        ),
-    ] = None
+    dask: Dask = None
     certificate: Annotated[
         Path | None,
         written("Write the proof of each loop to FILE as it is found, for `check`."),

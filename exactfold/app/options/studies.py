@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from exactfold.app.shell.parameters import Json, flag, number, sizes, written
+from exactfold.app.shell.parameters import Dask, Json, flag, number, sizes, written
 
 
 def _complete(incomplete: str) -> list[str]:
@@ -91,14 +91,7 @@ class StudyOptions:
     ] = None
     extend: Annotated[bool, flag("--extend", text="Also the larger sizes of the study.")] = False
     workers: Annotated[int | None, number("Processes. Default: all cores.")] = None
-    dask: Annotated[
-        str | None,
-        typer.Option(
-            metavar="ADDRESS",
-            help="Run on the dask.distributed cluster with this scheduler; `local` starts one "
-            "here.",
-        ),
-    ] = None
+    dask: Dask = None
     journal: Annotated[
         Path | None,
         written(

@@ -16,8 +16,7 @@ from exactfold.app.report.panels import panels_answer
 from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.result import BranchCount
 from exactfold.design.assignments.search import Match
-from exactfold.motion.curves.motion import Motion
-from exactfold.motion.panels.motion import PanelMotion
+from exactfold.motion.curves.in_motion import SheetInMotion
 from exactfold.panels.result import Decomposition
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.drawing.drawing import Drawing
@@ -27,8 +26,6 @@ from exactfold.pattern.panel_pattern import PanelPattern
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-
-    from exactfold.motion.curves.in_motion import SheetInMotion
 
 ROWS: Final = 30
 """Ways with a row each; of more only the number is told."""
@@ -55,7 +52,7 @@ def _branch(branch: Branch) -> str:
     return branch_way(branch).picture()
 
 
-@shows("svg", Motion, PanelMotion)
+@shows("svg", SheetInMotion)
 def _motion(motion: SheetInMotion) -> str:
     return motion_stills(motion)
 

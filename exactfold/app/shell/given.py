@@ -46,9 +46,6 @@ class Given:
         return finder
 
 
-NOTHING = Given()
-
-
 def numbers_in(
     path: Path, error: type[BadRimError] | type[BadCurvatureError], example: str
 ) -> dict[int | str, Fraction | Any]:

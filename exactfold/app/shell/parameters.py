@@ -213,6 +213,13 @@ Curvature = Annotated[
     ),
 ]
 
+Dask = Annotated[
+    str | None,
+    typer.Option(
+        metavar="ADDRESS",
+        help="Run on the dask.distributed cluster with this scheduler; `local` starts one here.",
+    ),
+]
 Place = Annotated[int | None, number("Instead: the N-th that `count` lists.", "N", "--branch")]
 Resume = Annotated[bool, flag("--resume", text="Continue the FILE that an interrupted run left.")]
 Side = Annotated[

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import colorsys
 import hashlib
 import html
 import json
@@ -14,8 +15,8 @@ from pathlib import Path
 from typing import Any, Final
 
 from exactfold._support.progress import Progress
+from exactfold.app.pictures import crease_style
 from exactfold.app.viewer.document import FRAMES, view_document
-from exactfold.app.viewer.look import look_css, look_script
 from exactfold.pattern.fold_writing import checked_target, write_text
 from exactfold.pattern.loading import PatternLike
 
@@ -27,6 +28,9 @@ _IMPORT: Final = re.compile(r'^import \{[^}]*\} from "\./(\w+\.js)";\n', re.MULT
 _EXPORT: Final = re.compile(r"^export (?=async function|function|class|const|let)", re.MULTILINE)
 _SELF, _NOBODY = "'self'", "'none'"
 _PLACE: Final = re.compile(r"\{\{(\w+)\}\}")
+_DARK: Final = {"B": 0.92}
+_LIGHTNESS: Final = 0.66
+"""Least lightness of a line on dark ground; the border is lighter still."""
 
 
 def view_page(document: Mapping[str, Any]) -> str:
@@ -133,3 +137,51 @@ def _policy(scripts: Sequence[str], style: str, served: bool) -> str:
 def _digest(text: str) -> str:
     digest = base64.b64encode(hashlib.sha256(text.encode("utf-8")).digest()).decode("ascii")
     return f"'sha256-{digest}'"
+
+
+# --- colours, widths and dashes: those of the pictures ------------------------------------------
+
+
+def look_css() -> str:
+    """Colours of lines by letter as custom properties of CSS, lighter on dark ground.
+
+    >>> look_css().split(";")[0]
+    ':root { --M: #c8202f'
+    """
+    light = "; ".join(f"--{letter}: {c}" for letter, c in crease_style.COLOUR.items())
+    dark = "; ".join(f"--{letter}: {_dark(letter)}" for letter in crease_style.COLOUR)
+    return (
+        f":root {{ {light} }}\n@media (prefers-color-scheme: dark) {{\n  :root {{ {dark} }}\n}}\n"
+    )
+
+
+def look_script() -> str:
+    """The widths and dashes of lines as a constant of the page's script.
+
+    >>> look_script()[:14]
+    'const LOOK = {'
+    """
+    style = crease_style.Style.of(crease_style.FULL)
+    letters = {}
+    for letter in crease_style.COLOUR:
+        attributes = style.attributes(letter)
+        letters[letter] = {
+            "width": style.width(letter, None),
+            "least": style.width(letter, 0.0),
+            "most": style.width(letter, 1.0),
+            "dash": list(crease_style.DASH.get(letter, ())),
+            "cap": attributes["stroke_linecap"],
+        }
+    look = {"letters": letters, "full": crease_style.FULL, "smallest": crease_style.LEAST}
+    return f"const LOOK = {json.dumps(look, separators=(',', ':'))};\n"
+
+
+def _dark(letter: str) -> str:
+    """The colour of a letter on dark ground: the same hue, and light enough to be seen."""
+    text = crease_style.COLOUR[letter]
+    hue, lightness, saturation = colorsys.rgb_to_hls(
+        *(int(text[k : k + 2], 16) / 255 for k in (1, 3, 5))
+    )
+    lightness = max(lightness, _DARK.get(letter, _LIGHTNESS))
+    parts = colorsys.hls_to_rgb(hue, lightness, saturation)
+    return "#" + "".join(f"{round(255 * part):02x}" for part in parts)

@@ -63,7 +63,12 @@ def read_listing(path: str | os.PathLike[str]) -> Document | CertificateLines:
 
     Raises `checker.FormatError` for a file of another kind, or one beyond the limits; `OSError`.
     """
-    at_most(os.path.getsize(path), MOST_BYTES, "the bytes of a file that is read as a whole")
+    at_most(
+        os.path.getsize(path),
+        MOST_BYTES,
+        "the bytes of a file that is read as a whole",
+        "MOST_BYTES",
+    )
     kind = kind_in_lines(path)
     with open(path, "rb") as stream:
         if kind is COMPACT:

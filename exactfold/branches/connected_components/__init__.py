@@ -1,1 +1,1 @@
-"""The pieces of the solutions of a convex sheet with any border, and where they are joined."""
+"""The connected components of the solutions of a convex sheet with any border, and their joints."""

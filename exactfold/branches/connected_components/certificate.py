@@ -1,4 +1,7 @@
-"""Certificates of the pieces of a sheet with more than four corners, for `exactfold.checker`."""
+"""Certificates of the connected components of a sheet with more than four corners.
+
+`exactfold.checker` verifies them.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +12,7 @@ from exactfold import checker
 from exactfold.branches.connected_components.result import PartProof, Pieces, RegularPoint
 from exactfold.certificates.entries import Document, emptied_evidence, pattern_document
 from exactfold.checker.branches.connected_components import MOST_VERTICES, PIECES, PiecesClaims
-from exactfold.checker.core.reading import CertificateError
+from exactfold.checker.core.reading import CertificateError, LimitError
 from exactfold.errors import NotApplicableError
 from exactfold.exact.numbers import format_integer, format_rational
 from exactfold.pattern.loading import PatternLike, as_pattern
@@ -20,11 +23,11 @@ _RADIUS: Final = 1 << 28
 
 
 def pieces_certificate(pattern: PatternLike, pieces: Pieces) -> Document:
-    """The proof of pieces that `find_pieces` found, as a JSON object (docs/any_border.md).
+    """The proof of the components that `find_pieces` found, as a JSON object (docs/any_border.md).
 
-    Of each joint it has a box with one solution, and of each vertex all of whose joints are known
-    what shows that there are no others. Raises `NotApplicableError` where there are no vertices
-    that can pop, or too many, or where the checker does not follow the proof.
+    For each joint it contains a box with exactly one solution. For each vertex whose joints are all
+    known, it contains the proof that there are no others. Raises `NotApplicableError` if no vertex
+    can pop, if too many can, or if the checker refuses the proof.
 
     >>> from exactfold.branches.connected_components.joining import find_pieces
     >>> from exactfold.pattern.families import single_vertex
@@ -36,8 +39,8 @@ def pieces_certificate(pattern: PatternLike, pieces: Pieces) -> Document:
     if not 0 < len(pieces.vertices) <= MOST_VERTICES:
         number = len(pieces.vertices)
         raise NotApplicableError(
-            f"a certificate of pieces is written for one to {MOST_VERTICES} vertices that can pop; "
-            f"here are {number}"
+            f"a certificate of connected components needs 1 to {MOST_VERTICES} vertices that can "
+            f"pop; this sheet has {number}"
         )
     complete = {v for proof in pieces.proofs for v in proof.complete}
     claims: PiecesClaims = {
@@ -67,8 +70,8 @@ def pieces_certificate(pattern: PatternLike, pieces: Pieces) -> Document:
     }
     try:
         checker.check(document)
-    except CertificateError as error:
-        raise NotApplicableError(f"the checker does not follow the proof: {error}") from None
+    except (CertificateError, LimitError) as error:
+        raise NotApplicableError(f"the checker refuses the proof: {error}") from None
     return document
 
 
@@ -84,7 +87,7 @@ def _part(part: PartProof) -> Document:
 
 
 def _box(box: IsolatingBox) -> Document:
-    """A box of the real parts, and of the imaginary ones if the zero is not real."""
+    """A box of the real parts, followed by the imaginary parts if the zero is not real."""
     return {
         "bits": box.bits,
         "radius": format_integer(box.radius),

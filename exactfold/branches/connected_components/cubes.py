@@ -1,4 +1,4 @@
-"""Sign vectors joined by cubes: how many components there are."""
+"""The number of connected components of sign vectors, where cubes of them are connected."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ from typing import Final, TypeAlias
 import numpy as np
 
 Cube: TypeAlias = tuple[int, int]
-"""All sign vectors that agree with `value` on the bits of `mask`; no other bit of value is set."""
+"""All sign vectors that agree with `value` on the bits of `mask`; value has no other bits."""
 
 _MOST_LISTED: Final = 20
 _MOST_STEPS: Final = 20_000
 
 
 def components(size: int, cubes: Iterable[Cube]) -> tuple[int, int]:
-    """Bounds of the number of components of the 2^size sign vectors, each cube being joined.
+    """Bounds of the number of components of the 2^size sign vectors, where each cube is connected.
 
-    Two cubes meet iff they agree on the bits that both fix; a sign vector in no cube is a component
-    by itself. The bounds are equal unless there are more than 20 signs and the vectors in no cube
-    are too many to be counted.
+    Two cubes meet if and only if they agree on the bits that both fix. A sign vector in no cube is
+    a component by itself. The two bounds are equal, unless there are more than 20 signs and too
+    many vectors outside all cubes to be counted.
 
     >>> components(2, []), components(2, [(0b01, 0b01)]), components(3, [(1, 1), (2, 0)])
     ((4, 4), (3, 3), (3, 3))
@@ -42,7 +42,7 @@ def components(size: int, cubes: Iterable[Cube]) -> tuple[int, int]:
 
 
 def _largest(cubes: Iterable[Cube]) -> list[Cube]:
-    """The cubes that lie in no other."""
+    """The cubes that do not lie in another cube."""
     kept: list[Cube] = []
     for mask, value in sorted(set(cubes), key=lambda cube: (cube[0].bit_count(), cube)):
         if not any(m & mask == m and value & m == x for m, x in kept):
@@ -51,7 +51,7 @@ def _largest(cubes: Iterable[Cube]) -> list[Cube]:
 
 
 def _clusters(cubes: list[Cube]) -> int:
-    """The number of groups of cubes that meet, directly or by way of others."""
+    """The number of groups of cubes that meet, directly or through other cubes."""
     waiting = set(cubes)
     number = 0
     while waiting:
@@ -66,7 +66,10 @@ def _clusters(cubes: list[Cube]) -> int:
 
 
 def _outside(size: int, fixed: int, cubes: list[Cube], steps: list[int]) -> int | None:
-    """The number of sign vectors in no cube, bits in `fixed` being decided; None if it is long."""
+    """The number of sign vectors in no cube; None if counting them takes too many steps.
+
+    The bits in `fixed` are already decided.
+    """
     if not cubes:
         return 1 << (size - fixed.bit_count())
     if any(not mask for mask, _ in cubes):

@@ -1,4 +1,4 @@
-"""All solutions of a sheet some of whose stars are held flat, as far as their signs matter."""
+"""All solutions of a sheet with some stars held flat, as far as their signs matter."""
 
 from __future__ import annotations
 
@@ -52,10 +52,11 @@ _STEPS: Final = 40
 
 @dataclass(frozen=True)
 class FlatSolutions:
-    """Signs of the non-zero solutions on some stars, all others being flat.
+    """The signs of the nonzero solutions on some stars, while all other stars are flat.
 
     Every sign vector of a joint occurs, on the vertices of the stars. If `open` is empty, the signs
-    of every other solution are one of these, some vertices that are 0 in it being given a sign.
+    of every other solution agree with one of these wherever the solution is not flat; its flat
+    vertices may have any sign there.
     """
 
     joints: tuple[Joint, ...]
@@ -64,17 +65,21 @@ class FlatSolutions:
 
 
 def flat_solutions(moving: Mapping[int, Star]) -> FlatSolutions:
-    """The signs of the solutions that bend the folds of these stars only.
+    """The signs of the solutions that bend only the folds of these stars.
 
-    Semidefinite forms leave their kernels. What is left falls into parts that share no fold; as a
-    solution is a sum of solutions on parts, its signs are those of one part or more of them. A part
-    with as many forms as unknowns is shown to hold no solution, one with a form less finitely many;
-    others are split into linear spaces on which fewer forms are left
-    (docs/any_border.md, How joints are decided).
+    Semidefinite forms leave their kernels. The remaining space falls into parts that share no fold.
+    A solution is a sum of solutions on parts, so its signs are those of one or more parts. A part
+    with as many forms as unknowns is shown to contain no solution. A part with one form less is
+    shown to contain finitely many. Other parts are split into linear spaces on which fewer forms
+    remain (docs/any_border.md, How joints are decided).
     """
     rows, size = first_order(moving)
     if size > _MOST_DIMENSION:
-        return FlatSolutions((), f"its first-order motions have dimension {size}")
+        return FlatSolutions(
+            (),
+            f"its first-order motions have dimension {size}, and at most {_MOST_DIMENSION} is "
+            "solved",
+        )
     rows, size = reduced(moving, rows, size, _MOST_STEPS)
     if not size:
         return FlatSolutions(())
@@ -82,7 +87,7 @@ def flat_solutions(moving: Mapping[int, Star]) -> FlatSolutions:
 
 
 def _part(moving: Mapping[int, Star], part: Leaf) -> FlatSolutions:
-    """The solutions on one part; it is split where that is not decided without."""
+    """The solutions on one part. If they cannot be decided directly, the part is split."""
     found = _decided(moving, part)
     if found is not None:
         return found
@@ -114,7 +119,7 @@ def _together(found: Iterable[FlatSolutions]) -> FlatSolutions:
 
 
 def _parts(moving: Mapping[int, Star], found: Sequence[Leaf]) -> list[Leaf]:
-    """The parts of leaves that share no fold, each once, with the vertices whose forms are left."""
+    """The parts of leaves that share no fold, each once, with the vertices whose forms remain."""
     parts: dict[object, Leaf] = {}
     for leaf in found:
         for rows, size in independent_parts(_entries(leaf), leaf.size, moving):
@@ -129,9 +134,10 @@ def _active(moving: Mapping[int, Star], folds: Mapping[Edge, Any]) -> list[int]:
 
 
 def _decided(moving: Mapping[int, Star], part: Leaf) -> FlatSolutions | None:
-    """All solutions on one part, if there are finitely many or they are one line; or None."""
+    """All solutions on one part, if they are finitely many or form one line; otherwise None."""
     if not part.vertices:
-        # Isotropic at every vertex, so a line there, and one line as the part is connected.
+        # All forms vanish, so the motions of each vertex form a line; as the part is connected,
+        # all of them together form one line.
         joint = _joint(moving, _exact_balls(part), "space", exactly=part)
         return FlatSolutions((joint,)) if joint else None
     forms = _forms(moving, part)
@@ -156,7 +162,7 @@ def _entries(part: Leaf) -> Rows:
 
 
 def _matrix(squares: Sequence[tuple[Entry, Sequence[Entry]]]) -> list[list[Entry]]:
-    """sum d l l^T."""
+    """The matrix sum d l l^T of a form."""
     size = len(squares[0][1])
     total: list[list[Entry]] = [[fmpq(0)] * size for _ in range(size)]
     for d, functional in squares:
@@ -174,10 +180,14 @@ def _matrix(squares: Sequence[tuple[Entry, Sequence[Entry]]]) -> list[list[Entry
 def _isolated(
     moving: Mapping[int, Star], part: Leaf, forms: Sequence[Sequence[Sequence[Entry]]]
 ) -> FlatSolutions | None:
-    """m - 1 forms in m unknowns: 2^(m-1) complex lines in boxes, hence all; None if that fails."""
+    """The solutions of m - 1 forms in m unknowns, or None.
+
+    2^(m-1) complex lines are found in boxes; as there are no more, these are all. None if this
+    fails.
+    """
     size = part.size
     chart = [[Fraction(int(i == j)) for j in range(size)] for i in range(size)]
-    # The unknown m is 1 - sum of the others, with unequal weights, so that few lines are missed.
+    # The last unknown is 1 - a weighted sum of the others; unequal weights miss few lines.
     weights = tuple(Fraction(3 * k + 2, 7 + k) for k in range(size - 1))
     chart[-1] = [*(-weight for weight in weights), Fraction(1)]
     system = QuadraticSystem.from_rational([_transformed(form, chart) for form in forms])
@@ -201,7 +211,7 @@ def _isolated(
 def _transformed(
     form: Sequence[Sequence[Entry]], chart: Sequence[Sequence[Fraction]]
 ) -> list[list[Fraction]]:
-    """T^t M T."""
+    """The form T^t M T."""
     size = range(len(chart))
     matrix = [[from_fmpq(x) for x in row] for row in form]
     half = [
@@ -227,10 +237,12 @@ def _sum(values: Sequence[arb], weights: Sequence[Any]) -> arb:
 def _sampled(moving: Mapping[int, Star], part: Leaf, whole: Leaf) -> FlatSolutions:
     """Points of a family with as many different signs as are found, each proved.
 
-    `whole` is the rational part that `part` was split from; its coordinates go into proofs.
+    `part` was split from the rational part `whole`, whose coordinates go into proofs.
     """
     if not part.vertices:
-        return FlatSolutions((), "a vertex is too nearly flat in a solution to say its sign")
+        return FlatSolutions(
+            (), "in one solution a vertex is so nearly flat that its sign is undecided"
+        )
     forms = _forms(moving, part)
     names = _active(moving, part.rows)
     wanted = 1 << len(names)
@@ -260,8 +272,8 @@ def _sampled(moving: Mapping[int, Star], part: Leaf, whole: Leaf) -> FlatSolutio
     kind = "a family of solutions" if part.dimension > 0 else "a space of motions"
     return FlatSolutions(
         tuple(found.values()),
-        f"in {kind} of dimension {max(part.dimension, part.size)} {len(found)} of {wanted} sign "
-        "vectors were found",
+        f"only {len(found)} of {wanted} sign vectors were found in {kind} of dimension "
+        f"{max(part.dimension, part.size)}",
         (_witnesses(folds, points),) if points else (),
     )
 
@@ -271,7 +283,9 @@ def _witnesses(folds: tuple[Edge, ...], points: Sequence[RegularPoint]) -> PartP
 
 
 def _regular(forms: Sequence[Sequence[Sequence[Entry]]], at: list[float]) -> RegularPoint:
-    """A point, with the coordinates in which the derivatives of the forms are independent."""
+    """A point, and the coordinates with respect to which the derivatives of the forms are
+    independent.
+    """
     tensor = np.array([[[float(x) for x in row] for row in form] for form in forms])
     tensor /= np.abs(tensor).max(axis=(1, 2), keepdims=True)
     free = qr(tensor @ np.array(at), pivoting=True, mode="r")[1][: len(forms)]
@@ -291,7 +305,7 @@ def _points(
     tensor = np.array([[[float(x) for x in row] for row in form] for form in forms])
     tensor /= np.abs(tensor).max(axis=(1, 2), keepdims=True)
     scale, directions = np.linalg.qr(basis)[1], np.random.default_rng(0)
-    inverse = np.linalg.inv(scale)  # starts are even in the densities, not in the parameters
+    inverse = np.linalg.inv(scale)  # starts are uniform in the densities, not in the parameters
     for _ in range(count):
         p: FloatArray = inverse @ directions.normal(size=part.size)
         for _ in range(_STEPS):
@@ -318,7 +332,7 @@ def _exact_balls(part: Leaf) -> Balls:
 def _joint(
     moving: Mapping[int, Star], w: Balls, by: str, *, exactly: Leaf | None = None
 ) -> Joint | None:
-    """The joint of enclosed densities; None if a sign is not decided.
+    """The joint of enclosed densities; None if some sign is undecided.
 
     The sign of a vertex is that of -sum_e w_e L_e over its folds (docs/branch.md, (1)).
     """

@@ -1,4 +1,4 @@
-"""The pieces of the solutions of a convex sheet: which sign vectors are joined by a flat star."""
+"""The connected components of the solutions of a convex sheet: which sign vectors are joined."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ from exactfold.pattern.opening import panels
 from exactfold.pattern.panel_pattern import PanelPattern
 
 _MOST_WHOLE: Final = 16
-"""Most foldable vertices of a sheet whose joints are looked for at every vertex."""
+"""On sheets with up to this many foldable vertices, joints are looked for at every vertex."""
 _MOST_LOCAL: Final = 300
-"""Most foldable vertices of a sheet whose joints are looked for at all."""
+"""On sheets with up to this many foldable vertices, joints are looked for at all."""
 
 
 def find_pieces(pattern: PatternLike, *, progress: Progress | None = None) -> Pieces:
-    """The pieces of the solutions of a sheet with a convex border and D >= 2, with their joints.
+    """The connected components of the solutions of a convex sheet with D >= 2, and their joints.
 
-    There is one solution for each sign vector and all rim heights modulo planes, so that the
-    solutions are 2^n graphs over R^D, and their pieces without the flat state are the components of
-    the graph of sign vectors in which e and e flipped at v are joined if some non-zero solution
-    with these signs is flat at v (docs/any_border.md, Theorem 7). For each vertex the sheet
-    with its star held flat is solved exactly; what is not decided there is named in `open`, and
-    gives bounds instead of a number.
+    There is exactly one solution for each sign vector and all boundary heights modulo planes. So
+    the solutions are 2^n graphs over R^D. Without the flat state, their connected components
+    correspond to those of a graph of sign vectors. In it, e and the vector that differs from e at v
+    are joined if some nonzero solution with these signs is flat at v (docs/any_border.md, Theorem
+    7). For each vertex, the sheet with its star held flat is solved exactly. What is not decided
+    there is named in `open`, and the number of components is only bounded.
 
     Raises `NotApplicableError` for a border with a reflex corner, and for D < 2.
 
@@ -50,20 +50,21 @@ def find_pieces(pattern: PatternLike, *, progress: Progress | None = None) -> Pi
 
 
 def require_convex(pattern: CreasePattern) -> None:
-    """Raise `NotApplicableError` unless the border is convex, with five vertices or more."""
+    """Raise `NotApplicableError` unless the border is convex and has at least five vertices."""
     if pattern.D < 2:
         raise NotApplicableError(
-            f"the sheet has {pattern.Ve} boundary vertices: its solutions are branches, not pieces"
+            f"the sheet has {pattern.Ve} boundary vertices, so its solutions are branches; "
+            "connected components are computed for at least five boundary vertices"
         )
     if not pattern.is_convex:
         raise NotApplicableError(
-            f"the border has a reflex corner, vertex {pattern.reflex_corner}: with more than four "
-            "corners its shapes need not be real"
+            f"the border has a reflex corner, vertex {pattern.reflex_corner}; with more than four "
+            "corners the shapes of such a sheet need not be real"
         )
 
 
 class _Search:
-    """What is known of the joints of a sheet without rigid parts and without chords."""
+    """What is known of the joints of a sheet that has no rigid parts and no chords."""
 
     def __init__(self, sheet: CreasePattern, progress: Progress | None) -> None:
         self.sheet = sheet
@@ -78,7 +79,7 @@ class _Search:
         self.proofs: list[FlatStars] = []
 
     def found(self) -> Pieces:
-        """The pieces, with bounds where joints are open."""
+        """The components; their number is bounded where joints are undecided."""
         waiting = self._classes()
         if len(self.vertices) <= _MOST_LOCAL:
             self._look_locally()
@@ -90,7 +91,9 @@ class _Search:
                 self.open |= dict.fromkeys(vertices, "not needed: all sign vectors are joined")
                 continue
             if not small:
-                reason = f"joints are looked for at every vertex of up to {_MOST_WHOLE} only"
+                reason = (
+                    f"joints are looked for at every vertex only if at most {_MOST_WHOLE} can pop"
+                )
                 self.open |= dict.fromkeys(vertices, reason)
                 continue
             solutions = flat_solutions(moving)
@@ -102,7 +105,7 @@ class _Search:
             elif solutions.joints:
                 self.complete += vertices
             else:
-                reason = "with its star held flat the sheet has no solution but the flat state"
+                reason = "with its star held flat, the only solution is the flat state"
                 self.never |= dict.fromkeys(vertices, reason)
         low, _ = self._count(tuple(self.open))
         _, high = self._count(())
@@ -120,16 +123,17 @@ class _Search:
         )
 
     def _classes(self) -> list[tuple[Mapping[int, Star], list[int]]]:
-        """What can still bend with the star of a vertex held flat, once for all vertices alike.
+        """The stars that can still bend when the star of a vertex is held flat.
 
-        Where nothing can, the star is never flat.
+        Vertices that leave the same stars are treated together. If no star can bend, the star of
+        the vertex is never flat.
         """
         found: dict[frozenset[Edge], tuple[Mapping[int, Star], list[int]]] = {}
         for v in self.vertices:
             around = [edge_of(v, u) for u in self.sheet.star(v)]
             moving = stars(self.panels, around)
             if not moving:
-                self.never[v] = "with its star held flat no fold can bend"
+                self.never[v] = "with its star held flat, no fold can bend"
                 self.proofs.append(FlatStars((v,), (v,), ()))
                 continue
             key = frozenset(edge for star in moving.values() for edge in star.folds)
@@ -137,7 +141,9 @@ class _Search:
         return list(found.values())
 
     def _look_locally(self) -> None:
-        """Joints at which all stars are flat but one, two, or those along a straight crease."""
+        """Look for joints at which all stars are flat except one, two, or those along a straight
+        crease.
+        """
         for chosen in self._groups():
             held = [
                 (i, j)
@@ -169,7 +175,7 @@ class _Search:
                 yield group
 
     def _straight(self) -> list[frozenset[int]]:
-        """The interior vertices of straight creases from border to border."""
+        """The interior vertices of straight creases that run from border to border."""
         inside = self.sheet.interior_set
         found = []
         for b in self.sheet.boundary:
@@ -187,7 +193,7 @@ class _Search:
         return found
 
     def _ahead(self, before: int, v: int) -> int | None:
-        """The neighbour of v straight ahead of one that comes from `before`."""
+        """The neighbour of v that lies straight ahead if one comes from `before`."""
         (ax, ay), (bx, by) = self.sheet.vertices[before], self.sheet.vertices[v]
         for u in self.sheet.star(v):
             x, y = self.sheet.vertices[u]
@@ -197,7 +203,7 @@ class _Search:
         return None
 
     def _add(self, joints: Iterable[Joint]) -> None:
-        """Keep joints that join more than those that are known; signs of flat vertices are 0."""
+        """Keep joints that join more than the known ones do; flat vertices have sign 0."""
         for joint in joints:
             signs = {v: joint.signs.get(v, 0) for v in self.vertices}
             if all(signs.values()):
@@ -218,7 +224,9 @@ class _Search:
         return [cube for joint in joints for cube in _cubes(joint.signs, self.vertices)]
 
     def _count(self, free: Sequence[int]) -> tuple[int, int]:
-        """Bounds of the components if all flips at the vertices of `free` are joints as well."""
+        """Bounds of the number of components if all flips at the vertices of `free` are joints,
+        too.
+        """
         kept = [v for v in self.vertices if v not in set(free)]
         cubes = [cube for joint in self.joints for cube in _cubes(joint.signs, kept)]
         return components(len(kept), cubes)
@@ -236,7 +244,7 @@ def _within(small: Cube, large: Cube) -> bool:
 
 
 def _labelled(pieces: Pieces, labels: Sequence[int]) -> Pieces:
-    """The same with the vertices of the pattern that the sheet came from."""
+    """The same result with the pattern's numbers of the vertices."""
     if all(k == v for k, v in enumerate(labels)):
         return pieces
 

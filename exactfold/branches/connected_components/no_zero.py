@@ -1,4 +1,4 @@
-"""Quadratic forms without a common zero: Macaulay's matrix of full rank."""
+"""Quadratic forms without a common zero: Macaulay's matrix has full rank."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ _MOST_COLUMNS: Final = 1_300
 
 
 def have_no_common_zero(forms: Sequence[Sequence[Sequence[fmpq]]]) -> bool:
-    """Whether rational quadratic forms are shown to have no complex common zero but 0.
+    """Whether it is shown that rational quadratic forms have no common complex zero except 0.
 
     The products of the forms with all monomials of degree d - 2 are combinations of the monomials
-    of degree d. If their matrix has the full rank modulo a prime, it has it over Q, so that every
-    monomial of degree d is in the ideal and vanishes at a common zero. For m generic forms in m
-    variables d = m + 1 is enough (Macaulay). Each form is a symmetric matrix. False decides
-    nothing.
+    of degree d. If the matrix of these combinations has full rank modulo a prime, it has full rank
+    over Q. Then every monomial of degree d lies in the ideal, and so vanishes at every common zero.
+    For m generic forms in m variables, d = m + 1 suffices (Macaulay). Each form is a symmetric
+    matrix. False decides nothing.
 
     >>> one, zero = fmpq(1), fmpq(0)
     >>> have_no_common_zero([[[one, zero], [zero, zero]], [[zero, zero], [zero, one]]])
@@ -45,7 +45,7 @@ def have_no_common_zero(forms: Sequence[Sequence[Sequence[fmpq]]]) -> bool:
 
 
 def _modular(form: Sequence[Sequence[fmpq]]) -> dict[tuple[int, int], int] | None:
-    """The coefficients modulo the prime; None if it divides a denominator."""
+    """The coefficients modulo the prime; None if the prime divides a denominator."""
     found: dict[tuple[int, int], int] = {}
     for i, row in enumerate(form):
         for j in range(i, len(row)):

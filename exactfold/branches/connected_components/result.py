@@ -1,4 +1,4 @@
-"""What is known of the pieces of the solutions of a sheet."""
+"""What is known of the connected components of the solutions of a sheet."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ _BY_SIGN = {1: "+", 0: "0", -1: "-"}
 
 @dataclass(frozen=True)
 class Joint:
-    """A non-zero solution with flat stars, which joins all sign vectors that agree with its signs.
+    """A nonzero solution with flat stars; it joins all sign vectors that agree with its signs.
 
     `signs` has the sign of each foldable vertex, 0 where its star is flat. `densities` are bounds
-    of fold angle / length of the folds that are not flat, up to a common factor; they are equal
-    where the density is a rational number. `by` says what proves that it is a solution: "space"
+    of fold angle / length of the folds that are not flat, up to a common factor; the two bounds are
+    equal if the density is a rational number. `by` says what proves that it is a solution: "space"
     (all curvature forms vanish on a linear space, found exactly), "isolated" (one of finitely many,
     in a box) or "regular" (a point at which the forms have independent derivatives, in a box).
     `folds` says whether it is proved to be tangent to true motions with the same flat stars.
@@ -34,7 +34,7 @@ class Joint:
 
     @property
     def sign_text(self) -> str:
-        """The signs in the order of the foldable vertices, as in "+0-"."""
+        """The signs in the order of the foldable vertices, as a text such as "+0-"."""
         return "".join(_BY_SIGN[sign] for sign in self.signs.values())
 
     @property
@@ -43,7 +43,7 @@ class Joint:
         return tuple(v for v, sign in self.signs.items() if not sign)
 
     def to_dict(self) -> dict[str, Any]:
-        """The joint as it stands in JSON."""
+        """The object of this joint in JSON."""
         return {
             "vertex_signs": {str(v): sign for v, sign in self.signs.items()},
             "flat": list(self.flat),
@@ -61,7 +61,9 @@ class Joint:
 
 @dataclass(frozen=True)
 class RegularPoint:
-    """A zero of the forms of a part: near these `coordinates`, those that are not `free` exact."""
+    """A zero of the forms of a part near these `coordinates`; those that are not `free`
+    are exact.
+    """
 
     coordinates: tuple[float, ...]
     free: tuple[int, ...]
@@ -69,10 +71,11 @@ class RegularPoint:
 
 @dataclass(frozen=True)
 class PartProof:
-    """What shows the solutions on a part of a sheet some of whose stars are flat.
+    """The proof of the solutions on a part of a sheet, some of whose stars are flat.
 
-    The densities p of `folds` are coordinates. `boxes` hold all complex zeros of the forms in the
-    chart p_last + sum_k chart_k p_k = 1, in all coordinates but the last; or `points` are some.
+    The densities p of `folds` are coordinates. Either `boxes` contain all complex zeros of the
+    forms in the chart p_last + sum_k chart_k p_k = 1, in all coordinates except the last; or
+    `points` are some zeros.
     """
 
     folds: tuple[Edge, ...]
@@ -83,7 +86,7 @@ class PartProof:
 
 @dataclass(frozen=True)
 class FlatStars:
-    """What is known with the stars of `held` flat: all joints at each vertex of `complete`."""
+    """What is known while the stars of `held` are flat: all joints at each vertex of `complete`."""
 
     held: tuple[int, ...]
     complete: tuple[int, ...]
@@ -92,15 +95,16 @@ class FlatStars:
 
 @dataclass(frozen=True)
 class Pieces:
-    """The pieces of the solutions without the flat state (docs/any_border.md, Theorem 7).
+    """The connected components of the solutions without the flat state.
 
-    `low` and `high` are bounds of their number, `number` where these are equal. The true
-    configurations near the flat state fall into at least `low` and at most `true_high` pieces
-    (Theorem 8 there). `vertices` are the foldable vertices. `joints` are solutions with flat stars,
-    up to reflection; of two with comparable signs the one that joins more. `never_flat` says of a
-    vertex why its star is flat in no solution but the flat state. At the vertices of `complete` all
-    joints are known. `open` says of each other vertex why its joints are UNDECIDED. `chord` is a
-    fold from border to border, which joins everything. `proofs` are what a certificate is made of.
+    See docs/any_border.md, Theorem 7. `low` and `high` are bounds of their number; if these are
+    equal, `number` is their number. The true configurations near the flat state have at least `low`
+    and at most `true_high` components (Theorem 8 there). `vertices` are the foldable vertices.
+    `joints` are solutions with flat stars, up to reflection; if the signs of two are comparable,
+    only the one that joins more is kept. `never_flat` gives, for a vertex, the reason why its star
+    is flat only in the flat state. At the vertices of `complete` all joints are known. `open`
+    gives, for each other vertex, the reason why its joints are UNDECIDED. `chord` is a fold from
+    border to border, which connects everything. `proofs` are written to the certificate.
     """
 
     vertices: tuple[int, ...]
@@ -117,12 +121,12 @@ class Pieces:
 
     @property
     def graphs(self) -> int:
-        """2^n, one graph over the rim heights for each sign vector."""
+        """2^n: one graph over the boundary heights for each sign vector."""
         return 1 << len(self.vertices)
 
     @property
     def number(self) -> int | None:
-        """The number of pieces, None if only bounds are known."""
+        """The number of components; None if only bounds are known."""
         return self.low if self.low == self.high else None
 
     @property
@@ -131,7 +135,7 @@ class Pieces:
         return PROVED if self.low == self.high else UNDECIDED
 
     def to_dict(self) -> dict[str, Any]:
-        """The pieces as they stand in JSON."""
+        """The object of the components in JSON."""
         return {
             "status": str(self.status),
             "graphs": _number(self.graphs),
@@ -151,5 +155,5 @@ class Pieces:
 
 
 def _number(value: int) -> int | str:
-    """As JSON: beyond what all programs read exactly as text."""
+    """A number for JSON; a text if it is too large for some programs to read exactly."""
     return value if value < 1 << 53 else str(value)

@@ -16,17 +16,17 @@ from exactfold.rigidity.timelike import sqrt_approximation
 
 Bounds = tuple[Fraction, Fraction]
 _BITS = 64
-"""Of an approximate length: more than a double shows."""
+"""The bits of an approximate length; they are more than a double shows."""
 
 
 @dataclass(frozen=True, repr=False)
 class FoldAngles:
-    """Fold angles of the heights t h to first order in the amplitude t.
+    """Fold angles of the heights t h, to first order in the amplitude t.
 
-    Fold e of length L_e, between faces of twice the areas c and c', bends by
-    t f_e(h) L_e / (c c') radians, positive for a valley (docs/branch.md, The forms on folds;
-    docs/export.md). `densities`: proved bounds of f_e(h) / (c c'), exact rationals, by fold (i, j),
-    i < j. `bends`: the bends at t = 1 in radians, rational approximations that prove nothing.
+    A fold e of length L_e, between faces of twice the areas c and c', bends by t f_e(h) L_e / (c
+    c') radians, positive for a valley (docs/branch.md, The forms on folds; docs/export.md).
+    `densities` are proved bounds of f_e(h) / (c c'), exact rationals, by fold (i, j), i < j.
+    `bends` are the bends at t = 1 in radians, rational approximations that prove nothing.
     """
 
     densities: Mapping[Edge, Bounds]
@@ -43,9 +43,9 @@ class FoldAngles:
         )
 
     def degrees(self, amount: float) -> dict[Edge, float]:
-        """The angles in degrees, in proportion, the largest of size `amount`.
+        """The angles in degrees, scaled so that the largest has the size `amount`.
 
-        Raises as `amplitude` does.
+        Raises the errors of `amplitude`.
         """
         _require_amount(amount)
         self._require_bend()
@@ -62,7 +62,7 @@ class FoldAngles:
 
     def _require_bend(self) -> None:
         if not self.largest:
-            raise NotApplicableError("no fold of these heights bends: the sheet is flat")
+            raise NotApplicableError("no fold bends at these heights: the sheet is flat")
 
 
 def fold_angles(
@@ -72,10 +72,10 @@ def fold_angles(
 ) -> FoldAngles:
     """The fold angles of a sheet with the heights t h, to first order in t.
 
-    `heights`: bounds of the height of every vertex, as in `branch.heights`, in the length unit of
-    the pattern. Folds with the letter "F" in `assignment` are proved flat: they get exactly 0; all
-    others, "U" included, get the middle of their bounds. Raises `UsageError` unless `heights` names
-    exactly the vertices of the pattern.
+    `heights` are bounds of the height of every vertex, as in `branch.heights`, in the length unit
+    of the pattern. Folds with the letter "F" in `assignment` are proved flat and get exactly 0. All
+    others, also those with "U", get the middle of their bounds. Raises `UsageError` unless
+    `heights` has exactly the vertices of the pattern.
 
     >>> from exactfold.pattern.crease_pattern import CreasePattern
     >>> square = CreasePattern(
@@ -89,7 +89,9 @@ def fold_angles(
     """
     pattern = as_pattern(pattern)
     if set(heights) != set(range(len(pattern.vertices))):
-        raise UsageError("give bounds of the height of every vertex of the pattern, of no other")
+        raise UsageError(
+            "give bounds of the height of every vertex of the pattern, and of no other vertex"
+        )
     points, denominator = pattern.integer_vertices
     densities: dict[Edge, Bounds] = {}
     bends: dict[Edge, Fraction] = {}
@@ -97,7 +99,7 @@ def fold_angles(
         if assignment is not None and assignment.get(fold) == "F":
             densities[fold], bends[fold] = (Fraction(0), Fraction(0)), Fraction(0)
             continue
-        weights = fold_functional(pattern, fold)  # in integer lengths: d times those of the pattern
+        weights = fold_functional(pattern, fold)  # in integer lengths, d times the pattern's
         left, right = pattern.opposite(fold)
         scale = Fraction(denominator**2, weights[left] * weights[right])
         low = high = Fraction(0)
@@ -114,4 +116,6 @@ def fold_angles(
 
 def _require_amount(amount: float) -> None:
     if not (isfinite(amount) and 0 < amount <= 180):
-        raise UsageError(f"the largest fold angle is {amount} degrees: give more than 0, up to 180")
+        raise UsageError(
+            f"the largest fold angle cannot be {amount} degrees: give more than 0 and at most 180"
+        )

@@ -1,4 +1,4 @@
-"""What the conveyor carries: one block of sign vectors with what is proved of each."""
+"""What the conveyor carries: blocks of sign vectors, with what is proved of each vector."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from exactfold.solve.certify.float_krawczyk import FloatBoxes
 class ExactRoot:
     """An isolating box of a zero with the signs asked for, and the letters of its folds.
 
-    "U" where a fold is not decided: flat, or nearly so.
+    The letter is "U" if it is not decided; then the fold is flat, or nearly flat.
     """
 
     box: IsolatingBox
@@ -25,8 +25,8 @@ class ExactRoot:
 class OpenEnd:
     """Why no zero was proved for a sign vector, and which of its vertices look flat there.
 
-    `flat` gives places in the sign vector. Paths that differ only in their signs there seem to end
-    at one point, which is then a multiple zero; nothing of this is proved.
+    `flat` are places in the sign vector. Paths whose sign vectors differ only at these places seem
+    to end at the same point, which is then a multiple zero. Nothing of this is proved.
     """
 
     reason: str
@@ -37,9 +37,9 @@ class OpenEnd:
 class ProvedBlock:
     """Block `index`: row j is sign vector number index * count + j (`sign_vectors`).
 
-    A row is proved by its float box, with `valleys` telling the folds of the sheet that are
-    valleys, the others being mountains; or by an entry of `exact`; or it is open, with a reason.
-    `seconds` is processor time by stage; `steps` counts Newton steps.
+    A row is proved by its float box, or by an entry of `exact`, or it is open with a reason. For a
+    float box, `valleys` says which folds of the sheet are valleys; the others are mountains.
+    `seconds` is processor time by stage. `steps` is the number of Newton steps.
     """
 
     index: int
@@ -52,5 +52,5 @@ class ProvedBlock:
 
     @property
     def is_decided(self) -> bool:
-        """Whether each sign vector has a proved root, and each fold of it a letter."""
+        """Whether each sign vector has a proved root with a letter for each of its folds."""
         return not self.open and all("U" not in root.assignment for root in self.exact.values())

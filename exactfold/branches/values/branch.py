@@ -1,4 +1,4 @@
-"""A branch: one line of second-order foldings through the unfolded state, and what names it."""
+"""A branch: one line of second-order foldings through the unfolded state, and its names."""
 
 from __future__ import annotations
 
@@ -27,28 +27,31 @@ Bounds = tuple[Fraction, Fraction]
 
 @dataclass(frozen=True, repr=False)
 class Branch(Picture, Certified):
-    """One branch of a pattern, shown by one of its two rays (docs/mathematics.md, Branch).
+    """One branch of a pattern, represented by one of its two rays (docs/mathematics.md, Branch).
 
-    `vertex_signs`: interior vertex -> +1 popped up, -1 popped down, 0 proved flat. `assignment`:
-    fold (i, j), i < j -> "M" mountain, "V" valley, "F" proved flat, "U" undecided, seen from +z.
-    `multiplicity` is that of the solution of the branch system of the whole pattern, None where it
-    is not known. `root` is where the branch is, proved; None if nothing is.
+    `vertex_signs` gives, for each interior vertex, +1 popped up, -1 popped down, or 0 proved flat.
+    `assignment` gives, for each fold (i, j), i < j, "M" mountain, "V" valley, "F" proved flat, or
+    "U" undecided, seen from +z. `multiplicity` is that of the solution of the branch system of the
+    whole pattern, or None if it is not known. `root` is the proved place of the branch, or None if
+    nothing is proved.
 
     `status` is PROVED if exactly one branch has these vertex signs, and `reason` says what was
-    proved or what is missing. All branches of a proved count are PROVED. `undecided_vertices`: the
-    star is flat to within the error, so that the sign asked for may be 0.
+    proved or what is missing. All branches of a proved count are PROVED. The stars of
+    `undecided_vertices` are flat within the error, so the sign asked for may be 0.
 
-    A branch is a line; `gauge` says which of its points has the heights given. "saddle": one
-    boundary vertex has height 1 and the three others 0 (`saddle_functional` is 1). "notch", where
-    that is not known to be possible: the sign functional of the reflex corner is 1 in the closed
-    sheet. "corner", of a single branch: the curvature of the reflex corner is
-    `Gauge.corner_curvature` there. "rim": the heights of the rim are given (`rim`). `curvature`
-    holds the angle deficits of vertices, where they are not 0: then this is one shape, not a line,
-    and its opposite is another.
-    Heights are the values of `height_rows` at the root, over that of `unit_row` if there is one.
-    `saddle` is the proved sign of the boundary saddle, 0 if it is not proved or there are more than
-    four boundary vertices. In a count every branch is shown from the side of positive saddle where
-    that is proved. Opposite heights are the other ray, with all signs and letters reversed.
+    A branch is a line, and `gauge` says which of its points has the given heights. "saddle": one
+    boundary vertex has height 1 and the three others 0 (`saddle_functional` is 1). "notch", used if
+    this is not known to be possible: the sign functional of the reflex corner is 1 in the closed
+    sheet. "corner", for a single branch: the curvature of the reflex corner is
+    `Gauge.corner_curvature`. "rim": the boundary heights are given (`rim`). `curvature` gives the
+    nonzero angle deficits of vertices; if there are any, this is a single shape, not a line, and
+    its opposite is another shape.
+
+    Heights are the values of `height_rows` at the root, divided by the value of `unit_row` if there
+    is one. `saddle` is the proved sign of the boundary saddle; it is 0 if it is not proved or there
+    are more than four boundary vertices. In a count, every branch with a proved saddle is shown
+    from the side of positive saddle. Opposite heights are the other ray, with all signs and letters
+    reversed.
     """
 
     pattern: CreasePattern
@@ -71,19 +74,21 @@ class Branch(Picture, Certified):
 
     @cached_property
     def sign_text(self) -> str:
-        """Vertex signs in the order of the vertices, as in "+-0"."""
+        """The vertex signs in the order of the vertices, as a text such as "+-0"."""
         signs = self.vertex_signs
         return "".join([SIGNS[signs[v]] for v in sorted(signs)])
 
     @cached_property
     def assignment_text(self) -> str:
-        """Mountain-valley letters in the order of the folds, as in "MVVF"."""
+        """The mountain-valley letters in the order of the folds, as a text such as "MVVF"."""
         letters = self.assignment
         return "".join([letters[fold] for fold in sorted(letters)])
 
     @property
     def names(self) -> tuple[str, str]:
-        """Signs and letters of the two rays: the smaller text of each, the same for both."""
+        """The signs and letters of the two rays; of each, the smaller text is taken, so both rays
+        agree.
+        """
         signs, letters = self.sign_text, self.assignment_text
         return (
             min(signs, signs.translate(UPSIDE_DOWN)),
@@ -92,12 +97,12 @@ class Branch(Picture, Certified):
 
     @property
     def undecided_folds(self) -> tuple[Edge, ...]:
-        """The folds whose letter is not decided, in order."""
+        """The folds whose letter is undecided, in order."""
         return tuple(fold for fold, letter in sorted(self.assignment.items()) if letter == "U")
 
     @property
     def representative(self) -> str:
-        """ "saddle" if the saddle is positive here; "either" if its sign is not proved."""
+        """The word "saddle" if the saddle is positive here; "either" if its sign is not proved."""
         return "saddle" if self.saddle else "either"
 
     @cached_property
@@ -120,9 +125,10 @@ class Branch(Picture, Certified):
     def sharpened(self, bits: int = 64) -> Branch:
         """The same branch with its root in a box of `bits` bits after the point.
 
-        Branches of a count are listed with bounds as they were proved, about nine digits. Roots
-        that are algebraic numbers or exact are returned as they are. Raises `NotApplicableError`
-        where that is not proved, which does not mean that there is no such box.
+        The branches of a count have the bounds with which they were proved, about nine digits.
+        Roots that are algebraic numbers or exact are returned unchanged. Raises
+        `NotApplicableError` if the box cannot be proved, which does not mean that there is no such
+        box.
 
         >>> from exactfold.branches.counting.collect import count_branches
         >>> branch = count_branches("two-vertex")["+-"].sharpened(100)
@@ -134,19 +140,21 @@ class Branch(Picture, Certified):
             return self
         root = self.root.sharpened(bits)
         if root is None:
-            raise NotApplicableError(f"no box with {bits} bits was proved for the branch")
+            raise NotApplicableError(
+                f"no box with {bits} bits could be proved for branch {self.sign_text}"
+            )
         return replace(self, root=root)
 
     @property
     def exact_heights(self) -> dict[int, Any] | None:
-        """The height of every vertex as an exact number, None where that is not quickly known.
+        """The height of every vertex as an exact number; None if that is not quickly known.
 
-        A `Fraction`, or a sympy number: in radicals where the height is of degree 2 over Q, else
-        the root of its minimal polynomial in an isolating interval (`CRootOf`). Known are roots
-        that an exact engine found, as in a count with `method="groebner"` or with flat vertices,
-        and otherwise, of the branches of a count, those of at most four foldable vertices and
-        rational ones of any number, which are computed here. Of `find_branch`: heights that it
-        proved to be rational.
+        A height is a `Fraction` or a sympy number. If it has degree 2 over Q, it is given in
+        radicals; for higher degrees it is the root of its minimal polynomial in an isolating
+        interval (`CRootOf`). Known are roots that an exact engine found, as in a count with
+        `method="groebner"` or with flat vertices. For other branches of a count, the heights are
+        computed here if at most four vertices are foldable, or if the heights are rational. For
+        `find_branch`, known are heights that it proved to be rational.
 
         >>> from exactfold.branches.counting.collect import count_branches
         >>> count_branches("single-vertex-4")["+"].exact_heights[4]
@@ -162,9 +170,9 @@ class Branch(Picture, Certified):
 
     @property
     def straight_border(self) -> tuple[int, ...]:
-        """Boundary vertices on a straight side, of a branch whose rim was given: it may bend there.
+        """Boundary vertices on a straight side of a branch with given boundary heights.
 
-        `pattern.boundary_turns` is 0 there.
+        The side may bend there. `pattern.boundary_turns` is 0 at these vertices.
         """
         if self.gauge != "rim":
             return ()
@@ -173,7 +181,7 @@ class Branch(Picture, Certified):
 
     @property
     def rim(self) -> dict[int, Fraction] | None:
-        """The heights of the border that were given, None in another gauge or if nothing is proved.
+        """The boundary heights that were given; None in another gauge, or if nothing is proved.
 
         >>> from exactfold.branches.counting.find import find_branch
         >>> from exactfold.pattern.families import single_vertex
@@ -192,7 +200,7 @@ class Branch(Picture, Certified):
 
     @cached_property
     def fold_angles(self) -> FoldAngles:
-        """The angles by which the folds start to bend, in proportion (`fold_angles`).
+        """The proportions of the angles by which the folds start to bend (`fold_angles`).
 
         Raises `UsageError` if nothing is proved of the heights.
         """
@@ -200,27 +208,31 @@ class Branch(Picture, Certified):
 
     @property
     def radius(self) -> Fraction | None:
-        """Bound of the error of each of `centres`; None unless found by `find_branch`."""
+        """A bound of the error of each of `centres`; None unless `find_branch` found the branch."""
         return self.root.radius if isinstance(self.root, EnclosedRoot) else None
 
     @property
     def squared_distance(self) -> Fraction | None:
-        """Bound of the integral of |grad(h - centres)|^2; None unless found by `find_branch`."""
+        """A bound of the integral of |grad(h - centres)|^2; None unless `find_branch` found the
+        branch.
+        """
         return self.root.squared_distance if isinstance(self.root, EnclosedRoot) else None
 
     @property
     def centres(self) -> dict[int, Fraction]:
-        """The middle of the bounds of every height."""
+        """The middles of the bounds of all heights."""
         if isinstance(self.root, EnclosedRoot):
             return dict(self.root.centres)
         return {v: (low + high) / 2 for v, (low, high) in self.heights.items()}
 
     def sort_key(self) -> tuple[list[int], str]:
-        """Vertex signs in the order of the vertices, -1 before 0 before +1, then the folds."""
+        """The vertex signs in the order of the vertices, -1 before 0 before +1, then the
+        letters.
+        """
         return [self.vertex_signs[v] for v in sorted(self.vertex_signs)], self.assignment_text
 
     def to_dict(self) -> dict[str, Any]:
-        """The branch as it is listed by `exactfold count --json`."""
+        """The object of the branch in the list of `exactfold count --json`."""
         return {
             "vertex_signs": {str(v): s for v, s in sorted(self.vertex_signs.items())},
             "assignment": {f"{i}-{j}": a for (i, j), a in sorted(self.assignment.items())},
@@ -265,7 +277,7 @@ class Branch(Picture, Certified):
 
 
 def _quotient(top: Bounds, bottom: Bounds) -> Bounds:
-    """Bounds of a quotient by a positive number."""
+    """Bounds of a quotient whose divisor is positive."""
     (a, b), (low, high) = top, bottom
     if low <= 0:
         raise ArithmeticError("the unit of a branch is not proved to be positive")

@@ -26,7 +26,7 @@ _RISING = (256, 1024)
 
 @dataclass(frozen=True)
 class Undecided:
-    """A root whose vertex signs or folds could not all be decided, and which."""
+    """A root for which some vertex signs or folds could not be decided, and which ones."""
 
     root: ChartRoot
     what: tuple[str, ...]
@@ -37,10 +37,10 @@ def classify(
 ) -> tuple[list[Branch], list[Undecided]]:
     """Branches for proved roots in a chart of the problem's sheet, sorted by vertex signs.
 
-    Each root comes with its multiplicity there and is mirrored if its boundary saddle is negative.
-    A sign that a box does not decide is tried on sharper boxes of the same root, then by
-    `flat_folds`. All roots with an open sign are returned apart; where only folds are open, there
-    is a branch as well, on which these have the letter "U".
+    Each root has its multiplicity, and is mirrored if its boundary saddle is negative. If a box
+    does not decide a sign, sharper boxes of the same root are tried, and then `flat_folds`. All
+    roots with an undecided sign are returned separately. If only folds are undecided, there is a
+    branch as well, and these folds have the letter "U".
     """
     functionals, labels = Functionals(chart), problem.labels
     maker = BranchMaker(problem, chart)
@@ -63,7 +63,7 @@ def classify(
 
 @dataclass(frozen=True)
 class BranchMaker:
-    """Branches of one problem from roots in one chart, with their signs and letters."""
+    """Makes the branches of one problem from roots in one chart, with their signs and letters."""
 
     problem: Problem
     chart: Chart
@@ -71,9 +71,10 @@ class BranchMaker:
     def branch(
         self, root: ChartRoot, signs: Sequence[int], letters: str, multiplicity: int = 1
     ) -> Branch:
-        """The branch at a root, from the side of positive saddle.
+        """The branch at a root, seen from the side of positive saddle.
 
-        `signs` in the order of the foldable vertices, `letters` of the folds of the sheet.
+        `signs` are in the order of the foldable vertices, and `letters` in that of the folds of the
+        sheet.
         """
         root = _with_saddle(root, self._saddle)
         if root.sign(self._saddle) == -1:
@@ -84,7 +85,7 @@ class BranchMaker:
     def shown(
         self, root: ChartRoot, signs: Sequence[int], letters: Sequence[str], multiplicity: int
     ) -> Branch:
-        """The same for a root that is not on the other side."""
+        """The branch at a root that already has a positive saddle."""
         pattern = self.problem.pattern
         saddle = 1 if self._saddle_is_one or root.sign(self._saddle) else 0
         return Branch(
@@ -133,7 +134,9 @@ class BranchMaker:
 def _decide(
     chart: Chart, functionals: Functionals, root: ChartRoot
 ) -> tuple[ChartRoot, dict[int, int | None], dict[Edge, int | None]]:
-    """`decide_signs` at the root or, if its saddle is negative, at its mirror image."""
+    """The result of `decide_signs` at the root or, if its saddle is negative, at its
+    mirror image.
+    """
     root = _with_saddle(root, functionals.saddle)
     if root.sign(functionals.saddle) == -1:
         root = root.mirrored()
@@ -141,7 +144,7 @@ def _decide(
 
 
 def _with_saddle(root: ChartRoot, saddle: Row) -> ChartRoot:
-    """The root, on a sharper box if that decides the sign of the boundary saddle there."""
+    """The root, in a sharper box if that decides the sign of the boundary saddle."""
     for bits in _RISING:
         if root.sign(saddle) is None:
             root = _sharpen(root, bits) or root
@@ -151,9 +154,9 @@ def _with_saddle(root: ChartRoot, saddle: Row) -> ChartRoot:
 def decide_signs(
     chart: Chart, functionals: Functionals, root: R
 ) -> tuple[R, dict[int, int | None], dict[Edge, int | None]]:
-    """The root, on a sharper box if that was needed, and the signs of all vertices and folds there.
+    """The signs of all vertices and folds at a root, and the root, in a sharper box if necessary.
 
-    None where a sign is not decided; a fold may then be flat.
+    A sign is None if it is not decided; then a fold may be flat.
     """
     reduced = chart.branch_system.pattern
     vertices = {v: root.sign(row) for v, row in functionals.vertices.items()}
@@ -161,7 +164,7 @@ def decide_signs(
     _add_flat(reduced, folds)
     for bits in _RISING:
         done = None not in vertices.values() and None not in folds.values()
-        # A fold that is still open on a sharp box is most likely flat.
+        # A fold whose sign is still undecided on a sharp box is most likely flat.
         likely_flat = bits > _RISING[0] and None not in vertices.values()
         sharper = None if done or likely_flat else _sharpen(root, bits)
         if sharper is None:
@@ -174,7 +177,7 @@ def decide_signs(
 
 
 def _add_flat(reduced: CreasePattern, folds: dict[Edge, int | None]) -> None:
-    """Enter the folds that the signs of the others prove to be flat."""
+    """Enter the folds that are proved flat by the signs of the other folds."""
     if None in folds.values():
         for fold in flat_folds(reduced, folds):
             folds[fold] = 0

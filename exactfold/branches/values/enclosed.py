@@ -26,10 +26,10 @@ def of_enclosure(
     steps: int = 0,
     seconds: float = 0.0,
 ) -> Branch:
-    """The branch with vertex signs `signs`, by vertex of the pattern, that the enclosure proves.
+    """The branch with these vertex signs, by vertex of the pattern, that the enclosure proves.
 
-    PROVED if no vertex may be flat to within the error; a vertex that is proved flat has sign 0,
-    whatever was asked (docs/branch.md, Theorem 5).
+    The status is PROVED unless some vertex may be flat within the error. A vertex that is proved
+    flat has sign 0, whatever sign was asked for (docs/branch.md, Theorem 5).
     """
     problem, labels, unit = sheet.problem, sheet.labels, sheet.height_unit
     squared = round_up(proof.squared_distance * unit**2)
@@ -70,7 +70,7 @@ def not_enclosed(
     steps: int = 0,
     seconds: float = 0.0,
 ) -> Branch:
-    """The branch with these vertex signs, of which nothing is proved."""
+    """The branch with these vertex signs when nothing is proved of it."""
     pattern = problem.pattern
     return Branch(
         pattern=pattern,
@@ -90,7 +90,7 @@ def not_enclosed(
 
 
 def _assignment(problem: Problem, letters: Mapping[Edge, str]) -> dict[Edge, str]:
-    """Letters of all folds: those with an end in a triangulated triangle are flat."""
+    """The letters of all folds; a fold with an end inside a triangulated triangle is flat."""
     return {
         fold: letters.get(fold, "U") if problem.rigid.isdisjoint(fold) else "F"
         for fold in problem.pattern.folds
@@ -98,7 +98,9 @@ def _assignment(problem: Problem, letters: Mapping[Edge, str]) -> dict[Edge, str
 
 
 def _saddle(problem: Problem, root: EnclosedRoot) -> int:
-    """The proved sign of the boundary saddle; the rim is exact, a reflex corner is not."""
+    """The proved sign of the boundary saddle; boundary heights are exact, a reflex corner
+    is not.
+    """
     if problem.pattern.Ve != 4:
         return 0
     functional = saddle_functional(problem.pattern)

@@ -1,4 +1,4 @@
-"""Heights of algebraic branches as exact numbers: rational, radicals, roots of polynomials."""
+"""Heights of algebraic branches as exact numbers: rationals, radicals, or roots of polynomials."""
 
 from __future__ import annotations
 
@@ -14,7 +14,9 @@ from exactfold.exact.univariate import to_rational_poly
 from exactfold.solve.algebraic.exact_solution import RootClass
 
 _FACTORED = 500
-"""Bits of the coefficients up to which a square root is simplified, for which SymPy factors."""
+"""Square roots are simplified, for which SymPy factors, if the coefficients have at most this many
+bits.
+"""
 
 
 def value_at_root(
@@ -25,9 +27,10 @@ def value_at_root(
 ) -> Any:
     """c_1 x_1 + ... + c_n x_n + c_0 at the `index`-th real zero of a class, over that of `unit`.
 
-    A `Fraction` where it is rational; else a sympy number: radicals for degree 2, `CRootOf` of the
-    minimal polynomial beyond. The minimal polynomial is the squarefree part of the characteristic
-    polynomial of multiplication by the value in Q[T]/p, whose roots are the conjugates.
+    The result is a `Fraction` if the value is rational. Otherwise it is a sympy number: radicals
+    for degree 2, and `CRootOf` of the minimal polynomial for higher degrees. The minimal polynomial
+    is the squarefree part of the characteristic polynomial of multiplication by the value in
+    Q[T]/p; its roots are the conjugates of the value.
 
     >>> pair = RootClass.from_coordinates((-2, 0, 1), [(Fraction(0), Fraction(1))], 1, (1,))
     >>> value_at_root(pair, 1, [1, 3])
@@ -41,7 +44,7 @@ def value_at_root(
         return Fraction(int(value[0].p), int(value[0].q))
     minimal = _minimal_polynomial(value, modulus)
     bits = 64
-    while True:  # until the bounds meet only one of the real roots
+    while True:  # until the bounds meet only one real root
         low, high = root_class.real_roots(bits)[index]
         bounds = _range(value, low, high)
         near = [

@@ -1,4 +1,4 @@
-"""`export_branch`: a branch as a FOLD file whose fold angles keep simulators on it."""
+"""`export_branch`: a branch as a FOLD file whose fold angles keep simulators on the branch."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.fold_writing import document_text, write_text
 
 AMOUNT = 30.0
-"""Degrees of the largest fold angle: visible, and still close to the unfolded state."""
+"""The largest fold angle in degrees: visible, and still close to the unfolded state."""
 
 
 @dataclass(frozen=True, repr=False)
 class BranchExport:
     """A branch as `export_branch` writes it.
 
-    `document` is the FOLD object, `text` its JSON. `angles`: degrees by fold, as written.
-    `length_error`: the largest relative change of the length of an edge in the frame in space.
+    `document` is the FOLD object, and `text` is its JSON. `angles` are degrees by fold, as written.
+    `length_error` is the largest relative change of the length of an edge in the frame in space.
     """
 
     document: Mapping[str, Any]
@@ -37,7 +37,7 @@ class BranchExport:
 
     @property
     def text(self) -> str:
-        """The file."""
+        """The text of the file."""
         return document_text(self.document)
 
     def __repr__(self) -> str:
@@ -45,7 +45,7 @@ class BranchExport:
         return f"<BranchExport: {self.status}, {name}, {len(self.angles)} folds>"
 
     def write(self, path: str | PathLike[str]) -> None:
-        """Write the file whole or not at all; raises `UnwritableFileError`."""
+        """Write the whole file or nothing; raises `UnwritableFileError`."""
         write_text(path, self.text)
 
 
@@ -60,14 +60,13 @@ def export_branch(
     """Write a branch as a FOLD 1.2 file that Origami Simulator and Rabbit Ear open.
 
     `edges_foldAngle` is proportional to the first-order fold angles f_e(h) L_e / (c c') of the
-    branch (`fold_angles`), the largest of size `amount` degrees; a second frame is the sheet in
-    space at that amplitude, to second order (docs/export.md). `title` names the pattern in the
-    file. Returns what was written.
+    branch (`fold_angles`), and the largest has the size of `amount` degrees. A second frame is the
+    sheet in space at that amplitude, to second order (docs/export.md). `title` names the pattern in
+    the file. Returns what was written.
 
-    Raises `UndecidedBranchError` for a branch that is not proved, which `force` allows if its
-    heights are known; `UsageError` for an amount that is not more than 0 and at most 180;
-    `NotApplicableError` for lengths that floats cannot hold;
-    `UnwritableFileError`.
+    Raises `UndecidedBranchError` for a branch that is not proved; `force` allows it if its heights
+    are known. Raises `UsageError` unless 0 < amount <= 180, `NotApplicableError` for lengths that
+    floats cannot represent, and `UnwritableFileError`.
 
     >>> import os, tempfile, exactfold
     >>> pattern = exactfold.pattern.families.two_vertex()
@@ -91,7 +90,7 @@ def exported(
     title: str | None = None,
     force: bool = False,
 ) -> BranchExport:
-    """What `export_branch` writes, not yet written; raises the same errors but the last.
+    """What `export_branch` writes, without writing it; raises the same errors except the last.
 
     >>> import exactfold
     >>> export = exported(exactfold.branch("two-vertex", "++"), amount=10)
@@ -100,8 +99,8 @@ def exported(
     """
     if not isinstance(branch, Branch):
         raise UsageError(
-            f"{shown(branch)} is not a branch: give what `find_branch` or a count returns, then "
-            "the path"
+            f"{shown(branch)} is not a branch: the first argument has to be a branch, which "
+            "`find_branch` or a count returns; the second is the path"
         )
     _require_writable(branch, force)
     pattern, heights, bends = branch.pattern, branch.heights, branch.fold_angles
@@ -136,11 +135,14 @@ def exported(
 
 def _require_writable(branch: Branch, force: bool) -> None:
     if not branch.heights:
-        raise UndecidedBranchError("nothing is proved of the branch: no heights to write")
+        raise UndecidedBranchError(
+            f"branch {_brief(branch.sign_text)} has no heights to write, because nothing is "
+            "proved of it"
+        )
     if branch.status is not PROVED and not force:
         raise UndecidedBranchError(
-            "the branch is not proved, only its heights are enclosed; force the export to write it "
-            "all the same, marked as undecided"
+            f"branch {_brief(branch.sign_text)} is not proved, although its heights are enclosed; "
+            "force the export to write it anyway, marked as undecided"
         )
 
 

@@ -1,4 +1,4 @@
-"""The zero in an isolating box as an algebraic number, where that is quickly found and proved."""
+"""The zero in an isolating box as an algebraic number, if it is quickly found and proved."""
 
 from __future__ import annotations
 
@@ -12,9 +12,10 @@ from exactfold.solve.certify.box import IsolatingBox
 from exactfold.solve.certify.exact_krawczyk import krawczyk_at
 
 FEW = 4
-"""The number n of unknowns up to which all zeros are computed to know one.
+"""With at most this many unknowns n, all zeros are computed in order to know one.
 
-Beyond, naming a root of a polynomial of degree 2^n takes SymPy long: some 20 s a height at n = 5.
+With more, SymPy takes long to name a root of a polynomial of degree 2^n: about 20 s per height at n
+= 5.
 """
 
 _BITS = 256
@@ -22,11 +23,12 @@ _FINEST = 4096
 
 
 def zero_in(system: QuadraticSystem, box: IsolatingBox) -> tuple[RootClass, int] | None:
-    """The class of the zero in a real box, and which of its real zeros it is; None if not found.
+    """The class of the zero in a real box, and the number of this zero in it; or None.
 
-    Rational zeros are guessed from a sharper box and proved by exact substitution: the box has one
-    zero only. Others are found among all zeros of a system of at most `FEW` unknowns (`groebner`),
-    as the one whose bounds meet the box. None does not mean that the zero has no short form.
+    The number counts the real zeros of the class. A rational zero is guessed from a sharper box.
+    Exact substitution proves it, because the box has only one zero. Other zeros are found among all
+    zeros of a system of at most `FEW` unknowns (`groebner`): the zero is the one whose bounds meet
+    the box. None does not mean that the zero has no short form.
 
     >>> from exactfold.solve.certify.exact_krawczyk import krawczyk
     >>> system = QuadraticSystem.from_rational([[[1, 0], [0, -2]]])
@@ -55,10 +57,10 @@ def zero_in(system: QuadraticSystem, box: IsolatingBox) -> tuple[RootClass, int]
 
 
 def _rational(system: QuadraticSystem, box: IsolatingBox) -> RootClass | None:
-    """The zero as a class of its own if its coordinates are rational with short denominators."""
+    """The zero as a class of its own, if its coordinates are rational with short denominators."""
     found = krawczyk_at(system, box, _BITS) if box.bits < _BITS else box
     fine = found if isinstance(found, IsolatingBox) else box
-    # By chance a fraction with a denominator q is as near to a number as 1/q^2.
+    # By chance, a fraction with denominator q may be within 1/q^2 of a number.
     most = 1 << fine.bits // 3
     point = [Fraction(m, 1 << fine.bits).limit_denominator(most) for m in fine.real]
     inside = all(a <= x <= b for x, (a, b) in zip(point, _sides(fine), strict=True))
@@ -73,5 +75,5 @@ def _sides(box: IsolatingBox) -> list[tuple[Fraction, Fraction]]:
 
 @lru_cache(maxsize=4)
 def _classes(system: QuadraticSystem) -> tuple[RootClass, ...]:
-    """All zeros: they are the same for all branches of a pattern."""
+    """All zeros of a system; they are the same for all branches of a pattern."""
     return tuple(groebner(system).classes)

@@ -1,11 +1,11 @@
-"""The alphabet of vertex signs and mountain-valley letters, in one place."""
+"""The alphabet of vertex signs and of mountain-valley letters."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
 LETTERS = {1: "V", -1: "M", 0: "F", None: "U"}
-"""Letter of a fold by its sign: valley, mountain, flat, undecided."""
+"""The letter of a fold by its sign: valley, mountain, flat, undecided."""
 
 UPSIDE_DOWN = str.maketrans("+-MV", "-+VM")
 """For `str.translate`: signs and letters seen from the other side of the sheet."""
@@ -28,9 +28,9 @@ def sign_value(sign: object) -> int | None:
 def differing(
     wanted: Mapping[tuple[int, int], str], letters: Mapping[tuple[int, int], str]
 ) -> tuple[list[tuple[int, int]], list[tuple[int, int]]]:
-    """The folds whose letter is not the one wanted, and those where that is not known.
+    """The folds whose letter differs from the wanted one, and those of which this is not known.
 
-    Where "U" is wanted anything may be; where a letter is "U" it is not known.
+    Where "U" is wanted, any letter will do. Where a letter is "U", it is not known.
 
     >>> differing({(0, 4): "M", (1, 4): "V", (2, 4): "U"}, {(0, 4): "V", (1, 4): "U", (2, 4): "M"})
     ([(0, 4)], [(1, 4)])

@@ -1,4 +1,4 @@
-"""What `Branch.reason` says."""
+"""The texts of `Branch.reason`."""
 
 from __future__ import annotations
 
@@ -21,7 +21,10 @@ def named(vertices: Sequence[int]) -> str:
 
 
 def proved(error: Fraction, flat: Sequence[int], reduced: bool, noun: str = "branch") -> str:
-    """Of a branch whose signs are all proved; `flat` have another sign than the one asked for."""
+    """The text for a branch whose signs are all proved.
+
+    The vertices in `flat` have sign 0 instead of the sign asked for.
+    """
     what, kind = "these signs", "simple solution"
     if flat:
         what = f"the signs shown, 0 at {named(flat)}, where it is flat"
@@ -34,12 +37,14 @@ def proved(error: Fraction, flat: Sequence[int], reduced: bool, noun: str = "bra
 
 
 def undecided(error: Fraction, loose: Sequence[int]) -> str:
-    """Of a solution that may be flat at some vertices."""
+    """The text for a solution that may be flat at some vertices."""
     within = decimal_above(error, 1)
     return f"the only solution with these signs is flat to within {within} at {named(loose)}"
 
 
 def not_found(failed: Sequence[int]) -> str:
-    """Of heights that passed no test, with the vertices at which they failed, if known."""
+    """The text for heights that passed no test, with the vertices at which they failed,
+    if known.
+    """
     where = f": {named(failed)}" if failed else ""
     return f"no heights with curvature above the target everywhere were found{where}"

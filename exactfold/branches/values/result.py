@@ -24,7 +24,7 @@ from exactfold.rigidity.equations.branch_system import Chart
 from exactfold.rigidity.rigid_triangles import RigidTriangle
 from exactfold.solve.certify.algebraic import AlgebraicProof
 
-if TYPE_CHECKING:  # branches are counted without what panels need
+if TYPE_CHECKING:  # counting branches does not load what panels need
     from exactfold.branches.connected_components.result import Pieces
     from exactfold.panels.result import Decomposition
 
@@ -34,12 +34,13 @@ _LISTS: Final = ("modes", "flat_folds", "still_folds", "free_folds", "near_misse
 
 @dataclass(frozen=True)
 class Proof:
-    """What proves a count; `branches.certificates.listing` writes it down (docs/certificate.md).
+    """The proof of a count; `branches.certificates.listing` writes it down (docs/certificate.md).
 
-    `kind` is "chambers" (one root for each sign vector), "isolated" (the roots of the branches,
-    each in a box, are all there are), "algebraic" (by multiplicities, see `AlgebraicProof`),
-    "rigid" or "single vertex". The first three hold in `chart`, whose vertex k is `labels[k]` of
-    the pattern. `lines` are the lines of the certificate where `kind` is "chambers".
+    `kind` is one of the following. "chambers": one root for each sign vector. "isolated": the roots
+    of the branches, each in a box, are all roots. "algebraic": by multiplicities, see
+    `AlgebraicProof`. "rigid" and "single vertex". The first three refer to `chart`, whose vertex k
+    is vertex `labels[k]` of the pattern. `lines` are the lines of the certificate if `kind` is
+    "chambers".
     """
 
     kind: str
@@ -52,11 +53,11 @@ class Proof:
 
 @dataclass(frozen=True)
 class Lettered:
-    """Which of the branches listed have the letters of a file.
+    """The listed branches that have the letters of a file.
 
-    `ways`: the place in the list, from 1, and the side: 1 with the letters of the branch, -1 with
-    all of them reversed. `status` is PROVED if these are all; `unclear` are those of which a letter
-    is not known, and the others agree.
+    `ways` are pairs of the place in the list, beginning with 1, and the side: 1 with the letters of
+    the branch, -1 with all of them reversed. `status` is PROVED if there are no others. `unclear`
+    are those that agree as far as is known but have an unknown letter.
     """
 
     status: Verdict
@@ -73,22 +74,26 @@ class Lettered:
 class BranchCount(Page, Ways[Branch], Certified):
     """What is known of the branches of a pattern at the unfolded state.
 
-    `status` is PROVED when the counts are; they are None otherwise, and `reason` says what is
-    missing; `why` says why the method was chosen. `distinct` counts branches as lines (for D = 1),
-    `with_multiplicity` the solutions of the branch system with multiplicity, `real` and `nonreal`
-    its distinct solutions by reality. `true_branches` is PROVED when the count is also that of the
-    true configuration space (docs/mathematics.md, True branches), and `true_bounds` are bounds of
-    the number of true branches for D = 1 (docs/any_border.md, Theorem 9). `dimension` and `degree`
-    are those of the cone of all complex solutions, modulo planes, with multiplicity: D and 2^Vi
-    where that is proved (docs/mathematics.md, Single vertex), else None. `branches` holds every
-    branch decided, all of them if PROVED and D = 1; for D > 1 a branch is not a line, and none is
-    listed. There, for a convex border, the solutions are 2^n graphs over the rim heights, and
-    `pieces` says into how many pieces they fall; `families` are their irreducible components, where
-    `count_ways` looked for them. The counts are None, except for a single vertex.
-    `proof` is what a certificate is written from. `open_questions` is what is missing; if PROVED,
-    folds with the letter "U". `letters` are those of the file, by fold; empty if it has none.
+    `status` is PROVED if the counts are proved. Otherwise the counts are None, and `reason` says
+    what is missing. `why` says why the method was chosen. `distinct` is the number of branches as
+    lines (for D = 1). `with_multiplicity` is the number of solutions of the branch system with
+    multiplicity. `real` and `nonreal` are the numbers of its distinct real and nonreal solutions.
+    `true_branches` is PROVED if the count is also that of the true configuration space
+    (docs/mathematics.md, True branches). `true_bounds` are bounds of the number of true branches
+    for D = 1 (docs/any_border.md, Theorem 9). `dimension` and `degree` are those of the cone of all
+    complex solutions, modulo planes, with multiplicity: D and 2^Vi if that is proved
+    (docs/mathematics.md, Single vertex), and None otherwise.
 
-    `len(result)`, iteration and `result["+-"]` or `result[3]` are about `branches`.
+    `branches` contains every branch that is decided. These are all branches if the status is PROVED
+    and D = 1. For D > 1 a branch is not a line, and none is listed. There, for a convex border, the
+    solutions are 2^n graphs over the boundary heights, and `pieces` says how many connected
+    components they have. `families` are their irreducible components, if `count_ways` computed
+    them. The counts are then None, except for a single vertex.
+
+    A certificate is written from `proof`. `open_questions` says what is missing; if the status is
+    PROVED, it names folds with the letter "U". `letters` are those of the file, by fold; it is
+    empty if the file has none. `len(result)`, iteration and `result["+-"]` or `result[3]` refer to
+    `branches`.
     """
 
     pattern: CreasePattern
@@ -129,21 +134,23 @@ class BranchCount(Page, Ways[Branch], Certified):
     @overload
     def __getitem__(self, which: slice) -> tuple[Branch, ...]: ...
     def __getitem__(self, which: int | str | slice) -> Branch | tuple[Branch, ...]:
-        """A branch by its place in the list or by its vertex signs, as in "+-0"; or a slice.
+        """A branch by its place in the list, or by its vertex signs, as in "+-0"; or a slice.
 
-        Raises `KeyError` for signs that no listed branch has, `UsageError` for signs that several
-        have, which can be only where the boundary has a reflex corner.
+        Raises `KeyError` for signs that no listed branch has. Raises `UsageError` for signs that
+        several branches have, which is possible only if the boundary has a reflex corner.
         """
         if isinstance(which, int | slice):
             return self.branches[which]
         found = self._by_signs.get(which, [])
         if not found:
             raise KeyError(
-                f"no branch listed has the vertex signs {which!r}; give one of +, - and 0 for each "
+                f"no listed branch has the vertex signs {which!r}; give one of +, - and 0 for each "
                 f"of {counted(self.pattern.Vi, 'interior vertex')}"
             )
         if len(found) > 1:
-            raise UsageError(f"{len(found)} branches have the vertex signs {which!r}")
+            raise UsageError(
+                f"{len(found)} branches have the vertex signs {which!r}; choose one by its number"
+            )
         return found[0]
 
     @cached_property
@@ -155,7 +162,7 @@ class BranchCount(Page, Ways[Branch], Certified):
 
     @property
     def warning(self) -> str | None:
-        """What to know of the pattern before the count is read: see `near_degenerate`."""
+        """A warning about the pattern to read before the count; see `near_degenerate`."""
         found = near_degenerate(self.pattern)
         if found is None and self.families is not None:
             return self.families.warning
@@ -163,14 +170,14 @@ class BranchCount(Page, Ways[Branch], Certified):
 
     @property
     def by(self) -> str | None:
-        """How what is stated was proved: by "enumeration", by the "theorem" alone, or None."""
+        """How the result was proved: by "enumeration", by the "theorem" alone, or None."""
         if self.method == "theorem":
             return "theorem"
         return "enumeration" if self.status is PROVED else None
 
     @cached_property
     def lettered(self) -> Lettered | None:
-        """Which branches have `letters`; None without letters, or if no branch is listed."""
+        """Which branches have `letters`; None if there are no letters or no branch is listed."""
         if not self.letters or not self.branches:
             return None
         turned = {fold: x.translate(UPSIDE_DOWN) for fold, x in self.letters.items()}
@@ -221,7 +228,7 @@ class BranchCount(Page, Ways[Branch], Certified):
         return None if self.true_bounds is None else [_number(x) for x in self.true_bounds]
 
     def _families(self) -> dict[str, Any]:
-        """The keys of JSON that belong to irreducible components."""
+        """The keys of the JSON output that belong to irreducible components."""
         if self.families is not None:
             found = self.families.to_dict()
             return {key: found[key] for key in ("components", "modes_count", *_LISTS)}
@@ -229,11 +236,11 @@ class BranchCount(Page, Ways[Branch], Certified):
 
     @property
     def exceptional_vertices(self) -> tuple[int, ...]:
-        """Vertices with a flat star on some branch that are in no triangulated triangle, for D = 1.
+        """Vertices outside triangulated triangles whose star is flat on some branch, for D = 1.
 
-        If there are any, some branch is multiple although for almost all positions of the interior
-        vertices there are 2^(Vi - Vt) different ones, none with such a vertex (docs/generic.md,
-        Theorem 11). Empty also where branches are not listed.
+        If there are any, some branch is multiple. For almost all positions of the interior vertices
+        there are 2^(Vi - Vt) different branches, none of which has such a vertex (docs/generic.md,
+        Theorem 11). The result is also empty if branches are not listed.
         """
         if self.pattern.Ve != 4:
             return ()
@@ -242,12 +249,16 @@ class BranchCount(Page, Ways[Branch], Certified):
 
     @property
     def sign_vectors(self) -> Counter[str]:
-        """How many branches have each vertex-sign vector, opposite vectors taken together."""
+        """The number of branches with each vertex-sign vector; opposite vectors are counted
+        together.
+        """
         return Counter(branch.names[0] for branch in self.branches)
 
     @property
     def undecided_folds(self) -> Counter[Edge]:
-        """On how many branches each fold has the letter "U"; it may be flat or nearly so there."""
+        """The number of branches on which each fold has the letter "U"; it may be flat or nearly so
+        there.
+        """
         return Counter(
             fold
             for branch in self.branches
@@ -257,7 +268,7 @@ class BranchCount(Page, Ways[Branch], Certified):
 
     @property
     def repeated_assignments(self) -> int | None:
-        """Number of branches that share their mountain-valley assignment (up to reflection).
+        """The number of branches that share their mountain-valley assignment, up to reflection.
 
         None if the letter of some fold is undecided.
         """
@@ -284,7 +295,7 @@ class BranchCount(Page, Ways[Branch], Certified):
 
 
 def _number(value: int | None) -> int | str | None:
-    """A number of solutions as JSON: beyond what all programs read exactly, as a power of two."""
+    """A number of solutions for JSON; a power of two if some programs could not read it exactly."""
     if value is None or value < 1 << 53:
         return value
     return f"2^{value.bit_length() - 1}"

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 from exactfold.exact.numbers import integer_row
 from exactfold.solve.certify.box import IsolatingBox
 
-if TYPE_CHECKING:  # FLINT is loaded where there is an algebraic root
+if TYPE_CHECKING:  # FLINT is loaded only when there is an algebraic root
     from exactfold.exact.univariate import Interval
     from exactfold.rigidity.equations.flat_sheets import FlatSheets
     from exactfold.rigidity.equations.quadratic import QuadraticSystem
@@ -28,18 +28,20 @@ class ChartRoot(Protocol):
         """Bounds of the value of a row (c_1, ..., c_n, c_0)."""
 
     def sign(self, row: Row) -> int | None:
-        """Sign of the value: 1, -1, 0 only if it is proved to vanish, None if undecided."""
+        """The sign of the value: 1, -1, 0 only if it is proved to vanish, None if undecided."""
 
     def mirrored(self) -> ChartRoot:
-        """The same branch seen from below: all values change their sign."""
+        """The same branch seen from below; all values change their signs."""
 
     def exact(self, row: Sequence[Fraction | int], unit: Sequence[Fraction | int] = ()) -> Any:
-        """The value, over that of `unit` if given (`Branch.exact_heights`); None if unknown."""
+        """The value, divided by that of `unit` if given (`Branch.exact_heights`); None if
+        unknown.
+        """
 
 
 def sharper(system: QuadraticSystem, box: IsolatingBox, bits: int) -> IsolatingBox | None:
-    """A box of the same zero with `bits` bits after the point, by the exact test."""
-    from exactfold.solve.certify.exact_krawczyk import krawczyk_at  # FLINT, for this alone
+    """A box of the same zero with `bits` bits after the point, by the exact test; or None."""
+    from exactfold.solve.certify.exact_krawczyk import krawczyk_at  # here because it loads FLINT
 
     if box.bits >= bits:
         return None
@@ -49,9 +51,9 @@ def sharper(system: QuadraticSystem, box: IsolatingBox, bits: int) -> IsolatingB
 
 @dataclass(frozen=True)
 class BoxRoot:
-    """The one zero of `system` in an isolating box; with side -1, its mirror image.
+    """The only zero of `system` in an isolating box; with side -1, its mirror image.
 
-    `known` is the same zero as an algebraic number, where an exact engine found it.
+    `known` is the same zero as an algebraic number, if an exact engine found it.
     """
 
     box: IsolatingBox
@@ -60,7 +62,7 @@ class BoxRoot:
     known: AlgebraicRoot | None = field(default=None, compare=False, repr=False)
 
     def sharpened(self, bits: int) -> BoxRoot | None:
-        """The same zero in a box with `bits` bits after the point, None if that is not proved."""
+        """The same zero in a box with `bits` bits after the point; None if that is not proved."""
         box = None if self.system is None else sharper(self.system, self.box, bits)
         return None if box is None else replace(self, box=box)
 
@@ -68,9 +70,9 @@ class BoxRoot:
         """Bounds of the value over the whole box."""
         box = self.box
         *slopes, constant = row
-        if not any(slopes):  # a height that is given
+        if not any(slopes):  # the height is given
             return Fraction(constant * self.side), Fraction(constant * self.side)
-        common = lcm(*(c.denominator for c in row))  # integers, as fractions reduce at each step
+        common = lcm(*(c.denominator for c in row))  # integers: fractions would reduce each step
         value = constant.numerator * (common // constant.denominator) << box.bits
         reach = 0
         for c, m in zip(slopes, box.real, strict=True):
@@ -84,7 +86,7 @@ class BoxRoot:
         return Fraction(value - reach, scale), Fraction(value + reach, scale)
 
     def sign(self, row: Row) -> int | None:
-        """Sign of an integer row over the whole box, None if the box meets its zero set."""
+        """The sign of an integer row over the whole box; None if the box meets its zero set."""
         box = self.box
         *slopes, constant = row
         value = constant << box.bits
@@ -105,7 +107,7 @@ class BoxRoot:
         return replace(self, side=-self.side)
 
     def exact(self, row: Sequence[Fraction | int], unit: Sequence[Fraction | int] = ()) -> Any:
-        """The value, if an exact engine knows the zero or `zero_in` finds it."""
+        """The value, if an exact engine knows the zero or `zero_in` finds it; otherwise None."""
         known = self._algebraic
         return None if known is None else replace(known, side=self.side).exact(row, unit)
 
@@ -113,7 +115,7 @@ class BoxRoot:
     def _algebraic(self) -> AlgebraicRoot | None:
         if self.known is not None or self.system is None:
             return self.known
-        from exactfold.branches.values.known_roots import zero_in  # FLINT, for this alone
+        from exactfold.branches.values.known_roots import zero_in  # here because it loads FLINT
 
         found = zero_in(self.system, self.box)
         return None if found is None else AlgebraicRoot(*found)
@@ -121,9 +123,9 @@ class BoxRoot:
 
 @dataclass(frozen=True)
 class FlatBoxRoot:
-    """The one zero, in an isolating box, of the quadrics on the sheets that are flat somewhere.
+    """The only zero, in an isolating box, of the quadrics on sheets that are flat at some vertices.
 
-    The box lies in the unknowns of `sheets`; with side -1, its mirror image.
+    The box lies in the unknowns of `sheets`. With side -1 the root is the mirror image.
     """
 
     sheets: FlatSheets
@@ -131,7 +133,7 @@ class FlatBoxRoot:
     side: int = 1
 
     def sharpened(self, bits: int) -> FlatBoxRoot | None:
-        """The same zero in a box with `bits` bits after the point, None if that is not proved."""
+        """The same zero in a box with `bits` bits after the point; None if that is not proved."""
         system = self.sheets.system
         box = None if system is None else sharper(system, self.box, bits)
         return None if box is None else replace(self, box=box)
@@ -141,7 +143,7 @@ class FlatBoxRoot:
         return BoxRoot(self.box, self.side).enclose(self.sheets.restrict(row))
 
     def sign(self, row: Row) -> int | None:
-        """Sign over the whole box: 0 if the functional vanishes on these sheets."""
+        """The sign over the whole box; 0 if the functional vanishes on these sheets."""
         return BoxRoot(self.box, self.side).sign(integer_row(self.sheets.restrict(row)))
 
     def mirrored(self) -> FlatBoxRoot:
@@ -149,7 +151,7 @@ class FlatBoxRoot:
         return replace(self, side=-self.side)
 
     def exact(self, row: Sequence[Fraction | int], unit: Sequence[Fraction | int] = ()) -> None:
-        """Nothing: a box holds bounds."""
+        """None, because a box only gives bounds."""
 
 
 @dataclass(frozen=True)
@@ -165,7 +167,9 @@ class AlgebraicRoot:
         return self.root_class.real_roots(bits)[self.index]
 
     def enclose(self, row: Sequence[Fraction | int]) -> tuple[Fraction, Fraction]:
-        """Bounds of the value, no wider than 2^-64 times the largest coefficient or 1."""
+        """Bounds of the value, no wider than 2^-64 times the maximum of 1 and the largest
+        coefficient.
+        """
         scale = max((abs(Fraction(c)) for c in row), default=Fraction(0)) or Fraction(1)
         bits = 80
         while True:
@@ -177,7 +181,10 @@ class AlgebraicRoot:
     def quotient(
         self, row: Sequence[Fraction | int], unit: Sequence[Fraction | int]
     ) -> tuple[Fraction, Fraction]:
-        """Bounds of the value over the positive one of `unit`, to 2^-64 of 1 or of itself."""
+        """Bounds of the value divided by the positive value of `unit`.
+
+        They are no wider than 2^-64 times the maximum of 1 and the size of the quotient.
+        """
         bits = 80
         while True:
             interval = self.interval(bits)
@@ -190,7 +197,9 @@ class AlgebraicRoot:
             bits *= 2
 
     def sign(self, row: Row) -> int | None:
-        """Sign of the value: 0 exactly if it vanishes modulo the irreducible polynomial."""
+        """The sign of the value; it is 0 exactly if the value vanishes modulo the irreducible
+        polynomial.
+        """
         if self.root_class.vanishes(row):
             return 0
         bits = 40
@@ -206,9 +215,9 @@ class AlgebraicRoot:
 
     def exact(self, row: Sequence[Fraction | int], unit: Sequence[Fraction | int] = ()) -> Any:
         """The value: a `Fraction`, radicals, or a `CRootOf` of sympy."""
-        from exactfold.branches.values.exact_values import value_at_root  # sympy, for this alone
+        from exactfold.branches.values.exact_values import value_at_root  # loads sympy
 
-        side = 1 if unit else self.side  # of a quotient both sides agree
+        side = 1 if unit else self.side  # a quotient is the same on both sides
         return value_at_root(self.root_class, self.index, [side * c for c in row], unit)
 
 
@@ -217,7 +226,7 @@ class EnclosedRoot:
     """The only solution with given signs, near given heights (`exactfold.solve.certify.enclosure`).
 
     Its heights lie within `radius` of `centres`, and the integral of |grad(h - centres)|^2 over the
-    sheet is at most `squared_distance`; where that is 0, `centres` are the heights themselves.
+    sheet is at most `squared_distance`. If that is 0, `centres` are the heights themselves.
     """
 
     centres: Mapping[int, Fraction]
@@ -237,4 +246,4 @@ class EnclosedRoot:
 
 
 Root = ChartRoot | EnclosedRoot
-"""Where a branch is, proved."""
+"""The proved place of a branch."""

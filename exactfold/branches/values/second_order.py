@@ -1,4 +1,4 @@
-"""The second-order sheet of a branch as points in space: a picture of it, not a proof."""
+"""The second-order sheet of a branch as points in space; it is a picture, not a proof."""
 
 from __future__ import annotations
 
@@ -19,12 +19,11 @@ from exactfold.solve.numeric.least_squares import least_squares
 class SecondOrderSheet:
     """X = U + t^2 u + t h z: the edges keep their lengths to order t^2.
 
-    The equations for u are those of docs/mathematics.md, True branches. The heights are those above
-    the plane that fits them best, in the mean: planes belong to no branch, and of all planes this
-    one changes the lengths little.
-
-    `coords`: by vertex, x, y and z in the length unit of the pattern, in floats. `length_error`:
-    the largest relative change of the length of an edge, of order t^4 for the heights of a branch.
+    The equations for u are those of docs/mathematics.md, True branches. The heights are taken above
+    the plane that fits them best on average. Planes belong to no branch, and this plane changes the
+    lengths little. `coords` are x, y and z by vertex, in the length unit of the pattern, in floats.
+    `length_error` is the largest relative change of the length of an edge; it is of order t^4 for
+    the heights of a branch.
     """
 
     coords: tuple[tuple[float, float, float], ...]
@@ -34,25 +33,26 @@ class SecondOrderSheet:
 def second_order_sheet(pattern: CreasePattern, raised: Sequence[Fraction]) -> SecondOrderSheet:
     """The sheet whose vertices have the heights `raised` = t h, in the unit of the pattern.
 
-    The displacement u in the plane is the solution of least squares of the linear rigidity
-    equations (U_i - U_j).(u_i - u_j) = -(h_i - h_j)^2 / 2, each divided by the length of its edge;
-    they have a solution exactly if all curvatures K_v(h) vanish. Of the solutions, which differ by
-    small motions of the plane, that without mean translation and rotation is taken. Raises
-    `NotApplicableError` where the range of floats is left.
+    The displacement u in the plane is the least-squares solution of the linear rigidity equations
+    (U_i - U_j).(u_i - u_j) = -(h_i - h_j)^2 / 2, each divided by the length of its edge. These have
+    an exact solution if and only if all curvatures K_v(h) vanish. Solutions differ by small motions
+    of the plane; the one without mean translation and rotation is taken. Raises
+    `NotApplicableError` if numbers leave the range of floats.
     """
     try:
-        with np.errstate(all="ignore"):  # what leaves the range of floats is refused below
+        with np.errstate(all="ignore"):  # numbers out of the range of floats are refused below
             shape, size = _unit_shape(pattern)
             height = _levelled(shape, np.array([float(z / size) for z in raised]))
             moved = shape + _in_plane(pattern, shape, height)
             scale = float(size)
             error = _length_error(pattern, shape, moved, height)
-    except (OverflowError, RuntimeError):  # RuntimeError: two vertices are one point in floats
+    except (OverflowError, RuntimeError):  # RuntimeError: two vertices coincide in floats
         scale = error = float("nan")
         moved = height = np.empty(0)
     if not (scale and np.isfinite(error)):
         raise NotApplicableError(
-            "the sheet has lengths too different in size for floats: no folded form can be drawn"
+            "no folded form can be drawn: the lengths of the sheet differ too much for floating "
+            "point"
         )
     (x, y) = (float(c) for c in pattern.vertices[0])
     first = moved - shape[0]
@@ -66,7 +66,7 @@ def second_order_sheet(pattern: CreasePattern, raised: Sequence[Fraction]) -> Se
 
 
 def _unit_shape(pattern: CreasePattern) -> tuple[FloatArray, Fraction]:
-    """The flat sheet from its first vertex in units of its size, and that size."""
+    """The flat sheet relative to its first vertex, in units of its size; and that size."""
     size = max(
         max(p[k] for p in pattern.vertices) - min(p[k] for p in pattern.vertices) for k in (0, 1)
     )
@@ -77,7 +77,7 @@ def _unit_shape(pattern: CreasePattern) -> tuple[FloatArray, Fraction]:
 
 
 def _levelled(shape: FloatArray, height: FloatArray) -> FloatArray:
-    """The heights above their plane of least squares."""
+    """The heights above their least-squares plane."""
     affine = np.column_stack([np.ones(len(shape)), shape])
     plane = np.linalg.lstsq(affine, height, rcond=None)[0]
     return np.asarray(height - affine @ plane)
@@ -99,7 +99,7 @@ def _in_plane(pattern: CreasePattern, shape: FloatArray, height: FloatArray) -> 
     columns = np.concatenate([2 * i, 2 * i + 1, 2 * j, 2 * j + 1])
     matrix = csc_array(coo_array((values, (np.tile(rows, 4), columns)), shape=(len(i), 2 * count)))
     strain = -((height[i] - height[j]) ** 2) / (2 * length)
-    # Three coordinates are held, so that no motion of the plane is left.
+    # Three coordinates are held, which excludes all motions of the plane.
     a, b = pattern.boundary[:2]
     along = abs(shape[b] - shape[a])
     held = {2 * a, 2 * a + 1, 2 * b + int(along[0] >= along[1])}

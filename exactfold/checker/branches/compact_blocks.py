@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 from ..core.krawczyk import Krawczyk
 from ..core.limits import MOST_BLOCK, MOST_DIGITS, MOST_UNITS, MOST_UNKNOWNS, MOST_WIDTH
 from ..core.lines import read_object
-from ..core.reading import CertificateError, items, keys, natural, require, text_of
+from ..core.reading import CertificateError, at_most, items, keys, natural, require, text_of
 from ..sheets.boxes import Box, read_box
 from ..sheets.equations import BranchSystem, read_chart
 from ..sheets.flat_folds import close_flat
@@ -64,10 +64,12 @@ class CompactSheet:
         self.emptied = check_triangles(self.sheet, evidence["triangles"])
         self.system = BranchSystem(self.emptied, read_chart(evidence["chart"]))
         self.size = self.system.size
-        require(0 < self.size <= MOST_UNKNOWNS, "the number of unknowns is out of range")
+        require(self.size > 0, "the number of unknowns is out of range")
+        at_most(self.size, MOST_UNKNOWNS, "the unknowns", "MOST_UNKNOWNS")
         self.block = natural(evidence["block"], "block")
+        at_most(self.block, MOST_BLOCK, "the roots in a block", "MOST_BLOCK")
         require(
-            0 < self.block <= MOST_BLOCK and (1 << self.size) % self.block == 0,
+            self.block > 0 and (1 << self.size) % self.block == 0,
             "the size of a block does not divide the number of roots",
         )
         self.blocks = (1 << self.size) // self.block

@@ -33,14 +33,14 @@ def gathered(header: dict[str, Any], found: Iterator[str]) -> tuple[dict[str, An
     if "roots" not in evidence:  # the sheet is rigid, or a single vertex
         return evidence, branches, 0
     number, block = natural(evidence["roots"], "roots"), natural(evidence["block"], "block")
-    at_most(number, MOST_ENTRIES, "the roots")
+    at_most(number, MOST_ENTRIES, "the roots", "MOST_ENTRIES")
     total, blocks = 0, -(-number // block)
     for k in range(blocks):
         text = next(found, None)
         if text is None:
             raise UnfinishedError(f"only {k} of {blocks} blocks are there")
         total += len(text)
-        at_most(total, MOST_BYTES, "the bytes of the blocks")
+        at_most(total, MOST_BYTES, "the bytes of the blocks", "MOST_BYTES")
         what = f"block {k}"
         data = read_object(text, what)
         keys(data, "block roots", what)

@@ -16,7 +16,7 @@ from typing import Any, TypedDict
 
 from ..core import limits
 from ..core.kinds import DocumentKind
-from ..core.reading import counted, items, keys, keys_of, natural, refusing, require, same
+from ..core.reading import at_most, counted, items, keys, keys_of, natural, refusing, require, same
 from ..core.towers import Tower
 from ..panels.spaces import Spaces
 from ..sheets.panels import PanelSheet, pair
@@ -110,7 +110,7 @@ class _Search:
         sheet = self.sheet = place.sheet
         self.vertices = list(sheet.interior)
         require(self.vertices, "no vertex can pop")
-        require(len(self.vertices) <= MOST_VERTICES, f"more than {MOST_VERTICES} vertices can pop")
+        at_most(len(self.vertices), MOST_VERTICES, "the vertices that can pop", "PIECE_VERTICES")
         border = set(sheet.boundary)
         self.chords = {fold for fold in sheet.folds if border.issuperset(fold)}
         self._kept = sorted(sheet.points)

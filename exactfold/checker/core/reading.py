@@ -31,10 +31,14 @@ class LimitError(FormatError):
     """The file asks for more than `limits` allow: nothing is known of its claims."""
 
 
-def at_most(found: int, most: int, what: str) -> None:
-    """Raise `LimitError` for more than the limit of what is counted."""
+def at_most(found: int, most: int, what: str, limit: str) -> None:
+    """Raise `LimitError` for more than the limit of what is counted.
+
+    `limit` is its name in `limits`, where whoever wants such a file checked may raise it.
+    """
     if found > most:
-        raise LimitError(f"not checked: {what}, {found}, are more than the limit, {most}")
+        said = f"{what}, {found}, are more than the limit, {most}"
+        raise LimitError(f"not checked: {said} ({limit} in checker/core/limits.py)")
 
 
 def require(condition: object, message: str) -> None:
@@ -70,7 +74,7 @@ def parse_integer(text: str) -> int:
     sign, digits = (-1, text[1:]) if text[:1] == "-" else (1, text)
     if not (digits.isascii() and digits.isdigit()):
         raise CertificateError(f"{text[:40]!a} is not an integer")
-    at_most(len(digits), MOST_NUMBER, f"the digits of {text[:40]!a}")
+    at_most(len(digits), MOST_NUMBER, f"the digits of {text[:40]!a}", "MOST_NUMBER")
     value = 0
     for start in range(0, len(digits), 4000):
         part = digits[start : start + 4000]
@@ -96,10 +100,12 @@ class Coordinates:
     def __call__(self, text: Any) -> Fraction:
         """Exact rational from "p" or "p/q"; raises `LimitError`."""
         above, below = (len(part) for part in text_of(text).partition("/")[::2])
-        at_most(max(above, below), MOST_COORDINATE, "the digits of a coordinate")
+        longer = max(above, below)
+        at_most(longer, MOST_COORDINATE, "the digits of a coordinate", "MOST_COORDINATE")
         if max(above, below) > LONG_COORDINATE:
             self.products += above * max(below, 1)
-            at_most(self.products, MOST_PRODUCTS, "the products of digits in long coordinates")
+            what = "the products of digits in long coordinates"
+            at_most(self.products, MOST_PRODUCTS, what, "MOST_PRODUCTS")
         return parse_rational(text)
 
 

@@ -20,7 +20,7 @@ from math import lcm
 from typing import Any, TypeAlias
 
 from ..core import limits
-from ..core.reading import require
+from ..core.reading import at_most, require
 from ..sheets.sheet import Edge, Sheet, turn
 
 MOST_OPEN = limits.MOST_OPEN
@@ -126,7 +126,9 @@ class Arcs:
             for v, sign in zip(self.sheet.interior, signs, strict=True):
                 words = self._allowed(v, sign)
                 found = {made for word in found for made in self._joined(word, v, words)}
-                require(len(found) <= MOST_OPEN, "too many letters are open")
+                at_most(
+                    len(found), MOST_OPEN, "the words that open letters may become", "MOST_OPEN"
+                )
             self._known[letters, signs] = found
         return self._known[letters, signs]
 

@@ -17,7 +17,7 @@ from typing import Any, TypedDict
 from ..branches.branch import Place
 from ..core import limits
 from ..core.kinds import DocumentKind
-from ..core.reading import counted, items, keys, keys_of, parse_integer, refusing, require
+from ..core.reading import at_most, counted, items, keys, keys_of, parse_integer, refusing, require
 from ..sheets.reduced import check_convex
 from ..sheets.sheet import Edge, Sheet, read_sheet, turn
 from .arcs import Arcs, Word
@@ -91,7 +91,7 @@ class _Circles:
         self.sheet = sheet
         require(sheet.interior, "no vertex can pop")
         number = len(sheet.interior)
-        require(number <= MOST_VERTICES, f"more than {MOST_VERTICES} vertices can pop")
+        at_most(number, MOST_VERTICES, "the vertices that can pop", "ASSIGNED_VERTICES")
         free = free_border(sheet)
         self.free = len(free)
         self.arcs = Arcs(sheet, [*free, *sheet.interior])

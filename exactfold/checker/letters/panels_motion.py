@@ -15,7 +15,7 @@ from typing import Any
 
 from ..core import limits
 from ..core.intervals import Interval
-from ..core.reading import integer, items, keys, natural, require
+from ..core.reading import at_most, integer, items, keys, natural, require
 from ..panels.loops import Loops
 from ..panels.modes import Modes, loops_of, name
 from ..sheets.panels import Edge, Near, PanelSheet, Vector, connected, cross, pair
@@ -90,12 +90,13 @@ def _check_regular(
     keys(entry, "densities bits unit unknowns inverse shift radius", "a motion")
     bits, shift = natural(entry["bits"], "bits"), natural(entry["shift"], "shift")
     unit = integer(entry["unit"])
-    require(bits <= BITS and max(shift, abs(unit)) <= MOST_SHIFT, "numbers are too long")
+    require(bits <= BITS, "numbers are too long")
+    at_most(max(shift, abs(unit)), MOST_SHIFT, "the bits by which numbers are moved", "MOST_SHIFT")
     scaled = [integer(c) for c in items(entry["densities"], "densities", len(folds))]
     unknowns = [natural(k, "an unknown") for k in items(entry["unknowns"], "unknowns")]
     radius = natural(entry["radius"], "radius")
     size = len(unknowns)
-    require(size <= MOST_CONDITIONS, f"there are more than {MOST_CONDITIONS} conditions")
+    at_most(size, MOST_CONDITIONS, "the conditions", "MOST_CONDITIONS")
     place = {k: n for n, k in enumerate(unknowns)}
     for k, letter in enumerate(letters):
         side = SIDES.get(letter, 0)

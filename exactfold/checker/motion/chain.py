@@ -15,7 +15,7 @@ from itertools import zip_longest
 from typing import Any
 
 from ..core.limits import MOST_TUBES, MOST_WORK, MOTION_BITS, NODE_WORK
-from ..core.reading import items, keys, natural, require
+from ..core.reading import at_most, items, keys, natural, require
 from ..sheets.sheet import Sheet
 from .equations import LengthEquations
 from .paths import Path
@@ -93,7 +93,7 @@ def equations_of(
     require(one, "a motion keeps the ratio of its border or that of driven folds, not both")
     require(sheet.interior, "nothing can fold")
     bits = natural(bits, "bits")
-    require(bits <= MOTION_BITS, "bits are out of range")
+    at_most(bits, MOTION_BITS, "the bits", "MOTION_BITS")
     corners = [natural(v, "pinned vertex") for v in items(pinned, "pinned", 3)]
     return LengthEquations(sheet, corners, bits, *restrictions[-1:])
 
@@ -102,7 +102,7 @@ def check_work(equations: LengthEquations, entries: list[Any], arcs: int = 0) ->
     """Raise if the tubes and arcs of a file, and so many `arcs` more, are too much work."""
     among = sum(map(is_arc, entries))
     tubes = len(entries) - among + NODE_WORK * (among + arcs)
-    require(tubes <= MOST_TUBES, "there are too many tubes")
+    at_most(tubes, MOST_TUBES, "the tubes", "MOST_TUBES")
     size, digits = equations.size, 1 + (equations.bits + equations.more) // 256
     work = (tubes + 1) * size**2 * (size + 200) * digits
-    require(work <= MOST_WORK, "the work is out of range")
+    at_most(work, MOST_WORK, "the products of numbers that are needed", "MOST_WORK")

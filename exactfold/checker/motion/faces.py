@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from itertools import combinations
 
-from ..core.reading import require
+from ..core.reading import at_most, require
 from ..sheets.sheet import Edge
 from .bounds import Vector
 from .boxes import (
@@ -53,7 +53,8 @@ class FacePairs:
         work: int,
     ) -> None:
         self.faces, self.names, self.folds = faces, names, folds
-        self.flat, self.place, self.work = flat, place, work
+        self.flat, self.place = flat, place
+        self.work, self.spent = work, 0
         self.apart: list[tuple[int, int]] = []
         self.corner: list[tuple[int, int]] = []
         for i, j in combinations(range(len(faces)), 2):
@@ -63,9 +64,9 @@ class FacePairs:
         self.known: dict[tuple[int, int], Direction] = {}
 
     def spend(self, tests: int) -> None:
-        """Count tests; raises `CertificateError` if they are too many."""
-        self.work -= tests
-        require(self.work >= 0, "the contacts take too much work")
+        """Count tests; raises `LimitError` if they are too many."""
+        self.spent += tests
+        at_most(self.spent, self.work, "the tests of contacts", "MOST_TESTS")
 
     def clear(self, path: Curved, low: int, high: int, planar: bool = False) -> None:
         """Refuse unless no two faces touch for low <= x <= high beyond what they share."""

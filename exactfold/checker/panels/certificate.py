@@ -14,16 +14,7 @@ from typing import Any
 
 from ..core import limits
 from ..core.kinds import DocumentKind
-from ..core.reading import (
-    counted,
-    items,
-    keys,
-    keys_of,
-    natural,
-    refusing,
-    require,
-    same,
-)
+from ..core.reading import at_most, counted, items, keys, keys_of, natural, refusing, require, same
 from ..sheets.panels import Edge, Near, PanelSheet, connected, pair, read_edges, read_panels
 from .claims import ModeClaim, ModesClaims, PanelFacts, PanelsClaims, PartClaim, SupportClaim
 from .components import components, times
@@ -116,7 +107,7 @@ def _supports(modes: Modes) -> list[Support]:
     found = []
     for support in modes.supports():
         found.append(support)
-        require(len(found) <= MOST_SUPPORTS, f"there are more than {MOST_SUPPORTS} supports")
+        at_most(len(found), MOST_SUPPORTS, "the supports", "MOST_SUPPORTS")
     return found
 
 
@@ -147,7 +138,7 @@ def _extending(loops: Loops, support: Support, entry: dict[str, Any]) -> tuple[i
     if entry["modes"] is None and (number is None or kind != "loops"):
         good = 0 if number is None else support.count
     else:
-        require(support.count <= MOST_LISTED, f"the modes of {named(support)} are too many")
+        at_most(support.count, MOST_LISTED, f"the modes of {named(support)}", "MOST_LISTED")
         rows = loops.modes.listed(support)
         verdicts = [
             _extends(loops, support, row, mode, number is None)

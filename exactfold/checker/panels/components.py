@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 from ..core import limits
-from ..core.reading import require
+from ..core.reading import at_most
 
 MOST_SETS = limits.MOST_SETS
 
@@ -85,7 +85,7 @@ def _maximal(groups: list[tuple[int, ...]]) -> Iterator[list[int]]:
     steps = 0
     while stack:
         steps += 1
-        require(steps <= MOST_SETS, f"the components take more than {MOST_SETS} steps")
+        at_most(steps, MOST_SETS, "the steps to the components", "MOST_SETS")
         chosen, open_ones, closed = stack.pop()
         if not open_ones:
             if not closed:

@@ -14,7 +14,7 @@ from itertools import chain, combinations, islice
 
 from ..core import limits
 from ..core.intervals import Interval
-from ..core.reading import require
+from ..core.reading import at_most
 from ..sheets.panels import Edge
 from .reduction import BITS, enclosed, reduced, rest_of
 from .spaces import Space, Spaces
@@ -36,8 +36,7 @@ def cone_motion(spaces: Spaces, space: Space, vertices: Sequence[int]) -> Place 
     and after it the derivative along u is not 0, so that at the end all are independent. The first
     form is one component if its rank is 3 or more.
     """
-    many = f"the forms of {len(vertices)} vertices are more than {MOST_FORMS}"
-    require(len(vertices) <= MOST_FORMS, many)
+    at_most(len(vertices), MOST_FORMS, "the vertices whose forms one space has", "CONE_FORMS")
     places: list[Place] = [{}]
     room = space
     for number, v in enumerate(_ordered(spaces, space, vertices)):

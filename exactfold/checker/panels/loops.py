@@ -15,7 +15,7 @@ from typing import Any
 
 from ..core import limits
 from ..core.intervals import Interval
-from ..core.reading import require
+from ..core.reading import at_most
 from ..core.towers import Number
 from ..sheets.panels import cross, dot
 from .modes import Joined, Modes, corners_of, name
@@ -92,7 +92,8 @@ class Loops:
         bent = sum(found.quadratic is not None for found in steps)
         if not bent:
             return True
-        require(bent <= MOST_BENT, f"the loop {name(loop)} has too many transmissions not linear")
+        what = f"the transmissions of the loop {name(loop)} that are not linear"
+        at_most(bent, MOST_BENT, what, "MOST_BENT")
         order = 2**bent + 1
         if any(_differs(steps, order, bits) is not None for bits in _BITS):
             return False

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from itertools import product
 
 from ..core import limits
-from ..core.reading import require
+from ..core.reading import at_most
 from ..core.towers import Number, Tower
 from ..sheets.panels import Edge, PanelSheet, pair, walks
 from .lines import Line, lines_at
@@ -108,7 +108,9 @@ class Modes:
             v = queue[0]
             for kind in {frozenset(line.densities) for line in self.lines[v]}:
                 self.steps += 1
-                require(self.steps <= MOST_STEPS, f"the search takes more than {MOST_STEPS} steps")
+                at_most(
+                    self.steps, MOST_STEPS, "the steps of the search for supports", "MODE_STEPS"
+                )
                 at = {u: u in kind for u in self.near[v]}
                 if any(moving.get(pair(v, u), on) != on for u, on in at.items()):
                     continue
@@ -138,7 +140,7 @@ class Modes:
             size = 1
             for v in corners:
                 size *= len(choices[v])
-            require(size <= MOST_ROWS, f"the loop {name(loop)} has too many choices")
+            at_most(size, MOST_ROWS, f"the choices of modes round {name(loop)}", "MODE_ROWS")
             rows = product(*(choices[v] for v in corners))
             self._closing[key] = frozenset(
                 row for row in rows if self.closes(loop, dict(zip(corners, row, strict=True)))
@@ -199,7 +201,7 @@ class Modes:
                         whole = (*old, *(row[corners.index(v)] for v in fresh))
                         short = tuple(whole[k] for k in kept)
                         new[short] = new.get(short, 0) + count
-                require(len(new) <= MOST_ROWS, f"{named(support)} takes more than {MOST_ROWS} rows")
+                at_most(len(new), MOST_ROWS, f"the rows of {named(support)}", "MODE_ROWS")
             table, order = new, [following[k] for k in kept]
         places = sorted(range(len(order)), key=lambda k: order[k])
         return {tuple(row[k] for k in places): count for row, count in table.items()}
@@ -216,10 +218,9 @@ class Joined:
             radicand = modes.lines[v][chosen[v]].radicand
             if radicand is not None:
                 self.tower, self._roots[v] = self.tower.adjoined(radicand)
-                require(
-                    self.tower.size <= self.ground.size << MOST_ROOTS,
-                    f"the loop {name(loop)} needs too many square roots",
-                )
+                roots = (self.tower.size // self.ground.size).bit_length() - 1
+                what = f"the square roots that the loop {name(loop)} needs"
+                at_most(roots, MOST_ROOTS, what, "MODE_ROOTS")
 
     def of(self, v: int, value: Number) -> Number:
         """A number at a vertex, in the tower."""

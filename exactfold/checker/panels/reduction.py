@@ -7,7 +7,7 @@ from typing import Any
 
 from ..core import limits
 from ..core.intervals import Interval
-from ..core.reading import require
+from ..core.reading import at_most
 from ..core.towers import Number, Parts, Tower
 from ..sheets.panels import Edge
 
@@ -92,7 +92,8 @@ class Joined:
             key = radicands[: k + 1]
             if key not in self._roots:
                 self.tower, root = self.tower.adjoined(self._taken(radicand, radicands))
-                require(self.tower.size <= 1 << MOST_ROOTS, "two spaces need too many square roots")
+                roots = self.tower.size.bit_length() - 1
+                at_most(roots, MOST_ROOTS, "the square roots that two spaces need", "SPACE_ROOTS")
                 self._roots[key] = root
         return self.tower.number(self._taken(value.parts, radicands))
 

@@ -14,7 +14,7 @@ from itertools import combinations
 from typing import Any
 
 from ..core import limits
-from ..core.reading import require
+from ..core.reading import at_most, require
 from ..core.towers import Number, Tower
 from ..sheets.panels import Edge, PanelSheet, cross, pair
 from .reduction import Vector, inside, reduced, zero
@@ -67,7 +67,7 @@ class Work:
         """Add products with this number, or interval; too many are refused."""
         size = value.tower.size if isinstance(value, Number) else 1
         self.steps += products * size * size
-        require(self.steps <= MOST_STEPS, f"the spaces of motions take over {MOST_STEPS} steps")
+        at_most(self.steps, MOST_STEPS, "the steps to the spaces of motions", "SPACE_STEPS")
 
 
 class Spaces:
@@ -142,7 +142,7 @@ class Spaces:
         for part in self.parts(space):
             leaves = self._maximal(self._split(part))
             number = len(total) * len(leaves)
-            require(number <= MOST_LEAVES, f"there are more than {MOST_LEAVES} spaces of motions")
+            at_most(number, MOST_LEAVES, "the spaces of motions", "SPACE_LEAVES")
             total = [self._sum(a, b) for a in total for b in leaves]
         return total
 
@@ -200,9 +200,7 @@ class Spaces:
         found = []
         for values in self.factors(products, space):
             found += self._leaves(self.vanishing(space, [values]))
-            require(
-                len(found) <= MOST_LEAVES, f"there are more than {MOST_LEAVES} spaces of motions"
-            )
+            at_most(len(found), MOST_LEAVES, "the spaces of motions", "SPACE_LEAVES")
         return found
 
     def squares(self, v: int, space: Space) -> Squares:

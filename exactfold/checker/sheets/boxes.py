@@ -7,7 +7,7 @@ from typing import Any, NamedTuple, Protocol
 
 from ..core.krawczyk import Krawczyk
 from ..core.limits import MOST_BITS
-from ..core.reading import items, keys, natural, parse_integer, require, text_of
+from ..core.reading import at_most, items, keys, natural, parse_integer, require, text_of
 from .equations import BranchSystem
 
 
@@ -51,7 +51,7 @@ def read_box(entry: Any, size: int) -> Box:
     """The box of an entry with `size` unknowns; that it holds a zero is for `Krawczyk` to show."""
     keys(entry, "bits radius center", "root")
     bits = natural(entry["bits"], "bits")
-    require(bits <= MOST_BITS, "bits are out of range")
+    at_most(bits, MOST_BITS, "the bits of a box", "MOST_BITS")
     radius = parse_integer(short(entry["radius"]))
     require(radius > 0, "the radius is not positive")
     return Box(
@@ -62,7 +62,7 @@ def read_box(entry: Any, size: int) -> Box:
 def short(value: Any) -> str:
     """`value` if it is a string of bounded length."""
     text = text_of(value)
-    require(len(text) <= MOST_BITS, "a number of a box is out of range")
+    at_most(len(text), MOST_BITS, "the digits of a number of a box", "MOST_BITS")
     return text
 
 

@@ -148,8 +148,8 @@ class PanelSheet:
                 if other[2] <= box[3] and box[2] <= other[3] and not {i, j} & {*other[4]}
             ]
             above, meetings = above + len(active), meetings + len(near)
-            at_most(above, MOST_ABOVE, "the pairs of edges above one another")
-            at_most(meetings, MOST_MEETINGS, "the pairs of edges whose boxes meet")
+            at_most(above, MOST_ABOVE, "the pairs of edges above one another", "MOST_ABOVE")
+            at_most(meetings, MOST_MEETINGS, "the pairs of edges whose boxes meet", "MOST_MEETINGS")
             for k, m in near:
                 require(not self._meet((k, m), box[4]), f"edges {k}-{m} and {i}-{j} meet")
             active.append(box)
@@ -210,7 +210,7 @@ def read_panels(data: Any) -> tuple[PanelSheet, str]:
         return Number(tower, parts)
 
     for k, value in enumerate(items(data["radicands"], "radicands")):
-        require(k < MOST_ROOTS, f"the field has more than {MOST_ROOTS} square roots")
+        at_most(k + 1, MOST_ROOTS, "the square roots of the field", "MOST_ROOTS")
         radicand = coefficients(value, f"radicand {k}")
         require(tower.adjoined(radicand)[0] is not tower, f"radicand {k} is a square")
         lines.append(f"r {_text(radicand)}")

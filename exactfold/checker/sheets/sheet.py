@@ -96,8 +96,15 @@ class Sheet:
             active = [other for other in active if other[1] >= box[0]]
             near = [other[4] for other in active if other[2] <= box[3] and box[2] <= other[3]]
             above, meetings = above + len(active), meetings + len(near)
-            at_most(above, MOST_ABOVE, "the pairs of boundary edges above one another")
-            at_most(meetings, MOST_MEETINGS, "the pairs of boundary edges whose boxes meet")
+            at_most(
+                above, MOST_ABOVE, "the pairs of boundary edges above one another", "MOST_ABOVE"
+            )
+            at_most(
+                meetings,
+                MOST_MEETINGS,
+                "the pairs of boundary edges whose boxes meet",
+                "MOST_MEETINGS",
+            )
             for other in near:
                 require(not self._meet(box[4], other), f"boundary edges {box[4]}, {other} meet")
             active.append(box)

@@ -104,7 +104,7 @@ def require_few(size: int) -> None:
     if size > MOST_FOLDABLE:
         raise NotCountedError(
             f"{size} vertices can pop: exactfold compares a branch with all others, and there are "
-            f"2^{size} of them; it does so if at most {MOST_FOLDABLE} vertices can pop"
+            f"2^{size} of them; it does so only if at most {MOST_FOLDABLE} can pop"
         )
 
 

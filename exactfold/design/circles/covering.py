@@ -18,7 +18,7 @@ from typing import Final
 
 from exactfold._support.progress import Progress
 from exactfold.certificates.entries import Document, emptied_evidence, pattern_document
-from exactfold.checker.core.reading import CertificateError
+from exactfold.checker.core.reading import CertificateError, LimitError
 from exactfold.checker.letters.arcs import Arcs, Word
 from exactfold.checker.letters.assignments import (
     ASSIGNMENTS,
@@ -113,7 +113,7 @@ def verified(pattern: CreasePattern, points: Covering) -> Document:
     document = covering_document(pattern, points)
     try:
         ASSIGNMENTS.check(document)
-    except CertificateError as error:
+    except (CertificateError, LimitError) as error:
         raise NotCoveredError(f"the checker refuses the points found: {error}") from None
     return document
 
@@ -255,5 +255,5 @@ class _Search:
         """Whether all completions of the letters between two points have been seen."""
         try:
             return self.arcs.possible(self.arcs.letters(a, b), signs) <= self.seen
-        except CertificateError:
+        except LimitError:
             return False

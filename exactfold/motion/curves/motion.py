@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
 from typing import Any, Final
@@ -11,28 +11,22 @@ from typing import Any, Final
 import numpy as np
 
 from exactfold._support.arrays import FloatArray
-from exactfold._support.notebook import Picture
 from exactfold._support.schemas import headed
-from exactfold._support.verdict import PROVED
+from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.export import AMOUNT
 from exactfold.branches.values.letters import UPSIDE_DOWN
-from exactfold.errors import UsageError
 from exactfold.exact.numbers import format_rational
-from exactfold.motion.curves import in_motion
 from exactfold.motion.curves.angles import fold_angles_of, hinges_of
 from exactfold.motion.curves.boundary_path import problem_of
 from exactfold.motion.curves.curve import Curve
 from exactfold.motion.curves.drive import Drive
 from exactfold.motion.curves.events import Event
-from exactfold.motion.curves.in_motion import FrameBounds
+from exactfold.motion.curves.in_motion import FrameBounds, SheetInMotion
 from exactfold.pattern.crease_pattern import CreasePattern, Edge, Triangle
 from exactfold.pattern.described import described
 from exactfold.pattern.near_degeneracy import warnings
 from exactfold.rigidity.equations.problem import Problem
-
-FOLLOWED: Final = "followed"
-"""The status of a motion that was followed in floats along a proved branch."""
 
 _SAMPLES = 4
 _LONGEST: Final = 40
@@ -40,7 +34,7 @@ _LONGEST: Final = 40
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Motion(Picture):
+class Motion(SheetInMotion):
     """The sheet folding along a branch; `branch` is proved, the motion is followed in floats.
 
     With `bounds` its frames are proved: they are those of `prove(motion).motion`. Events, `at` and
@@ -60,7 +54,7 @@ class Motion(Picture):
 
     branch: Branch
     side: int
-    curve: Curve
+    curve: Curve = field(compare=False)
     times: FloatArray
     coords: FloatArray
     angles: FloatArray
@@ -70,36 +64,19 @@ class Motion(Picture):
     bounds: FrameBounds | None = None
     drive: Drive | None = None
 
-    def __post_init__(self) -> None:
-        in_motion.fixed(self, "times", "coords", "angles")
-
-    def __reduce__(self) -> tuple[object, ...]:
-        # Arrays are made anew, so they are fixed anew; what is cached stays behind.
-        return Motion, tuple(getattr(self, field.name) for field in fields(self))
-
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Motion):
-            return NotImplemented
-        return (
-            (self.branch, self.side, self.events, self.end, self.bounds, self.drive)
-            == (other.branch, other.side, other.events, other.end, other.bounds, other.drive)
-            and np.array_equal(self.times, other.times)
-            and np.array_equal(self.coords, other.coords)
-            and np.array_equal(self.angles, other.angles)
-        )
-
-    __hash__ = None  # type: ignore[assignment]  # arrays have none
+    @property
+    def status(self) -> Verdict:
+        """PROVED if the frames are enclosed (`bounds`), else UNDECIDED."""
+        return UNDECIDED if self.bounds is None else PROVED
 
     @property
-    def status(self) -> str:
-        """What is known of the motion.
-
-        "proved": its frames are enclosed (`bounds`); "followed": in floats along a proved branch;
-        "undecided": the branch is not proved.
-        """
+    def reason(self) -> str:
+        """How the frames were found, or how near they are to true configurations."""
         if self.bounds is not None:
-            return str(PROVED)
-        return FOLLOWED if self.branch.status is PROVED else str(self.branch.status)
+            return f"every frame is within {max(self.bounds.radii):.1e} of a proved configuration"
+        if self.branch.status is PROVED:
+            return "followed in floats along a proved branch"
+        return f"the branch is not proved: {self.branch.reason}"
 
     @property
     def pattern(self) -> CreasePattern:
@@ -156,35 +133,13 @@ class Motion(Picture):
         a, b, c = (self._problem.labels[v] for v in self.curve.framework.pinned)
         return a, b, c
 
-    @property
-    def duration(self) -> float:
-        """The time of the last frame."""
-        return float(self.times[-1])
-
     @cached_property
     def _problem(self) -> Problem:
         return problem_of(self.branch)
 
-    def at(self, time: float) -> FloatArray:
-        """The positions of all vertices at a time, shape (V, 3).
-
-        Raises `UsageError` for a time before the first or after the last frame.
-
-        >>> from exactfold.branches.counting.find import find_branch
-        >>> from exactfold.motion.following import follow
-        >>> motion = follow(find_branch("two-vertex", "+-"))
-        >>> bool(abs(motion.at(motion.duration) - motion.coords[-1]).max() < 1e-12)
-        True
-        """
-        if not 0 <= time <= self.duration * (1 + 1e-12):
-            raise UsageError(f"time {time}: this motion has the times 0 to {self.duration:.6g}")
+    def _positions(self, time: float) -> FloatArray:
         unknowns = self.curve.at(time / float(self.curve.framework.unit))
         return np.asarray(in_space(self._problem, self.curve, unknowns[None], self.side)[0])
-
-    @property
-    def length_error(self) -> float:
-        """The largest relative change of the length of an edge in any frame."""
-        return in_motion.length_error(self)
 
     def sampled(self, least: int = 200) -> tuple[FloatArray, FloatArray]:
         """Times and all fold angles in radians at `least` points or more, for plots.
@@ -197,16 +152,7 @@ class Motion(Picture):
         angles = np.unwrap(fold_angles_of(coords, hinges_of(self.branch.pattern)), axis=0)
         return times * float(self.curve.framework.unit), angles
 
-    def table(self) -> tuple[tuple[str, ...], FloatArray]:
-        """Names of the columns, and a row for each frame: time, then fold angles in degrees."""
-        return in_motion.table(self)
-
-    @property
-    def largest_angles(self) -> FloatArray:
-        """For each fold its largest angle in any frame in degrees, with its sign."""
-        return in_motion.largest_angles(self)
-
-    def report(self, name: str | None = None, written: Sequence[str] = ()) -> dict[str, Any]:
+    def to_dict(self, name: str | None = None, written: Sequence[str] = ()) -> dict[str, Any]:
         """The object printed by `exactfold fold --json`: `schema("motion")`.
 
         `name`: of the pattern; `written`: the files that hold the motion.
@@ -216,7 +162,7 @@ class Motion(Picture):
             **headed("motion"),
             "pattern": described(branch.pattern, name),
             "theory": "branches",
-            "reason": branch.reason,
+            "reason": self.reason,
             "vertex_signs": {str(v): s for v, s in sorted(branch.vertex_signs.items())},
             "assignment": {f"{i}-{j}": a for (i, j), a in sorted(branch.assignment.items())},
             "side": self.side,
@@ -224,7 +170,7 @@ class Motion(Picture):
             "drive": None if self.drive is None else self.drive.to_dict(),
             "modes": None,
             "component": None,
-            **in_motion.frames_reported(self, written),
+            **self.frames_reported(written),
             "warnings": warnings(branch.pattern),
             "seconds": round(self.seconds, 3),
         }
@@ -239,7 +185,7 @@ class Motion(Picture):
             "side": self.side,
             **({} if rim is None else {"rim": rim}),
             **({} if self.drive is None else {"drive": self.drive.to_dict()}),
-            **in_motion.facts_of_frames(self),
+            **self.facts_of_frames(),
         }
 
     def __repr__(self) -> str:

@@ -8,7 +8,7 @@ from functools import cached_property
 from itertools import permutations
 from math import pi
 from types import MappingProxyType
-from typing import Final, Protocol
+from typing import Final
 
 import numpy as np
 from flint import arb, ctx
@@ -28,31 +28,6 @@ _BITS: Final = 256
 _SAME: Final = 1e-13
 """Two folds that close within this relative distance of each other close at the same time."""
 _AT_180: Final = 1e-9
-
-
-class ModeCurve(Protocol):
-    """The true motion of a mode from the flat sheet until the first fold reaches 180 degrees.
-
-    `driver` is a fold that reaches 180 degrees first. `folds` are all active folds.
-    """
-
-    @property
-    def driver(self) -> Edge:
-        """A fold that reaches 180 degrees no later than any other."""
-
-    @property
-    def folds(self) -> tuple[Edge, ...]:
-        """The active folds, sorted."""
-
-    @property
-    def turning(self) -> tuple[Edge, ...]:
-        """The folds that would turn back at the end if the motion were continued."""
-
-    def angles(self, driver: FloatArray) -> FloatArray:
-        """All fold angles at driver angles in [-pi, pi], in radians, shape (times, folds).
-
-        At positive angles of the driver, the signs are the letters of the mode.
-        """
 
 
 @dataclass(frozen=True, repr=False)

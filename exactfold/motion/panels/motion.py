@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from functools import cached_property
 from math import inf, pi, radians
 from types import MappingProxyType
@@ -12,14 +12,13 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 
 from exactfold._support.arrays import FloatArray
-from exactfold._support.notebook import Picture
 from exactfold._support.plurals import counted
 from exactfold._support.schemas import headed
 from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.errors import NotApplicableError, UsageError
 from exactfold.exact.surds import Number, exact
-from exactfold.motion.curves import in_motion
 from exactfold.motion.curves.events import Event
+from exactfold.motion.curves.in_motion import SheetInMotion
 from exactfold.motion.panels.curves import FollowedCurve, LinearCurve
 from exactfold.motion.panels.places import Placing, Spot, Turn
 from exactfold.pattern.described import described_panels
@@ -36,7 +35,7 @@ _NAMED: Final = 8
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class PanelMotion(Picture):
+class PanelMotion(SheetInMotion):
     """A sheet of rigid panels as it folds along a component of its true motions.
 
     Each of the `curves`, one elementary mode each, has a driver, a fold that closes first. The
@@ -54,7 +53,7 @@ class PanelMotion(Picture):
     """
 
     pattern: PanelPattern
-    component: int | None
+    component: int | None = field(compare=False)
     curves: tuple[LinearCurve | FollowedCurve, ...]
     rates: tuple[float, ...]
     free_rates: Mapping[Edge, float]
@@ -64,26 +63,8 @@ class PanelMotion(Picture):
     angles: FloatArray
     events: tuple[Event, ...]
     end: str
-    gap: float
+    gap: float = field(compare=False)
     seconds: float = field(default=0.0, compare=False)
-
-    def __post_init__(self) -> None:
-        in_motion.fixed(self, "times", "coords", "angles")
-
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, PanelMotion):
-            return NotImplemented
-        same = ("pattern", "curves", "rates", "free_rates", "held", "events", "end")
-        arrays = ("times", "coords", "angles")
-        return all(getattr(self, name) == getattr(other, name) for name in same) and all(
-            np.array_equal(getattr(self, name), getattr(other, name)) for name in arrays
-        )
-
-    __hash__ = None  # type: ignore[assignment]  # arrays have none
-
-    def __reduce__(self) -> tuple[object, ...]:
-        # What is cached stays behind.
-        return PanelMotion, tuple(getattr(self, field.name) for field in fields(self))
 
     @property
     def modes(self) -> tuple[int, ...]:
@@ -113,19 +94,14 @@ class PanelMotion(Picture):
         return PROVED if known else UNDECIDED
 
     @property
-    def status(self) -> str:
-        """ "proved" where `closes` is; else "followed": in floats, along modes that truly fold."""
-        return "proved" if self.closes is PROVED else "followed"
+    def status(self) -> Verdict:
+        """That of `closes`: UNDECIDED where modes that truly fold were followed in floats."""
+        return self.closes
 
     @property
     def bounds(self) -> None:
         """Frames of panels are not enclosed; `exactly` has exact positions."""
         return None
-
-    @property
-    def duration(self) -> float:
-        """The time of the last frame."""
-        return float(self.times[-1])
 
     @property
     def pinned(self) -> tuple[int, ...]:
@@ -190,10 +166,10 @@ class PanelMotion(Picture):
             "modes": list(self.modes),
             "component": self.component,
             "free_folds": [f"{i}-{j}" for i, j in self.free_rates],
-            **in_motion.facts_of_frames(self),
+            **self.facts_of_frames(),
         }
 
-    def report(self, name: str | None = None, written: Sequence[str] = ()) -> dict[str, Any]:
+    def to_dict(self, name: str | None = None, written: Sequence[str] = ()) -> dict[str, Any]:
         """The object printed by `exactfold fold --json`: `schema("motion")`.
 
         `name`: of the pattern; `written`: the files that hold the motion. What belongs to branches
@@ -211,7 +187,7 @@ class PanelMotion(Picture):
             "drive": None,
             "modes": list(self.modes),
             "component": self.component,
-            **in_motion.frames_reported(self, written),
+            **self.frames_reported(written),
             "warnings": [],
             "seconds": round(self.seconds, 3),
         }
@@ -220,20 +196,7 @@ class PanelMotion(Picture):
     def _placing(self) -> Placing:
         return Placing(self.pattern, self.held)
 
-    def at(self, time: float) -> FloatArray:
-        """The positions of all vertices at a time, shape (V, 3).
-
-        Raises `UsageError` for a time before the first or after the last frame.
-
-        >>> from exactfold.motion.panels.following import follow_panels
-        >>> from exactfold.pattern.families import single_vertex
-        >>> from exactfold.pattern.opening import panels
-        >>> motion = follow_panels(panels(single_vertex(4)), frames=3)
-        >>> bool(abs(motion.at(motion.duration) - motion.coords[-1]).max() < 1e-12)
-        True
-        """
-        if not 0 <= time <= self.duration * (1 + 1e-12):
-            raise UsageError(f"time {time}: this motion has the times 0 to {self.duration:.6g}")
+    def _positions(self, time: float) -> FloatArray:
         return np.asarray(self._placing.positions(self.angles_at(np.array([time])))[0][0])
 
     def angles_at(self, times: FloatArray) -> FloatArray:
@@ -294,11 +257,6 @@ class PanelMotion(Picture):
         return self._placing.exactly(turns)
 
     @property
-    def length_error(self) -> float:
-        """The largest relative change of the length of an edge in any frame."""
-        return in_motion.length_error(self)
-
-    @property
     def residual(self) -> float:
         """The largest failure of an interior vertex to close in any frame.
 
@@ -316,18 +274,10 @@ class PanelMotion(Picture):
         times = sampled_times(self.angles_at, self.duration, least)
         return times, self.angles_at(times)
 
-    def table(self) -> tuple[tuple[str, ...], FloatArray]:
-        """Names of the columns, and a row for each frame: time, then fold angles in degrees."""
-        return in_motion.table(self)
-
-    @property
-    def largest_angles(self) -> FloatArray:
-        """For each fold its largest angle in any frame in degrees, with its sign."""
-        return in_motion.largest_angles(self)
-
     def __repr__(self) -> str:
+        known = "proved" if self.status is PROVED else "followed"
         return (
-            f"<PanelMotion: {self.name}, {self.status}, {len(self.times)} frames to "
+            f"<PanelMotion: {self.name}, {known}, {len(self.times)} frames to "
             f"{self.end} at {self.duration:.6g}>"
         )
 

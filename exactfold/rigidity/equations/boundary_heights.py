@@ -18,17 +18,6 @@ _FORMS = ((1, 1, -1), (1, 0, -1), (0, 1, 0))
 """Coefficients of x^2, x y and y^2 that `default_rim` tries in this order."""
 
 
-def straight_vertices(pattern: CreasePattern) -> tuple[int, ...]:
-    """The boundary vertices with the angle pi: the boundary is straight there and may still bend.
-
-    >>> from exactfold.pattern.families import single_vertex
-    >>> straight_vertices(single_vertex(5))
-    ()
-    """
-    turns = zip(pattern.boundary, pattern.boundary_turns, strict=True)
-    return tuple(sorted(v for v, turn in turns if not turn))
-
-
 def default_rim(pattern: CreasePattern) -> dict[int, Fraction]:
     """Boundary heights of a saddle, which depend on the pattern alone.
 

@@ -11,7 +11,7 @@ from operator import mul
 import numpy as np
 from flint import fmpq, fmpq_mat, fmpz, fmpz_mat
 
-from exactfold._support.arrays import FloatArray
+from exactfold._support.arrays import FloatArray, inverses
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.rigidity.equations.quadratic import QuadraticSystem
 from exactfold.solve.certify.box import IsolatingBox, Uncertified
@@ -238,16 +238,7 @@ class _Kernel:
         z = np.hstack([points, np.ones((len(points), 1))])
         with np.errstate(all="ignore"):
             jacobians = np.einsum("pij,bj->bpi", self.float_stack, z)[:, :, :n]
-        try:
-            inverses = np.linalg.inv(jacobians)
-        except np.linalg.LinAlgError:
-            inverses = np.full_like(jacobians, np.nan)
-            for k, jacobian in enumerate(jacobians):
-                try:
-                    inverses[k] = np.linalg.inv(jacobian)
-                except np.linalg.LinAlgError:
-                    continue
-        return np.asarray(inverses)
+        return inverses(jacobians)
 
     def _attempt(self, m: list[int], bits: int, entries: list[int], q: int) -> IsolatingBox | str:
         """Newton steps with a fixed float Y = entries / 2^q, and then the test."""

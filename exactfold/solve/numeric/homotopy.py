@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial.polynomial import polyval
 
-from exactfold._support.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from exactfold._support.arrays import BoolArray, ComplexArray, FloatArray, IntArray, inverses
 from exactfold._support.progress import Steps
 from exactfold.errors import UsageError
 from exactfold.rigidity.equations.quadratic import QuadraticSystem
@@ -245,24 +245,10 @@ def _polish(forms: FloatArray, x: ComplexArray, rounds: int = 3) -> ComplexArray
         z = np.hstack([x, np.ones((len(x), 1))])
         rows = np.einsum("pij,bj->bpi", forms, z)
         values = np.einsum("bpi,bi->bp", rows, z) / 2
-        step = (_inverses(rows[:, :, :-1]) @ values[:, :, None])[:, :, 0]
+        step = (inverses(rows[:, :, :-1]) @ values[:, :, None])[:, :, 0]
         short = np.linalg.norm(step, axis=1) < 1e-4 * (1 + np.linalg.norm(x, axis=1))
         x = np.where(short[:, None], x - step, x)
     return x
-
-
-def _inverses(matrices: ComplexArray) -> ComplexArray:
-    """The inverses of a stack of matrices; NaN for matrices that LAPACK finds singular."""
-    try:
-        return np.asarray(np.linalg.inv(matrices))
-    except np.linalg.LinAlgError:
-        result = np.full_like(matrices, np.nan)
-        for k, matrix in enumerate(matrices):
-            try:
-                result[k] = np.linalg.inv(matrix)
-            except np.linalg.LinAlgError:
-                continue
-        return result
 
 
 def _times(rows: ComplexArray, matrix: ComplexArray) -> ComplexArray:
@@ -293,7 +279,7 @@ class _Tracker:
         end_w, end_t, condition = w.copy(), np.zeros(count), np.full(count, np.inf)
         live = np.arange(count)
         t = np.zeros(count)
-        series = self._series(w, t, _inverses(self._jacobian(w, t)))
+        series = self._series(w, t, inverses(self._jacobian(w, t)))
         step = self._step(series, t, tolerances)
         steps = 0
         for _ in range(tolerances.rounds):
@@ -301,7 +287,7 @@ class _Tracker:
             target = np.where(t + step >= 1.0, 1.0, t + step)
             ends = polyval((target - t)[:, None], series, tensor=False)
             guess: ComplexArray = np.asarray(ends, dtype=np.complex128)
-            inverse = _inverses(self._jacobian(guess, target))
+            inverse = inverses(self._jacobian(guess, target))
             new, good = self._correct(guess, target, inverse, tolerances)
             step = np.where(good, step, step / 2)
             if good.any():

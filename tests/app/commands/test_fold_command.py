@@ -67,14 +67,15 @@ def test_json_is_that_of_python(how, tmp_path):
     assert (result.exit_code, result.stderr) == (OK, "")
     data = json.loads(result.stdout)
     Draft202012Validator(schema("motion")).validate(data)
-    expected = follow(find_branch("two-vertex", "+-"), frames=7).report(
+    expected = follow(find_branch("two-vertex", "+-"), frames=7).to_dict(
         "two-vertex", [str(out), str(plot)]
     )
     assert data["duration"] == pytest.approx(expected["duration"])
     if "--branch" not in how:  # bounds from a count are others, so that digits differ
         assert data | {"seconds": 0} == expected | {"seconds": 0}
     assert data["vertex_signs"] == expected["vertex_signs"]
-    assert data["status"] == "followed"
+    assert data["status"] == "undecided"
+    assert data["reason"] == "followed in floats along a proved branch"
     assert data["frames"]["number"] == len(data["frames"]["times"]) == 7
     assert plot.read_text().startswith("<svg ")
     assert len(json.loads(out.read_text())["file_frames"]) == 7
@@ -143,7 +144,7 @@ def test_json_of_panels_is_that_of_python(how, tmp_path):
     named = {"component": 3} if "--component" in how else {"modes": [1, 5]}
     motion = follow_panels(count_ways("zigzags"), until="90deg", frames=5, **named)
     written = [str(out), str(plot), str(picture)]
-    assert data | {"seconds": 0} == motion.report("zigzags", written) | {"seconds": 0}
+    assert data | {"seconds": 0} == motion.to_dict("zigzags", written) | {"seconds": 0}
     assert (data["theory"], data["modes"]) == ("modes", [1, 5])
     assert data["component"] == named.get("component")
     assert (data["status"], data["side"], data["vertex_signs"]) == ("proved", None, None)

@@ -19,7 +19,7 @@ from exactfold.branches.connected_components import flat_stars, joining
 from exactfold.branches.connected_components.cubes import components
 from exactfold.branches.connected_components.no_zero import have_no_common_zero
 from exactfold.branches.counting import lines
-from exactfold.branches.counting.true_bounds import with_true_bounds
+from exactfold.branches.counting.collect import with_true_bounds
 from exactfold.errors import NotApplicableError
 from exactfold.motion import follow_proved
 from exactfold.panels.stars import Star, edge_of, stars
@@ -56,7 +56,7 @@ def test_a_convex_star_that_is_never_flat():
     pieces = find_pieces(NEVER_FLAT)
     assert (pieces.number, pieces.joints) == (32, ())
     assert pieces.never_flat[9] == (
-        "with its star held flat the sheet has no solution but the flat state"
+        "with its star held flat, the only solution is the flat state"
     )
 
 
@@ -187,7 +187,7 @@ def test_what_is_not_decided_gives_bounds_and_is_named(monkeypatch):
     result = count_branches(pattern)
     assert (result.status, len(result.open_questions)) == (PROVED, 2)
     monkeypatch.setattr(joining, "_MOST_WHOLE", 2)
-    assert "at every vertex of up to 2 only" in find_pieces(pattern).open[6]
+    assert "only if at most 2 can pop" in find_pieces(pattern).open[6]
 
 
 # --- the count of components ---------------------------------------------------------------------
@@ -289,7 +289,7 @@ def test_a_vertex_whose_sign_is_not_decided_leaves_the_joint_open(monkeypatch):
     monkeypatch.setattr(flat_stars, "_joint", lambda *args, **options: None)
     fold = Star(0, ((0, 1), (0, 2)), ((1, 0), (-2, 0)))
     found = flat_stars.flat_solutions({0: fold})
-    assert (found.joints, "too nearly flat" in found.open) == ((), True)
+    assert (found.joints, "so nearly flat" in found.open) == ((), True)
 
 
 def test_true_branches_are_bounded_also_where_the_count_is_undecided(monkeypatch):

@@ -8,9 +8,10 @@ from itertools import combinations
 import numpy as np
 import pytest
 from flint import fmpz
+from symmetric_groups import symmetric_group_primes
 
 from exactfold.errors import SolverError
-from exactfold.exact.factors import factor_degrees, modular_degrees, symmetric_group_primes
+from exactfold.exact.factors import factor_degrees, modular_degrees
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.random_squares import random_square
 from exactfold.rigidity.curvature import curvature_form

@@ -23,7 +23,7 @@ export function foldFile(page, sheet, way, mirrored) {
       vertex_signs: way.signs || null,
       vertices: sheet.interior,
       side: mirrored ? -1 : 1,
-      status: way.motion ? (way.motion.proved ? "proved" : "followed") : null,
+      status: way.motion ? (way.motion.proved ? "proved" : "undecided") : null,
       end: way.motion ? way.motion.end : null,
       coordinates: "rounded to 24 bits; every edge keeps its length to that",
     },

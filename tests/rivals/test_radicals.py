@@ -7,6 +7,7 @@ from itertools import product
 import numpy as np
 import pytest
 import sympy
+from rivals.radicals import branch_tower, h1_moves
 from sheets import wheel, with_point
 
 from exactfold.errors import NotApplicableError, SolverError, UsageError
@@ -15,7 +16,6 @@ from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.random_squares import random_square
 from exactfold.rigidity.equations.branch_system import BranchSystem
 from exactfold.solve.algebraic.groebner_bases import groebner, root_classes
-from exactfold.solve.algebraic.radicals import branch_tower, h1_moves
 from exactfold.solve.numeric.popping import popping
 
 PATTERNS = {
