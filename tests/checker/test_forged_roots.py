@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from pathlib import Path
 
 import pytest
+from certificates import nodes, replaced, type_changes
 from compact_files import bodies
 from forge import (
     FIXTURES,
@@ -20,6 +23,7 @@ from forge import (
 from old_listing import as_lines
 
 from exactfold import checker
+from exactfold.branches import read_branches
 from exactfold.branches.certificates.check import check_compact
 from exactfold.checker.branches import compact_roots
 from exactfold.checker.core.reading import (
@@ -28,6 +32,7 @@ from exactfold.checker.core.reading import (
     LimitError,
     UnfinishedError,
 )
+from exactfold.errors import CertificateFormatError
 
 NAMES = sorted(path.stem for path in FIXTURES.glob("compact-roots-*.txt"))
 CHORD, FOURS = "compact-roots-chord", "compact-roots-blocks-of-4"
@@ -255,3 +260,36 @@ def test_both_checkers_say_the_same(tmp_path_factory: pytest.TempPathFactory) ->
         for fast in (True, False):
             with pytest.raises(CertificateError, match="real = "):
                 check_compact(path, fast=fast)
+
+
+def changed(name: str, values: Callable[[object], Iterator[object]]) -> Iterator[Lines]:
+    """The file with one value exchanged, for each value of each line but the provenance."""
+    parts = given_lines(name)
+    for number, line in enumerate(parts):
+        for path, value in nodes(line):
+            if path and path[0] != "provenance":
+                for other in values(value):
+                    yield [*parts[:number], replaced(line, path, other), *parts[number + 1 :]]
+
+
+@pytest.mark.parametrize("name", [CHORD, "compact-roots-classes", "compact-roots-rigid"])
+def test_a_value_of_another_type_is_refused(name: str) -> None:
+    """By an error of the checker; what is accepted says the same."""
+    claims, tried = given_lines(name)[-1]["claims"], 0
+    for forged in changed(name, type_changes):
+        tried += 1
+        with contextlib.suppress(CertificateError, FormatError):
+            assert verified_lines(forged) == claims
+    assert tried > 300
+
+
+def test_no_malformed_entry_gets_past_the_reader(tmp_path: Path) -> None:
+    """Reading trusts the claims of a branch, and raises no error of another class."""
+    path, refusals = tmp_path / "c.txt", 0
+    for forged in changed("compact-roots-classes", lambda value: iter((None, [], {}, "", -1))):
+        path.write_bytes(chained(forged))
+        try:
+            list(read_branches(path))
+        except (CertificateError, CertificateFormatError):
+            refusals += 1
+    assert refusals > 100

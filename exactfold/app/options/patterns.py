@@ -50,8 +50,7 @@ class CountOptions:
         Path | None,
         written(
             "Write a certificate if proved. With --stream, only where other methods had to "
-            "prove what it left open.",
-            "OUT.json",
+            "prove what it left open."
         ),
     ] = None
     stream: Annotated[

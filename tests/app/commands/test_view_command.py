@@ -54,7 +54,11 @@ def test_a_drawing_with_panels_is_shown_by_its_modes(tmp_path):
         (["missing.fold"], BAD_INPUT, "missing.fold"),
         (["two-vertex", "-o", "page.txt"], USAGE, "a page is written as .html, .htm"),
         (["two-vertex", "-o", "no/a.html"], BAD_INPUT, "no/a.html: there is no folder"),
-        (["two-vertex", "--frames", "100000"], USAGE, "a motion in a page needs at least 2 and at most 1000"),
+        (
+            ["two-vertex", "--frames", "100000"],
+            USAGE,
+            "a motion in a page needs at least 2 and at most 1000",
+        ),
         (["two-vertex", "--serve", "--port", "99999"], USAGE, "give a number from 0 to 65535"),
         (["two-vertex", "-o", "-"], USAGE, "an output has a name of its own"),
     ],

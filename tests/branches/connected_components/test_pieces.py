@@ -55,9 +55,7 @@ def test_a_convex_star_that_is_never_flat():
     assert set(stars(panels(NEVER_FLAT), around)) == {5, 6, 7, 8}
     pieces = find_pieces(NEVER_FLAT)
     assert (pieces.number, pieces.joints) == (32, ())
-    assert pieces.never_flat[9] == (
-        "with its star held flat, the only solution is the flat state"
-    )
+    assert pieces.never_flat[9] == ("with its star held flat, the only solution is the flat state")
 
 
 @pytest.mark.parametrize(
