@@ -84,8 +84,8 @@ def reasons(found: RimMatch) -> tuple[str, ...]:
     if found.branch is not None:
         signs = found.branch.sign_text
         return (
-            f"the branch with the vertex signs {signs} has them, with the heights of the border "
-            f"{_heights(found)}",
+            f"the branch with the vertex signs {signs} has these mountains and valleys, and these "
+            f"heights of the border: {_heights(found)}",
             "true motions begin like this",
         )
     stuck = _stuck(found)
