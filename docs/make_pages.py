@@ -25,10 +25,15 @@ from exactfold.app.schemas import DOCUMENTS, schema
 
 FOLDER: Final = Path(__file__).with_name("generated")
 TOPICS: Final[Mapping[str, tuple[str, str, tuple[str, ...]]]] = {
+    "verbs": (
+        "The functions on top",
+        "Twelve verbs that take any sheet, and what they return. Most programs need no more.",
+        ("",),
+    ),
     "counting": (
         "Counting, branches, letters and torques",
-        "Load a pattern, count its branches, or find one. Most programs need only this page.",
-        ("", "branches", "design"),
+        "What is behind the verbs for triangulated sheets: branches, letters, torques.",
+        ("branches", "design"),
     ),
     "patterns": (
         "Crease patterns and drawings",

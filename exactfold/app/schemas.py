@@ -50,7 +50,7 @@ DOCUMENTS: Final = {
         "branches.values.branch:BranchDocument",
         "motion.tubes.driven:DrivenBranchDocument",
     ),
-    "match": ("exactfold match --json", "design.assignments.document:MatchDocument"),
+    "match": ("exactfold match --json", "design.assignments.result:MatchDocument"),
     "starting": ("exactfold match --json of rigid panels", "design.panels.match:StartingDocument"),
     "export": ("exactfold export --json", "app.commands.export:ExportDocument"),
     "motion": (
@@ -72,7 +72,7 @@ DOCUMENTS: Final = {
         "branches.counting.motion_facts:PanelFactsDocument",
     ),
     "convert": ("exactfold convert --json", "app.commands.convert:ConvertDocument"),
-    "check": ("exactfold check --json", "app.commands.check_document:CheckDocument"),
+    "check": ("exactfold check --json", "app.verbs.check_document:CheckDocument"),
     "examples": ("exactfold examples --json", "app.cli.main:ExamplesDocument"),
     "study": ("exactfold study NAME --json", "app.commands.study:StudyDocument"),
     "study-row": ("exactfold study NAME --row ID --json", "app.commands.study:StudyRowDocument"),

@@ -166,7 +166,7 @@ def _kept(motion: SheetInMotion) -> str:
 
 
 def _proof(motion: Motion) -> _Known:
-    """What is proved of a motion along a branch; it replaces what is said about floats."""
+    """What is proved of a motion along a branch."""
     proof = prove(motion)
     if proof.status is not PROVED:
         return _Known(False, False, f"followed in floats; it could not be proved: {proof.reason}")
@@ -183,9 +183,7 @@ def _proof(motion: Motion) -> _Known:
 
 
 def _proof_of_panels(motion: PanelMotion, contacts: bool) -> _Known:
-    """What is proved of a motion of panels (docs/panel_motion.md), and of its contact if
-    asked for.
-    """
+    """What docs/panel_motion.md proves of a motion of panels, and of its first contact if asked."""
     if motion.closes is PROVED:
         said = (
             "every vertex closes exactly at all fold angles"

@@ -288,7 +288,7 @@ class Branch(Picture, Certified):
         """
         return [self.vertex_signs[v] for v in sorted(self.vertex_signs)], self.assignment_text
 
-    def to_dict(self) -> ListedBranch:
+    def entry(self) -> ListedBranch:
         """The object of the branch in the list of `exactfold count --json`."""
         return {
             "vertex_signs": {str(v): s for v, s in sorted(self.vertex_signs.items())},
@@ -301,7 +301,7 @@ class Branch(Picture, Certified):
             },
         }
 
-    def report(self, name: str | None = None) -> BranchDocument:
+    def to_dict(self, name: str | None = None) -> BranchDocument:
         """The object printed by `exactfold branch --json`: `schema("branch")`."""
         radius, squared = self.radius, self.squared_distance
         return {

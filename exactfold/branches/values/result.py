@@ -259,7 +259,7 @@ class BranchCount(Page, Ways[Branch], Certified):
             "seconds": round(self.seconds, 3),
             "open_questions": list(self.open_questions),
             "settings": dict(self.settings),
-            "branches": [branch.to_dict() for branch in self.branches],
+            "branches": [branch.entry() for branch in self.branches],
             "theory": "branches",
             "letters": None if self.lettered is None else self.lettered.to_dict(),
             "rigid": self.distinct == 0 if self.status is PROVED else None,
@@ -344,6 +344,6 @@ class BranchCount(Page, Ways[Branch], Certified):
 
 def _number(value: int) -> Power:
     """A number of solutions for JSON; a power of two if some programs could not read it exactly."""
-    if value is None or value < 1 << 53:
+    if value < 1 << 53:
         return value
     return f"2^{value.bit_length() - 1}"

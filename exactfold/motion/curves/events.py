@@ -23,6 +23,9 @@ NODE, SINGULAR, RETURN = "node", "singular", "return"
 ANGLE, LENGTH = "angle", "length"
 DRIVEN, DEAD_POINT = "driven", "dead-point"
 
+KINDS = CONTACT, FLAT_FOLD, TURNING, NODE, SINGULAR, RETURN, ANGLE, DRIVEN, DEAD_POINT
+"""All kinds of events. A motion that was asked for up to a time ends at `LENGTH`, without one."""
+
 _SAMPLES = 8
 _NEAR_FLAT = 0.3
 _FLAT = 1e-5
@@ -225,7 +228,9 @@ class Watch:
     def _contacts(
         self, piece: Piece, grid: FloatArray, positions: FloatArray
     ) -> list[tuple[float, Event]]:
-        """The first parameter at which an edge runs through a face, by bisection."""
+        """The first contact: the first parameter at which an edge runs through a face, by
+        bisection.
+        """
         hits = self._crossings.any_of(positions)
         if not hits.any() or hits[0]:
             return []

@@ -107,7 +107,7 @@ class Loops(Ways[Loop]):
                     found[a], found[a.mirrored] = b, b.mirrored
         return found
 
-    def report(self, name: str | None = None) -> LoopsDocument:
+    def to_dict(self, name: str | None = None) -> LoopsDocument:
         """The object printed by `exactfold motions --json`: `schema("motions")`."""
         return {
             "format": "exactfold motions result",
