@@ -264,7 +264,7 @@ class BranchCount(Page, Ways[Branch], Certified):
             "letters": None if self.lettered is None else self.lettered.to_dict(),
             "rigid": self.distinct == 0 if self.status is PROVED else None,
             "exceptional_vertices": list(self.exceptional_vertices),
-            "read": self.read,
+            "read": None if self.read is None else {**self.read},
             **self._families(),
         }
 
