@@ -23,6 +23,9 @@ NODE, SINGULAR, RETURN = "node", "singular", "return"
 ANGLE, LENGTH = "angle", "length"
 DRIVEN, DEAD_POINT = "driven", "dead-point"
 
+KINDS = CONTACT, FLAT_FOLD, TURNING, NODE, SINGULAR, RETURN, ANGLE, DRIVEN, DEAD_POINT
+"""All kinds of events. A motion that was asked for up to a time ends at `LENGTH`, without one."""
+
 _SAMPLES = 8
 _NEAR_FLAT = 0.3
 _FLAT = 1e-5

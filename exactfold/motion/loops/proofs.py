@@ -11,7 +11,7 @@ from typing import Annotated, TypedDict
 
 from exactfold._support.documents import Fold, Keywords, Natural, NotNegative, Pair, ProvedOrNot
 from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
-from exactfold.certificates.entries import Document
+from exactfold.certificates.entries import CertificateLines, Document
 from exactfold.errors import NotCountedError
 from exactfold.exact.numbers import format_rational
 from exactfold.motion.claims import Claim
@@ -19,7 +19,7 @@ from exactfold.motion.contacts.fold_ranges import SLACK, FoldRange, FoldRangeDoc
 from exactfold.motion.contacts.stretches import on_node_tube, on_start_tube, on_tube
 from exactfold.motion.curves.boundary_path import rim_claim
 from exactfold.motion.curves.motion_document import RayDocument
-from exactfold.motion.loops.certificate import loop_line
+from exactfold.motion.loops.certificate import claims_line, header_line, loop_line
 from exactfold.motion.loops.rays import HalfBranch
 from exactfold.motion.tubes.arclength import Interval, in_floats
 from exactfold.motion.tubes.branch_point_tube import NodeTube
@@ -115,6 +115,12 @@ class Loop:
     tubes: int
     visits: tuple[Visit, ...] = ()
     folds: tuple[FoldRange, ...] = ()
+
+    @property
+    def ends(self) -> set[HalfBranch]:
+        """The rays that the loop and its mirror image match."""
+        ends = {self.source, self.source.mirrored}
+        return ends if self.target is None else ends | {self.target, self.target.mirrored}
 
     def to_dict(self) -> LoopDocument:
         """The object of this loop in the output of `exactfold motions --json`."""
@@ -222,6 +228,17 @@ class LoopProof:
                 "landing": self._landed(landing),
             },
             provenance_of(loop),
+        )
+
+    def lines(self) -> CertificateLines:
+        """A file with this loop alone, for `exactfold.checker`; raises as `line`."""
+        pinned = [self.problem.labels[v] for v in self.start.framework.pinned]
+        return CertificateLines(
+            (
+                header_line(self.problem.pattern, pinned, self.start.bits),
+                self.line(),
+                claims_line(self.problem.pattern, 1, len(self.outline.ends)),
+            )
         )
 
     def certificate(self, rim: Mapping[int, Fraction]) -> Document:

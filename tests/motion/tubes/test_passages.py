@@ -128,7 +128,7 @@ def test_a_motion_that_passes_a_node_is_proved_beyond_it(proof):
     assert passing.to_dict()["through"] == [{"flat": [FLAT], "time": [time, time]}]
     told = f"one curve without a gap, 5 tubes, {passing.through_text}; no two faces touch on it"
     assert told in shown(passing)
-    whole = {**passing.motion.report(), "proof": passing.to_dict()}
+    whole = {**passing.motion.to_dict(), "proof": passing.to_dict()}
     jsonschema.validate(whole, schema("motion"))
     claims = checker.check(passing.certificate())
     assert claims["through"] == [[FLAT]]
@@ -220,7 +220,7 @@ def test_what_is_said_of_a_node(proof, monkeypatch):
     monkeypatch.setattr(ways, "prove", lambda motion: passed)
     assert "touch" not in ways._proof(proof.motion).said
     for one in (proof, passed):
-        jsonschema.validate({**one.motion.report(), "proof": one.to_dict()}, schema("motion"))
+        jsonschema.validate({**one.motion.to_dict(), "proof": one.to_dict()}, schema("motion"))
 
 
 @pytest.mark.slow
