@@ -78,7 +78,7 @@ class NearDegeneracy:
 
     @property
     def text(self) -> str:
-        """The sentences, their meaning for a count, and what to do."""
+        """The warning in words: what was found, what it means for the answer, and a remedy."""
         advice = "the answer is right for these numbers, but perhaps not for the intended pattern"
         if self.denominator is not None:
             advice += f"; --snap {self.denominator} rounds the coordinates to the simpler pattern"

@@ -181,7 +181,7 @@ def _nearest(nearest: Nearest, everything: bool) -> list[Any]:
     else:
         head = Text.assemble(
             f"Nearest found: {far} to change; ",
-            f"every way needs {least} or more, and whether some way needs so few is ",
+            f"every way needs {least} or more, and whether {least} are enough is ",
             status_text(UNDECIDED),
         )
     limit = len(nearest.halves) if everything else _NEAR

@@ -30,7 +30,7 @@ _SELF, _NOBODY = "'self'", "'none'"
 _PLACE: Final = re.compile(r"\{\{(\w+)\}\}")
 _DARK: Final = {"B": 0.92}
 _LIGHTNESS: Final = 0.66
-"""Least lightness of a line on dark ground; the border is lighter still."""
+"""The least lightness of a line on dark ground; the border is lighter still."""
 
 
 def view_page(document: Mapping[str, Any]) -> str:
@@ -97,7 +97,9 @@ def checked_page(path: Path) -> str:
 
 
 def script_json(value: object) -> str:
-    r"""JSON that can stand in a script element: no `<` in it ends the element or opens a comment.
+    r"""JSON that can stand in a script element, because `<` is written as an escape sequence.
+
+    Otherwise `<` could end the element or open a comment.
 
     >>> script_json({"name": "</script><!--"})
     '{"name":"\\u003c/script>\\u003c!--"}'

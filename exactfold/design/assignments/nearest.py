@@ -33,7 +33,7 @@ the least number for any sheet.
 _FINDS = 6
 """The number of branches that are found one by one, for each of the searches."""
 _LOCAL = 10
-"""This many sets of folds that single stars refute take the time of one full search."""
+"""Refuting this many sets of folds by single stars takes about the time of one full search."""
 
 
 @dataclass(frozen=True, repr=False)

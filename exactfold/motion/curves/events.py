@@ -228,7 +228,9 @@ class Watch:
     def _contacts(
         self, piece: Piece, grid: FloatArray, positions: FloatArray
     ) -> list[tuple[float, Event]]:
-        """The first parameter at which an edge runs through a face, by bisection."""
+        """The first contact: the first parameter at which an edge runs through a face, by
+        bisection.
+        """
         hits = self._crossings.any_of(positions)
         if not hits.any() or hits[0]:
             return []

@@ -295,7 +295,9 @@ class _Search:
         return drive, reached
 
     def failure(self, signs: Mapping[int, int] | None) -> NotFollowedError:
-        """Why nothing was found, with what the branch of the rim does."""
+        """The error that says why nothing was found, and which ratio came closest if that
+        is known.
+        """
         names = ", ".join(map(fold_text, self.folds))
         which = "any signs that were tried" if signs is None else "these signs"
         text = f"no branch with {which} was found on which the folds {names} start in this ratio"
