@@ -1,7 +1,7 @@
 """Which half-branches true motions join: the identities of docs/matching.md.
 
 The arguments are there; here the machine checks the formulas they use. Labels and loops of actual
-sheets are compared in tests/motion/test_matching.py, in floats.
+sheets are compared in tests/motion/loops/test_matching.py, in floats.
 """
 
 from __future__ import annotations

@@ -7,20 +7,19 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
-from typing import Any
 
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
-from exactfold.certificates.entries import Document, write_certificate
-from exactfold.errors import NotProvedAtTheFlatStateError
+from exactfold.certificates.entries import CertificateLines, Document, write_certificate
+from exactfold.errors import NotApplicableError, NotProvedAtTheFlatStateError
 from exactfold.motion.contacts.claims import certificate_with_contact
 from exactfold.motion.contacts.contacts import ContactWatch, FirstContact
 from exactfold.motion.curves.boundary_path import problem_of
 from exactfold.motion.curves.events import CONTACT, DRIVEN, FLAT_FOLD, NODE, RETURN, SINGULAR, Event
 from exactfold.motion.curves.framework import Framework
 from exactfold.motion.curves.motion import Motion
+from exactfold.motion.curves.motion_document import LastBranchPoint, ProofDocument
 from exactfold.motion.enclosed import with_enclosed_frames
-from exactfold.motion.loops.file import LoopFile
 from exactfold.motion.loops.frames import frame_of
 from exactfold.motion.loops.loops import LoopFinder
 from exactfold.motion.loops.proofs import Loop, LoopProof
@@ -135,27 +134,31 @@ class MotionProof:
             return False
         return self.reason != _STRAYED and (self.track is None or self.track.status is not PROVED)
 
-    def certificate(self) -> Document | None:
-        """The evidence for `exactfold.checker`; None for a motion until its return.
+    def certificate(self) -> Document | CertificateLines:
+        """The certificate of what is proved, for `exactfold.check` and `write_certificate`.
 
-        That of a loop has lines: `write` writes it. With more than four corners there are no loops,
-        and it is a certificate like others. Of a contact that the motion passes nothing is claimed.
+        With four corners a motion until its return is one loop in a file of loops
+        (docs/motions.md), if it is proved to its end. Any other motion has a certificate of its
+        own, as far as it is proved. Nothing is claimed of a contact that the motion passes.
+
+        Raises `NotApplicableError` where nothing is proved that a certificate could state.
+
+        >>> import exactfold
+        >>> proof = exactfold.prove(exactfold.follow("two-vertex", signs="+-", until="return"))
+        >>> exactfold.check(proof.certificate()).text[:57]
+        'VALID: 1 loop of true motions, which match 4 of 8 half-br'
         """
-        rim = self.motion.rim
-        if self.looped is not None and self.looped.landing is not None and rim is not None:
-            return self.looped.certificate(rim)
+        looped, rim = self.looped, self.motion.rim
+        if looped is not None and looped.landing is not None:
+            return looped.lines() if rim is None else looped.certificate(rim)
         if self.track is None:
-            return None
+            raise NotApplicableError(f"there is no certificate: {self.reason}")
         if self.contact is None or self.passed:
             return self.track.certificate()
         return certificate_with_contact(self.track, self.contact)
 
     def write(self, path: str | os.PathLike[str]) -> bool:
-        """Write the evidence for `exactfold.checker`; False if there is nothing to write.
-
-        With four corners a motion until its return is one loop in a file of loops
-        (docs/motions.md), if it is proved to its end; any other one has a certificate of its own as
-        far as it is proved. Raises `UnwritableFileError`.
+        """Write `certificate`; False if there is none. Raises `UnwritableFileError`.
 
         >>> import os, tempfile
         >>> from exactfold.checker import summary, verify
@@ -167,22 +170,13 @@ class MotionProof:
         ...     proof.write(path), summary(verify(path))[:57]
         (True, 'VALID: 1 loop of true motions, which match 4 of 8 half-br')
         """
-        document = self.certificate()
-        if document is not None:
-            write_certificate(document, path)
-            return True
-        if self.looped is None or self.looped.landing is None:
-            return False
-        looped = self.looped
-        file = LoopFile.opened(path, looped.problem, resume=False, replace=True, like=looped.start)
         try:
-            file.add(looped.loop, looped.line())
-            file.finish()
-        finally:
-            file.close()
+            write_certificate(self.certificate(), path)
+        except NotApplicableError:
+            return False
         return True
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> ProofDocument:
         """The proof as `exactfold fold --json` prints it."""
         contact, loop = self.contact, self.loop
         event = None if contact is None else contact.event
@@ -208,7 +202,7 @@ class MotionProof:
         unit = node.tube.framework.unit
         return low * unit, high * unit
 
-    def _node_dict(self, node: Passage) -> dict[str, Any]:
+    def _node_dict(self, node: Passage) -> LastBranchPoint:
         return {
             "flat": list(node.vertices),
             "time": list(in_floats(self.length)),

@@ -185,8 +185,8 @@ def test_files_and_json_hold_the_bounds(tmp_path):
 
 
 def test_a_return_writes_its_loop(returned, tmp_path):
-    assert returned.certificate() is None
     assert returned.write(tmp_path / "loop.txt")
+    assert (tmp_path / "loop.txt").read_text() == returned.certificate().text
     claims = checker.verify(tmp_path / "loop.txt")
     assert (claims["loops"], claims["matched"], claims["half_branches"]) == (1, 4, 8)
     assert returned.write(tmp_path / "loop.txt")  # in place of the first

@@ -16,7 +16,7 @@ from typing import Any, Final
 
 from exactfold._support.progress import Progress
 from exactfold.app.pictures import crease_style
-from exactfold.app.viewer.document import FRAMES, view_document
+from exactfold.app.viewer.document import FRAMES, ViewDocument, view_document
 from exactfold.pattern.fold_writing import checked_target, write_text
 from exactfold.pattern.loading import PatternLike
 
@@ -67,7 +67,7 @@ def write_view(
     proving: bool = False,
     workers: int = 1,
     progress: Progress | None = None,
-) -> dict[str, Any]:
+) -> ViewDocument:
     """Write the page of a sheet to a file, and return the document that it shows.
 
     See `view_document`. Raises the errors of `view_document`, and `UnwritableFileError`.

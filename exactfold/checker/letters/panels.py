@@ -2,7 +2,7 @@
 
 That they do not is shown by case distinctions, each of which ends in a contradiction
 (`panel_letters_refuted`); that they do, by a motion of each part of the sheet
-(`panel_letters_motion`). The flat closure and the parts are found again.
+(`panels_motion`). The flat closure and the parts are found again.
 """
 
 from __future__ import annotations

@@ -6,7 +6,7 @@ in `CLAIMS`, an object for each claim in the module that knows why it holds.
 
 from __future__ import annotations
 
-from typing import Any, cast
+from typing import Any, TypedDict, cast
 
 from ..core.kinds import DocumentKind
 from ..core.reading import counted, items, refusing
@@ -15,11 +15,10 @@ from ..sheets.sheet import read_sheet
 from .boundary import RimClaim
 from .chain import Chain, check_work, equations_of
 from .claims import BranchClaim, read_claims, words
-from .contacts import Contacts
-from .documents import VerifiedMotion
-from .drive import DriveClaim
-from .half_branch import HalfBranch, Length
-from .nodes import Node, Through
+from .contacts import Contacts, TouchingFaces
+from .drive import DriveClaim, DrivenFolds
+from .half_branch import HalfBranch, Length, NamedHalf
+from .nodes import FlatStars, Node, Through
 from .returns import Return
 
 CLAIMS: tuple[type[BranchClaim], ...] = (
@@ -33,6 +32,31 @@ CLAIMS: tuple[type[BranchClaim], ...] = (
     Contacts,
 )
 """All claims that there are, in the order in which a summary has them."""
+
+_Return = TypedDict("_Return", {"return": NamedHalf}, total=False)  # a keyword of Python
+
+
+class _Optional(_Return, total=False):
+    through: list[list[int]]
+    node: FlatStars
+    rim: list[str]
+    drive: DrivenFolds
+    clear: str
+    contact: TouchingFaces
+    pinned: list[int]
+
+
+class VerifiedMotion(NamedHalf, _Optional):
+    """What is verified of a motion along a branch: the keys of its `CLAIMS`.
+
+    To these the checker adds the digest of the pattern, the number of `tubes` and, with a `rim`,
+    the vertices of the face that is held, `pinned`.
+    """
+
+    length: str
+    tubes: int
+    sha256: str
+
 
 _EVIDENCE = ("emptied", "pinned", "bits", "start", "tubes")
 

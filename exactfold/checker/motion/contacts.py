@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from math import ceil, floor
-from typing import Any
+from typing import Any, TypedDict
 
 from ..core.limits import MOST_TESTS
 from ..core.reading import integer, items, keys, natural, parse_rational, require, shown
@@ -25,6 +25,15 @@ from .tubes import Start
 
 _KINDS = "contact", "flat-fold"
 _PARAMETER_BITS = 40
+
+
+class TouchingFaces(TypedDict):
+    """A contact between two bounds, of two faces or of the faces of folds that are closed."""
+
+    kind: str
+    time: list[str]
+    faces: list[list[int]]
+    folds: list[list[int]]
 
 
 class Contacts(BranchClaim):

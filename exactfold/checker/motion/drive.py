@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from math import gcd, lcm
-from typing import Any
+from typing import Any, TypedDict
 
 from ..core.reading import items, keys, natural, parse_rational, require
 from ..sheets.sheet import Edge, Sheet, turn
@@ -20,6 +20,14 @@ from .claims import BranchClaim, Document
 from .equations import LengthEquations
 from .restriction import Restriction, Sign
 from .tubes import Ball
+
+
+class DrivenFolds(TypedDict):
+    """Folds in a given ratio, and whether they are said to reach their angles."""
+
+    folds: list[list[int]]
+    squares: list[str]
+    reached: bool
 
 
 class DriveClaim(BranchClaim):

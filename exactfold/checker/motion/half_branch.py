@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
+from typing import TypedDict
 
 from ..core.reading import items, parse_rational, require, shown
 from ..sheets.sheet import Sheet
@@ -12,6 +13,13 @@ from .claims import BranchClaim, Document
 from .tubes import Start
 
 _SIGNS = 60  # in a summary
+
+
+class NamedHalf(TypedDict):
+    """A half of a branch, by the signs of the interior vertices and its side of the flat state."""
+
+    vertex_signs: list[int]
+    side: int
 
 
 class HalfBranch(BranchClaim):

@@ -7,12 +7,20 @@ it on an arc of one analytic curve, a point of which lies on the tube before (do
 from __future__ import annotations
 
 from fractions import Fraction
+from typing import TypedDict
 
 from ..core.reading import items, keys, natural, require
 from .chain import Chain
 from .claims import BranchClaim, Document
 from .pieces import arc_of, parameter_of
 from .stretches import Arc
+
+
+class FlatStars(TypedDict):
+    """A branch point, by the vertices whose stars are flat; whether it is clear of contacts."""
+
+    flat: list[int]
+    clear: bool
 
 
 class Through(BranchClaim):

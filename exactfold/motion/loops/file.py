@@ -61,10 +61,10 @@ class LoopFile:
 
         def refusal(text: str, _: int) -> str | None:
             loop = _loop_of(text, problem, bits)
-            if loop is None or not matched.isdisjoint(_ends(loop)):
+            if loop is None or not matched.isdisjoint(loop.ends):
                 return "it is not a loop of this sheet, or it repeats an earlier loop"
             known.append(loop)
-            matched.update(_ends(loop))
+            matched.update(loop.ends)
             return None
 
         journal = Journal.resumed(
@@ -76,7 +76,7 @@ class LoopFile:
         """Write a loop, unless the file already has it, possibly mirrored or run through
         backwards.
         """
-        ends = _ends(loop)
+        ends = loop.ends
         if self.matched.isdisjoint(ends):
             self.journal.append(line)
             self.matched |= ends
@@ -92,12 +92,6 @@ class LoopFile:
 
     def __repr__(self) -> str:
         return f"<LoopFile: {self.journal.path}, {self.journal.blocks} loops>"
-
-
-def _ends(loop: Loop) -> set[HalfBranch]:
-    """The rays that a loop and its mirror image match."""
-    ends = {loop.source, loop.source.mirrored}
-    return ends if loop.target is None else ends | {loop.target, loop.target.mirrored}
 
 
 def _loop_of(text: str, problem: Problem, bits: int) -> Loop | None:

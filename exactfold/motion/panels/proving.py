@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from typing import Any
 
 from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.certificates.entries import Document, write_certificate
 from exactfold.errors import NotApplicableError
+from exactfold.motion.curves.motion_document import PanelProofDocument
 from exactfold.motion.panels.certificate import certificate_of_panel_motion
 from exactfold.motion.panels.clearance import PanelClearance, with_proved_contact
 from exactfold.motion.panels.motion import PanelMotion
@@ -45,16 +45,17 @@ class PanelProof:
             and contacts.event.time[1] < self.motion.duration - _AT_ONCE
         )
 
-    def certificate(self) -> Document | None:
-        """The certificate for `exactfold.checker`; None if there is none."""
+    def certificate(self) -> Document:
+        """The certificate of what is proved, for `exactfold.check` and `write_certificate`.
+
+        Raises `NotApplicableError` where nothing is proved that a certificate could state.
+        """
         if self.contacts is None or not self.certified:
-            return None
+            raise NotApplicableError(f"there is no certificate: {self.reason}")
         return certificate_of_panel_motion(self.motion, self.contacts)
 
     def write(self, path: str | os.PathLike[str]) -> bool:
-        """Write the certificate for `exactfold.checker`; return False if there is none.
-
-        Raises `UnwritableFileError`.
+        """Write `certificate`; False if there is none. Raises `UnwritableFileError`.
 
         >>> import os, tempfile
         >>> from exactfold.checker import summary, verify
@@ -67,13 +68,13 @@ class PanelProof:
         ...     proof.write(path), summary(verify(path))[:44]
         (True, 'VALID: the panels fold, 4 folds move of 4, d')
         """
-        document = self.certificate()
-        if document is None:
+        try:
+            write_certificate(self.certificate(), path)
+        except NotApplicableError:
             return False
-        write_certificate(document, path)
         return True
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> PanelProofDocument:
         """The object of the proof in the output of `exactfold fold --json`."""
         contacts = self.contacts
         event = None if contacts is None else contacts.event

@@ -7,18 +7,33 @@ for each claim (docs/panel_motion.md, 5 and 6).
 
 from __future__ import annotations
 
-from typing import Any, cast
+from typing import Any, TypedDict, cast
 
 from ...core.kinds import DocumentKind
 from ...core.reading import refusing
 from ...sheets.panels import read_panels
 from ..claims import read_claims, words
-from ..documents import VerifiedPanelMotion
+from ..contacts import TouchingFaces
 from .contacts import Clear, Contact
 from .folding import Driven, Folding, OwnRates, PanelClaim
 
 CLAIMS: tuple[type[PanelClaim], ...] = (Driven, OwnRates, Clear, Contact)
 """All claims that there are, in the order in which a summary has them."""
+
+
+class _Optional(TypedDict, total=False):
+    rates: list[str]
+    contact: TouchingFaces
+
+
+class VerifiedPanelMotion(_Optional):
+    """What is verified of a motion of rigid panels: its claims, and the digest of the pattern."""
+
+    assignment: str
+    drivers: list[list[int]]
+    clear: str
+    sha256: str
+
 
 PLAIN, RATED = 1, 2
 """The versions: of folds that are driven alike, and of folds that move at rates of their own."""
