@@ -325,6 +325,8 @@ def test_the_form_of_a_flat_vertex_is_lorentzian(monkeypatch: pytest.MonkeyPatch
     )
     refused(
         given("single-vertex-nine-folds"),
-        "the curvature form of vertex 9 has not inertia (1, 6, 3)",
+        "the curvature form of vertex 9 does not have the inertia (1, 6, 3)",
     )
-    refused(given("rigid-nested"), "the curvature form of vertex 5 has not inertia (1, 0, 3)")
+    refused(
+        given("rigid-nested"), "the curvature form of vertex 5 does not have the inertia (1, 0, 3)"
+    )

@@ -153,7 +153,7 @@ def test_edges_are_sorted() -> None:
     ("radicands", "message"),
     [
         ([["4"]], "radicand 0 is a square"),
-        ([["-2"]], "the square root of a number that is not positive"),
+        ([["-2"]], "a square root is taken of a number that is not positive"),
         ([["2"], ["3", "2"]], "radicand 1 is a square"),
         (
             [[str(p)] for p in (2, 3, 5, 7, 11, 13, 17)],
