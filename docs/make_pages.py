@@ -20,15 +20,20 @@ from types import ModuleType
 from typing import Any, Final
 
 import exactfold
-from exactfold._support.schemas import VERSIONS, schema
 from exactfold.app.cli.main import app
+from exactfold.app.schemas import DOCUMENTS, schema
 
 FOLDER: Final = Path(__file__).with_name("generated")
 TOPICS: Final[Mapping[str, tuple[str, str, tuple[str, ...]]]] = {
+    "verbs": (
+        "The functions on top",
+        "Twelve verbs that take any sheet, and what they return. Most programs need no more.",
+        ("",),
+    ),
     "counting": (
         "Counting, branches, letters and torques",
-        "Load a pattern, count its branches, or find one. Most programs need only this page.",
-        ("", "branches", "design"),
+        "What is behind the verbs for triangulated sheets: branches, letters, torques.",
+        ("branches", "design"),
     ),
     "patterns": (
         "Crease patterns and drawings",
@@ -436,22 +441,33 @@ def _schemas() -> str:
         'lines of `--jsonl`. In Python `exactfold.schema("count")` returns the same. What the keys '
         "mean is explained on the page [files and exit codes](../files.md).\n"
     )
-    for name in VERSIONS:
+    for name in DOCUMENTS:
         found = schema(name)
-        text += f"\n## {name}\n\n{found.get('title', '')}; version {VERSIONS[name]}.\n\n"
-        text += _keys(found)
+        objects = _objects(found)
+        version = objects[0]["properties"]["version"]["const"]
+        text += f"\n## {name}\n\n{found['title']}; version {version}.\n\n{_keys(objects)}"
         text += f":::{{dropdown}} The schema\n```json\n{json.dumps(found, indent=1)}\n```\n:::\n"
     return text
 
 
-def _keys(found: Mapping[str, Any]) -> str:
-    required = set(found.get("required", ()))
-    rows = [
-        f"| `{key}` | {_kind(value)} | {_cell(str(value.get('description', '')))}"
-        f"{'' if key in required else ' (may be left out)'} |\n"
-        for key, value in found.get("properties", {}).items()
-    ]
-    return "| key | type | what it is |\n|---|---|---|\n" + "".join(rows) + "\n" if rows else ""
+def _objects(found: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """The schemas of the objects of one kind: one, or several of which each object is one."""
+    if "properties" in found:
+        return [dict(found)]
+    return [found["$defs"][part["$ref"].rpartition("/")[2]] for part in found["anyOf"]]
+
+
+def _keys(objects: list[dict[str, Any]]) -> str:
+    """A table of all keys that such objects have."""
+    text = "| key | type | what it is |\n|---|---|---|\n"
+    for key in dict.fromkeys(key for one in objects for key in one["properties"]):
+        values = [one["properties"][key] for one in objects if key in one["properties"]]
+        kinds = dict.fromkeys(_kind(value) for value in values)
+        told = next((value["description"] for value in values if "description" in value), "")
+        always = all(key in one["required"] for one in objects)
+        text += f"| `{key}` | {' or '.join(kinds)} | {_cell(told)}"
+        text += f"{'' if always else ' (may be left out)'} |\n"
+    return f"{text}\n"
 
 
 def _kind(value: Mapping[str, Any]) -> str:

@@ -1,4 +1,4 @@
-"""exactfold: proven branch counts of triangulated origami near the unfolded state.
+"""exactfold: in how many ways a crease pattern starts to fold, and which of them go on, proved.
 
     read       a crease pattern from a file, FOLD text, or by the name of a shipped pattern
     count      in how many ways it starts to fold, proved, with the ways
@@ -13,8 +13,10 @@
     draw       a sheet, a way, all ways or a motion as a picture
     view       a page that shows the sheet as it folds
 
-All of them take any sheet: what `read` takes, or what it returns. Every result has a `status`,
-which is `PROVED`, `REFUTED` or `UNDECIDED`.
+Where a verb takes a sheet, any will do: what `read` takes, or what it returns. Every result has a
+`status`, which is `PROVED`, `REFUTED` or `UNDECIDED`, a `reason` in words, and `to_dict()`, the
+document that the command prints with --json. Where evidence can be written, `certificate()` makes
+it.
 
 >>> import exactfold
 >>> result = exactfold.count("two-vertex")

@@ -13,11 +13,11 @@ from exactfold import rigidity as rigidity
 from exactfold import solve as solve
 from exactfold import studies as studies
 from exactfold._support.results import Result as Result
-from exactfold._support.schemas import schema as schema
 from exactfold._support.verdict import PROVED as PROVED
 from exactfold._support.verdict import REFUTED as REFUTED
 from exactfold._support.verdict import UNDECIDED as UNDECIDED
 from exactfold._support.verdict import Verdict as Verdict
+from exactfold.app.schemas import schema as schema
 from exactfold.app.verbs.checking import Checked as Checked
 from exactfold.app.verbs.checking import check as check
 from exactfold.app.verbs.counting import branch as branch

@@ -19,8 +19,8 @@ import pytest
 from running import run
 
 import exactfold
-from exactfold._support.schemas import VERSIONS, schema
 from exactfold.app.cli.main import app
+from exactfold.app.schemas import DOCUMENTS, schema
 from exactfold.app.shell.guard import INTERRUPTED, NO_MEMORY
 from exactfold.app.shell.shell import BAD_INPUT, EXIT, INTERNAL, OUTPUT_FAILED, USAGE
 from exactfold.pattern.data import EXAMPLES as DATA
@@ -158,7 +158,9 @@ def test_the_rooms_are_the_layers() -> None:
     (table,) = re.findall(r"(?m)^\| room \|.*\n(?:\|.*\n)+", contributing())
     rooms = re.findall(r"(?m)^\| `(\w+)` \| .+ \|$", table)
     settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-    layers, apart, *_ = settings["tool"]["importlinter"]["contracts"]
+    contracts = settings["tool"]["importlinter"]["contracts"]
+    layers = next(one for one in contracts if one["name"].startswith("Rooms import"))
+    apart = next(one for one in contracts if one["name"].startswith("The checker imports"))
     assert [f"exactfold.{room}" for room in rooms] == layers["layers"]
     assert layers["layers"] == apart["forbidden_modules"]
 
@@ -214,7 +216,7 @@ def test_every_key_of_the_json_is_explained() -> None:
     words = set(re.findall(r"[a-z_0-9]+", " ".join(re.findall(r"`[^`]+`", "".join(pages)))))
     words |= {term.replace(" ", "_") for term, _ in entries()}
     keys = set()
-    for name in VERSIONS:
+    for name in DOCUMENTS:
         found = schema(name)
         for part in (found, *found.get("$defs", {}).values()):
             keys |= set(part.get("properties", {}))
@@ -265,9 +267,9 @@ def test_every_command_and_every_option_is_shown() -> None:
 
 def test_every_schema_is_shown() -> None:
     page = written_pages()["schemas.md"]
-    assert re.findall(r"(?m)^## (.+)$", page) == list(VERSIONS)
+    assert re.findall(r"(?m)^## (.+)$", page) == list(DOCUMENTS)
     shown = [json.loads(block) for block in re.findall(r"```json\n(.*?)```", page, re.DOTALL)]
-    assert shown == [schema(name) for name in VERSIONS]
+    assert shown == [schema(name) for name in DOCUMENTS]
 
 
 def docstrings() -> dict[str, list[str]]:
@@ -493,7 +495,7 @@ def test_the_help_and_the_page_have_the_same_exit_codes() -> None:
 def test_the_page_names_every_kind_of_output() -> None:
     text = (ROOT / "docs" / "files.md").read_text(encoding="utf-8")
     (listed,) = re.findall(r"the JSON Schema of each kind: (.+?)\. ", text.replace("\n", " "))
-    assert re.findall(r"`([a-z-]+)`", listed) == list(VERSIONS)
+    assert re.findall(r"`([a-z-]+)`", listed) == list(DOCUMENTS)
 
 
 def test_every_picture_of_a_page_is_there_and_well_formed() -> None:

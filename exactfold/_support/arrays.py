@@ -34,7 +34,9 @@ def cross(a: FloatArray, b: FloatArray) -> FloatArray:
 
 
 def inverses(matrices: A) -> A:
-    """Inverses of a stack of matrices, shape (count, n, n); NaN where LAPACK finds one singular.
+    """The inverses of a stack of matrices of shape (count, n, n).
+
+    If LAPACK finds a matrix singular, all entries of its inverse are NaN.
 
     >>> inverses(np.array([[[2.0]], [[0.0]]])).tolist()
     [[[0.5]], [[nan]]]

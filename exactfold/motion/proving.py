@@ -7,7 +7,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
-from typing import Any
 
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
@@ -19,6 +18,7 @@ from exactfold.motion.curves.boundary_path import problem_of
 from exactfold.motion.curves.events import CONTACT, DRIVEN, FLAT_FOLD, NODE, RETURN, SINGULAR, Event
 from exactfold.motion.curves.framework import Framework
 from exactfold.motion.curves.motion import Motion
+from exactfold.motion.curves.motion_document import LastBranchPoint, ProofDocument
 from exactfold.motion.enclosed import with_enclosed_frames
 from exactfold.motion.loops.frames import frame_of
 from exactfold.motion.loops.loops import LoopFinder
@@ -176,7 +176,7 @@ class MotionProof:
             return False
         return True
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> ProofDocument:
         """The proof as `exactfold fold --json` prints it."""
         contact, loop = self.contact, self.loop
         event = None if contact is None else contact.event
@@ -202,7 +202,7 @@ class MotionProof:
         unit = node.tube.framework.unit
         return low * unit, high * unit
 
-    def _node_dict(self, node: Passage) -> dict[str, Any]:
+    def _node_dict(self, node: Passage) -> LastBranchPoint:
         return {
             "flat": list(node.vertices),
             "time": list(in_floats(self.length)),

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Mapping
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from typing import Final
 
 import networkx as nx
 
@@ -13,7 +15,6 @@ from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.errors import TooManyModesError
 from exactfold.panels.by_spaces import by_spaces
-from exactfold.panels.components import components
 from exactfold.panels.densities import UndecidedDensityError
 from exactfold.panels.elementary import ElementaryMode, ModeSearch, Support
 from exactfold.panels.extension import Extension, Loops, extend_together, extension
@@ -24,6 +25,7 @@ from exactfold.pattern.panel_pattern import Edge, PanelPattern
 MOST_SUPPORTS = 20_000
 MOST_LISTED = 1_000
 MOST_LISTED_VERTICES = 60_000
+_MOST_CLIQUES: Final = 1_000_000
 
 
 def decompose(
@@ -189,3 +191,38 @@ def _by_modes(pattern: PanelPattern, moving: Mapping[int, Star], listed: int) ->
 def _mode(support: Support, mode: ElementaryMode, result: Extension) -> Mode:
     letters = {edge: "V" if s > 0 else "M" for edge, s in mode.signs.items()}
     return Mode(support.vertices, letters, result, mode.choice)
+
+
+def components(supports: Sequence[Support], free_folds: int) -> dict[int, int]:
+    """{dimension: number} of the components of all motions to second order.
+
+    Let every vertex have at most four folds. Then the motions are a union of linear spaces. Each is
+    spanned by elementary modes without a common vertex, and by the folds whose two ends lie on the
+    border (docs/panels.md, Structure theorem). The components are the maximal spaces. The dimension
+    of a component is its number of modes plus the number of free folds. Maximal sets of supports
+    are the maximal cliques of the graph of disjoint supports; each set stands for the product of
+    its counts. A sheet that cannot move has one component, the flat state, of dimension 0.
+
+    Raises `TooManyModesError` if there are more than a million maximal sets of supports.
+
+    >>> components([Support((1, 2), 2), Support((3,), 1), Support((2, 3), 1)], 0)
+    {1: 1, 2: 2}
+    """
+    if not supports:
+        return {free_folds: 1}
+    graph = nx.Graph()
+    graph.add_nodes_from(range(len(supports)))
+    masks = [sum(1 << v for v in support.vertices) for support in supports]
+    for i, mask in enumerate(masks):
+        graph.add_edges_from((i, j) for j in range(i) if not mask & masks[j])
+    total: Counter[int] = Counter()
+    for number, clique in enumerate(nx.find_cliques(graph)):
+        if number == _MOST_CLIQUES:
+            raise TooManyModesError(
+                f"more than {_MOST_CLIQUES} maximal sets of folds can move independently"
+            )
+        weight = 1
+        for k in clique:
+            weight *= supports[k].count
+        total[len(clique) + free_folds] += weight
+    return dict(sorted(total.items()))

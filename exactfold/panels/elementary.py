@@ -1,4 +1,6 @@
-"""Elementary modes of a sheet whose vertices have at most four folds, counted without a list."""
+"""Counting elementary modes of a sheet whose vertices have at most four folds, without a list of
+them.
+"""
 
 from __future__ import annotations
 

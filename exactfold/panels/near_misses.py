@@ -8,11 +8,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any, Final
+from typing import Any, Final, TypedDict
 
 import networkx as nx
 from flint import ctx
 
+from exactfold._support.documents import FoldText, Natural
 from exactfold.errors import ExactfoldError
 from exactfold.panels.densities import Density, Roots, UndecidedDensityError
 from exactfold.panels.local import LocalMode, local_modes
@@ -32,6 +33,24 @@ Reopened = Callable[[Any], tuple[PanelPattern, float]]
 """Reads the sheet with another snap; returns it and the largest move of a coordinate over
 the size.
 """
+
+
+class NearMissDocument(TypedDict):
+    """A loop of folds that nearly closes."""
+
+    fold: FoldText
+    quotient: float
+    """The product of the gains round the loop, which is near to 1 and not 1."""
+    loop: list[Natural]
+    """The vertices of the loop."""
+    off: float
+    """The distance of the quotient from 1."""
+    snap: str | None
+    """The first value of --snap that closes the loop exactly; null if none of those tried does."""
+    largest_move: float | None
+    """How far that snap moves a coordinate, by the size of the sheet."""
+    tried: list[str]
+    """The values of --snap that were tried, in their order."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +73,7 @@ class NearMiss:
     largest_move: float | None = None
     tried: tuple[str | int, ...] = ()
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> NearMissDocument:
         """The object of this near miss in the JSON output."""
         return {
             "fold": f"{self.fold[0]}-{self.fold[1]}",

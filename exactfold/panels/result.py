@@ -5,25 +5,132 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, Final
+from typing import Annotated, ClassVar, Literal, TypeAlias, TypedDict
 
+from exactfold._support.documents import (
+    Empty,
+    FoldText,
+    Keywords,
+    Natural,
+    NotNegative,
+    Positive,
+    VerdictText,
+    VertexText,
+)
 from exactfold._support.notebook import Page
 from exactfold._support.results import Certified, Ways
-from exactfold._support.schemas import headed
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.panels.elementary import Support
 from exactfold.panels.extension import Extension
 from exactfold.panels.found import FoundComponent
 from exactfold.panels.local import LocalMode
-from exactfold.panels.near_misses import NearMiss
+from exactfold.panels.near_misses import NearMiss, NearMissDocument
 from exactfold.panels.subspaces import Leaf
-from exactfold.pattern.described import described_panels
+from exactfold.pattern.described import PanelsDocument, described_panels
+from exactfold.pattern.near_degeneracy import WarningDocument
+from exactfold.pattern.opening import ReadDocument
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
 Counts = Mapping[int, int]
 """{dimension: number of components}."""
 
-_COUNTS: Final = ("second_order", "true", "found", "found_true")
+_Theory: TypeAlias = Annotated[str, Keywords(enum=["modes", "subspaces"])]
+_ByDimension: TypeAlias = dict[VertexText, Positive]
+
+
+class ComponentsDocument(TypedDict):
+    """How many components of motions there are, by dimension."""
+
+    second_order: _ByDimension | None
+    """To second order."""
+    true: _ByDimension | None
+    """Of true motions."""
+    found: _ByDimension | None
+    """At least so many to second order, where not all are known."""
+    found_true: _ByDimension | None
+    """At least so many that truly fold, where not all are known."""
+
+
+class ModeDocument(TypedDict):
+    """One elementary mode."""
+
+    active: list[Natural]
+    assignment: dict[FoldText, Annotated[str, Keywords(enum=["M", "V"])]]
+    extends: VerdictText
+    """Whether the mode truly folds."""
+    by: str
+
+
+class MotionKeys(TypedDict):
+    """The keys of a count that belong to motions of rigid panels."""
+
+    components: ComponentsDocument | None
+    modes_count: Natural | None
+    modes: list[ModeDocument]
+    flat_folds: list[FoldText]
+    """Folds that are flat in every motion."""
+    still_folds: list[FoldText]
+    """Flat in every motion to second order, beside flat_folds."""
+    free_folds: list[FoldText]
+    """Folds from border to border."""
+    near_misses: list[NearMissDocument]
+
+
+class CountKeys(MotionKeys):
+    """The keys that a count of branches and one of motions of panels have in common."""
+
+    format: Literal["exactfold count result"]
+    version: Literal[1]
+    reason: str
+    why: str
+    """Why the method was chosen."""
+    true_branches: VerdictText
+    """Whether the count also holds for true motions."""
+    certificate: str | None
+    """The file."""
+    warnings: list[WarningDocument]
+    seconds: NotNegative
+    open_questions: list[str]
+    settings: dict[str, int | str]
+    rigid: bool | None
+    exceptional_vertices: list[Natural]
+    read: ReadDocument | None
+
+
+class PanelCountKeys(CountKeys):
+    """The keys of a count of motions of panels; what belongs to branches is null or empty."""
+
+    pattern: PanelsDocument
+    method: _Theory
+    theory: _Theory
+    distinct: None
+    with_multiplicity: None
+    real: None
+    nonreal: None
+    true_bounds: None
+    dimension: None
+    degree: None
+    pieces: None
+    branches: Empty
+    letters: None
+
+
+class ProvedPanels(PanelCountKeys):
+    """Motions of rigid panels, all of which are known to second order."""
+
+    status: Literal["proved"]
+    by: Literal["enumeration"]
+    """How what is stated was proved."""
+
+
+class UndecidedPanels(PanelCountKeys):
+    """Motions of rigid panels, not all of which are known."""
+
+    status: Literal["undecided"]
+    by: None
+
+
+PanelCountDocument: TypeAlias = ProvedPanels | UndecidedPanels
 
 
 @dataclass(frozen=True)
@@ -39,7 +146,7 @@ class Mode:
     extends: Extension
     choice: tuple[LocalMode, ...] = field(default=(), repr=False)
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> ModeDocument:
         """The object of this mode in the JSON output."""
         return {
             "active": list(self.active),
@@ -83,7 +190,7 @@ class Decomposition(Page, Ways[Mode], Certified):
     parts: tuple[Part, ...] = ()
     near_misses: tuple[NearMiss, ...] = ()
     held: tuple[Edge, ...] = ()
-    read: Mapping[str, Any] | None = None
+    read: ReadDocument | None = None
     found: Counts | None = None
     found_true: Counts | None = None
     still: tuple[Edge, ...] = ()
@@ -95,24 +202,29 @@ class Decomposition(Page, Ways[Mode], Certified):
         """`modes`."""
         return self.modes
 
-    def to_dict(self, certificate: str | None = None, name: str | None = None) -> dict[str, Any]:
+    def to_dict(
+        self, certificate: str | None = None, name: str | None = None
+    ) -> PanelCountDocument:
         """The object printed by `exactfold count --json`: `schema("count")`.
 
         Fields that only branches of triangulated sheets have are null.
         """
-        counts = (self.second_order, self.true, self.found, self.found_true)
-        rigid = {PROVED: True, REFUTED: False}.get(self.rigid)
-        return {
-            **headed("count"),
+        keys: PanelCountKeys = {
+            "format": "exactfold count result",
+            "version": 1,
             "pattern": described_panels(self.pattern, name),
-            "status": str(self.status),
             "reason": self.reason,
-            "by": "enumeration" if self.status is PROVED else None,
             "method": self.theory,
             "why": "",
-            **dict.fromkeys(("distinct", "with_multiplicity", "real", "nonreal")),
+            "distinct": None,
+            "with_multiplicity": None,
+            "real": None,
+            "nonreal": None,
             "true_branches": str(UNDECIDED if self.true is None else PROVED),
-            **dict.fromkeys(("true_bounds", "dimension", "degree", "pieces")),
+            "true_bounds": None,
+            "dimension": None,
+            "degree": None,
+            "pieces": None,
             "certificate": certificate,
             "warnings": [],
             "seconds": round(self.seconds, 3),
@@ -121,11 +233,23 @@ class Decomposition(Page, Ways[Mode], Certified):
             "branches": [],
             "theory": self.theory,
             "letters": None,
-            "rigid": rigid,
+            "rigid": {PROVED: True, REFUTED: False}.get(self.rigid),
             "exceptional_vertices": [],
+            "read": self.read,
+            **self.keys(),
+        }
+        if self.status is PROVED:
+            return {**keys, "status": "proved", "by": "enumeration"}
+        return {**keys, "status": "undecided", "by": None}
+
+    def keys(self) -> MotionKeys:
+        """The keys of JSON that belong to motions of panels."""
+        return {
             "components": {
-                key: None if value is None else {str(k): n for k, n in value.items()}
-                for key, value in zip(_COUNTS, counts, strict=True)
+                "second_order": _texts(self.second_order),
+                "true": _texts(self.true),
+                "found": _texts(self.found),
+                "found_true": _texts(self.found_true),
             },
             "modes_count": self.modes_count,
             "modes": [mode.to_dict() for mode in self.modes],
@@ -133,7 +257,6 @@ class Decomposition(Page, Ways[Mode], Certified):
             "still_folds": [f"{i}-{j}" for i, j in self.still],
             "free_folds": [f"{i}-{j}" for i, j in self.free],
             "near_misses": [miss.to_dict() for miss in self.near_misses],
-            "read": None if self.read is None else dict(self.read),
         }
 
     @property
@@ -204,6 +327,10 @@ class Part:
     def folds(self) -> bool:
         """Whether some motion of the part is known to fold truly."""
         return bool(self.folding and set(self.folding) != {0})
+
+
+def _texts(counts: Counts | None) -> _ByDimension | None:
+    return None if counts is None else {str(k): n for k, n in counts.items()}
 
 
 def _by_dimension(found: Iterable[FoundComponent]) -> dict[int, int]:

@@ -173,7 +173,7 @@ class CreasePattern(Picture):
 
     @property
     def degrees_of_freedom(self) -> int:
-        """D = Ve - 3 (the paper's Eq. Dcount)."""
+        """The number D = Ve - 3 (the paper's Eq. Dcount)."""
         return self.Ve - 3
 
     D = degrees_of_freedom

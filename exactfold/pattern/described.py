@@ -3,8 +3,18 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, NotRequired, TypedDict
 
+from exactfold._support.documents import (
+    Digest,
+    Face,
+    Keywords,
+    Natural,
+    Pair,
+    Rational,
+    Several,
+    Triangle,
+)
 from exactfold.exact.numbers import format_rational
 from exactfold.pattern.crease_pattern import CreasePattern
 
@@ -13,9 +23,44 @@ if TYPE_CHECKING:  # triangulated sheets do not need these modules
     from exactfold.pattern.panel_pattern import PanelPattern
 
 
+class _SheetDocument(TypedDict):
+    name: str | None
+    interior: Natural
+    boundary: Natural
+    folds: Natural
+    sha256: Digest
+
+
+class PatternDocument(_SheetDocument):
+    """The pattern that a result is of."""
+
+    degrees_of_freedom: Natural
+    snapped: NotRequired[Rational]
+    """How far --snap moved a coordinate."""
+    vertices: Annotated[list[Pair[Rational]], Keywords(minItems=3)]
+    """Exact coordinates."""
+    faces: Several[Triangle]
+    """Triangles, counter-clockwise."""
+
+
+class PanelsDocument(_SheetDocument):
+    """The sheet of rigid panels that a result is of.
+
+    Its numbers are fractions, or sums of products of square roots r1, r2, ... with fractions.
+    """
+
+    degrees_of_freedom: int
+    vertices: Annotated[list[Pair[str]], Keywords(minItems=3)]
+    """Exact coordinates."""
+    faces: Several[Face]
+    """Panels, counter-clockwise."""
+    field: list[str]
+    """The numbers under the square roots r1, r2, ..."""
+
+
 def described(
     pattern: CreasePattern, name: str | None = None, snapped: Fraction | None = None
-) -> dict[str, Any]:
+) -> PatternDocument:
     """The name, counts, digest, exact vertices and faces of a pattern, as JSON.
 
     >>> pattern = CreasePattern([(0, 0), (1, 0), ("1/2", 1)], [(0, 1, 2)])
@@ -23,20 +68,22 @@ def described(
     >>> data["name"], data["boundary"], data["vertices"][2], data["faces"]
     ('mine', 3, ['1/2', '1'], [[0, 1, 2]])
     """
-    return {
+    data: PatternDocument = {
         "name": name,
         "interior": pattern.Vi,
         "boundary": pattern.Ve,
         "folds": len(pattern.folds),
         "degrees_of_freedom": pattern.degrees_of_freedom,
         "sha256": pattern.sha256,
-        **({} if snapped is None else {"snapped": format_rational(snapped)}),
         "vertices": [[format_rational(x), format_rational(y)] for x, y in pattern.vertices],
         "faces": [list(triangle) for triangle in pattern.triangles],
     }
+    if snapped is not None:
+        data["snapped"] = format_rational(snapped)
+    return data
 
 
-def described_panels(pattern: PanelPattern, name: str | None = None) -> dict[str, Any]:
+def described_panels(pattern: PanelPattern, name: str | None = None) -> PanelsDocument:
     """The name, counts, digest, exact vertices and panels of a sheet of rigid panels, as JSON.
 
     `field` lists the numbers under the square roots r1, r2, ... that the coordinates use.

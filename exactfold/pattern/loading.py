@@ -126,7 +126,7 @@ def _located(sheet: str | PathLike[str]) -> str | PathLike[str]:
         return example_path(sheet)
     if not os.path.exists(sheet):
         raise UnreadableFileError(
-            f"{shown(sheet)} is neither a file nor the name of an example; the examples are: "
+            f"{shown(sheet)} is neither a file nor the name of an example; choose from: "
             f"{', '.join(EXAMPLES)}"
         )
     return sheet

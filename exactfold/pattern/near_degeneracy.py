@@ -12,8 +12,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import combinations
 from math import lcm
-from typing import Any
+from typing import TypedDict
 
+from exactfold._support.documents import Natural, Positive, Several
 from exactfold.errors import InputError
 from exactfold.exact.numbers import decimal_above, format_rational, snap
 from exactfold.pattern.crease_pattern import CreasePattern, Point
@@ -27,6 +28,17 @@ _CHANCE = 10**5
 """A fraction p/q that differs from a number by less than 1/(10^5 q^2) is hardly there by chance."""
 _LARGEST = 10**9
 """Fractions with larger denominators do not count as simple."""
+
+
+class WarningDocument(TypedDict):
+    """What to know of a pattern before its result is read."""
+
+    vertices: Several[Natural]
+    """Those that are almost where a simpler pattern has them, or that a path passes almost
+    straight."""
+    snap: Positive | None
+    """The denominator that rounds to the simpler pattern."""
+    text: str
 
 
 @dataclass(frozen=True)
@@ -66,13 +78,13 @@ class NearDegeneracy:
 
     @property
     def text(self) -> str:
-        """The sentences, their meaning for a count, and what to do."""
+        """The warning in words: what was found, what it means for the answer, and a remedy."""
         advice = "the answer is right for these numbers, but perhaps not for the intended pattern"
         if self.denominator is not None:
             advice += f"; --snap {self.denominator} rounds the coordinates to the simpler pattern"
         return f"{'; '.join(self.sentences)}: {advice}"
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> WarningDocument:
         """The warning as JSON: the vertices, the denominator to round with, and the text."""
         return {
             "vertices": sorted({*self.simple, *(v for _, v, _ in self.straight)}),
@@ -108,7 +120,7 @@ def near_degenerate(pattern: PatternLike) -> NearDegeneracy | None:
     return _found(as_pattern(pattern))
 
 
-def warnings(pattern: CreasePattern) -> list[dict[str, Any]]:
+def warnings(pattern: CreasePattern) -> list[WarningDocument]:
     """Warnings, as JSON, that a designer should read before the count; often there is none.
 
     >>> from exactfold.pattern.families import two_vertex

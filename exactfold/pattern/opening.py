@@ -8,8 +8,9 @@ from fractions import Fraction
 from functools import partial
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Literal, TypeAlias, TypedDict
 
+from exactfold._support.documents import FieldName, NotNegative, Several
 from exactfold._support.notebook import Picture
 from exactfold._support.plurals import counted
 from exactfold.errors import (
@@ -47,6 +48,16 @@ _LEAST = ("merge", "duplicates", "split", "dangling")
 """Some drawings have no panels without these steps; the other steps only change the panels."""
 
 
+class ReadDocument(TypedDict):
+    """What was read of a drawing."""
+
+    lines: Several[str]
+    """What was read, how coordinates were made exact, and each repair, one sentence each."""
+    field: FieldName
+    largest_move: NotNegative
+    """Of a coordinate, by the size of the sheet."""
+
+
 @dataclass(frozen=True)
 class Opened(Picture):
     """A sheet from a file, and what was done to read it.
@@ -81,7 +92,7 @@ class Opened(Picture):
         return letters if {"M", "V"} & set(letters.values()) else {}
 
     @property
-    def read(self) -> dict[str, Any] | None:
+    def read(self) -> ReadDocument | None:
         """What was read, repaired and snapped, as JSON; None if the file needed nothing."""
         lines = list(self.lines)
         if self.snapped:

@@ -4,18 +4,60 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Literal, TypedDict
 
+from exactfold._support.documents import (
+    FoldText,
+    Keywords,
+    Natural,
+    Rational,
+    Several,
+    Triangle,
+    VertexText,
+)
 from exactfold._support.progress import Progress
-from exactfold._support.schemas import headed
 from exactfold.exact.linalg import Inertia
 from exactfold.exact.numbers import format_rational
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.described import described
+from exactfold.pattern.described import PatternDocument, described
 from exactfold.pattern.loading import PatternLike, as_pattern
-from exactfold.pattern.near_degeneracy import warnings
+from exactfold.pattern.near_degeneracy import WarningDocument, warnings
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.self_stress import rigidity_rank
+
+
+class TriangulatedTriangle(TypedDict):
+    """A triangle of folds or sides with vertices inside."""
+
+    corners: Triangle
+    inside: Several[Natural]
+
+
+class PatternFactsDocument(TypedDict):
+    """The facts of a triangulated sheet."""
+
+    format: Literal["exactfold info result"]
+    version: Literal[1]
+    pattern: PatternDocument
+    triangles: Natural
+    edges: Natural
+    area: Rational
+    convex: bool
+    straight_boundary_vertices: list[Natural]
+    chords: list[FoldText]
+    """Folds from border to border."""
+    degrees: dict[VertexText, Natural]
+    """Folds at each interior vertex."""
+    triangulated_triangles: list[TriangulatedTriangle]
+    foldable_vertices: list[Natural]
+    """Those in no triangulated triangle."""
+    rigidity_rank: Natural
+    rigidity_rank_by: str
+    """What proves the rank: elimination, or a theorem."""
+    self_stresses: Natural
+    inertia: dict[VertexText, Annotated[list[Natural], Keywords(minItems=3, maxItems=3)]]
+    """Of the curvature form of each interior vertex."""
+    warnings: list[WarningDocument]
 
 
 @dataclass(frozen=True)
@@ -38,11 +80,12 @@ class PatternFacts:
             f"{self.pattern!r}>"
         )
 
-    def to_dict(self, name: str | None = None) -> dict[str, Any]:
+    def to_dict(self, name: str | None = None) -> PatternFactsDocument:
         """The object that `exactfold info --json` prints, without its forecast of a count."""
         pattern = self.pattern
         return {
-            **headed("info"),
+            "format": "exactfold info result",
+            "version": 1,
             "pattern": described(pattern, name),
             "triangles": len(pattern.triangles),
             "edges": len(pattern.edges),

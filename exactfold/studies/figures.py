@@ -330,7 +330,7 @@ def _draw_shared(axes: Any, row: Row) -> None:
 
 
 _LEGEND = (
-    "Mountains are red, valleys blue and broken. White vertices pop up in both branches, black "
+    "Mountains are red, valleys blue and dashed. White vertices pop up in both branches, black "
     "ones down, yellow ones up in one and down in the other."
 )
 

@@ -6,12 +6,12 @@ import io
 import json
 import sys
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal, TypedDict
 
 import typer
 
+from exactfold._support.documents import Several
 from exactfold._support.processes import one_thread
-from exactfold._support.schemas import headed
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.app.options.branches import (
     AssignmentsOptions,
@@ -313,6 +313,22 @@ def convert(**options: Any) -> int:
     return 0
 
 
+class Example(TypedDict):
+    """A pattern that comes with exactfold."""
+
+    name: str
+    description: str
+    path: str
+
+
+class ExamplesDocument(TypedDict):
+    """The patterns that come with exactfold."""
+
+    format: Literal["exactfold examples result"]
+    version: Literal[1]
+    examples: Several[Example]
+
+
 @app.command(cls=Command)
 @reported
 def examples(as_json: Json = False) -> None:
@@ -322,11 +338,15 @@ def examples(as_json: Json = False) -> None:
     from exactfold.pattern.data import examples as described
 
     if as_json:
-        rows = [
-            {"name": name, "description": text, "path": str(example_path(name))}
-            for name, text in described().items()
-        ]
-        print(json.dumps({**headed("examples"), "examples": rows}))
+        document: ExamplesDocument = {
+            "format": "exactfold examples result",
+            "version": 1,
+            "examples": [
+                {"name": name, "description": text, "path": str(example_path(name))}
+                for name, text in described().items()
+            ],
+        }
+        print(json.dumps(document))
     else:
         report.show(report.examples_report(described()))
 

@@ -5,15 +5,14 @@ from __future__ import annotations
 import hashlib
 import json
 from collections import Counter
-from collections.abc import Generator, Iterator
+from collections.abc import Generator, Iterator, Mapping
 from contextlib import ExitStack, closing, contextmanager, nullcontext
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from exactfold._support.memory import is_shortage, shortage
 from exactfold._support.processes import available_cores
-from exactfold._support.schemas import headed
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.app.commands.jsonl import Lines
 from exactfold.app.options.patterns import CountOptions
@@ -43,15 +42,25 @@ from exactfold.errors import (
 )
 
 if TYPE_CHECKING:
+    from exactfold.app.commands.batch_document import (
+        AskedDocument,
+        BatchDocument,
+        BatchNumbers,
+        CountedLine,
+        FailedLine,
+    )
     from exactfold.panels.result import Decomposition
 
-FAILED = "failed"
+FAILED: Final = "failed"
 """In place of a status: there is an error."""
 
 STATUSES = (str(PROVED), str(UNDECIDED), FAILED)
 
 _WORST = (0, 4, 1, 2, 3, NO_MEMORY, INTERNAL)
 """Exit codes from the best to the worst."""
+
+LINE: Final = "exactfold batch-line result"
+"""The format of a line."""
 
 
 @dataclass(frozen=True)
@@ -107,7 +116,7 @@ class Batch(CountOptions):
         with ExitStack() as stack:
             lines = None
             if self.jsonl is not None:
-                lines = Lines(self.jsonl, headed("batch-line")["format"])
+                lines = Lines(self.jsonl, LINE)
                 stack.callback(lines.close)
             stack.enter_context(self._resumable())
             for line in stack.enter_context(closing(self._lines(lines, tally))):
@@ -119,10 +128,17 @@ class Batch(CountOptions):
                     shown.append((line.name, line.status, line.distinct, line.message))
         place = {str(path): k for k, path in enumerate(self.patterns)}
         shown.sort(key=lambda row: place[row[0]])
+        numbers, jsonl = self._numbers(tally), None if self.jsonl is None else str(self.jsonl)
         if not self.as_json:
-            report.show(report.batch_report(shown, self._summary(tally), self.everything))
-        elif self.jsonl is not None:
-            print(json.dumps(self._summary(tally)))
+            report.show(report.batch_report(shown, numbers, jsonl, self.everything))
+        elif jsonl is not None:
+            document: BatchDocument = {
+                "format": "exactfold batch result",
+                "version": 1,
+                **numbers,
+                "jsonl": jsonl,
+            }
+            print(json.dumps(document))
         return tally.code
 
     def _lines(self, lines: Lines | None, tally: Tally) -> Generator[Line, None, None]:
@@ -175,15 +191,15 @@ class Batch(CountOptions):
                 raise
             raise NotEnoughMemoryError(f"{shortage(error)}; {again}") from None
 
-    def _summary(self, tally: Tally) -> dict[str, Any]:
+    def _numbers(self, tally: Tally) -> BatchNumbers:
         return {
-            **headed("batch"),
             "files": len(self.patterns),
-            **{status: tally.statuses[status] for status in STATUSES},
+            "proved": tally.statuses[str(PROVED)],
+            "undecided": tally.statuses[str(UNDECIDED)],
+            "failed": tally.statuses[FAILED],
             "skipped": tally.skipped,
             "warned": tally.warned,
             "exit_code": tally.code,
-            "jsonl": None if self.jsonl is None else str(self.jsonl),
         }
 
 
@@ -228,26 +244,45 @@ def line_of(job: Job) -> Line:
 
 def line_for(job: Job, result: BranchCount | Decomposition | Exception) -> Line:
     """The line of a result."""
-    data = {
-        **headed("batch-line"),
-        "name": job.name,
-        "sha256": _digest(job),
-        "asked": _asked(job),
-    }
     if not isinstance(result, Exception):
         status, code = str(result.status), EXIT[result.status]
-        data |= {"status": status, "exit_code": code, "error": None}
-        data["result"] = result.to_dict(name=job.name)
+        document = _counted(job, result, status, code)
         message = "" if result.status is PROVED else result.reason
         if (warning := result.warning) is not None:
             message = f"{message}{'; ' if message else ''}warning: {warning}"
         warned = warning is not None
         ways = _ways(result)
-        return Line(job.name, status, code, json.dumps(data), ways, message, warned)
-    code = exit_code(result)
-    error = error_document(result)["error"]
-    data |= {"status": FAILED, "exit_code": code, "error": error, "result": None}
-    return Line(job.name, FAILED, code, json.dumps(data), None, str(result))
+        return Line(job.name, status, code, json.dumps(document), ways, message, warned)
+    failed = _failed(job, result)
+    return Line(job.name, FAILED, failed["exit_code"], json.dumps(failed), None, str(result))
+
+
+def _counted(job: Job, result: BranchCount | Decomposition, status: str, code: int) -> CountedLine:
+    return {
+        "format": LINE,
+        "version": 1,
+        "name": job.name,
+        "sha256": _digest(job),
+        "asked": _asked(job),
+        "status": status,
+        "exit_code": code,
+        "error": None,
+        "result": result.to_dict(name=job.name),
+    }
+
+
+def _failed(job: Job, error: Exception) -> FailedLine:
+    return {
+        "format": LINE,
+        "version": 1,
+        "name": job.name,
+        "sha256": _digest(job),
+        "asked": _asked(job),
+        "status": FAILED,
+        "exit_code": exit_code(error),
+        "error": error_document(error)["error"],
+        "result": None,
+    }
 
 
 def _ways(result: BranchCount | Decomposition) -> int | None:
@@ -261,9 +296,9 @@ def _digest(job: Job) -> str | None:
     return hashlib.sha256(job.source).hexdigest() if isinstance(job.source, bytes) else None
 
 
-def _asked(job: Job) -> dict[str, Any]:
+def _asked(job: Job) -> AskedDocument:
     return {"method": job.method, "seed": job.seed, "snap": job.snap, "sheet": job.number}
 
 
-def _key(digest: str | None, asked: dict[str, Any]) -> str:
+def _key(digest: str | None, asked: Mapping[str, Any]) -> str:
     return json.dumps([digest, asked], sort_keys=True)

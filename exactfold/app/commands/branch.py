@@ -51,7 +51,7 @@ class Asked(BranchOptions):
             for name, result in self._found(finder, bar):
                 proved &= result.status is PROVED
                 if self.as_json:
-                    print(json.dumps(result.report(self.name)), flush=True)
+                    print(json.dumps(result.to_dict(self.name)), flush=True)
                 elif name:
                     rows.append(report.branch_row(name, result))
         if not self._is_many:
@@ -80,8 +80,7 @@ class Asked(BranchOptions):
             say(also_found(found.others))
         self._certify(found.branch)
         if self.as_json:
-            more = {"folds": found.drive.to_dict(), "side": found.side, "status": str(status)}
-            print(json.dumps(found.branch.report(self.name) | {"drive": more}))
+            print(json.dumps(found.to_dict(self.name)))
         else:
             report.show(report.branch_report(found.branch, found))
         return found.branch.status is PROVED and status is PROVED

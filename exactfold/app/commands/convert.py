@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import json
 import sys
-from typing import Any
+from typing import Literal, TypedDict
 
+from exactfold._support.documents import FieldName, FoldText
 from exactfold._support.plurals import agreeing, counted
-from exactfold._support.schemas import headed
 from exactfold.app.options.patterns import ConvertOptions
 from exactfold.app.shell.patterns import located
 from exactfold.app.shell.shell import Bar, apart, name_of, said, say, tell
 from exactfold.errors import FoldError, NotFoldError, PatternError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.described import described, described_panels
+from exactfold.pattern.described import PanelsDocument, PatternDocument, described, described_panels
 from exactfold.pattern.fold_writing import document_text, write_text
-from exactfold.pattern.opening import Opened, Steps, open_pattern
+from exactfold.pattern.opening import Opened, ReadDocument, Steps, open_pattern
 from exactfold.pattern.panel_writing import Converted, converted
 
 
@@ -97,11 +97,25 @@ def _written(made: Converted, output: str) -> str:
     )
 
 
-def _summary(opened: Opened, made: Converted, name: str, output: str) -> dict[str, Any]:
+class ConvertDocument(TypedDict):
+    """A drawing that was written as FOLD."""
+
+    format: Literal["exactfold convert result"]
+    version: Literal[1]
+    pattern: PatternDocument | PanelsDocument
+    output: str
+    field: FieldName
+    joins: list[FoldText]
+    """Edges that --triangulate added."""
+    read: ReadDocument | None
+
+
+def _summary(opened: Opened, made: Converted, name: str, output: str) -> ConvertDocument:
     """The object that --json prints: `schema("convert")`."""
     sheet = opened.sheet
     return {
-        **headed("convert"),
+        "format": "exactfold convert result",
+        "version": 1,
         "pattern": described(sheet, name, opened.snapped)
         if isinstance(sheet, CreasePattern)
         else described_panels(sheet, name),

@@ -11,9 +11,16 @@ import shlex
 import sys
 from itertools import product
 from pathlib import Path
-from typing import Any
+from typing import Literal, TypedDict
 
-from exactfold._support.schemas import headed
+from exactfold._support.documents import (
+    Assignment,
+    Degrees,
+    FoldText,
+    NotNegative,
+    VerdictText,
+    VertexSigns,
+)
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.app.commands.branch import chosen
 from exactfold.app.options.branches import ExportOptions
@@ -21,13 +28,13 @@ from exactfold.app.shell.given import Given
 from exactfold.app.shell.patterns import read
 from exactfold.app.shell.shell import EXIT, Bar, name_of, one_at_least, one_at_most, say, tell
 from exactfold.branches.counting.find import find_branches
-from exactfold.branches.values.branch import Branch
+from exactfold.branches.values.branch import Branch, GaugeText
 from exactfold.branches.values.export import AMOUNT, BranchExport, exported
 from exactfold.errors import NotApplicableError, UndecidedBranchError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.described import described
+from exactfold.pattern.described import PatternDocument, described
 from exactfold.pattern.fold_writing import write_text
-from exactfold.pattern.near_degeneracy import warnings
+from exactfold.pattern.near_degeneracy import WarningDocument, warnings
 
 
 class Wanted(ExportOptions):
@@ -174,12 +181,34 @@ def _refuse_uncounted(pattern: CreasePattern, force: bool) -> None:
 _MODULE = re.compile(r"[A-Za-z][A-Za-z0-9_]*\.v\Z", re.ASCII)
 
 
+class ExportDocument(TypedDict):
+    """A branch that was written as FOLD."""
+
+    format: Literal["exactfold export result"]
+    version: Literal[1]
+    pattern: PatternDocument
+    status: VerdictText
+    vertex_signs: VertexSigns
+    """By interior vertex: 1 up, -1 down, 0 flat."""
+    assignment: Assignment
+    """By fold i-j: mountain, valley, flat, undecided; seen from +z."""
+    gauge: GaugeText
+    output: str
+    """The FOLD file that was written."""
+    angles: dict[FoldText, Degrees]
+    """Fold angle in degrees by fold i-j, as written: valley positive."""
+    length_error: NotNegative
+    """Largest relative change of a length in the frame in space."""
+    warnings: list[WarningDocument]
+
+
 def _summary(
     branch: Branch, export: BranchExport, output: Path, name: str | None
-) -> dict[str, Any]:
+) -> ExportDocument:
     """The object that --json prints: `schema("export")`."""
     return {
-        **headed("export"),
+        "format": "exactfold export result",
+        "version": 1,
         "pattern": described(branch.pattern, name),
         "output": str(output),
         "status": str(export.status),

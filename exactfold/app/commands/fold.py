@@ -81,7 +81,7 @@ class Wanted(FoldOptions):
             written = self._written(motion, proof)
         if self.as_json:
             found = motion.to_dict(name_of(self.file), written)
-            print(json.dumps(found | {"proof": None if proof is None else proof.to_dict()}))
+            print(json.dumps({**found, "proof": None if proof is None else proof.to_dict()}))
         else:
             report.show(report.motion_report(motion, written, proof))
         if isinstance(motion, Motion) and motion.branch.status is not PROVED:

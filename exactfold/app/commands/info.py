@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from exactfold.app import report
 from exactfold.app.options.patterns import InfoOptions
@@ -11,11 +11,26 @@ from exactfold.app.shell.patterns import read_any, warn
 from exactfold.app.shell.shell import Bar, name_of
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.opening import has_branches, panels
-from exactfold.rigidity.facts import pattern_facts
+from exactfold.rigidity.facts import PatternFacts, PatternFactsDocument, pattern_facts
 
 if TYPE_CHECKING:
-    from exactfold.branches.counting.motion_facts import PanelFacts
+    from exactfold.branches.counting.motion_facts import (
+        DecomposedFactsDocument,
+        PanelFacts,
+        PanelFactsDocument,
+    )
     from exactfold.pattern.panel_pattern import PanelPattern
+
+
+class BranchesFactsDocument(PatternFactsDocument):
+    """The facts of a sheet that has branches; what belongs to sheets of panels is null."""
+
+    panels: None
+    field: None
+    flat_folds: None
+    free_folds: None
+    parts: None
+    expected: str
 
 
 def show_info(asked: InfoOptions) -> None:
@@ -26,19 +41,21 @@ def show_info(asked: InfoOptions) -> None:
     name, exact = name_of(asked.file), asked.exact
     with Bar("reading") as bar:
         sheet = read_any(asked.file, asked.snap, asked.sheet).sheet
-        data: dict[str, Any] = dict.fromkeys(_PANELS)
+        data: BranchesFactsDocument | DecomposedFactsDocument | PanelFactsDocument
         if not isinstance(sheet, CreasePattern):
             motions = _motions(sheet)
-            data |= motions.to_dict(name)
+            data = motions.to_dict(name)
             table = report.panels_info(motions, exact=exact)
         else:
             facts = pattern_facts(sheet, bar)
             both = None
-            data |= {**facts.to_dict(name), "expected": report.expectation(facts)}
-            if not has_branches(sheet):
+            if has_branches(sheet):
+                data = _of_branches(facts, name)
+            else:
                 warn(sheet)
                 both = _motions(panels(sheet))
-                data |= {**both.keys(), "expected": report.expectation(facts, both)}
+                expected = report.expectation(facts, both)
+                data = {**facts.to_dict(name), **both.keys(), "expected": expected}
             table = report.info_report(facts, both, exact=exact)
     if asked.as_json:
         print(json.dumps(data))
@@ -54,5 +71,13 @@ def _motions(pattern: PanelPattern) -> PanelFacts:
     return panel_facts(pattern)
 
 
-_PANELS = ("panels", "field", "flat_folds", "free_folds", "parts")
-"""What is null of a sheet that has branches."""
+def _of_branches(facts: PatternFacts, name: str) -> BranchesFactsDocument:
+    return {
+        **facts.to_dict(name),
+        "panels": None,
+        "field": None,
+        "flat_folds": None,
+        "free_folds": None,
+        "parts": None,
+        "expected": report.expectation(facts),
+    }

@@ -66,7 +66,7 @@ class Wanted(MotionsOptions):
                     replace=False,
                 )
         if self.as_json:
-            print(json.dumps(found.report(name_of(self.file))))
+            print(json.dumps(found.to_dict(name_of(self.file))))
         else:
             report.show(report.motions_report(found))
         return EXIT[found.status]

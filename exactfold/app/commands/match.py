@@ -12,12 +12,12 @@ from exactfold.app.options.branches import MatchOptions
 from exactfold.app.shell.patterns import read_any, warn
 from exactfold.app.shell.shell import EXIT, Bar, name_of, say
 from exactfold.certificates.entries import write_certificate
-from exactfold.design.assignments.boundary_document import rim_match_document
-from exactfold.design.assignments.boundary_match import RimMatch, can_pop, match_rim
+from exactfold.design.assignments.boundary_match import can_pop, match_rim
+from exactfold.design.assignments.boundary_result import RimMatch
 from exactfold.design.assignments.certificate import match_certificate
-from exactfold.design.assignments.document import match_document
 from exactfold.design.assignments.nearest import nearest_branches
-from exactfold.design.assignments.search import Match, match
+from exactfold.design.assignments.result import Match
+from exactfold.design.assignments.search import match
 from exactfold.design.panels.match import PanelMatch, match_panels
 from exactfold.errors import (
     NotApplicableError,
@@ -73,7 +73,8 @@ class Asked(MatchOptions):
             self._write(found, bar)
         seconds = time.perf_counter() - begin
         if self.as_json:
-            print(json.dumps(match_document(found, nearest, name_of(self.file), seconds)))
+            near = None if nearest is None else nearest.to_dict()
+            print(json.dumps(found.to_dict(name_of(self.file), nearest=near, seconds=seconds)))
         else:
             from exactfold.app import report
 
@@ -98,7 +99,7 @@ class Asked(MatchOptions):
     def _over_a_rim(self, found: RimMatch) -> int:
         """Print whether a sheet with more than four corners starts to fold; the exit code."""
         if self.as_json:
-            print(json.dumps(rim_match_document(found, name_of(self.file))))
+            print(json.dumps(found.to_dict(name_of(self.file))))
         else:
             from exactfold.app import report
 

@@ -8,12 +8,12 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, Literal, TypedDict
 
+from exactfold._support.documents import Digest, Keywords, Natural, Positive
 from exactfold._support.memory import is_shortage, shortage
 from exactfold._support.processes import available_cores
 from exactfold._support.progress import Progress
-from exactfold._support.schemas import headed
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED
 from exactfold.app import report
 from exactfold.app.options.studies import StudyOptions
@@ -31,8 +31,72 @@ from exactfold.errors import (
 from exactfold.pattern.fold_writing import checked_target, write_bytes, write_text
 from exactfold.studies import all_studies, recompute_row, run_study, study_named
 from exactfold.studies.running.runner import StudyRun
-from exactfold.studies.running.study import Study
+from exactfold.studies.running.study import Study, TableDocument
 from exactfold.studies.running.writing import check_parquet, write_csv, write_parquet
+
+
+class ListedStudy(TypedDict):
+    """A study that can be run."""
+
+    study: str
+    study_version: Positive
+    about: str
+    numbers: dict[str, Natural]
+    """Rows by size."""
+    extended: dict[str, Natural]
+    """Rows by size that --extend adds."""
+
+
+class StudiesDocument(TypedDict):
+    """The studies that can be run."""
+
+    format: Literal["exactfold studies result"]
+    version: Literal[1]
+    studies: list[ListedStudy]
+
+
+class StudyRowDocument(TypedDict):
+    """A row of a journal, and the same row computed again."""
+
+    format: Literal["exactfold study-row result"]
+    version: Literal[1]
+    study: str
+    journal: str
+    row: Annotated[str, Keywords(pattern="^[0-9a-f]{16}$")]
+    sha256: Digest
+    """Of recipe and row as JSON, with sorted keys and without blanks."""
+    recipe: dict[str, Any]
+    """What the row was made from."""
+    stored: dict[str, Any]
+    """The row in the journal."""
+    recomputed: dict[str, Any]
+    """The row, computed again."""
+    agrees: bool
+    differing: list[str]
+    """Names of what differs."""
+
+
+class StudyDocument(TypedDict):
+    """What a run of a study shows."""
+
+    format: Literal["exactfold study result"]
+    version: Literal[1]
+    study: str
+    study_version: Positive
+    """Rises when rows change; journals of another version are not read."""
+    about: str
+    seed: Natural
+    numbers: dict[str, Natural]
+    """Rows by size."""
+    rows: Natural
+    computed: Natural
+    """Rows that the journal did not have."""
+    undecided: Natural
+    """Rows that are not proved."""
+    journal: str
+    tables: list[TableDocument]
+    files: list[str]
+    """What was written besides the journal."""
 
 
 class Wanted(StudyOptions):
@@ -81,11 +145,12 @@ class Wanted(StudyOptions):
         if self._asks_for_rows or self.row is not None or self.journal is not None:
             raise UsageError(f"name a study; the studies are: {', '.join(all_studies())}")
         if self.as_json:
-            print(
-                json.dumps(
-                    {**headed("studies"), "studies": [*map(_described, all_studies().values())]}
-                )
-            )
+            document: StudiesDocument = {
+                "format": "exactfold studies result",
+                "version": 1,
+                "studies": [*map(_described, all_studies().values())],
+            }
+            print(json.dumps(document))
         else:
             report.show(report.studies_report(all_studies()))
         return EXIT[PROVED]
@@ -95,22 +160,20 @@ class Wanted(StudyOptions):
             raise UsageError("--row goes with --journal and --json only")
         found = recompute_row(study, self._journal, str(self.row))
         if self.as_json:
-            print(
-                json.dumps(
-                    {
-                        **headed("study-row"),
-                        "study": study.name,
-                        "journal": str(self._journal),
-                        "row": found.stored.id,
-                        "sha256": found.stored.sha256,
-                        "recipe": dict(found.stored.recipe),
-                        "stored": dict(found.stored.row),
-                        "recomputed": dict(found.row),
-                        "agrees": found.agrees,
-                        "differing": list(found.differing),
-                    }
-                )
-            )
+            document: StudyRowDocument = {
+                "format": "exactfold study-row result",
+                "version": 1,
+                "study": study.name,
+                "journal": str(self._journal),
+                "row": found.stored.id,
+                "sha256": found.stored.sha256,
+                "recipe": dict(found.stored.recipe),
+                "stored": dict(found.stored.row),
+                "recomputed": dict(found.row),
+                "agrees": found.agrees,
+                "differing": list(found.differing),
+            }
+            print(json.dumps(document))
         else:
             report.show(report.row_report(found))
         return EXIT[PROVED if found.agrees else REFUTED]
@@ -134,11 +197,11 @@ class Wanted(StudyOptions):
             )
             bar("reading the rows")
             undecided = run.undecided
-            document = self._document(run, undecided)
+            tables = [table.to_dict() for table in run.tables] if self.as_json else []
             bar("writing")
             written = self._write(run)
         if self.as_json:
-            print(json.dumps({**document, "files": written}))
+            print(json.dumps(_document(run, str(self._journal), undecided, tables, written)))
         else:
             report.show(report.study_report(run, written))
         return EXIT[UNDECIDED if undecided else PROVED]
@@ -155,23 +218,6 @@ class Wanted(StudyOptions):
             check_parquet()
         if self.html is not None or self.figures is not None:
             report.check_figures()
-
-    def _document(self, run: StudyRun, undecided: int) -> dict[str, Any]:
-        if not self.as_json:
-            return {}
-        return {
-            **headed("study"),
-            "study": run.study.name,
-            "study_version": run.study.version,
-            "about": run.study.about,
-            "seed": run.seed,
-            "numbers": {str(size): number for size, number in run.numbers.items()},
-            "rows": run.total,
-            "computed": run.computed,
-            "undecided": undecided,
-            "journal": run.journal,
-            "tables": [table.to_dict() for table in run.tables],
-        }
 
     def _write(self, run: StudyRun) -> list[str]:
         """Write all files that were asked for; their names."""
@@ -221,7 +267,27 @@ class Wanted(StudyOptions):
             raise NotEnoughMemoryError(f"{shortage(error)}; {again}") from None
 
 
-def _described(study: Study) -> dict[str, Any]:
+def _document(
+    run: StudyRun, journal: str, undecided: int, tables: list[TableDocument], files: list[str]
+) -> StudyDocument:
+    return {
+        "format": "exactfold study result",
+        "version": 1,
+        "study": run.study.name,
+        "study_version": run.study.version,
+        "about": run.study.about,
+        "seed": run.seed,
+        "numbers": {str(size): number for size, number in run.numbers.items()},
+        "rows": run.total,
+        "computed": run.computed,
+        "undecided": undecided,
+        "journal": journal,
+        "tables": tables,
+        "files": files,
+    }
+
+
+def _described(study: Study) -> ListedStudy:
     return {
         "study": study.name,
         "study_version": study.version,

@@ -30,7 +30,7 @@ def assignments_report(found: AllAssignments, *, everything: bool = False) -> Gr
         return Group(facts_table(list(rows)))
     texts = found.assignments
     shown = texts if everything else texts[:_MOST]
-    rows.append(("assignments", f"{len(texts)}, with the folds {_folds(found)}"))
+    rows.append(("assignments", f"{len(texts)}, one letter for each of the folds {_folds(found)}"))
     if found.circles:
         arcs = ", ".join(f"{circle.signs}: {len(circle.arcs)}" for circle in found.circles)
         rows.append(("arcs by vertex signs", arcs))

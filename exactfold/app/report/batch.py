@@ -16,7 +16,9 @@ BatchRow = tuple[str, str, int | None, str]
 """Name, status, number of branches, and a message: what is missing, wrong, or worth knowing."""
 
 
-def batch_report(rows: list[BatchRow], summary: Mapping[str, Any], everything: bool) -> Group:
+def batch_report(
+    rows: list[BatchRow], summary: Mapping[str, Any], jsonl: str | None, everything: bool
+) -> Group:
     """A line for each pattern, and the number of patterns that are proved."""
     table = Table(box=None, pad_edge=False)
     table.add_column("", overflow="fold")
@@ -34,6 +36,6 @@ def batch_report(rows: list[BatchRow], summary: Mapping[str, Any], everything: b
         text += f"; {summary['warned']} with a warning"
     if summary["skipped"]:
         text += f"; {summary['skipped']} counted in an earlier run"
-    if summary["jsonl"]:
-        text += f"; results in {summary['jsonl']}"
+    if jsonl is not None:
+        text += f"; results in {jsonl}"
     return Group(*parts, Text(text))

@@ -1,4 +1,4 @@
-"""What `exactfold count` says of a sheet with a convex border and more than four corners."""
+"""What `exactfold count` prints of a sheet with a convex border and more than four corners."""
 
 from __future__ import annotations
 

@@ -138,7 +138,7 @@ def _undecided(result: BranchCount, took: str) -> Text:
     if result.by == "theorem":
         return Text.assemble(
             f"2^{result.pattern.Vi} ways to start folding with multiplicity, all real, by Theorem "
-            "2; how many differ is ",
+            "2; how many of them are different is ",
             status_text(UNDECIDED),
             f"{took}: {result.reason}",
         )

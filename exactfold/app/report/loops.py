@@ -92,8 +92,8 @@ def _notes(found: Loops) -> list[RenderableType]:
     ]
     if found.pattern.reflex_corner is not None:
         notes.append(
-            f"The saddle stands for the sign of the reflex corner {found.pattern.reflex_corner} "
-            "in the sheet with its notch closed."
+            "This sheet has a reflex corner. The sign after 'saddle' is that of vertex "
+            f"{found.pattern.reflex_corner} in the sheet whose notch is closed."
         )
     if len(found.loops) > _LISTED:
         notes.append(f"{counted(len(found.loops) - _LISTED, 'more loop')}: --json lists all.")

@@ -12,16 +12,14 @@ from rich.text import Text
 from exactfold._support.plurals import agreeing, counted
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED
 from exactfold.app.report.terminal import SHOWN, more_text, status_text
-from exactfold.design.assignments.boundary_document import reasons
-from exactfold.design.assignments.document import fold_text
-from exactfold.design.assignments.why import vertex_conflicts
+from exactfold.design.assignments.why import fold_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from exactfold.design.assignments.boundary_match import RimMatch
+    from exactfold.design.assignments.boundary_result import RimMatch
     from exactfold.design.assignments.nearest import Nearest
-    from exactfold.design.assignments.search import Match, Matched
+    from exactfold.design.assignments.result import Match, Matched
     from exactfold.design.panels.match import PanelMatch
 
 _NEAR = 8
@@ -94,7 +92,7 @@ def rim_match_report(found: RimMatch, *, everything: bool = False) -> Group:
         PROVED: "the sheet starts to fold with these mountains and valleys",
         REFUTED: "the sheet does not start to fold with these mountains and valleys",
     }.get(found.starts, "whether the sheet starts to fold with these mountains and valleys is open")
-    lines = reasons(found)
+    lines = found.why
     limit = len(lines) if everything else SHOWN
     head = Text.assemble(f"{answer} - ", status_text(found.status), f" ({found.seconds:.2f} s)")
     rest = [Text(f"- {line}") for line in lines[:limit]]
@@ -128,7 +126,7 @@ def _asked(found: Match | PanelMatch | RimMatch) -> str:
 
 def _why(found: Match) -> list[str]:
     """Reasons in plain words: single vertices if these are enough, otherwise what was refuted."""
-    alone = vertex_conflicts(found)
+    alone = found.conflicts
     lines = [f"vertex {v} can pop {text}" for v, text in sorted(alone.items())]
     pairs = ((found.labels[i], found.labels[j]) for i, j in found.sheet.folds)
     moving = {fold_text((min(pair), max(pair))) for pair in pairs}
@@ -183,7 +181,7 @@ def _nearest(nearest: Nearest, everything: bool) -> list[Any]:
     else:
         head = Text.assemble(
             f"Nearest found: {far} to change; ",
-            f"every way needs {least} or more, and whether some way needs so few is ",
+            f"every way needs {least} or more, and whether {least} are enough is ",
             status_text(UNDECIDED),
         )
     limit = len(nearest.halves) if everything else _NEAR

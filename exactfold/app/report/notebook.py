@@ -15,7 +15,7 @@ from exactfold.app.report.connected_components import graphs
 from exactfold.app.report.panels import panels_answer
 from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.result import BranchCount
-from exactfold.design.assignments.search import Match
+from exactfold.design.assignments.result import Match
 from exactfold.motion.curves.in_motion import SheetInMotion
 from exactfold.panels.result import Decomposition
 from exactfold.pattern.crease_pattern import CreasePattern

@@ -16,13 +16,13 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Annotated, Literal, NoReturn, ParamSpec, TypedDict, TypeVar
 
 import typer
 
+from exactfold._support.documents import Keywords
 from exactfold._support.memory import is_shortage, memory_is_limited, shortage
 from exactfold._support.plurals import visible
-from exactfold._support.schemas import headed
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED
 from exactfold.app.shell.guard import INTERRUPTED, NO_MEMORY
 from exactfold.errors import (
@@ -118,10 +118,25 @@ def exit_code(error: Exception) -> int:
     return BAD_INPUT if isinstance(error, InputError) else USAGE
 
 
-def error_document(error: Exception) -> dict[str, Any]:
+CommandError = TypedDict(
+    "CommandError", {"class": Annotated[str, Keywords(pattern="^[A-Za-z]+$")], "message": str}
+)
+"""The class of an error, for programs, and what it says."""
+
+
+class ErrorDocument(TypedDict):
+    """What any command prints with --json where it fails."""
+
+    format: Literal["exactfold error result"]
+    version: Literal[1]
+    error: CommandError
+
+
+def error_document(error: Exception) -> ErrorDocument:
     """An error as a JSON object: its class, for programs, and what it says."""
     return {
-        **headed("error"),
+        "format": "exactfold error result",
+        "version": 1,
         "error": {"class": type(error).__name__, "message": str(error)},
     }
 

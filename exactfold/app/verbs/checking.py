@@ -4,21 +4,25 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from exactfold import checker
-from exactfold._support.processes import available_cores
 from exactfold._support.verdict import PROVED, REFUTED, Verdict
-from exactfold.certificates.entries import CertificateLines
-from exactfold.certificates.sharing import shared
 from exactfold.checker.branches.compact import COMPACT
 from exactfold.checker.command import refusal
 from exactfold.checker.core.kinds import LineKind, Verified
 from exactfold.checker.core.parts import Engine
-from exactfold.checker.core.reading import plain
+from exactfold.checker.core.reading import UnfinishedError, plain
 from exactfold.errors import CertificateFormatError, UnreadableFileError, WorkerDiedError
+
+if TYPE_CHECKING:
+    from exactfold.app.verbs.check_document import CheckDocument
+
+_LISTS = ("supports", "flat", "letters", "halves", "joints", "together", "never")
+_LONG = ("branches", "vertex_signs", "assignment", *_LISTS)
+"""Claims that grow with the pattern, left out of the document."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -27,23 +31,35 @@ class Checked:
 
     `status` is PROVED if every claim holds, and `claims` has them. It is REFUTED if the certificate
     does not support some claim: then `reason` says which, `claims` is empty, and nothing is known
-    of the sheet. `text` says it in words.
+    of the sheet. `text` says it in words, and `name` is the name of the file.
     """
 
     status: Verdict
     reason: str
     text: str
     claims: Mapping[str, Any] = field(default_factory=dict)
+    name: str = ""
 
     def __bool__(self) -> bool:
         return self.status is PROVED
+
+    def to_dict(self, name: str | None = None) -> CheckDocument:
+        """The object printed by `exactfold check --json`: `schema("check")`."""
+        return {
+            "format": "exactfold check result",
+            "version": 1,
+            "name": self.name if name is None else name,
+            "valid": self.status is PROVED,
+            "reason": self.reason,
+            "claims": {key: claim for key, claim in self.claims.items() if key not in _LONG},
+        }
 
     def __repr__(self) -> str:
         return f"<Checked: {self.text.partition(chr(10))[0]}>"
 
 
 def check(
-    certificate: str | os.PathLike[str] | Mapping[str, Any] | CertificateLines,
+    certificate: str | os.PathLike[str] | Mapping[str, Any] | tuple[str, ...],
     *,
     workers: int | None = None,
 ) -> Checked:
@@ -56,40 +72,38 @@ def check(
     `WorkerDiedError`.
 
     >>> import exactfold
-    >>> from exactfold.branches import branch_certificate
-    >>> evidence = branch_certificate(exactfold.branch("two-vertex", "+-"))
+    >>> evidence = exactfold.branch("two-vertex", "+-").certificate()
     >>> exactfold.check(evidence).status
     <Verdict.PROVED: 'proved'>
     >>> forged = evidence | {"claims": evidence["claims"] | {"vertex_signs": [1, 1]}}
     >>> exactfold.check(forged).status
     <Verdict.REFUTED: 'refuted'>
     """
-    if isinstance(certificate, Mapping | CertificateLines):
-        name = "the certificate"
-    else:
-        name = os.fspath(certificate)
+    if isinstance(certificate, Mapping):
+        text = json.dumps(certificate)
+        return judged("the certificate", lambda: checker.check(checker.load(text)))
+    many = workers or cores()
+    if isinstance(certificate, tuple):
+        lines = certificate
+        return judged("the certificate", lambda: checker.check(lines, many, quickest))
+    path = certificate
+    return judged(os.fspath(path), lambda: checker.verify(path, many, quickest))
+
+
+def judged(name: str, verify: Callable[[], Verified[Any]]) -> Checked:
+    """What `verify` says of the certificate with this name; raises as `check`."""
     try:
-        claims = _verified(certificate, workers or available_cores())
+        found = verify()
     except checker.CertificateError as error:
-        return Checked(REFUTED, plain(error), refusal(error))
+        unfinished = "unfinished: " if isinstance(error, UnfinishedError) else ""
+        return Checked(REFUTED, unfinished + plain(error), refusal(error), name=name)
     except checker.FormatError as error:
         raise CertificateFormatError(f"{name}: {plain(error)}") from None
     except WorkerDiedError as error:
         raise type(error)(f"{error}; nothing is known of the file") from None
     except OSError as error:
         raise UnreadableFileError(f"cannot read {name}: {error.strerror}") from None
-    return Checked(PROVED, "every claim holds", checker.summary(claims), dict(claims))
-
-
-def _verified(
-    certificate: str | os.PathLike[str] | Mapping[str, Any] | CertificateLines, workers: int
-) -> Verified[Any]:
-    """The claims of an object, of lines, or of a file."""
-    if isinstance(certificate, Mapping):
-        return checker.check(checker.load(json.dumps(certificate)))
-    if isinstance(certificate, CertificateLines):
-        return checker.check(certificate, workers, quickest)
-    return checker.verify(certificate, workers, quickest)
+    return Checked(PROVED, "every claim holds", checker.summary(found), dict(found), name)
 
 
 def quickest(kind: LineKind[Any]) -> Engine:
@@ -98,4 +112,13 @@ def quickest(kind: LineKind[Any]) -> Engine:
         from exactfold.branches.certificates.check import FLOATS  # needs NumPy, as no other does
 
         return FLOATS
+    from exactfold.certificates.sharing import shared
+
     return kind.engine._replace(share=shared)
+
+
+def cores() -> int:
+    """How many processes a check has, unless it is said."""
+    from exactfold._support.processes import available_cores
+
+    return available_cores()

@@ -21,8 +21,8 @@ from exactfold.pattern.opening import triangles
 
 if TYPE_CHECKING:
     from exactfold.design.actuation.result import Actuation
-    from exactfold.design.assignments.boundary_match import RimMatch
-    from exactfold.design.assignments.search import Match
+    from exactfold.design.assignments.boundary_result import RimMatch
+    from exactfold.design.assignments.result import Match
     from exactfold.design.panels.match import PanelMatch
     from exactfold.exact.numbers import RationalLike
 

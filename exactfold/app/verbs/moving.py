@@ -20,7 +20,7 @@ from exactfold.branches.counting.find import Rim, Signs
 from exactfold.branches.counting.ways import decompose_opened
 from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.result import BranchCount
-from exactfold.design.assignments.search import Matched
+from exactfold.design.assignments.result import Matched
 from exactfold.design.refutations.asked import by_fold
 from exactfold.errors import UsageError
 from exactfold.motion.curves.drive import Drive

@@ -3,18 +3,28 @@
 from __future__ import annotations
 
 from base64 import b64decode, b64encode
-from typing import Any, Final
+from typing import Annotated, Any, Final, TypedDict
 
 import numpy as np
 
 from exactfold._support.arrays import FloatArray
+from exactfold._support.documents import Keywords
 
 _STEPS: Final = 1 << 23
 _ORDER: Final = 4
 _BYTES: Final = 6
 
 
-def coded_frames(coords: FloatArray) -> dict[str, Any]:
+class CodedFrames(TypedDict):
+    """Coordinates of all frames."""
+
+    frames: Annotated[int, Keywords(minimum=2)]
+    scale: Annotated[float, Keywords(exclusiveMinimum=0)]
+    data: Annotated[str, Keywords(contentEncoding="base64")]
+    """Coded by their fourth differences (exactfold/app/viewer/coding.py)."""
+
+
+def coded_frames(coords: FloatArray) -> CodedFrames:
     """Frames of shape (frames, V, 3) as JSON: their number, a scale, and base64 text.
 
     Coordinates are rounded to multiples of scale / 2^23, where the scale is the largest size of a
@@ -39,7 +49,7 @@ def coded_frames(coords: FloatArray) -> dict[str, Any]:
     }
 
 
-def decoded_frames(coded: dict[str, Any]) -> FloatArray:
+def decoded_frames(coded: CodedFrames) -> FloatArray:
     """The frames that `coded_frames` wrote, shape (frames, V, 3), decoded as the page does it."""
     raw = np.frombuffer(b64decode(coded["data"]), dtype=np.uint8).astype(np.int64)
     last = np.flatnonzero(raw < 128)

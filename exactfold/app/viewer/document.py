@@ -4,20 +4,23 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import closing
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, Final, Literal, TypedDict, TypeVar
 
+from exactfold._support.documents import Fold, Keywords, Natural, ProvedOrNot, Triangle
 from exactfold._support.plurals import counted
 from exactfold._support.progress import Progress
-from exactfold._support.schemas import headed
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.app.viewer.ways import (
+    Followed,
     Following,
     FollowingPanels,
+    Letters,
+    Way,
     branch_way,
     component_way,
     mode_way,
@@ -52,6 +55,47 @@ _SECONDS: Final = re.compile(r" \(\d+\.\d+ s\)")
 J = TypeVar("J")
 
 
+class FlatSheet(TypedDict):
+    """The sheet before it folds."""
+
+    fold: Annotated[
+        dict[str, Any], Keywords(required=["vertices_coords", "edges_vertices", "faces_vertices"])
+    ]
+    """The flat sheet as a FOLD object."""
+    folds: list[Fold]
+    triangles: list[Triangle]
+    interior: list[Natural]
+    foldable: list[Natural]
+    """Vertices that can be popped through: where vertex signs name branches."""
+    letters: Letters
+    """Those of the file, by fold."""
+
+
+class Facts(TypedDict):
+    """What is known of the ways in which a sheet folds."""
+
+    kind: Literal["branches", "panels"]
+    answer: str
+    status: ProvedOrNot
+    complete: bool
+    """Whether `ways` are proved to be all."""
+    reason: str
+    notes: list[str]
+
+
+class ViewDocument(Facts):
+    """What the page shows of a sheet."""
+
+    format: Literal["exactfold view result"]
+    version: Literal[1]
+    name: str
+    sheet: FlatSheet
+    read: list[str]
+    ways: list[Way]
+    served: bool
+    """Whether motions that are missing can be asked for."""
+
+
 def view_document(
     sheet: PatternLike,
     *,
@@ -61,7 +105,7 @@ def view_document(
     proving: bool = False,
     workers: int = 1,
     progress: Progress | None = None,
-) -> dict[str, Any]:
+) -> ViewDocument:
     """All that the page shows of a sheet, as JSON; `view_page` puts it into one HTML file.
 
     For a triangulated sheet with four corners, the document has its branches, each of which
@@ -100,9 +144,9 @@ class Known:
 
     opened: Opened
     name: str
-    follower: Callable[[Any], dict[str, Any]]
-    listed: tuple[tuple[dict[str, Any], Any], ...]
-    facts: Mapping[str, Any] = field(default_factory=dict)
+    follower: Callable[[Any], Followed]
+    listed: tuple[tuple[Way, Any], ...]
+    facts: Facts
 
     @classmethod
     def of(
@@ -141,7 +185,7 @@ class Known:
         except (InputError, UsageError, WorkerDiedError):
             raise
         except ExactfoldError as error:
-            facts = {
+            nothing: Facts = {
                 "kind": "branches" if folds_along_branches else "panels",
                 "answer": "nothing is known about how this sheet folds",
                 "status": "undecided",
@@ -149,27 +193,28 @@ class Known:
                 "reason": str(error),
                 "notes": [],
             }
-            return cls(opened, title, Following(frames), (), facts)
+            return cls(opened, title, Following(frames), (), nothing)
 
-    def followed(self, pool: Pool, progress: Progress | None) -> list[dict[str, Any]]:
+    def followed(self, pool: Pool, progress: Progress | None) -> list[Way]:
         """All ways with their motions."""
-        ways = [dict(way) for way, _ in self.listed]
+        ways = [way for way, _ in self.listed]
         jobs = [k for k, (_, job) in enumerate(self.listed) if job is not None]
         for done, (k, found) in enumerate(_numbered(pool, self.follower, self.listed, jobs), 1):
-            ways[k].update(found)
+            ways[k] = {**ways[k], **found}
             if progress is not None:
                 progress("following", done, len(jobs))
         return ways
 
-    def document(self, ways: Sequence[Mapping[str, Any]], served: bool = False) -> dict[str, Any]:
+    def document(self, ways: Sequence[Way], served: bool = False) -> ViewDocument:
         """The whole document; `served` means that the page can ask for missing motions."""
         return {
-            **headed("view"),
+            "format": "exactfold view result",
+            "version": 1,
             "name": self.name,
             "sheet": _sheet_json(self.opened),
             "read": list(self.opened.lines),
             **self.facts,
-            "ways": [dict(way) for way in ways],
+            "ways": [*ways],
             "served": served,
         }
 
@@ -186,19 +231,19 @@ class _Branches:
 class _Numbered:
     """Does the work of a job that has a number."""
 
-    def __init__(self, work: Callable[[Any], dict[str, Any]]) -> None:
+    def __init__(self, work: Callable[[Any], Followed]) -> None:
         self.work = work
 
-    def __call__(self, numbered: tuple[int, Any]) -> dict[str, Any]:
+    def __call__(self, numbered: tuple[int, Any]) -> Followed:
         return self.work(numbered[1])
 
 
 def _numbered(
     pool: Pool,
-    work: Callable[[Any], dict[str, Any]],
+    work: Callable[[Any], Followed],
     listed: Sequence[tuple[Any, Any]],
     jobs: Iterable[int],
-) -> Iterable[tuple[int, dict[str, Any]]]:
+) -> Iterable[tuple[int, Followed]]:
     """The number of each job with its result, in the order in which the jobs end."""
     results = pool(_Numbered(work), ((k, listed[k][1]) for k in jobs))
     with closing(results):
@@ -228,14 +273,14 @@ def _branches(
     return _Branches(pattern, (finder.find(up), *near.values()), None)
 
 
-def _branch_facts(found: _Branches) -> dict[str, Any]:
-    facts: dict[str, Any] = {"kind": "branches"}
+def _branch_facts(found: _Branches) -> Facts:
     if found.count is not None:
         from exactfold.app.report.count import answer
 
         count = found.count
         whole = count.status is PROVED and len(count) == (count.real or 0)
-        return facts | {
+        return {
+            "kind": "branches",
             "answer": _SECONDS.sub("", answer(count).plain),
             "status": str(count.status),
             "complete": whole,
@@ -244,7 +289,8 @@ def _branch_facts(found: _Branches) -> dict[str, Any]:
         }
     vertices = counted(len(found.pattern.foldable_vertices), "foldable vertex")
     proved = all(branch.status is PROVED for branch in found.branches)
-    return facts | {
+    return {
+        "kind": "branches",
         "answer": f"{counted(len(found.branches), 'branch')} of a sheet with {vertices}",
         "status": str(PROVED if proved else UNDECIDED),
         "complete": False,
@@ -271,7 +317,7 @@ def _panels(
     by_number = {mode.number: mode for mode in modes}
     components = panel_components(ways, modes)
     shown = components[:MOST_COMPONENTS]
-    listed: list[tuple[dict[str, Any], Any]] = [
+    listed: list[tuple[Way, Any]] = [
         (component_way(ways, component, by_number), k) for k, component in enumerate(shown, 1)
     ]
     open_modes = [mode for mode in modes if mode.extends.verdict is not PROVED]
@@ -282,7 +328,7 @@ def _panels(
         notes.append(f"{counted(left, 'more component')} left out")
     if not components and ways.rigid is not PROVED:
         notes.append(f"no motion can be followed: {why_nothing_follows(ways, modes)}")
-    facts = {
+    facts: Facts = {
         "kind": "panels",
         "answer": _SECONDS.sub("", panels_answer(ways).plain),
         "status": str(ways.status),
@@ -295,7 +341,7 @@ def _panels(
     return Known(opened, name, FollowingPanels(ways, frames, proving), tuple(listed), facts)
 
 
-def _sheet_json(opened: Opened) -> dict[str, Any]:
+def _sheet_json(opened: Opened) -> FlatSheet:
     """The flat sheet: a FOLD object without letters, and everything else the page needs.
 
     `letters` are those of the file, by fold; they are shown if there is no way to fold.

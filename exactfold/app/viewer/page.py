@@ -16,7 +16,7 @@ from typing import Any, Final
 
 from exactfold._support.progress import Progress
 from exactfold.app.pictures import crease_style
-from exactfold.app.viewer.document import FRAMES, view_document
+from exactfold.app.viewer.document import FRAMES, ViewDocument, view_document
 from exactfold.pattern.fold_writing import checked_target, write_text
 from exactfold.pattern.loading import PatternLike
 
@@ -30,7 +30,7 @@ _SELF, _NOBODY = "'self'", "'none'"
 _PLACE: Final = re.compile(r"\{\{(\w+)\}\}")
 _DARK: Final = {"B": 0.92}
 _LIGHTNESS: Final = 0.66
-"""Least lightness of a line on dark ground; the border is lighter still."""
+"""The least lightness of a line on dark ground; the border is lighter still."""
 
 
 def view_page(document: Mapping[str, Any]) -> str:
@@ -67,7 +67,7 @@ def write_view(
     proving: bool = False,
     workers: int = 1,
     progress: Progress | None = None,
-) -> dict[str, Any]:
+) -> ViewDocument:
     """Write the page of a sheet to a file, and return the document that it shows.
 
     See `view_document`. Raises the errors of `view_document`, and `UnwritableFileError`.
@@ -97,7 +97,9 @@ def checked_page(path: Path) -> str:
 
 
 def script_json(value: object) -> str:
-    r"""JSON that can stand in a script element: no `<` in it ends the element or opens a comment.
+    r"""JSON that can stand in a script element, because `<` is written as an escape sequence.
+
+    Otherwise `<` could end the element or open a comment.
 
     >>> script_json({"name": "</script><!--"})
     '{"name":"\\u003c/script>\\u003c!--"}'

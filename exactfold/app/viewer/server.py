@@ -14,7 +14,7 @@ from urllib.parse import parse_qs, urlsplit
 from exactfold._support.progress import Progress
 from exactfold.app.viewer.document import FRAMES, Known
 from exactfold.app.viewer.page import view_page
-from exactfold.app.viewer.ways import Following, branch_way
+from exactfold.app.viewer.ways import Following, Way, branch_way
 from exactfold.branches.counting.find import BranchFinder
 from exactfold.errors import ExactfoldError, NumberError, UsageError
 from exactfold.exact.numbers import parse_whole
@@ -95,7 +95,7 @@ class ViewServer(ThreadingHTTPServer):
         if not isinstance(sys.exception(), ConnectionError):
             super().handle_error(request, client_address)
 
-    def motion(self, number: int) -> dict[str, Any]:
+    def motion(self, number: int) -> Way:
         """The motion of the way with this number, from 0 on; raises `UsageError` if there
         is none.
         """
@@ -105,9 +105,9 @@ class ViewServer(ThreadingHTTPServer):
         if job is None:
             return way
         with self._lock:
-            return way | self._known.follower(job)
+            return {**way, **self._known.follower(job)}
 
-    def branch(self, signs: str) -> dict[str, Any]:
+    def branch(self, signs: str) -> Way:
         """The branch with these vertex signs, and its motion; raises the errors of
         `BranchFinder`.
         """
@@ -120,7 +120,7 @@ class ViewServer(ThreadingHTTPServer):
             if self._finder is None:
                 self._finder = BranchFinder(pattern)
             branch = self._finder.find(self._finder.signs(signs, None))
-            return branch_way(branch) | self._following(branch)
+            return {**branch_way(branch), **self._following(branch)}
 
 
 class _Handler(BaseHTTPRequestHandler):
@@ -143,7 +143,8 @@ class _Handler(BaseHTTPRequestHandler):
         if HEADER not in self.headers:
             self._send(HTTPStatus.FORBIDDEN, b"only the page itself may ask this", "text/plain")
             return
-        status, found = HTTPStatus.OK, {}
+        status = HTTPStatus.OK
+        found: Way | dict[str, str]
         try:
             if path == "/motion":
                 found = self.server.motion(_whole(query.get("way", "")))

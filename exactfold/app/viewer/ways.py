@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, NamedTuple, NotRequired, TypeAlias, TypedDict
 
+from exactfold._support.documents import Keywords, NotNegative, Positive, Sign, VerdictText
 from exactfold._support.plurals import counted
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.app.report.motion import ending_text, event_text
-from exactfold.app.viewer.coding import coded_frames, levelled
+from exactfold.app.viewer.coding import CodedFrames, coded_frames, levelled
 from exactfold.branches.values.export import AMOUNT
 from exactfold.errors import ExactfoldError, WorkerDiedError
 from exactfold.motion.following import follow
@@ -26,6 +27,58 @@ if TYPE_CHECKING:
     from exactfold.pattern.crease_pattern import CreasePattern, Edge
     from exactfold.pattern.panel_pattern import PanelPattern
 
+Letters: TypeAlias = Annotated[str, Keywords(pattern="^[MVFU]*$")]
+
+
+class EventText(TypedDict):
+    """Something that happens at a time, in words."""
+
+    time: float
+    kind: str
+    text: str
+
+
+class DrawnMotion(CodedFrames):
+    """A motion as the page draws it."""
+
+    duration: NotNegative
+    end: str
+    ending: str
+    events: list[EventText]
+    proved: bool
+    """Whether the motion that is drawn is proved: it closes exactly, or is enclosed in tubes."""
+    exists: bool
+    """Whether such a motion is proved to exist, though drawn in floats."""
+    said: str
+
+
+class Followed(TypedDict):
+    """The keys of a way that belong to its motion."""
+
+    motion: DrawnMotion | None
+    why: str
+    """Why there is no motion."""
+    letters: NotRequired[Letters]
+    angles: NotRequired[list[float]]
+
+
+class Way(TypedDict):
+    """A way in which the sheet folds."""
+
+    name: str
+    signs: Annotated[str, Keywords(pattern="^[-+0?]*$")]
+    letters: Letters
+    """One for each fold of the sheet, in the order of `folds`."""
+    saddle: Sign
+    multiplicity: Positive | None
+    status: VerdictText
+    reason: str
+    angles: list[float]
+    """Degrees by fold as the sheet starts to fold; empty where they are not known."""
+    motion: DrawnMotion | None
+    why: str
+    """Why there is no motion."""
+
 
 @dataclass(frozen=True)
 class Following:
@@ -37,14 +90,12 @@ class Following:
     frames: int
     proving: bool = False
 
-    def __call__(self, branch: Branch) -> dict[str, Any]:
+    def __call__(self, branch: Branch) -> Followed:
         """The motion along a branch up to the first contact, or the reason why there is none."""
         try:
             motion = follow(branch, frames=self.frames)
-            way = motion_way(motion)
-            if self.proving:
-                way["motion"].update(_proof(motion))
-            return way
+            proof = _proof(motion) if self.proving else _in_floats(motion)
+            return {"motion": _drawn(motion, proof), "why": ""}
         except WorkerDiedError:
             raise
         except ExactfoldError as error:
@@ -62,54 +113,63 @@ class FollowingPanels:
     frames: int
     proving: bool = False
 
-    def __call__(self, component: int) -> dict[str, Any]:
+    def __call__(self, component: int) -> Followed:
         """The motion along a component up to the first contact, or the reason why there is none."""
         from exactfold.motion.panels.following import follow_panels
 
         try:
             found = follow_panels(self.ways, component=component, frames=self.frames)
-            way = motion_way(found)
-            way["motion"].update(_proof_of_panels(found, self.proving))
+            drawn = _drawn(found, _proof_of_panels(found, self.proving))
         except WorkerDiedError:
             raise
         except ExactfoldError as error:
             return not_followed(str(error))
         return {
-            **way,
+            "motion": drawn,
+            "why": "",
             "letters": letters_of(found.pattern, found.assignment),
             "angles": _angles(found.pattern, found.leading_angles),
         }
 
 
-def motion_way(motion: SheetInMotion) -> dict[str, Any]:
-    """The keys of a way that describe its motion, before anything is proved of it."""
+class _Known(NamedTuple):
+    """What is known of a motion: whether what is drawn is proved, whether it exists, in words."""
+
+    proved: bool
+    exists: bool
+    said: str
+
+
+def _drawn(motion: SheetInMotion, known: _Known) -> DrawnMotion:
     return {
-        "motion": {
-            **coded_frames(levelled(motion.coords)),
-            "duration": motion.duration,
-            "end": motion.end,
-            "ending": ending_text(motion),
-            "events": [
-                {"time": event.time[1], "kind": event.kind, "text": event_text(event)}
-                for event in motion.events
-            ],
-            "proved": False,
-            "exists": False,
-            "said": f"followed in floats; {_kept(motion)}",
-        },
-        "why": "",
+        **coded_frames(levelled(motion.coords)),
+        "duration": motion.duration,
+        "end": motion.end,
+        "ending": ending_text(motion),
+        "events": [
+            {"time": event.time[1], "kind": event.kind, "text": event_text(event)}
+            for event in motion.events
+        ],
+        "proved": known.proved,
+        "exists": known.exists,
+        "said": known.said,
     }
+
+
+def _in_floats(motion: SheetInMotion) -> _Known:
+    """What is known before any proof."""
+    return _Known(False, False, f"followed in floats; {_kept(motion)}")
 
 
 def _kept(motion: SheetInMotion) -> str:
     return f"faces stay rigid, to {max(motion.length_error, 1e-16):.0e} of each length"
 
 
-def _proof(motion: Motion) -> dict[str, Any]:
-    """What is proved of a motion along a branch; it replaces what is said about floats."""
+def _proof(motion: Motion) -> _Known:
+    """What is proved of a motion along a branch."""
     proof = prove(motion)
     if proof.status is not PROVED:
-        return {"said": f"followed in floats; it could not be proved: {proof.reason}"}
+        return _Known(False, False, f"followed in floats; it could not be proved: {proof.reason}")
     event = None if proof.contact is None else proof.contact.event
     parts = [f"it exists, without a gap, in {counted(proof.tubes, 'tube')}"]
     for text in filter(None, (proof.through_text, proof.end_text)):
@@ -119,14 +179,11 @@ def _proof(motion: Motion) -> dict[str, Any]:
     if event is not None:
         low, high = event.time
         parts.append(f"its first contact is between the times {low:.8g} and {high:.8g}")
-    said = f"{'; '.join(parts)}; the frames are floats close to it"
-    return {"proved": True, "exists": True, "said": said}
+    return _Known(True, True, f"{'; '.join(parts)}; the frames are floats close to it")
 
 
-def _proof_of_panels(motion: PanelMotion, contacts: bool) -> dict[str, Any]:
-    """What is proved of a motion of panels (docs/panel_motion.md), and of its contact if
-    asked for.
-    """
+def _proof_of_panels(motion: PanelMotion, contacts: bool) -> _Known:
+    """What docs/panel_motion.md proves of a motion of panels, and of its first contact if asked."""
     if motion.closes is PROVED:
         said = (
             "every vertex closes exactly at all fold angles"
@@ -134,15 +191,15 @@ def _proof_of_panels(motion: PanelMotion, contacts: bool) -> dict[str, Any]:
             else "only folds from border to border turn, and they may turn by any angle"
         )
         touching = _proved_contact(motion) if contacts else "contacts were found in floats"
-        return {"proved": True, "exists": True, "said": f"{said}; {touching}"}
+        return _Known(True, True, f"{said}; {touching}")
     if motion.exists is PROVED:
         said = "it exists until a fold reaches 180 degrees, and all angles grow"
         if contacts:
             said = f"{said}; {_proved_contact(motion)}; the drawing is computed in"
         else:
             said = f"{said}; the drawing and the contacts are computed in"
-        return {"exists": True, "said": f"{said} floats; {_kept(motion)}"}
-    return {}
+        return _Known(False, True, f"{said} floats; {_kept(motion)}")
+    return _in_floats(motion)
 
 
 def _proved_contact(motion: PanelMotion) -> str:
@@ -157,12 +214,12 @@ def _proved_contact(motion: PanelMotion) -> str:
     return f"its first contact is proved to be between the times {low:.12g} and {high:.12g}"
 
 
-def not_followed(why: str) -> dict[str, Any]:
+def not_followed(why: str) -> Followed:
     """The keys of a way that has no motion."""
     return {"motion": None, "why": why}
 
 
-def branch_way(branch: Branch) -> dict[str, Any]:
+def branch_way(branch: Branch) -> Way:
     """A branch without its motion."""
     try:
         leading = branch.fold_angles.degrees(AMOUNT)
@@ -184,7 +241,7 @@ def branch_way(branch: Branch) -> dict[str, Any]:
 
 def component_way(
     ways: Decomposition, component: PanelComponent, modes: Mapping[int, PanelMode]
-) -> dict[str, Any]:
+) -> Way:
     """A component of the true motions of rigid panels, without its motion."""
     folding = [modes[number] for number in component.modes]
     letters: dict[Edge, str] = {}
@@ -215,7 +272,7 @@ def _shown_by(by: str) -> str:
     return f"its loops of vertices close ({by})"
 
 
-def mode_way(mode: PanelMode, why: str) -> dict[str, Any]:
+def mode_way(mode: PanelMode, why: str) -> Way:
     """A mode that belongs to no component that can be followed, with the reason."""
     verdict = mode.extends.verdict
     said = (
@@ -230,7 +287,7 @@ def mode_way(mode: PanelMode, why: str) -> dict[str, Any]:
         str(verdict),
         f"{said}: {mode.extends.by}",
     )
-    return way | not_followed(why)
+    return {**way, **not_followed(why)}
 
 
 def letters_of(pattern: CreasePattern | PanelPattern, assignment: Mapping[Edge, str]) -> str:
@@ -240,7 +297,7 @@ def letters_of(pattern: CreasePattern | PanelPattern, assignment: Mapping[Edge, 
 
 def _panel_way(
     pattern: PanelPattern, name: str, letters: Mapping[Edge, str], status: str, reason: str
-) -> dict[str, Any]:
+) -> Way:
     return {
         "name": name,
         "signs": "",

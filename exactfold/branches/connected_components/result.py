@@ -5,14 +5,57 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Any
+from typing import Annotated, TypeAlias, TypedDict
 
+from exactfold._support.documents import (
+    FoldText,
+    Keywords,
+    Natural,
+    Pair,
+    Positive,
+    ProvedOrNot,
+    Rational,
+    VertexSigns,
+    VertexText,
+)
 from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.exact.numbers import format_rational
 from exactfold.pattern.crease_pattern import Edge
 from exactfold.solve.certify.box import IsolatingBox
 
 _BY_SIGN = {1: "+", 0: "0", -1: "-"}
+
+Number: TypeAlias = Positive | Annotated[str, Keywords(pattern="^[1-9][0-9]*$")]
+"""Beyond 2^53 as text."""
+
+
+class JointDocument(TypedDict):
+    """A solution with flat stars."""
+
+    vertex_signs: VertexSigns
+    flat: list[Natural]
+    by: Annotated[str, Keywords(enum=["space", "isolated", "regular"])]
+    folds: bool
+    """Whether it is proved to be tangent to true motions with the same flat stars."""
+    densities: dict[FoldText, Pair[Rational]]
+    """Lower and upper bound of fold angle / length by fold, up to a common factor."""
+
+
+class PiecesDocument(TypedDict):
+    """The connected components of the solutions of a sheet with more than four corners."""
+
+    status: ProvedOrNot
+    graphs: Number
+    at_least: Number
+    at_most: Number
+    true_at_most: Number
+    joints: list[JointDocument]
+    never_flat: dict[VertexText, str]
+    """By vertex: why its star is flat in no solution."""
+    complete: list[Natural]
+    open: dict[VertexText, str]
+    """By vertex: why it is not known in which solutions its star is flat."""
+    chord: FoldText | None
 
 
 @dataclass(frozen=True)
@@ -42,7 +85,7 @@ class Joint:
         """The vertices whose stars are flat."""
         return tuple(v for v, sign in self.signs.items() if not sign)
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> JointDocument:
         """The object of this joint in JSON."""
         return {
             "vertex_signs": {str(v): sign for v, sign in self.signs.items()},
@@ -134,7 +177,7 @@ class Pieces:
         """PROVED if the number is known."""
         return PROVED if self.low == self.high else UNDECIDED
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> PiecesDocument:
         """The object of the components in JSON."""
         return {
             "status": str(self.status),

@@ -4,14 +4,63 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass
-from typing import Any
+from typing import Literal, TypedDict
 
+from exactfold._support.documents import (
+    Empty,
+    FieldName,
+    FoldText,
+    Natural,
+    Positive,
+    Several,
+    VertexText,
+)
 from exactfold._support.plurals import agreeing, counted
-from exactfold._support.schemas import headed
 from exactfold.panels.decomposition import groups_of as groups
 from exactfold.panels.stars import stars
-from exactfold.pattern.described import described_panels
+from exactfold.pattern.described import PanelsDocument, described_panels
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
+from exactfold.rigidity.facts import PatternFactsDocument
+
+
+class PanelKeys(TypedDict):
+    """The keys that belong to sheets of panels."""
+
+    panels: Positive
+    field: FieldName
+    flat_folds: list[FoldText]
+    free_folds: list[FoldText]
+    parts: list[Several[Natural]]
+    """Interior vertices that are joined by folds that may fold."""
+
+
+class PanelFactsDocument(PanelKeys):
+    """The facts of a sheet of rigid panels; what belongs to triangulated sheets is null."""
+
+    format: Literal["exactfold info result"]
+    version: Literal[1]
+    pattern: PanelsDocument
+    edges: Natural
+    degrees: dict[VertexText, Natural]
+    triangles: None
+    area: None
+    convex: None
+    straight_boundary_vertices: None
+    chords: None
+    triangulated_triangles: None
+    foldable_vertices: None
+    rigidity_rank: None
+    rigidity_rank_by: None
+    self_stresses: None
+    inertia: None
+    warnings: Empty
+    expected: str
+
+
+class DecomposedFactsDocument(PatternFactsDocument, PanelKeys):
+    """The facts of a triangulated sheet whose motions are decomposed."""
+
+    expected: str
 
 
 @dataclass(frozen=True)
@@ -54,7 +103,7 @@ class PanelFacts:
             "splitting linear spaces, where few enough motions are possible to first order"
         )
 
-    def keys(self) -> dict[str, Any]:
+    def keys(self) -> PanelKeys:
         """The keys of JSON that belong to sheets of panels."""
         return {
             "panels": len(self.pattern.faces),
@@ -64,17 +113,28 @@ class PanelFacts:
             "parts": [list(part) for part in self.parts],
         }
 
-    def to_dict(self, name: str | None = None) -> dict[str, Any]:
+    def to_dict(self, name: str | None = None) -> PanelFactsDocument:
         """The object printed by `exactfold info --json`: `schema("info")`.
 
         What belongs to triangulated sheets is null.
         """
         return {
-            **headed("info"),
+            "format": "exactfold info result",
+            "version": 1,
             "pattern": described_panels(self.pattern, name),
             "edges": len(self.pattern.edges),
             "degrees": {str(v): n for v, n in self.degrees.items()},
-            **dict.fromkeys(_TRIANGULATED),
+            "triangles": None,
+            "area": None,
+            "convex": None,
+            "straight_boundary_vertices": None,
+            "chords": None,
+            "triangulated_triangles": None,
+            "foldable_vertices": None,
+            "rigidity_rank": None,
+            "rigidity_rank_by": None,
+            "self_stresses": None,
+            "inertia": None,
             "warnings": [],
             **self.keys(),
             "expected": self.expected,
@@ -86,12 +146,6 @@ class PanelFacts:
             f"<PanelFacts: {counted(len(self.parts), 'part')}, {counted(len(self.flat), 'fold')} "
             f"{stay} flat, {self.pattern!r}>"
         )
-
-
-_TRIANGULATED = (
-    *("triangles", "area", "convex", "straight_boundary_vertices", "chords", "foldable_vertices"),
-    *("triangulated_triangles", "rigidity_rank", "rigidity_rank_by", "self_stresses", "inertia"),
-)
 
 
 def panel_facts(pattern: PanelPattern) -> PanelFacts:

@@ -6,20 +6,47 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
-from typing import Any
+from typing import Annotated, Literal, TypedDict
 
+from exactfold._support.documents import (
+    Keywords,
+    Pair,
+    Positive,
+    Rational,
+    VerdictText,
+    VertexText,
+)
 from exactfold._support.plurals import counted
 from exactfold._support.progress import Progress
-from exactfold._support.schemas import headed
 from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.branches.counting.find import BranchFinder, Deficits, Rim
 from exactfold.exact.numbers import format_rational
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.described import described
+from exactfold.pattern.described import PatternDocument, described
 from exactfold.pattern.loading import PatternLike, as_pattern
 
 MOST_LISTED = 10
 """Vertices up to which the shapes are found one by one where some may coincide."""
+
+
+class ShapesDocument(TypedDict):
+    """The shapes of a sheet with given angle deficits and a given border."""
+
+    format: Literal["exactfold shapes result"]
+    version: Literal[1]
+    pattern: PatternDocument
+    status: VerdictText
+    reason: str
+    distinct: Positive | None
+    bounds: Pair[Positive]
+    """Numbers between which `distinct` lies."""
+    with_multiplicity: Annotated[int, Keywords(minimum=2)]
+    curvature: dict[VertexText, Rational]
+    """Angle deficits that are not 0, by interior vertex."""
+    rim: dict[VertexText, Rational]
+    """Heights of the border."""
+    signs: list[Annotated[str, Keywords(pattern="^[-+0]+$")]]
+    """Vertex signs of the shapes, if they were found one by one."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -45,10 +72,11 @@ class ShapeCount:
         """The number of different shapes, None where it is not known."""
         return self.bounds[0] if self.status is PROVED else None
 
-    def to_dict(self, name: str | None = None) -> dict[str, Any]:
+    def to_dict(self, name: str | None = None) -> ShapesDocument:
         """The object printed by `exactfold count --curvature --json`: `schema("shapes")`."""
         return {
-            **headed("shapes"),
+            "format": "exactfold shapes result",
+            "version": 1,
             "pattern": described(self.pattern, name),
             "status": str(self.status),
             "reason": self.reason,

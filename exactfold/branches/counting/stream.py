@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import dataclass, field, fields
 from dataclasses import replace as changed
-from typing import Any
+from typing import TYPE_CHECKING, cast
 
-from exactfold._support.plurals import counted
+from exactfold._support.plurals import agreeing, counted
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.branches.certificates.blocks import chamber_counts, claims_line, header_line
@@ -18,7 +19,7 @@ from exactfold.branches.certificates.check import FastChecker
 from exactfold.branches.counting.collect import check_countable, count_branches
 from exactfold.branches.counting.conveyor import Conveyor
 from exactfold.branches.counting.engines import Engine, processes
-from exactfold.branches.counting.open_roots import OpenRoot, Tally, by_limit
+from exactfold.branches.values.blocks import OpenEnd, ProvedBlock
 from exactfold.branches.values.result import BranchCount
 from exactfold.certificates.journal import Journal
 from exactfold.checker.branches.compact import COMPACT
@@ -26,8 +27,27 @@ from exactfold.checker.branches.compact_blocks import CompactSheet
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.loading import PatternLike, as_pattern
 
+if TYPE_CHECKING:
+    from exactfold.branches.values.count_document import StreamDocument, StreamedDocument
+
 HANDED_OVER = 12
 """Most foldable vertices of a pattern with open sign vectors that is also counted otherwise."""
+
+MOST_LISTED = 1000
+"""Most open sign vectors that a run keeps."""
+
+
+@dataclass(frozen=True)
+class OpenRoot:
+    """A sign vector whose branch was not proved, as text over the foldable vertices, and why.
+
+    `limit` has 0 in place of the signs of vertices that look flat at the end of the path: paths
+    with the same `limit` seem to end at one point. Nothing of this is proved.
+    """
+
+    signs: str
+    reason: str
+    limit: str
 
 
 @dataclass(frozen=True, repr=False)
@@ -66,21 +86,25 @@ class StreamedCount(BranchCount):
         """The open roots whose paths seem to meet others, by the sign vector they share there."""
         return by_limit(self.open_roots)
 
-    def to_dict(self, certificate: str | None = None, name: str | None = None) -> dict[str, Any]:
+    def to_dict(self, certificate: str | None = None, name: str | None = None) -> StreamedDocument:
         """The object printed by `exactfold count --stream --json`."""
-        stream = {
+        stream: StreamDocument = {
             "file": self.path,
             "blocks": self.blocks,
             "resumed": self.resumed,
             "unproved": self.unproved,
             "exact": self.exact,
-            "open": [asdict(root) for root in self.open_roots],
+            "open": [
+                {"signs": root.signs, "reason": root.reason, "limit": root.limit}
+                for root in self.open_roots
+            ],
             "groups": {
                 limit: [root.signs for root in group] for limit, group in self.groups.items()
             },
             "cpu_seconds": {name: round(value, 3) for name, value in self.cpu_seconds.items()},
         }
-        return {**super().to_dict(certificate, name), "stream": stream}
+        found = {**super().to_dict(certificate, name), "stream": stream}
+        return cast("StreamedDocument", found)
 
 
 def stream_branches(
@@ -213,3 +237,63 @@ def _handed_over(found: BranchCount, seed: int, progress: Progress | None) -> Br
     if other.status is PROVED:
         return other
     return changed(other, open_questions=(*found.open_questions, *other.open_questions))
+
+
+# --- sign vectors whose branch was not proved: collected, grouped, and put into words ------------
+
+
+def open_root(conveyor: Conveyor, number: int, end: OpenEnd) -> OpenRoot:
+    """The open end of a path by its number."""
+    signs = "".join("+-"[number >> k & 1] for k in range(conveyor.size))
+    limit = "".join("0" if k in end.flat else sign for k, sign in enumerate(signs))
+    return OpenRoot(signs, end.reason, limit)
+
+
+def by_limit(roots: Sequence[OpenRoot]) -> dict[str, list[OpenRoot]]:
+    """The open roots whose paths seem to meet others, by the sign vector they share there."""
+    found: dict[str, list[OpenRoot]] = {}
+    for root in roots:
+        if "0" in root.limit:
+            found.setdefault(root.limit, []).append(root)
+    return found
+
+
+class Tally:
+    """Sums over the blocks of a run; of open roots the first ones are kept."""
+
+    def __init__(self) -> None:
+        self.open_roots: list[OpenRoot] = []
+        self.unproved = self.exact = self.steps = 0
+        self.seconds: Counter[str] = Counter()
+
+    def add(self, conveyor: Conveyor, block: ProvedBlock) -> None:
+        """Count one block."""
+        self.exact += len(block.exact)
+        self.unproved += len(block.open)
+        self.steps += block.steps
+        self.seconds.update(block.seconds)
+        for j, end in block.open.items():
+            if len(self.open_roots) < MOST_LISTED:
+                number = block.index * conveyor.block_size + j
+                self.open_roots.append(open_root(conveyor, number, end))
+
+    def culprits(self, foldable: Sequence[int]) -> str:
+        """What keeps the open sign vectors from being proved; `foldable` names their vertices."""
+        zeros = {k for root in self.open_roots for k, s in enumerate(root.limit) if s == "0"}
+        if not zeros:
+            return "for each other the reason is below"
+        flat = ", ".join(str(foldable[k]) for k in sorted(zeros))
+        noun, verb = agreeing(len(zeros), "vertex"), agreeing(len(zeros), "looks")
+        return f"on the others {noun} {flat} {verb} flat"
+
+    def questions(self) -> Iterator[str]:
+        """Groups of sign vectors that seem to meet, then what is open by itself."""
+        for limit, group in by_limit(self.open_roots).items():
+            signs = ", ".join(root.signs for root in group[:8])
+            more = f" and {len(group) - 8} more" if len(group) > 8 else ""
+            yield f"sign vectors {signs}{more} seem to meet at {limit}: {group[0].reason}"
+        for root in self.open_roots:
+            if "0" not in root.limit:
+                yield f"sign vector {root.signs}: {root.reason}"
+        if (rest := self.unproved - len(self.open_roots)) > 0:
+            yield f"{counted(rest, 'more sign vector')}, not listed"

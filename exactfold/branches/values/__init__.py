@@ -1,1 +1,1 @@
-"""What the solutions mean."""
+"""What a proved solution means: a branch with its signs, letters, heights and fold angles."""

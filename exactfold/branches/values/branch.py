@@ -6,11 +6,23 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar, Literal, TypeAlias, TypedDict
 
+from exactfold._support.documents import (
+    Assignment,
+    Keywords,
+    Natural,
+    NotNegative,
+    NotNegativeRational,
+    Pair,
+    Rational,
+    Sign,
+    VerdictText,
+    VertexSigns,
+    VertexText,
+)
 from exactfold._support.notebook import Picture
 from exactfold._support.results import Certified
-from exactfold._support.schemas import headed
 from exactfold._support.verdict import PROVED, Verdict
 from exactfold.branches.values.angles import FoldAngles, fold_angles
 from exactfold.branches.values.letters import SIGNS, UPSIDE_DOWN
@@ -18,11 +30,56 @@ from exactfold.branches.values.roots import AlgebraicRoot, BoxRoot, EnclosedRoot
 from exactfold.errors import NotApplicableError
 from exactfold.exact.numbers import format_rational
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
-from exactfold.pattern.described import described
-from exactfold.pattern.near_degeneracy import warnings
+from exactfold.pattern.described import PatternDocument, described
+from exactfold.pattern.near_degeneracy import WarningDocument, warnings
 
 Row = tuple[Fraction, ...]
 Bounds = tuple[Fraction, Fraction]
+
+GaugeText: TypeAlias = Annotated[str, Keywords(enum=["saddle", "notch", "corner", "rim"])]
+
+
+class ListedBranch(TypedDict):
+    """A branch as a count lists it."""
+
+    vertex_signs: VertexSigns
+    """By interior vertex: 1 up, -1 down, 0 flat."""
+    assignment: Assignment
+    """By fold i-j: mountain, valley, flat, undecided; seen from +z."""
+    # Any, as an undecided branch has None; no count lists one.
+    multiplicity: Annotated[Any, Keywords(type="integer", minimum=1)]
+    """That of the solution of the branch system."""
+    representative: Annotated[str, Keywords(enum=["saddle", "either"])]
+    heights: dict[VertexText, Pair[Rational]]
+    """Lower and upper bound by vertex."""
+
+
+class BranchDocument(TypedDict):
+    """A branch that was asked for by its signs."""
+
+    format: Literal["exactfold branch result"]
+    version: Literal[1]
+    pattern: PatternDocument
+    status: VerdictText
+    reason: str
+    vertex_signs: VertexSigns
+    """By interior vertex: 1 up, -1 down, 0 flat."""
+    undecided_vertices: list[Natural]
+    assignment: Assignment
+    """By fold i-j: mountain, valley, flat, undecided; seen from +z."""
+    gauge: GaugeText
+    """What of the heights is given."""
+    curvature: dict[VertexText, NotNegativeRational]
+    """Angle deficits that are not 0, by interior vertex."""
+    straight_border: list[Natural]
+    """With the gauge "rim": border vertices on a straight side."""
+    saddle: Sign
+    centres: dict[VertexText, Rational]
+    radius: Rational | None
+    squared_distance: Rational | None
+    steps: Natural
+    warnings: list[WarningDocument]
+    seconds: NotNegative
 
 
 @dataclass(frozen=True, repr=False)
@@ -231,7 +288,7 @@ class Branch(Picture, Certified):
         """
         return [self.vertex_signs[v] for v in sorted(self.vertex_signs)], self.assignment_text
 
-    def to_dict(self) -> dict[str, Any]:
+    def entry(self) -> ListedBranch:
         """The object of the branch in the list of `exactfold count --json`."""
         return {
             "vertex_signs": {str(v): s for v, s in sorted(self.vertex_signs.items())},
@@ -244,11 +301,12 @@ class Branch(Picture, Certified):
             },
         }
 
-    def report(self, name: str | None = None) -> dict[str, Any]:
+    def to_dict(self, name: str | None = None) -> BranchDocument:
         """The object printed by `exactfold branch --json`: `schema("branch")`."""
         radius, squared = self.radius, self.squared_distance
         return {
-            **headed("branch"),
+            "format": "exactfold branch result",
+            "version": 1,
             "pattern": described(self.pattern, name),
             "status": str(self.status),
             "reason": self.reason,

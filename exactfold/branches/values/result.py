@@ -7,12 +7,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Final, overload
+from typing import TYPE_CHECKING, ClassVar, overload
 
 from exactfold._support.notebook import Page
 from exactfold._support.plurals import counted
 from exactfold._support.results import Certified, Ways
-from exactfold._support.schemas import headed
 from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.letters import UPSIDE_DOWN, differing
@@ -26,10 +25,15 @@ from exactfold.solve.certify.algebraic import AlgebraicProof
 
 if TYPE_CHECKING:  # counting branches does not load what panels need
     from exactfold.branches.connected_components.result import Pieces
-    from exactfold.panels.result import Decomposition
-
-
-_LISTS: Final = ("modes", "flat_folds", "still_folds", "free_folds", "near_misses")
+    from exactfold.branches.values.count_document import (
+        BranchCountDocument,
+        BranchCountKeys,
+        LetteredDocument,
+        LetteredWay,
+        Power,
+    )
+    from exactfold.panels.result import Decomposition, MotionKeys
+    from exactfold.pattern.opening import ReadDocument
 
 
 @dataclass(frozen=True)
@@ -64,9 +68,9 @@ class Lettered:
     ways: tuple[tuple[int, int], ...]
     unclear: tuple[tuple[int, int], ...] = ()
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> LetteredDocument:
         """The key `letters` of `exactfold count --json`."""
-        ways = [{"way": way, "side": side} for way, side in self.ways]
+        ways: list[LetteredWay] = [{"way": way, "side": side} for way, side in self.ways]
         return {"status": str(self.status), "ways": ways}
 
 
@@ -114,7 +118,7 @@ class BranchCount(Page, Ways[Branch], Certified):
     proof: Proof | None = None
     settings: Mapping[str, int | str] = field(default_factory=dict)
     snapped: Fraction = Fraction(0)
-    read: Mapping[str, Any] | None = None
+    read: ReadDocument | None = None
     letters: Mapping[Edge, str] = field(default_factory=dict)
     pieces: Pieces | None = None
     families: Decomposition | None = None
@@ -191,48 +195,92 @@ class BranchCount(Page, Ways[Branch], Certified):
         proved = self.status is PROVED and not unclear
         return Lettered(PROVED if proved else UNDECIDED, tuple(found), tuple(unclear))
 
-    def to_dict(self, certificate: str | None = None, name: str | None = None) -> dict[str, Any]:
-        """The object printed by `exactfold count --json`: `schema("count")`."""
+    def to_dict(
+        self, certificate: str | None = None, name: str | None = None
+    ) -> BranchCountDocument:
+        """The object printed by `exactfold count --json`: `schema("count")`.
+
+        Raises `ArithmeticError` for a count that is proved and lacks numbers, which is a defect.
+        """
+        keys, many = self._keys(certificate, name), self.with_multiplicity
+        pieces = None if self.pieces is None else self.pieces.to_dict()
+        if self.status is not PROVED:
+            return {
+                **keys,
+                "status": "undecided",
+                "by": "theorem" if self.method == "theorem" else None,
+                "method": self.method,
+                "distinct": None,
+                "with_multiplicity": None if many is None else _number(many),
+                "real": None,
+                "nonreal": self.nonreal,
+                "pieces": pieces,
+            }
+        if self.method == "theorem" and pieces is not None:
+            return {
+                **keys,
+                "status": "proved",
+                "by": "theorem",
+                "method": "theorem",
+                "distinct": None,
+                "with_multiplicity": None if many is None else _number(many),
+                "real": None,
+                "nonreal": self.nonreal,
+                "pieces": pieces,
+            }
+        if self.distinct is None or many is None or self.real is None or self.nonreal is None:
+            raise ArithmeticError("numbers are missing from a count that is proved")
         return {
-            **headed("count"),
-            "pattern": described(self.pattern, name, self.snapped),
-            "status": str(self.status),
-            "reason": self.reason,
-            "by": self.by,
+            **keys,
+            "status": "proved",
+            "by": "enumeration",
             "method": self.method,
-            "why": self.why,
             "distinct": self.distinct,
-            "with_multiplicity": _number(self.with_multiplicity),
+            "with_multiplicity": _number(many),
             "real": self.real,
             "nonreal": self.nonreal,
+            "pieces": pieces,
+        }
+
+    def _keys(self, certificate: str | None, name: str | None) -> BranchCountKeys:
+        bounds = self.true_bounds
+        return {
+            "format": "exactfold count result",
+            "version": 1,
+            "pattern": described(self.pattern, name, self.snapped),
+            "reason": self.reason,
+            "why": self.why,
             "true_branches": str(self.true_branches),
-            "true_bounds": self._true_bounds(),
+            "true_bounds": None if bounds is None else [_number(x) for x in bounds],
             "dimension": self.dimension,
-            "degree": _number(self.degree),
+            "degree": None if self.degree is None else _number(self.degree),
             "certificate": certificate,
             "warnings": warnings(self.pattern),
             "seconds": round(self.seconds, 3),
             "open_questions": list(self.open_questions),
             "settings": dict(self.settings),
-            "branches": [branch.to_dict() for branch in self.branches],
+            "branches": [branch.entry() for branch in self.branches],
             "theory": "branches",
             "letters": None if self.lettered is None else self.lettered.to_dict(),
             "rigid": self.distinct == 0 if self.status is PROVED else None,
             "exceptional_vertices": list(self.exceptional_vertices),
+            "read": self.read,
             **self._families(),
-            "pieces": None if self.pieces is None else self.pieces.to_dict(),
-            "read": None if self.read is None else dict(self.read),
         }
 
-    def _true_bounds(self) -> list[int | str | None] | None:
-        return None if self.true_bounds is None else [_number(x) for x in self.true_bounds]
-
-    def _families(self) -> dict[str, Any]:
+    def _families(self) -> MotionKeys:
         """The keys of the JSON output that belong to irreducible components."""
         if self.families is not None:
-            found = self.families.to_dict()
-            return {key: found[key] for key in ("components", "modes_count", *_LISTS)}
-        return {**dict.fromkeys(("components", "modes_count")), **{key: [] for key in _LISTS}}
+            return self.families.keys()
+        return {
+            "components": None,
+            "modes_count": None,
+            "modes": [],
+            "flat_folds": [],
+            "still_folds": [],
+            "free_folds": [],
+            "near_misses": [],
+        }
 
     @property
     def exceptional_vertices(self) -> tuple[int, ...]:
@@ -294,8 +342,8 @@ class BranchCount(Page, Ways[Branch], Certified):
         )
 
 
-def _number(value: int | None) -> int | str | None:
+def _number(value: int) -> Power:
     """A number of solutions for JSON; a power of two if some programs could not read it exactly."""
-    if value is None or value < 1 << 53:
+    if value < 1 << 53:
         return value
     return f"2^{value.bit_length() - 1}"

@@ -6,11 +6,23 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
-from typing import Any
+from typing import Literal, TypedDict
 
 import numpy as np
 
-from exactfold._support.schemas import headed
+from exactfold._support.documents import (
+    Assignment,
+    FoldText,
+    Natural,
+    NotNegative,
+    Pair,
+    Positive,
+    Rational,
+    Sign,
+    SignsText,
+    VerdictText,
+    VertexSigns,
+)
 from exactfold._support.verdict import Verdict
 from exactfold.branches.values.branch import Branch
 from exactfold.design.actuation.directions import Directions
@@ -19,8 +31,8 @@ from exactfold.design.actuation.powers import Powers
 from exactfold.errors import UsageError
 from exactfold.exact.numbers import RationalLike, as_rational, format_rational
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
-from exactfold.pattern.described import described
-from exactfold.pattern.near_degeneracy import warnings
+from exactfold.pattern.described import PatternDocument, described
+from exactfold.pattern.near_degeneracy import WarningDocument, warnings
 
 Bounds = tuple[Fraction, Fraction]
 
@@ -39,6 +51,63 @@ def outward(bounds: Bounds) -> Bounds:
     return Fraction(low * scale // 1, scale), Fraction(-(-high * scale // 1), scale)
 
 
+class RankedDocument(TypedDict):
+    """One branch in a ranking by power."""
+
+    signs: SignsText
+    ray: Sign
+    """Which of the two rays has the larger power: 1 as listed, -1 the opposite one, 0 not known."""
+    power: Pair[Rational]
+    """Bounds of the power along the stronger ray."""
+    above_next: bool
+    """Proved to exceed all that follow."""
+
+
+class OrthogonalDocument(TypedDict):
+    """Torques that do work on one branch only, as nearly as they were found."""
+
+    torques: dict[FoldText, Rational]
+    """By fold i-j."""
+    share: Rational
+    """The largest power on another branch is at most this share."""
+
+
+class ActuationDocument(TypedDict):
+    """Torques for one branch, and what is proved of them."""
+
+    format: Literal["exactfold actuate result"]
+    version: Literal[1]
+    pattern: PatternDocument
+    status: VerdictText
+    reason: str
+    vertex_signs: VertexSigns
+    """By interior vertex, on the ray that is driven: 1 up, -1 down, 0 flat."""
+    assignment: Assignment
+    """By fold i-j: mountain, valley, flat, undecided; seen from +z."""
+    torques: dict[FoldText, Rational]
+    """By fold i-j; positive towards a valley."""
+    given: bool
+    """Whether the torques were given, and not found."""
+    creases: Positive | None
+    """The most creases that may be driven."""
+    margin: Pair[Rational]
+    """Bounds of the power on the branch less the largest on any other ray."""
+    best: Rational
+    """No torques that are allowed have a larger margin."""
+    power: Pair[Rational]
+    """Bounds of the power along the ray of the branch."""
+    largest_rival: Pair[Rational]
+    """Bounds of the largest power along another ray."""
+    orthogonal_dimension: Pair[Natural]
+    """Bounds of the dimension of the torques that do no work on any other branch."""
+    independent: list[SignsText]
+    """Other branches that are proved to be linearly independent, by their vertex signs."""
+    orthogonal: OrthogonalDocument | None
+    ranking: list[RankedDocument]
+    warnings: list[WarningDocument]
+    seconds: NotNegative
+
+
 @dataclass(frozen=True)
 class Ranked:
     """One branch in a ranking by power.
@@ -54,7 +123,7 @@ class Ranked:
     power: Bounds
     above_next: bool
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> RankedDocument:
         """The object of this branch in `ranking` of the JSON output."""
         return {
             "signs": self.signs,
@@ -151,12 +220,13 @@ class Actuation:
     def _powers(self, torques: Mapping[Edge, Fraction]) -> Powers:
         return Powers.of(self.directions, [torques[fold] for fold in self.directions.folds])
 
-    def to_dict(self, name: str | None = None) -> dict[str, Any]:
+    def to_dict(self, name: str | None = None) -> ActuationDocument:
         """The object printed by `exactfold actuate --json`: `schema("actuate")`."""
         low, high = self.orthogonal_dimension
         orthogonal = self.orthogonal
         return {
-            **headed("actuate"),
+            "format": "exactfold actuate result",
+            "version": 1,
             "pattern": described(self.pattern, name),
             "status": str(self.status),
             "reason": self.reason,

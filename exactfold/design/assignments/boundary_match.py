@@ -4,22 +4,22 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
 from typing import Final
 
 from exactfold._support.progress import Progress
-from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
+from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED
 from exactfold.branches.counting.find import find_branch
 from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.letters import differing
 from exactfold.design.assignments.bend_program import BendProgram
+from exactfold.design.assignments.boundary_result import RimMatch
 from exactfold.design.assignments.boundary_search import RimSearch
 from exactfold.design.circles.circles import all_assignments
 from exactfold.design.refutations.asked import by_fold
-from exactfold.design.refutations.refutation import Letters, Refutation
-from exactfold.design.refutations.sign_tree import SignSearch, Tree
+from exactfold.design.refutations.refutation import Letters
+from exactfold.design.refutations.sign_tree import SignSearch
 from exactfold.errors import NotCountedError
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.loading import PatternLike, as_pattern
@@ -28,52 +28,6 @@ _MOST_LISTED: Final = 4
 """If no boundary heights are found, the assignments of a pentagon with up to this many foldable
 vertices are listed.
 """
-
-
-@dataclass(frozen=True, repr=False)
-class RimMatch:
-    """Whether a sheet with more than four corners starts to fold with given letters.
-
-    `starts` is PROVED if `branch` has the letters; its boundary heights are `Branch.rim`. `starts`
-    is REFUTED if no solution has the letters. Then `tree` covers all signs of the vertices by
-    refuted sets of signs: `refutations` are those refuted by vectors, and `reasons` explains those
-    that need no vectors. If `listed` is true, the complete list of `all_assignments` settles some
-    of the signs instead. `starts` is UNDECIDED if neither was shown for the signs in `open_signs`.
-
-    `sheet` is the pattern without the folds and vertices inside triangulated triangles; its vertex
-    v is vertex `labels[v]` of the pattern. `leaves` counts the sign vectors for which boundary
-    heights were searched for.
-    """
-
-    pattern: CreasePattern
-    letters: Letters
-    starts: Verdict
-    branch: Branch | None
-    sheet: CreasePattern
-    labels: tuple[int, ...]
-    reasons: tuple[str, ...]
-    open_signs: tuple[Mapping[int, int], ...]
-    tree: Tree[Branch | None]
-    listed: bool = False
-    seconds: float = field(default=0.0, compare=False)
-
-    @property
-    def status(self) -> Verdict:
-        """PROVED if the question is answered, whatever the answer; else UNDECIDED."""
-        return UNDECIDED if self.starts is UNDECIDED else PROVED
-
-    @property
-    def refutations(self) -> tuple[Refutation, ...]:
-        """The refutations by vectors that the tree uses."""
-        return self.tree.refutations
-
-    @property
-    def leaves(self) -> int:
-        """The number of sign vectors for which boundary heights were searched for."""
-        return len(self.tree.leaves)
-
-    def __repr__(self) -> str:
-        return f"<RimMatch: starts {self.starts}, {self.leaves} sign vectors, {self.pattern!r}>"
 
 
 def match_rim(

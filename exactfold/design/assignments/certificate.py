@@ -8,8 +8,8 @@ from exactfold._support.verdict import PROVED
 from exactfold.branches.certificates.single import branch_certificate, heights_evidence
 from exactfold.certificates.entries import Document, emptied_evidence, pattern_document
 from exactfold.checker.letters.letters import LETTERS, LettersClaims
-from exactfold.design.assignments.boundary_match import RimMatch
-from exactfold.design.assignments.search import Match, Matched
+from exactfold.design.assignments.boundary_result import RimMatch
+from exactfold.design.assignments.result import Match, Matched
 from exactfold.design.circles.certificate import assignments_certificate
 from exactfold.design.circles.circles import all_assignments
 from exactfold.design.panels.certificate import starting_certificate

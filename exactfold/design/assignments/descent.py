@@ -11,7 +11,7 @@ from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED
 from exactfold.branches.counting.find import BranchFinder
 from exactfold.branches.values.letters import differing
-from exactfold.design.assignments.search import Matched
+from exactfold.design.assignments.result import Matched
 from exactfold.design.refutations.refutation import Letters
 from exactfold.pattern.crease_pattern import CreasePattern
 

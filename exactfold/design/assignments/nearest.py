@@ -19,7 +19,9 @@ from exactfold.design.assignments.conflicts import (
     to_blame,
 )
 from exactfold.design.assignments.descent import Descent
-from exactfold.design.assignments.search import Match, Matched, match
+from exactfold.design.assignments.result import Match, Matched, NearestDocument
+from exactfold.design.assignments.search import match
+from exactfold.design.assignments.why import fold_text
 from exactfold.pattern.crease_pattern import Edge
 
 LISTED = 12
@@ -31,7 +33,7 @@ the least number for any sheet.
 _FINDS = 6
 """The number of branches that are found one by one, for each of the searches."""
 _LOCAL = 10
-"""This many sets of folds that single stars refute take the time of one full search."""
+"""Refuting this many sets of folds by single stars takes about the time of one full search."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -59,6 +61,26 @@ class Nearest:
         letters = half.assignment
         wanted = self.match.letters
         return {f: (wanted[f], letters[f]) for f in differing(wanted, letters)[0]}
+
+    def to_dict(self) -> NearestDocument:
+        """The key `nearest` of the JSON of a match."""
+        return {
+            "status": str(self.status),
+            "distance": self.distance,
+            "at_least": self.at_least,
+            "complete": self.complete,
+            "by": self.by,
+            "branches": [
+                {
+                    **half.to_dict(),
+                    "differences": [
+                        {"fold": fold_text(fold), "wanted": wanted, "actual": actual}
+                        for fold, (wanted, actual) in sorted(self.differences(half).items())
+                    ],
+                }
+                for half in self.halves
+            ],
+        }
 
     def __repr__(self) -> str:
         far = "none found" if self.distance is None else f"distance {self.distance}"

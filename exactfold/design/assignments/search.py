@@ -3,91 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cached_property
 
-from exactfold._support.notebook import Page
 from exactfold._support.progress import Progress
-from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
+from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.branches.counting.find import BranchFinder
-from exactfold.branches.values.branch import Branch
-from exactfold.branches.values.letters import SIGNS, UPSIDE_DOWN, differing
+from exactfold.branches.values.letters import differing
+from exactfold.design.assignments.result import Compared, Match, Matched
 from exactfold.design.refutations.asked import by_fold
 from exactfold.design.refutations.cone_program import ConeProgram
-from exactfold.design.refutations.refutation import Letters, Refutation
-from exactfold.design.refutations.sign_tree import SignSearch, Tree
+from exactfold.design.refutations.sign_tree import SignSearch
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.loading import PatternLike, as_pattern
-
-
-@dataclass(frozen=True, repr=False)
-class Matched:
-    """A ray with the letters asked for: one of the two halves of a branch, seen from +z.
-
-    If `side` is 1, its heights are those of `branch`. If `side` is -1, its heights, signs and
-    letters are the opposite ones. `vertex_signs` and `assignment` are those of this ray.
-    """
-
-    branch: Branch
-    side: int
-
-    @property
-    def vertex_signs(self) -> dict[int, int]:
-        """The signs of this ray, by interior vertex."""
-        return {v: self.side * sign for v, sign in self.branch.vertex_signs.items()}
-
-    @property
-    def assignment(self) -> dict[Edge, str]:
-        """The letters of this ray, by fold."""
-        turn = UPSIDE_DOWN if self.side < 0 else {}
-        return {fold: letter.translate(turn) for fold, letter in self.branch.assignment.items()}
-
-    @property
-    def sign_text(self) -> str:
-        """The vertex signs of this ray in the order of the vertices."""
-        return "".join(SIGNS[sign] for _, sign in sorted(self.vertex_signs.items()))
-
-    @property
-    def names(self) -> tuple[str, int]:
-        """The vertex signs and the side; no other ray has the same pair."""
-        return self.sign_text, self.side
-
-    def __repr__(self) -> str:
-        return f"<Matched: {self.sign_text}, side {self.side}>"
-
-
-Compared = tuple[Mapping[int, int], tuple[Matched, Matched]]
-"""Signs by vertex of the pattern, and the two rays with these signs."""
-
-
-@dataclass(frozen=True, repr=False)
-class Match(Page):
-    """Which rays (halves of branches) have given letters.
-
-    If `status` is PROVED, `matches` are all such rays. Otherwise there may be more: `open_signs`
-    are the signs for which not both rays were decided. `refutations` show for which signs there is
-    no such ray, each by vectors in the nappes of `sheet`. `reasons` are the refutations that need
-    no vectors. `sheet` is the pattern without the folds and vertices inside triangulated triangles;
-    its vertex v is vertex `labels[v]` of the pattern. `leaves` is the number of sign vectors that
-    were not refuted; for each of them both rays were found and compared, and `compared` holds them.
-    `tree` holds all of this in the order of the search, and `match_certificate` writes it.
-    """
-
-    pattern: CreasePattern
-    letters: Letters
-    status: Verdict
-    matches: tuple[Matched, ...]
-    sheet: CreasePattern
-    labels: tuple[int, ...]
-    refutations: tuple[Refutation, ...]
-    reasons: tuple[str, ...]
-    open_signs: tuple[Mapping[int, int], ...]
-    leaves: int
-    tree: Tree[Compared]
-    compared: tuple[Compared, ...] = ()
-
-    def __repr__(self) -> str:
-        return f"<Match: {self.status}, {len(self.matches)} halves, {self.leaves} sign vectors>"
 
 
 def match(

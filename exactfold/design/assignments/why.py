@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from exactfold.design.assignments.boundary_match import RimMatch
-from exactfold.design.assignments.search import Match
-from exactfold.design.refutations.refutation import refuted_at
+from typing import Protocol
+
+from exactfold.design.refutations.refutation import Letters, refuted_at
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 
 _NAMES = {"M": "mountain", "V": "valley"}
@@ -12,7 +12,32 @@ _NAMED = 8
 """Up to this many folds are named; more are only counted."""
 
 
-def vertex_conflicts(found: Match | RimMatch) -> dict[int, str]:
+class Asked(Protocol):
+    """What is needed of a match."""
+
+    @property
+    def letters(self) -> Letters:
+        """The letter of every fold of the pattern."""
+
+    @property
+    def sheet(self) -> CreasePattern:
+        """The pattern without what lies in triangulated triangles."""
+
+    @property
+    def labels(self) -> tuple[int, ...]:
+        """For each vertex of `sheet` its number in the pattern."""
+
+
+def fold_text(fold: Edge) -> str:
+    """A fold as it is printed.
+
+    >>> fold_text((4, 7))
+    '4-7'
+    """
+    return f"{fold[0]}-{fold[1]}"
+
+
+def vertex_conflicts(found: Asked) -> dict[int, str]:
     """For each vertex that its letters keep from popping: why it can pop neither up nor down.
 
     A vertex pops up only if it has a valley, and its mountains and free folds do not all lie in one

@@ -5,17 +5,24 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Annotated, ClassVar, Literal, TypeAlias, TypedDict
 
+from exactfold._support.documents import (
+    FoldText,
+    Keywords,
+    Natural,
+    Rational,
+    VerdictText,
+    VertexText,
+)
 from exactfold._support.results import Certified
-from exactfold._support.schemas import headed
 from exactfold._support.verdict import Verdict
 from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.letters import UPSIDE_DOWN
 from exactfold.design.circles.covering import Covering
 from exactfold.exact.numbers import format_rational
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
-from exactfold.pattern.described import described
+from exactfold.pattern.described import PatternDocument, described
 
 
 @dataclass(frozen=True)
@@ -69,6 +76,46 @@ class Circle:
         return f"<Circle {self.signs}: {len(self.arcs)} arcs>"
 
 
+_Letters: TypeAlias = Annotated[str, Keywords(pattern="^[MVF]*$")]
+
+
+class ArcDocument(TypedDict):
+    """A part of a circle on which no fold is flat."""
+
+    letters: _Letters
+    rim: dict[VertexText, Rational]
+
+
+class CrossingDocument(TypedDict):
+    """A point of a circle at which folds are flat."""
+
+    folds: list[FoldText]
+    vertices: list[Natural]
+
+
+class CircleDocument(TypedDict):
+    """The solutions with one sign vector."""
+
+    signs: Annotated[str, Keywords(pattern="^[+-]+$")]
+    arcs: list[ArcDocument]
+    crossings: list[CrossingDocument]
+    """crossings[k] lies behind arcs[k-1] and before arcs[k]."""
+
+
+class AssignmentsDocument(TypedDict):
+    """All mountain-valley assignments of a sheet."""
+
+    format: Literal["exactfold assignments result"]
+    version: Literal[1]
+    pattern: PatternDocument
+    status: VerdictText
+    reason: str
+    number: Natural
+    assignments: list[_Letters]
+    """Letters in the order of the folds."""
+    circles: list[CircleDocument]
+
+
 @dataclass(frozen=True, repr=False)
 class AllAssignments(Certified):
     """The mountain-valley assignments that occur; the list is complete if `status` is PROVED.
@@ -96,10 +143,11 @@ class AllAssignments(Certified):
             return self.points.assignments
         return tuple(sorted({arc.letters for circle in self.circles for arc in circle.arcs}))
 
-    def to_dict(self, name: str | None = None) -> dict[str, Any]:
+    def to_dict(self, name: str | None = None) -> AssignmentsDocument:
         """The object printed by `exactfold assignments --json`: `schema("assignments")`."""
         return {
-            **headed("assignments"),
+            "format": "exactfold assignments result",
+            "version": 1,
             "pattern": described(self.pattern, name),
             "status": str(self.status),
             "reason": self.reason,

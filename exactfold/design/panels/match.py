@@ -5,12 +5,23 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar, Literal, TypedDict
 
+from exactfold._support.documents import (
+    Assignment,
+    FoldText,
+    Keywords,
+    Natural,
+    NotNegative,
+    ProvedOrNot,
+    Rational,
+    VerdictText,
+    VertexSigns,
+    VertexText,
+)
 from exactfold._support.plurals import agreeing, counted
 from exactfold._support.progress import Progress
 from exactfold._support.results import Certified
-from exactfold._support.schemas import headed
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.design.panels.parts import PartAnswer, answered
 from exactfold.design.panels.refutation import PanelRefutation, held
@@ -20,10 +31,59 @@ from exactfold.design.refutations.refutation import Letters
 from exactfold.panels.decomposition import groups_of
 from exactfold.panels.stars import Star, stars
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.described import described_panels
+from exactfold.pattern.described import PanelsDocument, described_panels
 from exactfold.pattern.loading import PatternLike, open_sheet
 from exactfold.pattern.opening import panels
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
+
+
+class StartingMotion(TypedDict):
+    """A motion with the letters that were asked for."""
+
+    assignment: Assignment
+    """By fold i-j, seen from +z."""
+    densities: dict[FoldText, float]
+    """Fold angle / length, nearly, up to a factor."""
+
+
+class StartingBranch(StartingMotion):
+    """A branch of a triangulated sheet with more than four corners that has the letters."""
+
+    vertex_signs: VertexSigns
+    rim: dict[VertexText, Rational]
+    """Heights of the border of the branch, by vertex."""
+
+
+class StartingDocument(TypedDict):
+    """Whether a sheet starts to fold with given letters."""
+
+    format: Literal["exactfold starting result"]
+    version: Literal[1]
+    pattern: PanelsDocument
+    status: ProvedOrNot
+    """Proved: `starts` is proved or refuted."""
+    starts: VerdictText
+    """Whether there is a motion to second order with these letters."""
+    truly: VerdictText
+    """Whether true motions of the panels begin with these letters."""
+    letters: Assignment
+    """Asked for, by fold i-j: mountain, valley, flat, free."""
+    matches: Annotated[list[StartingMotion] | list[StartingBranch], Keywords(maxItems=1)]
+    """One motion with these letters, if the sheet starts to fold."""
+    ways: Natural | None
+    """How many sets of signs of all folds the motions with these letters have; null if it is not
+    known."""
+    reasons: list[str]
+    together: list[str] | None
+    """Folds that can go their way together to first order where none goes against its letter,
+    proved; null if the sheet starts to fold, is too large, or is triangulated with more than four
+    corners."""
+    never: list[str] | None
+    """Folds that stay flat to first order wherever none goes against its letter, proved; null if
+    the sheet starts to fold, or is too large."""
+    vertices: list[Natural]
+    """Named in the reasons."""
+    seconds: NotNegative
 
 
 @dataclass(frozen=True, repr=False)
@@ -87,16 +147,17 @@ class PanelMatch(Certified):
         }
         return (answer[self.starts], *self.reasons)
 
-    def to_dict(self, name: str | None = None) -> dict[str, Any]:
+    def to_dict(self, name: str | None = None) -> StartingDocument:
         """The object that `exactfold match --json` prints: `schema("starting")`."""
         names = {fold: f"{fold[0]}-{fold[1]}" for fold in self.pattern.folds}
-        match = {
+        match: StartingMotion = {
             "assignment": {names[e]: letter for e, letter in self.assignment.items()},
             "densities": {names[e]: x for e, x in self.densities.items()},
         }
         first = self.first_order
         return {
-            **headed("starting"),
+            "format": "exactfold starting result",
+            "version": 1,
             "pattern": described_panels(self.pattern, name),
             "status": str(self.status),
             "starts": str(self.starts),

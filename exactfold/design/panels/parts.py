@@ -27,7 +27,7 @@ _MOST_CELLS: Final = 64
 
 @dataclass(frozen=True)
 class PartAnswer:
-    """Whether a part starts to fold with its letters, whether a finite flex does, and why.
+    """Whether a part starts to fold with its letters, whether a finite motion starts so, and why.
 
     `starts` is about motions to second order, and `truly` about true motions of the panels. `ways`
     is the number of cells with these letters, or None if it is not known. `densities` is one such

@@ -83,8 +83,10 @@ def refuted_side(star: Star, letters: Letters, side: int) -> PanelRefutation | s
 
 
 def _normals(star: Star) -> Iterator[Point]:
-    """Normals of the lines along the folds; every closed half-plane can be turned to one
-    of these.
+    """Normals of the lines along the folds, in both directions.
+
+    They stand for all closed half-planes: each of them can be turned until a fold lies on its
+    boundary.
     """
     for x, y in star.directions:
         yield -y, x

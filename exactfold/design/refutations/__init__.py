@@ -1,1 +1,1 @@
-"""Why no branch with some vertex signs has given letters: what every search of letters shares."""
+"""Why no branch with given vertex signs has given letters: the parts that all searches share."""

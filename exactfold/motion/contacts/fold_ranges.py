@@ -26,10 +26,12 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from math import ceil, floor
+from typing import TypedDict
 
 import numpy as np
 
 from exactfold._support.arrays import BoolArray, FloatArray, IndexArray, cross
+from exactfold._support.documents import Fold, Pair
 from exactfold.exact.surds import float_bounds
 from exactfold.motion.contacts.separation import Swept
 from exactfold.motion.curves.framework import Framework
@@ -53,6 +55,16 @@ _MOST_NUMBERS = 2**20
 _MICRO = 10**6
 
 
+class FoldRangeDocument(TypedDict):
+    """The extreme angles of a fold on a loop."""
+
+    fold: Fold
+    least: Pair[float]
+    """Proved bounds of the least angle, in degrees."""
+    greatest: Pair[float]
+    """Proved bounds of the greatest angle, in degrees."""
+
+
 @dataclass(frozen=True, repr=False)
 class FoldRange:
     """How the angle of a fold changes along a loop, followed continuously from 0 in the flat state.
@@ -66,7 +78,7 @@ class FoldRange:
     least: Interval
     greatest: Interval
 
-    def to_dict(self) -> dict[str, object]:
+    def to_dict(self) -> FoldRangeDocument:
         """The range in the JSON output of `exactfold motions --json`."""
         return {
             "fold": list(self.fold),

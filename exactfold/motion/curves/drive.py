@@ -6,7 +6,9 @@ from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import atan2, copysign, cos, degrees, gcd, prod, radians, sqrt
+from typing import TypeAlias, TypedDict
 
+from exactfold._support.documents import Degrees, FoldText, Rational
 from exactfold.errors import BadDriveError
 from exactfold.exact.numbers import format_rational, integer_row
 from exactfold.motion.claims import Claim
@@ -14,6 +16,18 @@ from exactfold.motion.curves.coupling import NO_COUPLING, Coupling
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 
 _DENOMINATOR = 10**12
+
+
+class GoalDocument(TypedDict):
+    """The angle to which a fold is driven."""
+
+    angle: Degrees
+    """Positive for a valley."""
+    square: Rational
+    """sin^2 of half this angle, exactly, with the sign of the angle."""
+
+
+Goals: TypeAlias = dict[FoldText, GoalDocument]
 
 
 @dataclass(frozen=True)
@@ -75,7 +89,7 @@ class Drive:
         pairs = zip(self.folds, self.sines, strict=True)
         return ", ".join(f"{fold_text(fold)} {sine / largest:.4g}" for fold, sine in pairs)
 
-    def to_dict(self) -> dict[str, dict[str, object]]:
+    def to_dict(self) -> Goals:
         """By fold: its goal in degrees, and its exact square."""
         return {
             fold_text(fold): {"angle": angle, "square": format_rational(q)}

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from typing import Annotated, TypedDict
 
 import numpy as np
 
 from exactfold._support.arrays import FloatArray
+from exactfold._support.documents import Face, FoldText, Keywords, Natural, NotNegative, Pair
 from exactfold.motion.curves.angles import angle_rates, fold_angles_of
 from exactfold.motion.curves.crossing_curves import crossing_in, flat_star_in, flat_vertices
 from exactfold.motion.curves.crossings import Crossings
@@ -31,6 +33,27 @@ _STILL = 1e-9
 _HINGE = np.arange(4)[None]
 
 
+class EventDocument(TypedDict):
+    """Something that happens between two times of a motion."""
+
+    kind: Annotated[
+        str,
+        Keywords(
+            enum=[
+                *(CONTACT, FLAT_FOLD, TURNING, NODE, SINGULAR, RETURN),
+                *(ANGLE, DRIVEN, DEAD_POINT),
+            ]
+        ),
+    ]
+    time: Pair[NotNegative]
+    """Lower and upper bound, in floating point."""
+    faces: list[Face]
+    """By their corners."""
+    folds: list[FoldText]
+    vertices: list[Natural]
+    detail: str
+
+
 @dataclass(frozen=True)
 class Event:
     """Something that happens between two times of a motion.
@@ -51,7 +74,7 @@ class Event:
     vertices: tuple[int, ...] = ()
     detail: str = ""
 
-    def to_dict(self) -> dict[str, object]:
+    def to_dict(self) -> EventDocument:
         """The object of this event in the output of `exactfold fold --json`."""
         return {
             "kind": self.kind,
@@ -205,7 +228,9 @@ class Watch:
     def _contacts(
         self, piece: Piece, grid: FloatArray, positions: FloatArray
     ) -> list[tuple[float, Event]]:
-        """The first parameter at which an edge runs through a face, by bisection."""
+        """The first contact: the first parameter at which an edge runs through a face, by
+        bisection.
+        """
         hits = self._crossings.any_of(positions)
         if not hits.any() or hits[0]:
             return []

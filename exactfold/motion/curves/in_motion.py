@@ -16,6 +16,11 @@ from exactfold.errors import UsageError
 
 if TYPE_CHECKING:
     from exactfold.motion.curves.events import Event
+    from exactfold.motion.curves.motion_document import (
+        FrameKeys,
+        MotionDocument,
+        PanelMotionDocument,
+    )
     from exactfold.pattern.crease_pattern import CreasePattern, Edge
     from exactfold.pattern.panel_pattern import PanelPattern
 
@@ -157,7 +162,9 @@ class SheetInMotion(Picture, ABC):
         """Times and all fold angles in radians at `least` points or more."""
 
     @abstractmethod
-    def to_dict(self, name: str | None = None, written: Sequence[str] = ()) -> dict[str, Any]:
+    def to_dict(
+        self, name: str | None = None, written: Sequence[str] = ()
+    ) -> MotionDocument | PanelMotionDocument:
         """The object printed by `exactfold fold --json`."""
 
     @property
@@ -204,11 +211,12 @@ class SheetInMotion(Picture, ABC):
         names = ("time", *(f"{i}-{j}" for i, j in self.pattern.folds))
         return names, np.column_stack([self.times, np.degrees(self.angles)])
 
-    def frames_reported(self, written: Sequence[str]) -> dict[str, Any]:
+    def frames_reported(self, written: Sequence[str]) -> FrameKeys:
         """The keys of `schema("motion")` that do not depend on what the sheet folds along."""
         folds, bounds = [f"{i}-{j}" for i, j in self.pattern.folds], self.bounds
         return {
             "status": str(self.status),
+            "reason": self.reason,
             "pinned": list(self.pinned),
             "frames": {
                 "number": len(self.times),
@@ -223,7 +231,6 @@ class SheetInMotion(Picture, ABC):
             "duration": self.duration,
             "length_error": self.length_error,
             "written": list(written),
-            "proof": None,
         }
 
     def facts_of_frames(self) -> dict[str, Any]:

@@ -11,7 +11,6 @@ from typing import Any, Final
 import numpy as np
 
 from exactfold._support.arrays import FloatArray
-from exactfold._support.schemas import headed
 from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.export import AMOUNT
@@ -23,6 +22,7 @@ from exactfold.motion.curves.curve import Curve
 from exactfold.motion.curves.drive import Drive
 from exactfold.motion.curves.events import Event
 from exactfold.motion.curves.in_motion import FrameBounds, SheetInMotion
+from exactfold.motion.curves.motion_document import MotionDocument
 from exactfold.pattern.crease_pattern import CreasePattern, Edge, Triangle
 from exactfold.pattern.described import described
 from exactfold.pattern.near_degeneracy import warnings
@@ -152,17 +152,17 @@ class Motion(SheetInMotion):
         angles = np.unwrap(fold_angles_of(coords, hinges_of(self.branch.pattern)), axis=0)
         return times * float(self.curve.framework.unit), angles
 
-    def to_dict(self, name: str | None = None, written: Sequence[str] = ()) -> dict[str, Any]:
+    def to_dict(self, name: str | None = None, written: Sequence[str] = ()) -> MotionDocument:
         """The object printed by `exactfold fold --json`: `schema("motion")`.
 
         `name`: of the pattern; `written`: the files that hold the motion.
         """
         branch = self.branch
         return {
-            **headed("motion"),
+            "format": "exactfold motion result",
+            "version": 2,
             "pattern": described(branch.pattern, name),
             "theory": "branches",
-            "reason": self.reason,
             "vertex_signs": {str(v): s for v, s in sorted(branch.vertex_signs.items())},
             "assignment": {f"{i}-{j}": a for (i, j), a in sorted(branch.assignment.items())},
             "side": self.side,
@@ -173,6 +173,7 @@ class Motion(SheetInMotion):
             **self.frames_reported(written),
             "warnings": warnings(branch.pattern),
             "seconds": round(self.seconds, 3),
+            "proof": None,
         }
 
     @property

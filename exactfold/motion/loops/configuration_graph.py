@@ -5,10 +5,20 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, TypedDict
 
+from exactfold._support.documents import (
+    Fold,
+    Natural,
+    NotNegative,
+    Pair,
+    ProvedOrNot,
+    Several,
+    Side,
+)
 from exactfold._support.verdict import PROVED, Verdict
 from exactfold.motion.contacts.fold_ranges import angle_in_floats
+from exactfold.motion.curves.motion_document import RayDocument
 from exactfold.motion.loops.rays import HalfBranch
 from exactfold.motion.tubes.arclength import Interval, in_floats
 from exactfold.pattern.crease_pattern import Edge
@@ -17,6 +27,82 @@ if TYPE_CHECKING:
     import networkx as nx
 
 FLAT = "flat"
+
+
+class BranchPointEnd(TypedDict):
+    """An end of an arc at a branch point."""
+
+    node: Natural
+    line: Natural
+    """Which of the lines along which curves go through the branch point."""
+    side: Side
+    """The straight continuation is the other side of the same line."""
+
+
+class FlatEnd(TypedDict):
+    """An end of an arc in the flat state."""
+
+    half_branch: RayDocument
+
+
+class AngleDocument(TypedDict):
+    """A fold angle."""
+
+    fold: Fold
+    angle: Pair[float]
+    """Proved bounds, in degrees."""
+
+
+class BranchPointDocument(TypedDict):
+    """A configuration in which curves cross."""
+
+    flat: Several[Natural]
+    """The vertices whose stars are flat."""
+    curves: Natural
+    """How many curves are proved to go through it."""
+    status: ProvedOrNot
+    """Proved: no other curve goes through it."""
+    angles: list[AngleDocument]
+    """Its fold angles."""
+    mirror: Natural
+    """The number of its mirror image."""
+    loops: list[Natural]
+    """The loops that pass it or its mirror image."""
+
+
+_ArcFrom = TypedDict("_ArcFrom", {"from": FlatEnd | BranchPointEnd | None})
+
+
+class ArcOfGraph(_ArcFrom):
+    """A curve without branch points on it."""
+
+    to: FlatEnd | BranchPointEnd | None
+    length: Pair[NotNegative]
+    """Proved bounds, in the unit of the sheet."""
+    status: ProvedOrNot
+    reason: str
+    loop: Natural | None
+    """The loop of which it, or its mirror image, is a part; null for an arc on no loop."""
+    mirror: Natural
+    """The number of its mirror image."""
+
+
+class GraphDocument(TypedDict):
+    """The configurations that can be reached from the flat state."""
+
+    status: ProvedOrNot
+    """Proved: this is the whole connected component of the flat state."""
+    reason: str
+    """What is missing, empty if proved."""
+    nodes: list[BranchPointDocument]
+    """Different configurations in which curves cross, mirror images next to each other."""
+    arcs: list[ArcOfGraph]
+    """Curves without branch points on them, mirror images next to each other."""
+    closed_curves: list[Several[Natural]]
+    """Closed curves that go straight on at their branch points and do not pass the flat state, by
+    their arcs."""
+    independent_cycles: Natural | None
+    """The first Betti number of the component of the flat state, null if undecided."""
 
 
 @dataclass(frozen=True, order=True)
@@ -41,7 +127,7 @@ class NodeEnd:
         """The end at which the straight continuation begins."""
         return NodeEnd(self.node, self.line, -self.side)
 
-    def to_dict(self) -> dict[str, object]:
+    def to_dict(self) -> BranchPointEnd:
         """The object of this end in JSON."""
         return {"node": self.node, "line": self.line, "side": self.side}
 
@@ -66,7 +152,7 @@ class GraphNode:
     mirror: int
     loops: tuple[int, ...]
 
-    def to_dict(self) -> dict[str, object]:
+    def to_dict(self) -> BranchPointDocument:
         """The object of this node in the output of `exactfold motions --json`."""
         return {
             "flat": list(self.flat),
@@ -101,7 +187,7 @@ class GraphArc:
     loop: int | None
     mirror: int
 
-    def to_dict(self) -> dict[str, object]:
+    def to_dict(self) -> ArcOfGraph:
         """The object of this arc in the output of `exactfold motions --json`."""
         return {
             "from": _named(self.start),
@@ -192,7 +278,7 @@ class ConfigurationGraph:
                 found.append(tuple(curve))
         return tuple(found)
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> GraphDocument:
         """The object of the graph in the output of `exactfold motions --json`."""
         return {
             "status": str(self.status),
@@ -218,7 +304,7 @@ def _vertex(end: End | None) -> int | str:
     return "open" if end is None else end.node if isinstance(end, NodeEnd) else FLAT
 
 
-def _named(end: End | None) -> dict[str, object] | None:
+def _named(end: End | None) -> FlatEnd | BranchPointEnd | None:
     if end is None:
         return None
     return end.to_dict() if isinstance(end, NodeEnd) else {"half_branch": end.to_dict()}

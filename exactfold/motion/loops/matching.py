@@ -10,12 +10,12 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property, lru_cache
 from itertools import product
-from typing import Any
+from typing import Annotated, Literal, TypedDict
 
+from exactfold._support.documents import Keywords, Natural, NotNegative, ProvedOrNot
 from exactfold._support.plurals import agreeing, counted
 from exactfold._support.progress import Progress
 from exactfold._support.results import Ways
-from exactfold._support.schemas import headed
 from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.branches.counting.collect import count_branches
 from exactfold.branches.counting.find import BranchFinder
@@ -29,17 +29,42 @@ from exactfold.errors import (
     WorkerDiedError,
 )
 from exactfold.motion.curves.straight_folds import straight_fold
-from exactfold.motion.loops.configuration_graph import ConfigurationGraph
+from exactfold.motion.loops.configuration_graph import ConfigurationGraph, GraphDocument
 from exactfold.motion.loops.file import LoopFile
 from exactfold.motion.loops.graph_building import graph_of
 from exactfold.motion.loops.loops import LoopFinder
-from exactfold.motion.loops.proofs import Loop
+from exactfold.motion.loops.proofs import Loop, LoopDocument
 from exactfold.motion.loops.rays import HalfBranch
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.described import described
+from exactfold.pattern.described import PatternDocument, described
 from exactfold.pattern.loading import PatternLike, as_pattern
-from exactfold.pattern.near_degeneracy import warnings
+from exactfold.pattern.near_degeneracy import WarningDocument, warnings
 from exactfold.rigidity.equations.problem import Problem
+
+
+class LoopsDocument(TypedDict):
+    """The loops through the flat state of a sheet."""
+
+    format: Literal["exactfold motions result"]
+    version: Literal[1]
+    pattern: PatternDocument
+    status: ProvedOrNot
+    """Proved: all rays are matched."""
+    reason: str
+    """What is missing, empty if proved."""
+    vertices: list[Natural]
+    """The foldable vertices, in the order of the signs."""
+    half_branches: Annotated[int, Keywords(minimum=4)]
+    """How many rays there are: 2^(n + 1), n the number of foldable vertices."""
+    matched: Natural
+    """Rays whose partner is proved."""
+    loops: list[LoopDocument]
+    """One of each pair of mirror images, in one of its two directions."""
+    graph: GraphDocument
+    skipped: dict[str, str]
+    """Branches that are not simple, by their signs, with the reason."""
+    warnings: list[WarningDocument]
+    seconds: NotNegative
 
 
 @dataclass(frozen=True, repr=False)
@@ -82,10 +107,11 @@ class Loops(Ways[Loop]):
                     found[a], found[a.mirrored] = b, b.mirrored
         return found
 
-    def report(self, name: str | None = None) -> dict[str, Any]:
+    def to_dict(self, name: str | None = None) -> LoopsDocument:
         """The object printed by `exactfold motions --json`: `schema("motions")`."""
         return {
-            **headed("motions"),
+            "format": "exactfold motions result",
+            "version": 1,
             "pattern": described(self.pattern, name),
             "status": str(self.status),
             "reason": self.reason,

@@ -7,15 +7,18 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import zip_longest
+from typing import Annotated, TypedDict
 
+from exactfold._support.documents import Fold, Keywords, Natural, NotNegative, Pair, ProvedOrNot
 from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.certificates.entries import CertificateLines, Document
 from exactfold.errors import NotCountedError
 from exactfold.exact.numbers import format_rational
 from exactfold.motion.claims import Claim
-from exactfold.motion.contacts.fold_ranges import SLACK, FoldRange, fold_ranges
+from exactfold.motion.contacts.fold_ranges import SLACK, FoldRange, FoldRangeDocument, fold_ranges
 from exactfold.motion.contacts.stretches import on_node_tube, on_start_tube, on_tube
 from exactfold.motion.curves.boundary_path import rim_claim
+from exactfold.motion.curves.motion_document import RayDocument
 from exactfold.motion.loops.certificate import claims_line, header_line, loop_line
 from exactfold.motion.loops.rays import HalfBranch
 from exactfold.motion.tubes.arclength import Interval, in_floats
@@ -32,6 +35,41 @@ from exactfold.motion.tubes.piece import PARAMETER_BITS, Ball
 from exactfold.motion.tubes.tube_start import StartTube
 from exactfold.motion.tubes.visits import Visit
 from exactfold.rigidity.equations.problem import Problem
+
+
+class FlatVertices(TypedDict):
+    """A branch point on the way, by the vertices that are flat there."""
+
+    flat: list[Natural]
+
+
+class Winding(TypedDict):
+    """A fold that winds."""
+
+    fold: Fold
+    turns: Annotated[int, Keywords(**{"not": {"const": 0}})]
+    """By how many whole turns the fold angle has grown at the end of the loop, proved."""
+
+
+_From = TypedDict("_From", {"from": RayDocument})
+
+
+class LoopDocument(_From):
+    """A motion from the flat state back to it."""
+
+    to: RayDocument | None
+    through: list[FlatVertices]
+    """Branch points on the way."""
+    length: Pair[NotNegative]
+    """Proved bounds of the length, in the unit of the sheet."""
+    status: ProvedOrNot
+    reason: str
+    tubes: Natural
+    windings: list[Winding]
+    """None for a loop that is not proved to its end."""
+    angles: list[FoldRangeDocument]
+    """Of every fold, followed continuously from 0, valley positive; empty for a loop that is not
+    proved to its end."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -84,7 +122,7 @@ class Loop:
         ends = {self.source, self.source.mirrored}
         return ends if self.target is None else ends | {self.target, self.target.mirrored}
 
-    def to_dict(self) -> dict[str, object]:
+    def to_dict(self) -> LoopDocument:
         """The object of this loop in the output of `exactfold motions --json`."""
         return {
             "from": self.source.to_dict(),

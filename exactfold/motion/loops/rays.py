@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from exactfold.branches.values.letters import SIGNS
+from exactfold.motion.curves.motion_document import RayDocument
 
 
 @dataclass(frozen=True, order=True)
@@ -29,7 +30,7 @@ class HalfBranch:
         """The vertex signs as a text such as "+-"."""
         return "".join(SIGNS[s] for s in self.vertex_signs)
 
-    def to_dict(self) -> dict[str, object]:
+    def to_dict(self) -> RayDocument:
         """The object of this ray in JSON."""
         return {"vertex_signs": self.sign_text, "saddle": self.saddle}
 

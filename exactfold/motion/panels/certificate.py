@@ -113,7 +113,7 @@ def driven_claim(motion: PanelMotion) -> Claim:
 def clear_claim(
     motion: PanelMotion, contacts: PanelClearance, timing: Timing
 ) -> tuple[Fraction, Claim]:
-    """A time before which no two panels touch, and this claim."""
+    """A time before which no two panels touch, and the claim that states it."""
     last = max(_at_most(timing.parameter(contacts.clear)) - _SLACK, Fraction(0))
     if contacts.clear >= motion.duration:
         last = _at_least(timing.parameter(motion.duration))
@@ -124,7 +124,11 @@ def clear_claim(
 
 
 def contact_claim(event: Event, clear: Fraction, timing: Timing) -> Claim:
-    """Which panels touch or folds are closed, by when; and from when on that may be."""
+    """The claim that states the first contact.
+
+    It names the panels that touch or the folds that close, and an interval of times: the contact is
+    not before the time `clear`, and not after the other end.
+    """
     latest, evidence = time_of(Fraction(1))[1], {}
     if event.kind == CONTACT:
         end = _at_least(timing.parameter(event.time[1]))

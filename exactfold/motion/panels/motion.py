@@ -13,12 +13,12 @@ import numpy as np
 
 from exactfold._support.arrays import FloatArray
 from exactfold._support.plurals import counted
-from exactfold._support.schemas import headed
 from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.errors import NotApplicableError, UsageError
 from exactfold.exact.surds import Number, exact
 from exactfold.motion.curves.events import Event
 from exactfold.motion.curves.in_motion import SheetInMotion
+from exactfold.motion.curves.motion_document import PanelMotionDocument
 from exactfold.motion.panels.curves import FollowedCurve, LinearCurve
 from exactfold.motion.panels.places import Placing, Spot, Turn
 from exactfold.pattern.described import described_panels
@@ -169,17 +169,17 @@ class PanelMotion(SheetInMotion):
             **self.facts_of_frames(),
         }
 
-    def to_dict(self, name: str | None = None, written: Sequence[str] = ()) -> dict[str, Any]:
+    def to_dict(self, name: str | None = None, written: Sequence[str] = ()) -> PanelMotionDocument:
         """The object printed by `exactfold fold --json`: `schema("motion")`.
 
         `name`: of the pattern; `written`: the files that hold the motion. What belongs to branches
         of triangulated sheets is null.
         """
         return {
-            **headed("motion"),
+            "format": "exactfold motion result",
+            "version": 2,
             "pattern": described_panels(self.pattern, name),
             "theory": "modes",
-            "reason": self.reason,
             "vertex_signs": None,
             "assignment": {f"{i}-{j}": letter for (i, j), letter in self.assignment.items()},
             "side": None,
@@ -190,6 +190,7 @@ class PanelMotion(SheetInMotion):
             **self.frames_reported(written),
             "warnings": [],
             "seconds": round(self.seconds, 3),
+            "proof": None,
         }
 
     @cached_property

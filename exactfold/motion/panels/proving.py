@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from typing import Any
 
 from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.certificates.entries import Document, write_certificate
 from exactfold.errors import NotApplicableError
+from exactfold.motion.curves.motion_document import PanelProofDocument
 from exactfold.motion.panels.certificate import certificate_of_panel_motion
 from exactfold.motion.panels.clearance import PanelClearance, with_proved_contact
 from exactfold.motion.panels.motion import PanelMotion
@@ -74,7 +74,7 @@ class PanelProof:
             return False
         return True
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> PanelProofDocument:
         """The object of the proof in the output of `exactfold fold --json`."""
         contacts = self.contacts
         event = None if contacts is None else contacts.event

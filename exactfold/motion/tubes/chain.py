@@ -118,10 +118,10 @@ def step_documents(steps: Sequence[Step], leaves: bool) -> list[Document]:
 def chords(
     start: StartTube, steps: Sequence[Step], leaves: bool, landing: Ball | None = None
 ) -> Fraction:
-    """Slightly less than the total length of the chords between points on the way.
+    """A lower bound of the length of a motion: the total length of chords between its points.
 
-    The way leads from the flat state to the last of these points, or through the point in the box
-    `landing` back to the flat state. The points are those where pieces meet, branch points, and
+    The motion leads from the flat state to the last of these points, or through the point in the
+    box `landing` back to the flat state. The points are those where pieces meet, branch points, and
     centres of tubes that are passed.
     """
     balls = [start.ball(start.last)]

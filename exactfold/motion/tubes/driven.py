@@ -6,18 +6,20 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
+from typing import TypedDict
 
 import numpy as np
 
 from exactfold._support.arrays import FloatArray
+from exactfold._support.documents import ProvedOrNot, Side
 from exactfold._support.plurals import counted
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.branches.counting.find import BranchFinder, Rim, Signs, branch_finder
-from exactfold.branches.values.branch import Branch
+from exactfold.branches.values.branch import Branch, BranchDocument
 from exactfold.errors import BadDriveError, NotFollowedError, NotProvedAtTheFlatStateError
 from exactfold.motion.curves.boundary_path import framework_of, problem_of
-from exactfold.motion.curves.drive import Drive, fold_text, not_a_fold
+from exactfold.motion.curves.drive import Drive, Goals, fold_text, not_a_fold
 from exactfold.motion.curves.driven_folds import DrivenFolds
 from exactfold.motion.tubes.tube_start import prove_start
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
@@ -32,6 +34,24 @@ _SMALL = 200
 _SAME = 1e-6
 _OFF = 1e-6
 """The first-order angles of a branch may miss the ratio of a drive by this share of the largest."""
+
+
+class DriveDocument(TypedDict):
+    """The folds by which a branch was found."""
+
+    folds: Goals
+    """By driven fold i-j the angle to which it would be driven."""
+    side: Side
+    """With four corners, on which side of the branch the fold goes so."""
+    status: ProvedOrNot
+    """Whether a solution with exactly this ratio of first-order angles is proved, with these
+    vertex signs."""
+
+
+class DrivenBranchDocument(BranchDocument):
+    """A branch that was found by the folds that are driven."""
+
+    drive: DriveDocument
 
 
 @dataclass(frozen=True, repr=False)
@@ -70,6 +90,17 @@ class Driven:
             return UNDECIDED
         signs = tuple(self.side * branch.vertex_signs[v] for v in problem.foldable)
         return PROVED if start.vertex_signs == signs else UNDECIDED
+
+    def to_dict(self, name: str | None = None) -> DrivenBranchDocument:
+        """The object printed by `exactfold branch --drive --json`: `schema("branch")`."""
+        return {
+            **self.branch.to_dict(name),
+            "drive": {
+                "folds": self.drive.to_dict(),
+                "side": self.side,
+                "status": str(self.status),
+            },
+        }
 
     def __repr__(self) -> str:
         return f"<Driven: branch {self.branch.sign_text}, {self.drive.text}>"
@@ -264,7 +295,9 @@ class _Search:
         return drive, reached
 
     def failure(self, signs: Mapping[int, int] | None) -> NotFollowedError:
-        """Why nothing was found, with what the branch of the rim does."""
+        """The error that says why nothing was found, and which ratio came closest if that
+        is known.
+        """
         names = ", ".join(map(fold_text, self.folds))
         which = "any signs that were tried" if signs is None else "these signs"
         text = f"no branch with {which} was found on which the folds {names} start in this ratio"

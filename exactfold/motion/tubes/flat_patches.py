@@ -128,7 +128,7 @@ class FlatPatch:
         return self._denominator << self.framework.tie_bits
 
     def enclosed(self, near: FloatArray, bits: int) -> Ball | None:
-        """The box of `point`."""
+        """The box of `point`, or None."""
         point = self.point(near, bits)
         return None if point is None else point.ball
 

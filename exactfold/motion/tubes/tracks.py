@@ -158,8 +158,8 @@ class Track:
 
         It claims a length that is slightly smaller than `length`, namely what straight chords show,
         and what the track itself proves: the border or the drive, and branch points. `claims` are
-        what else is proved of it. `clear`: no two faces touch up to the branch point at which the
-        track ends, which one of the `claims` shows.
+        further claims about the track. `clear` says that no two faces touch up to the branch point
+        at which the track ends; one of the `claims` has to show it.
 
         >>> from exactfold import checker
         >>> from exactfold.branches.counting.find import find_branch

@@ -73,7 +73,11 @@ def _text(signs: FloatArray) -> str:
 
 @dataclass(frozen=True)
 class _Problem:
-    """K - k_v of shape (n, n+1, n+1) and l of shape (n, n+1), on (x, 1); the level k at T = 0."""
+    """What the paths are followed with; forms and lines act on (x, 1).
+
+    `forms` has the matrices of K_v - k_v, in shape (n, n+1, n+1). `lines` has the rows l_v, in
+    shape (n, n+1). At T = 0 the equations are l_v^2 = `level`.
+    """
 
     forms: FloatArray
     lines: FloatArray

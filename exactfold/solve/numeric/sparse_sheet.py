@@ -184,7 +184,7 @@ class FloatSheet:
 
 
 def _cone_curvature(sheet: Sheet) -> FloatArray:
-    """K_v of the round cones, sum_j tan(a_j / 2), which has no unit; from exact areas."""
+    """K_v of each round cone: the sum of tan(a_j / 2) over its angles a_j, from exact areas."""
     points = np.array(sheet.pattern.integer_vertices[0], dtype=object)
     triangles = np.array(sheet.pattern.triangles, dtype=np.intp)
     total = np.zeros(len(points))

@@ -6,7 +6,7 @@ import hashlib
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, TypedDict
 
 from exactfold._support.plurals import counted
 from exactfold._support.verdict import PROVED, UNDECIDED
@@ -20,6 +20,17 @@ Row: TypeAlias = Mapping[str, Any]
 
 Cell: TypeAlias = int | str | None
 """The content of a cell of a table; None for an empty cell."""
+
+
+class TableDocument(TypedDict):
+    """A table of a study."""
+
+    name: str
+    title: str
+    columns: list[str]
+    rows: list[list[Cell]]
+    notes: list[str]
+
 
 STATUSES = (str(PROVED), str(UNDECIDED))
 """The possible values of the key `status` of a row."""
@@ -49,7 +60,7 @@ class StudyTable:
             for k in range(len(self.columns))
         )
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> TableDocument:
         """The table in the form of `exactfold study --json`."""
         return {
             "name": self.name,

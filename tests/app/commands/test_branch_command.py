@@ -48,7 +48,7 @@ def test_json_is_the_result() -> None:
     result = run(TWO, "--signs", "-+", "--json")
     data = json.loads(result.stdout)
     assert set(data) == KEYS
-    expected = find_branch(read_fold(TWO), "-+").report(str(TWO))
+    expected = find_branch(read_fold(TWO), "-+").to_dict(str(TWO))
     for key in KEYS - {"seconds"}:
         assert data[key] == expected[key]
 

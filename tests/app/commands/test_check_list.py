@@ -45,7 +45,7 @@ def test_the_list_is_that_of_count(tmp_path: Path, name: str) -> None:
 @pytest.mark.parametrize("name", ["grid", "bent-off-path", "straight-path", "notched"])
 def test_multiple_and_reflex_branches_are_listed(tmp_path: Path, name: str) -> None:
     result = count_branches(DEGENERATE[name]())
-    listed = [branch.to_dict() for branch in result.branches]
+    listed = [branch.entry() for branch in result.branches]
     for made in (old_listing(result), certificate(result)):
         file = tmp_path / "c.txt"
         write_certificate(made, file)
@@ -85,7 +85,7 @@ def test_heights_and_angles(tmp_path: Path) -> None:
     data = checked(file, "--heights")["branches"]
     for branch, listed in zip(result.branches, data, strict=True):
         angles = {fold: float(angle) for fold, angle in listed.pop("angles").items()}
-        assert listed == branch.to_dict()
+        assert listed == branch.entry()
         assert max(map(abs, angles.values())) == 1
         degrees = branch.fold_angles.degrees(1)
         assert angles == pytest.approx({f"{i}-{j}": a for (i, j), a in degrees.items()}, abs=1e-5)

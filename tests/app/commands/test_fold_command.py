@@ -116,7 +116,7 @@ def test_a_drawing_folds_along_the_component_with_most_folds():
     motion = follow_panels(count_ways("zigzags"))
     lines = result.stdout.splitlines()
     assert lines[0] == f"component        1 (mode {motion.modes[0]})"
-    known = "PROVED: it exists until a fold is at 180 degrees; its angles"
+    known = "PROVED: it exists until a fold reaches 180 degrees; its angles"
     assert lines[2] == f"motion           {known}"
     assert lines[3] == "                 and contacts are floats"
     assert lines[4] == "end              time 3.14159: fold 14-15 closes: its two faces meet"

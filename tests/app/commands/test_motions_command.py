@@ -28,7 +28,7 @@ def test_the_json_is_what_python_says(tmp_path):
     result = run("motions", str(path), "--workers", "1", "--json")
     found = json.loads(result.stdout)
     Draft202012Validator(schema("motions")).validate(found)
-    again = find_loops(path).report(str(path))
+    again = find_loops(path).to_dict(str(path))
     for value in (found, again):
         value.pop("seconds")
     assert found == again

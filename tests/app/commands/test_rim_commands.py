@@ -12,7 +12,7 @@ import pytest
 from running import error_class, run
 
 from exactfold import checker, delaunay
-from exactfold._support.schemas import schema
+from exactfold.app.schemas import schema
 from exactfold.branches import fold_angles
 from exactfold.pattern import families, write_fold
 from exactfold.rigidity.equations.boundary_heights import default_rim

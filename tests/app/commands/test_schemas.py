@@ -16,9 +16,8 @@ from running import PROVED, UNDECIDED, run
 from sheets import DENTED, HEXAGON, TRIANGLE, nested_triangles, scrambled
 
 from exactfold import CreasePattern, schema
-from exactfold._support.schemas import VERSIONS
+from exactfold.app.schemas import DOCUMENTS
 from exactfold.branches import METHODS
-from exactfold.errors import UsageError
 from exactfold.pattern import read_fold, write_fold
 from exactfold.pattern.data import SHEETS, example_path
 from exactfold.rigidity import curvature_form
@@ -38,15 +37,10 @@ def printed(kind: str, *arguments: object) -> dict[str, Any]:
     return valid(json.loads(line), kind)
 
 
-@pytest.mark.parametrize("kind", VERSIONS)
+@pytest.mark.parametrize("kind", DOCUMENTS)
 def test_schemas_are_schemas(kind: str) -> None:
     Draft202012Validator.check_schema(schema(kind))
     assert schema(kind)["$id"] == f"urn:exactfold:schema:{kind}"
-
-
-def test_a_kind_that_there_is_not() -> None:
-    with pytest.raises(UsageError, match="count-stream"):
-        schema("fold")
 
 
 @pytest.mark.parametrize("method", METHODS)

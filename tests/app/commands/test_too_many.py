@@ -55,8 +55,8 @@ def test_what_is_said(large: Path, tmp_path: Path) -> None:
     result = run("count", large, "--certificate", tmp_path / "c.json")
     assert result.exit_code == UNDECIDED
     assert " ".join(result.stdout.split()).startswith(
-        "2^41 ways to start folding with multiplicity, all real, by Theorem 2; how many differ is "
-        "UNDECIDED"
+        "2^41 ways to start folding with multiplicity, all real, by Theorem 2; how many of "
+        "them are different is UNDECIDED"
     )
     assert not (tmp_path / "c.json").exists()
     refused = run("count", large, "--stream", tmp_path / "s.txt")

@@ -144,7 +144,7 @@ def test_it_says_what_is_proved_of_a_motion_of_panels():
     way = ways[2]
     event = prove_contacts(follow_panels(count_ways("zigzags"), component=3)).event
     low, high = event.time
-    times = f"its first contact is between the times {low:.12g} and {high:.12g}: proved"
+    times = f"its first contact is proved to be between the times {low:.12g} and {high:.12g}"
     assert way["motion"]["said"] == exact + times
 
 

@@ -46,7 +46,7 @@ def test_branches_are_those_of_the_count(name: str) -> None:
     for given in (certificate(result), old_listing(result), as_lines(old_listing(result))):
         found = sorted(branches_of(given), key=Branch.sort_key)
         assert found == list(result.branches)
-        assert [b.to_dict() for b in found] == [b.to_dict() for b in result.branches]
+        assert [b.entry() for b in found] == [b.entry() for b in result.branches]
 
 
 def test_every_kind_of_root_is_read_back(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -258,7 +258,7 @@ def test_what_is_beyond_floats_is_undecided(power: int) -> None:
     assert found.heights == {}
     assert set(found.assignment_text) == {"U"}
     assert found.undecided_vertices == pattern.interior
-    assert found.report()["radius"] is None
+    assert found.to_dict()["radius"] is None
     reached = neighbours(pattern, "+-+", [4])
     assert reached[4].status is UNDECIDED
 

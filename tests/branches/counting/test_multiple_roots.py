@@ -62,8 +62,8 @@ def test_flat_vertices_and_the_exact_engine_agree():
         paths = count_branches(pattern, method="popping")
         exact = count_branches(pattern, method="groebner")
         assert counts(paths) == counts(exact)
-        assert [b.to_dict()["vertex_signs"] for b in paths.branches] == [
-            b.to_dict()["vertex_signs"] for b in exact.branches
+        assert [b.entry()["vertex_signs"] for b in paths.branches] == [
+            b.entry()["vertex_signs"] for b in exact.branches
         ]
         assert [b.multiplicity for b in paths.branches] == [b.multiplicity for b in exact.branches]
 

@@ -10,9 +10,9 @@ from sheets import HEXAGON, scrambled
 from test_rims import fan
 
 from exactfold import PROVED, UNDECIDED, random_square
-from exactfold._support.schemas import schema
 from exactfold.app.report import shapes_report
 from exactfold.app.report.terminal import console
+from exactfold.app.schemas import schema
 from exactfold.branches import count_shapes
 from exactfold.errors import BadCurvatureError
 from exactfold.pattern.crease_pattern import CreasePattern

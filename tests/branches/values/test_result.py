@@ -93,7 +93,7 @@ def test_boundary_saddle_is_positive(pattern):
 @patterns
 def test_three_boundary_vertices_are_pinned_exactly(pattern):
     for branch in count_branches(pattern).branches:
-        data = branch.to_dict()
+        data = branch.entry()
         pinned = [v for v in pattern.boundary if data["heights"][str(v)] == ["0", "0"]]
         assert len(pinned) == 3
         assert all(branch.heights[v] == (0, 0) for v in pinned)

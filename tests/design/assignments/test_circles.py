@@ -232,5 +232,5 @@ def test_where_points_do_not_tell_folds_apart_it_is_undecided(
     monkeypatch.setattr(circles, "_MOST_SOLVED", 0)
     found = all_assignments(pentagon(3))
     assert found.status is UNDECIDED
-    with pytest.raises(NotApplicableError, match="a list that is undecided"):
+    with pytest.raises(NotApplicableError, match="this list is undecided"):
         assignments_certificate(found)

@@ -11,7 +11,7 @@ from exactfold import checker, random_square
 from exactfold._support.verdict import PROVED
 from exactfold.branches import find_branch
 from exactfold.design import match, match_certificate
-from exactfold.design.assignments.search import Match
+from exactfold.design.assignments.result import Match
 from exactfold.errors import NotApplicableError
 
 TURNED = {"M": "V", "V": "M"}
@@ -70,7 +70,7 @@ def test_both_outcomes_occur_and_both_have_certificates() -> None:
 
 
 def test_what_is_undecided_has_no_certificate() -> None:
-    with pytest.raises(NotApplicableError, match="a match that is undecided"):
+    with pytest.raises(NotApplicableError, match="this match is undecided"):
         match_certificate(match(random_square(3, seed=4), {}, most=2))
 
 

@@ -9,8 +9,8 @@ from running import run
 from sheets import wheel
 
 from exactfold import CreasePattern, checker, delaunay
-from exactfold._support.schemas import schema
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED
+from exactfold.app.schemas import schema
 from exactfold.branches import find_branch
 from exactfold.design import all_assignments, match_certificate, match_panels, match_rim
 from exactfold.design.assignments.bend_program import BendProgram

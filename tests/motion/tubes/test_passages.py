@@ -128,7 +128,8 @@ def test_a_motion_that_passes_a_node_is_proved_beyond_it(proof):
     assert passing.to_dict()["through"] == [{"flat": [FLAT], "time": [time, time]}]
     told = f"one curve without a gap, 5 tubes, {passing.through_text}; no two faces touch on it"
     assert told in shown(passing)
-    jsonschema.validate(passing.to_dict(), schema("motion")["properties"]["proof"])
+    whole = {**passing.motion.report(), "proof": passing.to_dict()}
+    jsonschema.validate(whole, schema("motion"))
     claims = checker.check(passing.certificate())
     assert claims["through"] == [[FLAT]]
     assert "node" not in claims
@@ -212,14 +213,14 @@ def test_what_is_said_of_a_node(proof, monkeypatch):
     told = f"{proof.end_text}; no two faces touch before it, nor at it"
     assert f"one curve without a gap, 4 tubes, {told}" in shown(proof)
     monkeypatch.setattr(ways, "prove", lambda motion: proof)
-    assert told in ways._proof(proof.motion)["said"]
+    assert told in ways._proof(proof.motion).said
     # Where faces may touch before it, it is not said that they do not.
     passed = replace(proof, passed=True)
     assert "no two faces touch before 0.50068592, then some may" in shown(passed)
     monkeypatch.setattr(ways, "prove", lambda motion: passed)
-    assert "touch" not in ways._proof(proof.motion)["said"]
+    assert "touch" not in ways._proof(proof.motion).said
     for one in (proof, passed):
-        jsonschema.validate(one.to_dict(), schema("motion")["properties"]["proof"])
+        jsonschema.validate({**one.motion.report(), "proof": one.to_dict()}, schema("motion"))
 
 
 @pytest.mark.slow

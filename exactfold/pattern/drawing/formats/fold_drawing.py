@@ -163,7 +163,10 @@ def _drawing(frame: Mapping[str, Any], source: str) -> Drawing:
 def _flattened(
     places: Sequence[tuple[Fraction, Fraction, Fraction]],
 ) -> tuple[list[tuple[Fraction, Fraction]], str, list[str]]:
-    """The points in their plane z, y or x = constant; words for a plane other than z; remarks."""
+    """The points in their plane z, y or x = constant, with a text and remarks.
+
+    The text names the plane if it is not z = constant. A remark says how far the points leave it.
+    """
     bounds = [(min(column), max(column)) for column in zip(*places, strict=True)]
     size = max(high - low for low, high in bounds)
     for name, (i, j) in _AXES.items():
