@@ -97,7 +97,7 @@ def described_panels(pattern: PanelPattern, name: str | None = None) -> PanelsDo
     return {
         "name": name,
         "interior": len(pattern.interior),
-        "boundary": len(pattern.border),
+        "boundary": len(pattern.boundary_set),
         "folds": len(pattern.folds),
         "degrees_of_freedom": pattern.D,
         "sha256": pattern.sha256,

@@ -108,7 +108,7 @@ class Watch:
         raw = fold_angles_of(positions, self.framework.hinges)
         angles = np.unwrap(np.vstack([self.angles, raw]), axis=0)[1:]
         found = [
-            *self._node(piece),
+            *self._branch_point(piece),
             *self._angle_events(piece, grid, angles),
             *self._turnings(piece, grid, positions, angles),
             *self._returns(piece, grid, raw),
@@ -124,7 +124,7 @@ class Watch:
         times = piece.time + piece.length_to(low), piece.time + piece.length_to(high)
         return high, Event(kind, times, **more)  # type: ignore[arg-type]
 
-    def _node(self, piece: Piece) -> list[tuple[float, Event]]:
+    def _branch_point(self, piece: Piece) -> list[tuple[float, Event]]:
         """A crossing of curves on the previous piece: its orientation changes, or a star
         is flat.
         """

@@ -196,4 +196,6 @@ def test_a_sheet_of_panels_has_modes_instead():
 def test_a_rim_is_taken_along():
     sheet = families.single_vertex(5)
     rim = {0: 1, 1: 0, 2: 0, 3: 0, 4: "1/2"}
-    assert exactfold.branch(sheet, "+", rim=rim) == find_branch(sheet, "+", rim=rim)
+    assert exactfold.branch(sheet, "+", boundary_heights=rim) == find_branch(
+        sheet, "+", boundary_heights=rim
+    )

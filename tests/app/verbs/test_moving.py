@@ -111,7 +111,7 @@ def test_folds_are_driven():
 
 def test_with_more_corners_a_branch_is_named_and_else_the_panels_move():
     sheet = families.single_vertex(5)
-    assert exactfold.follow(sheet, signs="+", **SHORT).rim is not None
+    assert exactfold.follow(sheet, signs="+", **SHORT).boundary_heights is not None
     assert exactfold.follow("waterbomb", signs="+", **SHORT).branch.sign_text == "+"
 
 

@@ -29,7 +29,7 @@ def test_the_type_of_what_is_verified_has_the_keys_of_the_table(name: str) -> No
     assert set(get_type_hints(verified_type)) == {*keys, *facts}
 
 
-class Pieces(BranchClaim):
+class ConnectedComponents(BranchClaim):
     """The motion has at most so many pieces, and the evidence says why."""
 
     names = ("pieces",)
@@ -52,7 +52,7 @@ def test_a_class_in_the_table_is_a_claim(monkeypatch: pytest.MonkeyPatch) -> Non
     document["claims"]["pieces"] = str(pieces)
     unknown = "claims: expected an object with the keys vertex_signs side length"
     refused(document, unknown)
-    monkeypatch.setattr(motion, "CLAIMS", (*motion.CLAIMS, Pieces))
+    monkeypatch.setattr(motion, "CLAIMS", (*motion.CLAIMS, ConnectedComponents))
     names = "emptied pinned bits start tubes"
     refused(document, f"evidence: expected an object with the keys {names} why")
     document["evidence"]["why"] = "they were counted"

@@ -16,13 +16,13 @@ from exactfold.checker.motion import certificate as motion
 from exactfold.checker.motion.certificate import MOTION
 from exactfold.checker.motion.drive import Drive, check_reached
 from exactfold.checker.motion.equations import LengthEquations
-from exactfold.checker.motion.half_branch import shortened
 from exactfold.checker.motion.pieces import arc_of
+from exactfold.checker.motion.ray import shortened
 from exactfold.checker.motion.tubes import Ball
 from exactfold.checker.sheets.sheet import read_sheet
 from exactfold.motion import find_driven, follow, follow_proved, prove
 from exactfold.motion.tubes.chain import Step
-from exactfold.motion.tubes.tracks import half_branch
+from exactfold.motion.tubes.tracks import ray
 from exactfold.pattern.crease_pattern import CreasePattern
 
 # A vertex with five folds.
@@ -203,7 +203,7 @@ WINGS = {(1, 5): 96.0, (4, 5): -33.0}
 def _there_and_back() -> str:
     """Driven folds that turn back when fold 3-5 is closed, along the other way to bend it."""
     up, down = (find_driven(STAR, WINGS, signs) for signs in "+-")
-    end = half_branch(down.branch, down.side, drive=down.drive)
+    end = ray(down.branch, down.side, drive=down.drive)
     tau = end.start.last // 2
 
     def comes_back(step: Step) -> str | None:

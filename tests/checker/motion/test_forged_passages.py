@@ -31,7 +31,7 @@ MAY_TOUCH = r"^the (faces|faces at) .* may touch where the motion is claimed to 
 @cache
 def _text() -> str:
     branch, watch = find_branch(random_square(5, seed=4), SIGNS), ContactWatch()
-    track = follow_proved(branch, until=0.65, stop=watch, through_nodes=True)
+    track = follow_proved(branch, until=0.65, stop=watch, through_branch_points=True)
     return json.dumps(certificate_with_contact(track, watch.result(track)))
 
 
@@ -143,7 +143,9 @@ def test_contacts_are_looked_for_on_the_arc() -> None:
     check_contacts(start, tau, steps, claims, contacts)
     arc, begin, end = steps[k]
     assert begin < 0 < end
-    vague: Any = type("Vague", (), {"node": arc.node, "curve": arc.curve, "bits": arc.bits})()
+    vague: Any = type(
+        "Vague", (), {"node": arc.branch_point, "curve": arc.curve, "bits": arc.bits}
+    )()
     box, rate = arc.configuration(begin)
     wide = Ball(box.centre, [r + (1 << arc.bits - 2) for r in box.radii])
     vague.configuration = lambda s: (wide, rate)

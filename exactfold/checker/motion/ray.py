@@ -22,7 +22,7 @@ class NamedHalf(TypedDict):
     side: int
 
 
-class HalfBranch(BranchClaim):
+class Ray(BranchClaim):
     """The half-branch with these vertex signs and this side, 1 or -1, is that of one simple branch.
 
     From the flat state on it is followed by one analytic curve of configurations. `side` is the
