@@ -121,7 +121,7 @@ def branch_finder(
 
     >>> from exactfold.pattern.families import single_vertex
     >>> branch_finder(single_vertex(5)).problem.gauge
-    <Gauge: rim, 5 vertices on the rim>
+    <Gauge: rim, 5 boundary vertices>
     """
     if rim is None and curvature is None and pattern.Ve > 4 and pattern.is_convex:
         rim = default_rim(pattern)

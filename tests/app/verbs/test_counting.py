@@ -81,7 +81,9 @@ def test_a_drawing_says_what_was_done_with_it():
 
 
 def test_what_is_no_sheet_is_named():
-    with pytest.raises(UnreadableFileError, match="'crane' is neither a file nor an example"):
+    with pytest.raises(
+        UnreadableFileError, match="'crane' is neither a file nor the name of an example"
+    ):
         exactfold.count("crane")
     with pytest.raises(UsageError, match="3 is not a pattern"):
         exactfold.read(3)

@@ -181,7 +181,7 @@ def test_headers(forged: Lines, message: str) -> None:
     refused_lines(forged, message)
 
 
-FOURTH = "the sheet has not four boundary vertices and an inner"
+FOURTH = "the sheet does not have four boundary vertices and an interior vertex"
 
 
 def test_sheets_of_other_shapes() -> None:
@@ -260,7 +260,7 @@ def test_every_claim_is_compared() -> None:
             for other in [*others, False] if fact == 0 else others:
                 forged = given_lines(name)
                 forged[-1]["claims"][key] = other
-                refused_lines(forged, f"{key} = {other!a} is {fact!a}")
+                refused_lines(forged, f"claim {key} = {other!a}, but it is {fact!a}")
 
 
 # --- workers -------------------------------------------------------------------------------------

@@ -240,7 +240,7 @@ def test_the_order_is_that_of_the_vertex() -> None:
 def test_roots_of_no_class_and_no_objects() -> None:
     forged = given(VERTEX)
     forged["evidence"]["roots"][0]["class"] = 2
-    refused(forged, "no such class")
+    refused(forged, "there is no class 2")
     forged["evidence"]["roots"][0]["class"] = -1
     refused(forged, "class is not a natural number")
     forged["evidence"]["roots"][0]["class"] = False
@@ -306,7 +306,7 @@ def test_a_zero_in_a_class_and_in_a_box_on_flat_sheets() -> None:
     forged, other = given(BOXES), given(FLAT)
     drop_roots(forged, in_box, 4)
     forged["evidence"]["roots"] += [r for r in other["evidence"]["roots"] if "flat" in r]
-    made = stopped_by(forged, "a root may be counted twice")
+    made = stopped_by(forged, "two entries may be the same root")
     assert made["claims"]["distinct"] == 9
 
 

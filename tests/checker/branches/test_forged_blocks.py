@@ -46,7 +46,7 @@ def test_the_same_box_for_two_sign_vectors() -> None:
         put(parts[1], key, data)
     sheet = CompactSheet(parts[0])
     first = sheet.emptied.interior[0]
-    refused_lines(parts, f"root 1: vertex {first} has not the sign of its number")
+    refused_lines(parts, f"root 1: vertex {first} does not have the sign -1")
 
 
 def test_every_sign_is_that_of_the_number() -> None:
@@ -59,7 +59,7 @@ def test_every_sign_is_that_of_the_number() -> None:
             rows = [bytes(data[k * size : (k + 1) * size]) for k in range(16)]
             put(parts[1], key, b"".join(rows[k ^ (1 << place)] for k in range(16)))
         vertex = CompactSheet(parts[0]).emptied.interior[place]
-        refused_lines(parts, f"root 0: vertex {vertex} has not the sign of its number")
+        refused_lines(parts, f"root 0: vertex {vertex} does not have the sign 1")
 
 
 def test_every_letter_is_compared() -> None:

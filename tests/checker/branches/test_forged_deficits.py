@@ -41,7 +41,7 @@ def test_a_deficit_at_a_vertex_that_stays_flat() -> None:
     [entry] = forged["evidence"]["emptied"]
     vertex = entry["inside"][0]
     forged["claims"]["curvature"][vertex - 4] = "1"  # the border has four vertices, the first
-    stopped(forged, f"vertex {vertex} is not flat, as it has a deficit")
+    stopped(forged, f"vertex {vertex} has an angle deficit, so that it is not flat in a triangle")
 
 
 def test_deficits_without_a_given_rim() -> None:
@@ -50,7 +50,7 @@ def test_deficits_without_a_given_rim() -> None:
     )
     verified(document)
     document["claims"]["gauge"] = "saddle"
-    stopped(document, "angle deficits need a given rim")
+    stopped(document, 'angle deficits need the gauge "rim"')
 
 
 def saddle() -> dict[int, Fraction]:
@@ -81,4 +81,4 @@ def test_a_vertex_without_a_deficit_may_be_flat_and_one_with_a_deficit_is_not() 
         for other in (0, -document["claims"]["vertex_signs"][k]):
             forged = given(SHAPE)
             forged["claims"]["vertex_signs"][k] = other
-            refused(forged, f"vertex {6 + k} has another sign")
+            refused(forged, f"vertex {6 + k} does not have the claimed sign")

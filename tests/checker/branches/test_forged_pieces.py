@@ -98,7 +98,7 @@ def with_parts(document: Document, parts: list[Any]) -> Document:
         pytest.param(
             "antiprism", "64 graphs in 12 pieces, with 40 joints shown", marks=pytest.mark.slow
         ),
-        ("chord", "2 graphs in 1 piece, joined by the fold 1-2 from border to border"),
+        ("chord", "2 graphs in 1 piece, joined by the fold 1-2 from boundary to boundary"),
         ("triangle", "8 graphs in 4 pieces, with 2 joints shown"),
     ],
 )
@@ -193,21 +193,21 @@ def test_how_many_vertices_can_pop(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_the_vertices_that_can_pop() -> None:
     document = piece("pentagon")
     document["claims"]["vertices"] = [5]
-    stopped(document, "other vertices can pop")
+    stopped(document, "the vertices that can pop are [5, 6]")
 
 
 def test_a_fold_from_border_to_border_is_shown() -> None:
     document = sealed(piece("pentagon"), [], 1, 1)
     document["claims"]["complete"] = []
     document["evidence"]["chord"] = [0, 5]
-    stopped(document, "no fold from border to border is named")
+    stopped(document, "0-5 is not a fold from boundary to boundary")
 
 
 def test_a_fold_from_border_to_border_is_not_kept_quiet() -> None:
     document = sealed(piece("chord"), [], 2, 2)
     document["claims"]["complete"] = [4]
     document["evidence"] |= {"chord": None, "flat": [{"held": [4], "complete": [4], "parts": []}]}
-    stopped(document, "a fold goes from border to border")
+    stopped(document, "a fold goes from boundary to boundary, and no chord is named")
 
 
 def test_joints_bounds_and_complete_vertices() -> None:
@@ -218,7 +218,7 @@ def test_joints_bounds_and_complete_vertices() -> None:
     stopped(sealed(piece("pentagon"), ["0-"], 2, 3), "the evidence shows 2 to 2 pieces")
     document = piece("pentagon")
     document["claims"]["complete"] = [5]
-    stopped(document, "other vertices are complete")
+    stopped(document, "the evidence is complete at the vertices [5, 6]")
     turned = piece("pentagon")
     turned["claims"]["joints"] = ["0+"]
     verified(turned)
@@ -263,9 +263,9 @@ def test_a_star_that_is_held_flat() -> None:
     for held in ([], [0]):
         document = piece("pentagon")
         document["evidence"]["flat"].append({"held": held, "complete": [], "parts": []})
-        refused(document, "a star that is held flat is none")
+        refused(document, f"the vertices held flat, {held}, are none, or not all can pop")
     document["evidence"]["flat"][-1]["held"] = []
-    stopped(document, "a star that is held flat is none")
+    stopped(document, "the vertices held flat, [], are none, or not all can pop")
 
 
 def test_a_vertex_is_complete_by_what_can_bend_without_it_alone() -> None:

@@ -50,7 +50,7 @@ def test_vertices_with_more_than_four_folds(count: int) -> None:
     rim = [(k, (k + 1) % count) for k in range(count)]
     made = drawn([*star, (0, 0)], [*map(sorted, rim), *((k, count) for k in range(count))])
     made["claims"]["supports"] = []
-    refused(made, "the parts with spaces of motions are others")
+    refused(made, "the parts listed are not those with a vertex of more than four folds")
 
 
 def test_more_keys() -> None:
@@ -119,7 +119,7 @@ def test_a_way_back_is_no_loop(loop: list[int]) -> None:
     support["extending"] = 1
     shown = "-".join(map(str, loop))
     modes[0] |= {"extends": "refuted", "loop": loop, "order": 3}
-    stopped(made, f"{shown} is no loop of {TILING}")
+    stopped(made, f"{shown} is not a loop of {TILING}")
 
 
 def test_no_loops() -> None:
@@ -128,9 +128,9 @@ def test_no_loops() -> None:
     for loop in ([5], [5, 9, 6, 10], [0, 1, 5, 4], [5, 9, 10, 6, 5], [99, 98]):
         modes[0] |= {"extends": "refuted", "loop": loop, "order": 3}
         shown = "-".join(map(str, loop))
-        refused(made, f"{shown} is no loop of {TILING}")
+        refused(made, f"{shown} is not a loop of {TILING}")
     modes[0]["loop"] = []
-    refused(made, f"the loop  of {TILING} is not seen to fail at order 3")
+    refused(made, f"the loop  of {TILING} is not proved to fail at order 3")
 
 
 def test_what_is_not_decided_does_not_refute_rigidity() -> None:

@@ -200,10 +200,10 @@ def test_what_an_entry_says_is_verified(name: str) -> None:
     for line in parts[1:-1]:
         kept = line["roots"][0]
         for key, message in (
-            ("vertex_signs", "as shown by"),
-            ("assignment", "as shown by"),
+            ("vertex_signs", "not what is claimed"),
+            ("assignment", "not what is claimed"),
             ("multiplicity", "multiplicity is"),
-            ("representative", "as shown by"),
+            ("representative", "not what is claimed"),
         ):
             other = {
                 "multiplicity": kept["multiplicity"] + 1,
@@ -238,7 +238,7 @@ def test_every_claim_is_verified(name: str) -> None:
     for key, claim in given_lines(name)[-1]["claims"].items():
         parts = given_lines(name)
         parts[-1]["claims"][key] = claim + 1 if type(claim) is int else f"{claim} "
-        refused_lines(parts, f"{key} = {parts[-1]['claims'][key]!a} is {claim!a}")
+        refused_lines(parts, f"claim {key} = {parts[-1]['claims'][key]!a}, but it is {claim!a}")
         del parts[-1]["claims"][key]
         with pytest.raises(CertificateError, match="claims: expected an object with the keys"):
             verified_lines(parts)

@@ -62,7 +62,7 @@ def test_both_signs_of_the_discriminant_are_needed(monkeypatch: pytest.MonkeyPat
     sides = panel_cones._sides
     monkeypatch.setattr(panel_cones, "_sides", lambda *args: (sides(*args)[0], False))
     made = certified("joined stars")
-    refused(made, "the forms of vertices 0, 1 stay")
+    refused(made, "the zeros of the forms of vertices 0, 1 may be several components")
     verified(certified("star"))  # one form has rank 3, and needs no sign
 
 

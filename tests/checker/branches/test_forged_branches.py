@@ -82,7 +82,7 @@ def test_every_sign_and_letter_is_compared(name: str) -> None:
         for other in [x for x in (-1, 0, 1) if x != sign] + [bool(sign), str(sign), None]:
             forged = given(name)
             forged["claims"]["vertex_signs"][k] = other
-            refused(forged, f"vertex {interior[k]} has another sign")
+            refused(forged, f"vertex {interior[k]} does not have the claimed sign")
     seen = set()
     for k, letter in enumerate(claims["assignment"]):
         if letter in seen and k > 4:
@@ -102,11 +102,11 @@ def test_signs_and_letters_are_as_many_as_there_are() -> None:
     for letters in ("", "M" * 99, None, ["M"] * 19):
         forged = given(CONVEX)
         forged["claims"]["assignment"] = letters
-        refused(forged, "letters do not fit")
+        refused(forged, "the assignment does not have one letter for each fold")
     text = given(CONVEX)["claims"]["assignment"]
     for letters in (text + "U", text[:-1], list(text)):
         forged["claims"]["assignment"] = letters
-        refused(forged, "letters do not fit")
+        refused(forged, "the assignment does not have one letter for each fold")
     forged = given(CONVEX)
     forged["claims"]["vertex_signs"].append(1)
     refused(forged, "vertex_signs has not 6 entries")
@@ -227,12 +227,16 @@ def test_heights_are_those_of_the_vertices_that_are_left() -> None:
     for change in (None, "x"):
         forged = given(CONVEX)
         forged["evidence"]["heights"][5] = change
-        message = "heights do not fit" if change is None else "'x' is not an integer"
+        message = (
+            "heights must be null for the vertices that are removed, and for no others"
+            if change is None
+            else "'x' is not an integer"
+        )
         refused(forged, message)
     forged = given(TRIANGLES)
     place = forged["evidence"]["heights"].index(None)
     forged["evidence"]["heights"][place] = "0"
-    refused(forged, "heights do not fit")
+    refused(forged, "heights must be null for the vertices that are removed, and for no others")
 
 
 def test_heights_that_solve_nothing() -> None:
@@ -274,7 +278,7 @@ def test_a_side_that_is_not_certain(monkeypatch: pytest.MonkeyPatch) -> None:
         return (0, high) if a is not b and v == 7 else (low, high)
 
     monkeypatch.setattr(Proof, "form", about_zero)
-    refused(given(CONVEX), "the side of vertex 7 is not certain")
+    refused(given(CONVEX), "the sign of vertex 7 is not certain")
 
 
 # --- the gauge -----------------------------------------------------------------------------------
@@ -339,7 +343,7 @@ def test_the_rim_of_a_reflex_sheet_is_flat() -> None:
             if forged["evidence"]["heights"][v] != "0":
                 continue
             forged["evidence"]["heights"][v] = "1"
-            refused(forged, "the rim is not flat")
+            refused(forged, "the boundary vertices are not all at height 0")
 
 
 def test_the_reflex_corner_pops_up() -> None:

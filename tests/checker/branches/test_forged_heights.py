@@ -125,7 +125,7 @@ def test_sides_that_rounding_hides(tilt: int) -> None:
     sign = (tilt < 0) - (tilt > 0)
     verified(told(made, [1, sign], "U" * 9))
     for other in {-1, 0, 1} - {sign}:
-        refused(told(made, [1, other], "U" * 9), "vertex 7 has another sign")
+        refused(told(made, [1, other], "U" * 9), "vertex 7 does not have the claimed sign")
 
 
 def test_curvature_must_be_positive_where_heights_are_not_exact() -> None:

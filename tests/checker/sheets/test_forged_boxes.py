@@ -162,8 +162,14 @@ def test_boxes_that_are_none(change: Document, message: str) -> None:
     [
         ({"4": "-2/3"}, "the chart functional does not fix the height of its corner"),
         ({"1": "0"}, "the chart functional does not fix the height of its corner"),
-        ({"1": "1", "0": "1"}, "a bad chart functional"),
-        ({"1": "1", "9": "1"}, "a bad chart functional"),
+        (
+            {"1": "1", "0": "1"},
+            "the chart functional uses a vertex that is neither its corner nor interior",
+        ),
+        (
+            {"1": "1", "9": "1"},
+            "the chart functional uses a vertex that is neither its corner nor interior",
+        ),
         ({"1": "1", "01": "1"}, "a vertex appears twice in the chart"),
         ([["1", "1"]], "the chart is neither null nor a functional"),
         ("", "the chart is neither null nor a functional"),

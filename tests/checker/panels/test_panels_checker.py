@@ -55,7 +55,8 @@ def test_summary(tmp_path: Path) -> None:
     claims = checker.verify(path)
     assert checker.summary(claims) == (
         "VALID: the motions of the sheet of 12 folds and 4 interior vertices have the components "
-        "3 of dimension 1, 1 of dimension 2 to second order, truly 2 of dimension 1, 1 of "
+        "3 of dimension 1, 1 of dimension 2 to second order, and those of the true motions are "
+        "2 of dimension 1, 1 of "
         f"dimension 2; sha256 {claims['sha256']}"
     )
 
@@ -65,7 +66,10 @@ def test_folds_held_flat() -> None:
     assert claims["second_order"] == claims["true"] == {"0": 1}
     assert claims["held"] == claims["flat"] == [[4, 5]]
     assert ", 1 fold held flat have" in checker.summary(claims)
-    assert "of dimension 0 to second order, truly the same; sha256" in checker.summary(claims)
+    assert (
+        "of dimension 0 to second order, and those of the true motions are the same; sha256"
+        in checker.summary(claims)
+    )
     for fold in ((5, 6), (5, 9)):  # so that a straight pair along x, along y is left
         inner = certified("crossing", [fold])
         assert verified(inner)["second_order"] != KNOWN["crossing"]
@@ -87,7 +91,7 @@ def test_an_undecided_extension_claims_nothing() -> None:
     for mode in support["modes"]:
         mode["extends"] = "undecided"
     made["claims"]["rigid"] = "undecided"
-    assert "truly not decided" in checker.summary(verified(made))
+    assert "those of the true motions are not decided" in checker.summary(verified(made))
     support["modes"] = None
     assert verified(made)["true"] is None
 
@@ -153,7 +157,7 @@ def test_edges_are_sorted() -> None:
     ("radicands", "message"),
     [
         ([["4"]], "radicand 0 is a square"),
-        ([["-2"]], "the square root of a number that is not positive"),
+        ([["-2"]], "a square root is taken of a number that is not positive"),
         ([["2"], ["3", "2"]], "radicand 1 is a square"),
         (
             [[str(p)] for p in (2, 3, 5, 7, 11, 13, 17)],
@@ -193,7 +197,7 @@ def test_a_support_too_many() -> None:
     made = certified("two rows")
     more = {**supports_of(made)[0], "folds": [[0, 1]]}
     supports_of(made).append(more)
-    stopped(made, "the folds [(0, 1)] are no support")
+    stopped(made, "the folds [(0, 1)] are not the folds of a support")
 
 
 def test_a_support_twice() -> None:
@@ -267,7 +271,7 @@ def test_modes_that_are_listed() -> None:
     modes[:] = [one, other, dict(one)]
     stopped(made, f"the mode {one['choice']} of {TILING} appears twice")
     modes[:] = [one, other, {**one, "choice": "++++"}]
-    stopped(made, f"'++++' is no mode of {TILING}")
+    stopped(made, f"'++++' is not a mode of {TILING}")
     letters = one["assignment"]
     turned = letters.translate(str.maketrans("MV", "VM"))
     modes[:] = [{**one, "assignment": turned}, other]
@@ -313,20 +317,20 @@ def test_a_mode_that_extends_is_not_refuted() -> None:
         for order in (3, 17):
             mode.update(loop=loop, order=order)
             shown = "-".join(map(str, loop))
-            message = f"the loop {shown} of {TILING} is not seen to fail at order {order}"
+            message = f"the loop {shown} of {TILING} is not proved to fail at order {order}"
             stopped(made, message)
     for order in (0, 1, 4, 67):
         mode.update(loop=[5, 9, 10, 6], order=order)
         refused(made, f"there is no order {order}")
     for loop in ([], [5], [5, 9], [5, 9, 6, 10], [5, 9, 10, 6, 5], [0, 1, 5, 4]):
         mode.update(loop=loop, order=3)
-        with pytest.raises(checker.CertificateError, match=r"is no loop of|not seen to fail"):
+        with pytest.raises(checker.CertificateError, match=r"is not a loop of|not proved to fail"):
             verified(made)
     mode.update(extends="refuted", loop=None, order=None)
     refused(made, "a loop is not a list")
     support["extending"] = 2
     mode.update(extends="proved", loop=[5, 9, 10, 6], order=3)
-    stopped(made, "a loop that fails nothing")
+    stopped(made, f"a mode of {TILING} names a loop or an order, but is not refuted")
 
 
 @pytest.mark.parametrize(
@@ -362,7 +366,7 @@ def test_folds_that_are_held() -> None:
         verified(made)
     made = certified("square")
     made["claims"]["held"] = [[0, 4]]
-    stopped(made, "0-4 is held flat, and no fold")
+    stopped(made, "0-4 is held flat, but is not a fold")
     made = certified("square", [(4, 5)])
     made["claims"]["held"] = [[4, 5], [4, 5]]
     stopped(made, "held are not sorted")
