@@ -307,7 +307,7 @@ def _bounds(
     inverse: FloatArray,
     weights: Row,
 ) -> Contraction:
-    """The contraction of the equations of y for the points of the box `branch_point`, rounded up."""
+    """The contraction of the equations of y for points of the box `branch_point`, rounded up."""
     framework, bits, more = equations.framework, equations.bits, stresses.bits
     p, n = _whole(inverse), framework.size
     size = abs(p)
