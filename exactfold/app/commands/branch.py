@@ -27,7 +27,7 @@ class Asked(BranchOptions):
     @property
     def given(self) -> Given:
         """Heights of the boundary and angle deficits, in files."""
-        return Given(self.boundary_heights, self.curvature)
+        return Given(self.rim, self.curvature)
 
     @property
     def name(self) -> str:

@@ -36,7 +36,7 @@ class Asked(CountOptions):
     @property
     def given(self) -> Given:
         """Heights of the boundary and angle deficits, in files."""
-        return Given(self.boundary_heights, self.curvature)
+        return Given(self.rim, self.curvature)
 
     def run(self) -> int:
         """Count, write what was asked for and print the answer; the exit code.

@@ -47,7 +47,7 @@ class Wanted(DrawOptions):
     @property
     def given(self) -> Given:
         """Heights of the boundary, in files."""
-        return Given(self.boundary_heights)
+        return Given(self.rim)
 
     @cached_property
     def amount(self) -> Amount | None:

@@ -43,7 +43,7 @@ class Wanted(ExportOptions):
     @property
     def given(self) -> Given:
         """Heights of the boundary, in files."""
-        return Given(self.boundary_heights)
+        return Given(self.rim)
 
     def answer(self) -> int:
         """Find the branch, write it and say so; the exit code.

@@ -48,7 +48,7 @@ class Wanted(FoldOptions):
     @property
     def given(self) -> Given:
         """Heights of the boundary, in files."""
-        return Given(self.boundary_heights)
+        return Given(self.rim)
 
     def answer(self) -> int:
         """Follow the sheet, write what was asked for and print; the exit code.

@@ -43,7 +43,7 @@ class FoldOptions:
     signs: Signs = None
     up: Up = None
     place: Place = None
-    boundary_heights: BoundaryHeights = None
+    rim: BoundaryHeights = None
     side: Side = None
     drive: PrescribedAngles = None
     through_branch_points: Annotated[
@@ -115,17 +115,15 @@ class FoldOptions:
 
     def __post_init__(self) -> None:
         one_at_most("one of --signs, --up and --branch", self.signs, self.up, self.place)
-        if self.place is not None and (self.boundary_heights, self.drive) != (None, None):
-            option = "--drive" if self.boundary_heights is None else "--rim"
+        if self.place is not None and (self.rim, self.drive) != (None, None):
+            option = "--drive" if self.rim is None else "--rim"
             raise UsageError(f"{option} goes with --signs or --up")
         if self.component is not None and self.modes is not None:
             raise UsageError("give one of --component and --modes")
-        apart(
-            self.output, self.file, self.boundary_heights, self.plot, self.picture, self.certificate
-        )
-        apart(self.plot, self.file, self.boundary_heights, self.picture, self.certificate)
-        apart(self.picture, self.file, self.boundary_heights, self.certificate)
-        apart(self.certificate, self.file, self.boundary_heights)
+        apart(self.output, self.file, self.rim, self.plot, self.picture, self.certificate)
+        apart(self.plot, self.file, self.rim, self.picture, self.certificate)
+        apart(self.picture, self.file, self.rim, self.certificate)
+        apart(self.certificate, self.file, self.rim)
 
 
 @dataclass(frozen=True)

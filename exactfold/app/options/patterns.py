@@ -88,7 +88,7 @@ class CountOptions:
         ),
     ] = None
     curvature: Curvature = None
-    boundary_heights: BoundaryHeights = None
+    rim: BoundaryHeights = None
     as_json: Json = False
     snap: Snap = None
     sheet: Sheet = None
@@ -108,7 +108,7 @@ class CountOptions:
             self.stream,
             self.workers,
             self.curvature,
-            self.boundary_heights,
+            self.rim,
         )
         if self.resume or any(value is not None for value in single):
             raise UsageError(

@@ -234,14 +234,16 @@ class _Asked:
 
     def refuse_names(self, what: str) -> None:
         """Raise `UsageError` where a way is named although it is there."""
-        for name in ("way", "signs", "up", "letters", "rim", "drive"):
+        for name in ("way", "signs", "up", "letters", "boundary_heights", "drive"):
             if getattr(self, name) is not None:
                 raise UsageError(f"{name} chooses a way of a sheet, and this is {what} already")
 
     def refuse_of_panels(self, through_branch_points: bool) -> None:
         """Raise `UsageError` for what only branches have."""
-        given = {name: getattr(self, name) for name in ("signs", "up", "rim", "drive")}
-        for name, value in (given | {"through_nodes": through_branch_points or None}).items():
+        given = {name: getattr(self, name) for name in ("signs", "up", "boundary_heights", "drive")}
+        for name, value in (
+            given | {"through_branch_points": through_branch_points or None}
+        ).items():
             if value is not None:
                 raise UsageError(
                     f"{name} is for branches, and this sheet of rigid panels has modes: choose one "

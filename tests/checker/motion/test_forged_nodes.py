@@ -92,12 +92,12 @@ def test_keys() -> None:
     for place, message in (
         (
             ("claims",),
-            "claims: expected an object with the keys vertex_signs side length branch point clear",
+            "claims: expected an object with the keys vertex_signs side length node clear",
         ),
         (
             ("evidence",),
             "evidence: expected an object with the keys emptied pinned bits start tubes "
-            "branch point "
+            "node "
             "contacts",
         ),
         (("claims", "node"), "node: expected an object with the keys flat clear"),
@@ -118,7 +118,7 @@ def test_a_node_is_claimed_with_its_evidence() -> None:
     refused(forged, f"{names} contacts")
     forged = given()
     del forged["evidence"]["node"]
-    refused(forged, f"{names} branch point contacts")
+    refused(forged, f"{names} node contacts")
 
 
 @pytest.mark.slow
@@ -285,7 +285,9 @@ def test_faces_that_may_touch_on_the_arc() -> None:
     start, tau, steps, claims, contacts = pieces()
     check_contacts(start, tau, steps, claims, contacts)
     arc, begin, end = steps[-1]
-    vague = type("Vague", (), {"node": arc.branch_point, "curve": arc.curve, "bits": arc.bits})()
+    vague = type(
+        "Vague", (), {"branch_point": arc.branch_point, "curve": arc.curve, "bits": arc.bits}
+    )()
     box, rate = arc.configuration(begin)
     wide = Ball(box.centre, [r + (1 << arc.bits - 2) for r in box.radii])
     vague.configuration = lambda s: (wide, rate)
