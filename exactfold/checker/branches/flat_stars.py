@@ -112,7 +112,7 @@ def _part(spaces: Spaces, part: Space, evidence: Sequence[Any]) -> Found:
 
 
 def _are_all(spaces: Spaces, part: Space, joints: list[Signs]) -> bool:
-    """Whether the joints have all signs of the vertices that may bend; other joints are not counted.
+    """Whether the joints have all signs of the vertices that may bend.
 
     Then any two sign vectors that differ only at a vertex that is held flat are joined.
     """
