@@ -36,7 +36,7 @@ class Asked(CountOptions):
     @property
     def given(self) -> Given:
         """Heights of the border and angle deficits, in files."""
-        return Given(self.rim, self.curvature)
+        return Given(self.boundary_heights, self.curvature)
 
     def run(self) -> int:
         """Count, write what was asked for and print the answer; the exit code.
@@ -87,7 +87,12 @@ class Asked(CountOptions):
         with Bar("reading") as bar:
             pattern = read(self.pattern, self.snap, self.sheet, "count").pattern
             finder = self.given.finder(pattern)
-            result = count_shapes(pattern, finder.curvature or {}, rim=finder.rim, progress=bar)
+            result = count_shapes(
+                pattern,
+                finder.curvature or {},
+                boundary_heights=finder.boundary_heights,
+                progress=bar,
+            )
         if self.as_json:
             print(json.dumps(result.to_dict(name_of(self.pattern))))
         else:
@@ -118,8 +123,8 @@ class Asked(CountOptions):
             return None
         if not isinstance(result, BranchCount):
             return self._certified_panels(result, self.certificate)
-        if result.pieces is not None and result.proof is None:
-            return self._certified_pieces(result, self.certificate)
+        if result.connected_components is not None and result.proof is None:
+            return self._certified_components(result, self.certificate)
         if result.families is not None:
             return self._certified_panels(result.families, self.certificate)
         if result.status is not PROVED:
@@ -137,7 +142,7 @@ class Asked(CountOptions):
         file = self.certificate
         return None if file is None else file.with_suffix(f".components{file.suffix}")
 
-    def _certified_pieces(self, result: BranchCount, file: Path) -> str | None:
+    def _certified_components(self, result: BranchCount, file: Path) -> str | None:
         """The certificate of pieces, and beside it that of the irreducible components."""
         written = None
         try:

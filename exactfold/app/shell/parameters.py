@@ -186,7 +186,7 @@ Up = Annotated[
     str | None,
     typer.Option(metavar="5,7", help="Instead: the vertices popped up, all others down."),
 ]
-Drive = Annotated[
+PrescribedAngles = Annotated[
     str | None,
     typer.Option(
         metavar="I-J=DEG,...",
@@ -196,7 +196,7 @@ Drive = Annotated[
     ),
 ]
 
-Rim = Annotated[
+BoundaryHeights = Annotated[
     Path | None,
     typer.Option(
         metavar="RIM.json",

@@ -10,7 +10,7 @@ from exactfold._support.verdict import PROVED
 from exactfold.app.verbs.choosing import Letters, asked_letters, the_branch
 from exactfold.branches.counting.find import Signs
 from exactfold.design.actuation.actuate import actuate as actuate_branch
-from exactfold.design.assignments.boundary_match import can_pop, match_rim
+from exactfold.design.assignments.boundary_match import can_pop, match_boundary
 from exactfold.design.assignments.search import match as match_branches
 from exactfold.design.panels.match import match_panels
 from exactfold.design.refutations.asked import by_fold
@@ -21,7 +21,7 @@ from exactfold.pattern.opening import triangles
 
 if TYPE_CHECKING:
     from exactfold.design.actuation.result import Actuation
-    from exactfold.design.assignments.boundary_result import RimMatch
+    from exactfold.design.assignments.boundary_result import BoundaryMatch
     from exactfold.design.assignments.result import Match
     from exactfold.design.panels.match import PanelMatch
     from exactfold.exact.numbers import RationalLike
@@ -33,14 +33,14 @@ def match(
     *,
     most: int | None = None,
     progress: Progress | None = None,
-) -> Match | RimMatch | PanelMatch:
+) -> Match | BoundaryMatch | PanelMatch:
     """Which ways have given mountains and valleys, or a proof that there are none.
 
     `sheet` is what `read` takes. `letters`: M, V, F (flat) or U (free) for each fold, as text in
     the order of the folds or by fold (i, j), i < j; None or "drawn" for those of the file. The
     result depends on the sheet: a `Match` has all branches of a triangulated sheet with four
-    corners that have the letters; a `RimMatch` says whether a sheet with more corners starts to
-    fold with them, and heights of its boundary with which it does; a `PanelMatch` says whether
+    corners that have the letters; a `BoundaryMatch` says whether a sheet with more corners starts
+    to fold with them, and heights of its boundary with which it does; a `PanelMatch` says whether
     rigid panels do. `most`: how many sign vectors of a triangulated sheet are tried before the
     answer is UNDECIDED.
 
@@ -57,7 +57,7 @@ def match(
     pattern = opened.sheet
     wanted = by_fold(pattern.folds, asked_letters(opened, letters))
     if isinstance(pattern, CreasePattern) and pattern.Ve > 4 and can_pop(pattern):
-        over = match_rim(pattern, wanted, progress=progress, **_at_most(most))
+        over = match_boundary(pattern, wanted, progress=progress, **_at_most(most))
         if over.status is PROVED:
             return over
     if not isinstance(pattern, CreasePattern) or pattern.Ve > 4:

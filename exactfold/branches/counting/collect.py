@@ -43,10 +43,11 @@ def count_branches(
     an exact test, prove by refined Bezout that there are no others (docs/mathematics.md, Krawczyk's
     test to True branches), and decide all vertex signs and folds exactly. For Ve = 3 the sheet is
     rigid: 0 branches. For D >= 2 and a convex border the solutions are 2^n graphs over the rim
-    heights, and `pieces` says how they are joined (`find_pieces`). `method` is one of `METHODS`;
-    "auto" takes Newton's method, one start for each sign vector, and turns to the exact engine
-    where that does not settle a small pattern. With more than 20 foldable vertices nothing is kept
-    in memory: `too_many` says what is known, at once; `stream_branches` goes on to 40.
+    heights, and `connected_components` says how they are joined (`find_connected_components`).
+    `method` is one of `METHODS`; "auto" takes Newton's method, one start for each sign vector, and
+    turns to the exact engine where that does not settle a small pattern. With more than 20 foldable
+    vertices nothing is kept in memory: `too_many` says what is known, at once; `stream_branches`
+    goes on to 40.
 
     UNDECIDED does not mean that the count is unusual, only that it was not proved. Raises
     `NotCountedError` if there is nothing to count, `UsageError` for an unknown method.
@@ -112,7 +113,7 @@ def _higher(
 ) -> BranchCount:
     """D >= 2: one double cone for a single vertex, 2^n graphs over the rim for a convex border."""
     from exactfold.branches.connected_components.joining import (
-        find_pieces,  # here, as most counts do without
+        find_connected_components,  # here, as most counts do without
     )
 
     sheet, _ = pattern.without_rigid_parts()
@@ -131,24 +132,28 @@ def _higher(
             true_branches=PROVED,
             proof=Proof("single vertex", triangles),
         )
-        return result if not pattern.is_convex else replace(result, pieces=find_pieces(pattern))
+        return (
+            result
+            if not pattern.is_convex
+            else replace(result, connected_components=find_connected_components(pattern))
+        )
     if not pattern.is_convex:
         return _not_convex(pattern)
-    pieces = find_pieces(pattern, progress=progress)
+    connected_components = find_connected_components(pattern, progress=progress)
     return BranchCount(
         pattern,
         PROVED,
         "theorem",
-        "for all rim heights there is exactly one solution with each sign vector: "
-        f"2^{len(pieces.vertices)} graphs over the rim heights, of dimension {pattern.D} modulo "
-        "planes",
+        "for all boundary heights there is exactly one solution with each sign vector: "
+        f"2^{len(connected_components.vertices)} graphs over the boundary heights, of dimension "
+        f"{pattern.D} modulo planes",
         why="the border is convex, with more than four vertices",
         true_branches=PROVED,
         open_questions=tuple(
             f"whether the star of vertex {v} is flat in other solutions: {reason}"
-            for v, reason in (pieces.open or {}).items()
+            for v, reason in (connected_components.open or {}).items()
         ),
-        pieces=pieces,
+        connected_components=connected_components,
     )
 
 

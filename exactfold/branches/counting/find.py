@@ -22,16 +22,16 @@ from exactfold.errors import UsageError
 from exactfold.exact.numbers import RationalLike
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.loading import PatternLike, as_pattern
-from exactfold.rigidity.equations.boundary_heights import default_rim
+from exactfold.rigidity.equations.boundary_heights import default_boundary_heights
 from exactfold.rigidity.equations.problem import Problem
-from exactfold.rigidity.equations.sheet import Sheet
+from exactfold.rigidity.equations.sheet import VertexEquations
 from exactfold.solve.certify.enclosed import enclosed
 from exactfold.solve.certify.enclosure import Enclosure
 from exactfold.solve.numeric.sparse_newton import End, solve
 from exactfold.solve.numeric.sparse_sheet import FloatSheet
 
 Signs = str | Mapping[int, int] | Sequence[int]
-Rim = Mapping[int, RationalLike]
+BoundaryHeights = Mapping[int, RationalLike]
 Deficits = Mapping[int, RationalLike]
 
 
@@ -40,7 +40,7 @@ def find_branch(
     signs: Signs | None = None,
     *,
     up: Iterable[int] | None = None,
-    rim: Rim | None = None,
+    boundary_heights: BoundaryHeights | None = None,
     curvature: Deficits | None = None,
     progress: Progress | None = None,
 ) -> Branch:
@@ -51,25 +51,26 @@ def find_branch(
     vertex to sign. `up`: instead, the vertices that pop up; the others pop down. Newton's method on
     the nappes proposes heights (docs/mathematics.md, Nappes); they are refined in exact arithmetic
     and enclosed by a theorem that needs no factorisation (docs/branch.md, `enclose`), so that the
-    cost of the proof grows like the number of folds. Gauge: see `Branch`. With `rim`, heights of
-    all boundary vertices of a convex boundary of any length, the branch of that rim; a convex sheet
-    with more than four boundary vertices has the rim `default_rim` if none is given. `curvature`:
-    angle deficits K_v > 0 of interior vertices, 0 where none is given; then the one shape with
-    these signs (docs/branch.md, Angle deficits), whose rim has height 0 if none is given. A vertex
-    that is proved flat on the branch gets the sign 0: either sign leads to it, and so does 0.
+    cost of the proof grows like the number of folds. Gauge: see `Branch`. With `boundary_heights`,
+    heights of all boundary vertices of a convex boundary of any length, the branch of that rim; a
+    convex sheet with more than four boundary vertices has the rim `default_boundary_heights` if
+    none is given. `curvature`: angle deficits K_v > 0 of interior vertices, 0 where none is given;
+    then the one shape with these signs (docs/branch.md, Angle deficits), whose rim has height 0 if
+    none is given. A vertex that is proved flat on the branch gets the sign 0: either sign leads to
+    it, and so does 0.
 
     Raises `UsageError` for signs that do not fit the pattern, among them a 0 where no branch with
-    the other signs is proved flat; `BadRimError` and `BadCurvatureError`, which name the vertex;
-    `NotApplicableError` for a rim of a border that is not convex; `NotCountedError` where signs
-    name no branch, or if no vertex can pop. An `UNDECIDED` result does not say that the branch does
-    not exist.
+    the other signs is proved flat; `BoundaryHeightsError` and `BadCurvatureError`, which name the
+    vertex; `NotApplicableError` for a rim of a border that is not convex; `NotCountedError` where
+    signs name no branch, or if no vertex can pop. An `UNDECIDED` result does not say that the
+    branch does not exist.
 
     >>> from exactfold.pattern.random_squares import random_square
     >>> branch = find_branch(random_square(8, seed=1), "+-++--+-")
     >>> branch.status, branch.assignment_text, float(branch.radius) < 1e-9
     (<Verdict.PROVED: 'proved'>, 'MMMVMVVMMVVMMVMVMMVVMVVVM', True)
     """
-    finder = branch_finder(as_pattern(pattern), rim, curvature)
+    finder = branch_finder(as_pattern(pattern), boundary_heights, curvature)
     return finder.find(finder.signs(signs, up), progress=progress)
 
 
@@ -77,7 +78,7 @@ def find_branches(
     pattern: PatternLike,
     many: Iterable[Signs],
     *,
-    rim: Rim | None = None,
+    boundary_heights: BoundaryHeights | None = None,
     curvature: Deficits | None = None,
     progress: Progress | None = None,
 ) -> Iterator[Branch]:
@@ -87,7 +88,7 @@ def find_branches(
     >>> [b.sign_text for b in find_branches(random_square(3, seed=0), ["+-+", "---"])]
     ['+-+', '---']
     """
-    finder = branch_finder(as_pattern(pattern), rim, curvature)
+    finder = branch_finder(as_pattern(pattern), boundary_heights, curvature)
     for signs in many:
         yield finder.find(finder.signs(signs, None), progress=progress)
 
@@ -97,7 +98,7 @@ def neighbours(
     signs: Signs,
     vertices: Iterable[int] | None = None,
     *,
-    rim: Rim | None = None,
+    boundary_heights: BoundaryHeights | None = None,
     curvature: Deficits | None = None,
     progress: Progress | None = None,
 ) -> dict[int, Branch]:
@@ -110,46 +111,52 @@ def neighbours(
     >>> {v: b.sign_text for v, b in neighbours(random_square(3, seed=0), "+-+").items()}
     {4: '--+', 5: '+++', 6: '+--'}
     """
-    finder = branch_finder(as_pattern(pattern), rim, curvature)
+    finder = branch_finder(as_pattern(pattern), boundary_heights, curvature)
     return finder.neighbours(finder.signs(signs, None), vertices, progress=progress)
 
 
 def branch_finder(
-    pattern: CreasePattern, rim: Rim | None = None, curvature: Deficits | None = None
+    pattern: CreasePattern,
+    boundary_heights: BoundaryHeights | None = None,
+    curvature: Deficits | None = None,
 ) -> BranchFinder:
-    """The finder for a convex border of any length, with the rim `default_rim` where it needs one.
+    """The finder for a convex boundary of any length.
+
+    Where it needs boundary heights and has none, these are the `default_boundary_heights`.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> branch_finder(single_vertex(5)).problem.gauge
-    <Gauge: rim, 5 vertices on the rim>
+    <Gauge: rim, 5 boundary vertices>
     """
-    if rim is None and curvature is None and pattern.Ve > 4 and pattern.is_convex:
-        rim = default_rim(pattern)
-    return BranchFinder(pattern, rim, curvature)
+    if boundary_heights is None and curvature is None and pattern.Ve > 4 and pattern.is_convex:
+        boundary_heights = default_boundary_heights(pattern)
+    return BranchFinder(pattern, boundary_heights, curvature)
 
 
 @dataclass(frozen=True)
 class BranchFinder:
     """Finds branches of one pattern; what does not depend on the signs is computed once.
 
-    `rim` and `curvature` as in `find_branch`, but that no rim is chosen.
+    `boundary_heights` and `curvature` as in `find_branch`, but that no rim is chosen.
     """
 
     pattern: CreasePattern
-    rim: Rim | None = None
+    boundary_heights: BoundaryHeights | None = None
     curvature: Deficits | None = None
 
     @cached_property
     def problem(self) -> Problem:
         """The problem in the gauge asked for."""
-        problem = Problem.of(self.pattern, rim=self.rim, curvature=self.curvature)
+        problem = Problem.of(
+            self.pattern, boundary_heights=self.boundary_heights, curvature=self.curvature
+        )
         problem.require_foldable()
         return problem
 
     @cached_property
-    def sheet(self) -> Sheet:
+    def sheet(self) -> VertexEquations:
         """The exact equations, fold by fold."""
-        return Sheet(self.problem)
+        return VertexEquations(self.problem)
 
     @cached_property
     def _floats(self) -> FloatSheet:

@@ -71,7 +71,7 @@ def check(data: dict[str, Any]) -> VerifiedBranch:
     if claims["gauge"] != "rim":
         require(not curved, 'angle deficits need the gauge "rim"')
         require(claims["gauge"] == "saddle", "the gauge is neither saddle nor rim")
-        place.fix_rim()
+        place.fix_boundary()
     check_convex(place.sheet)
     proof = place.proof(evidence["heights"], evidence["denominator"], targets)
     require(
@@ -90,8 +90,8 @@ def check(data: dict[str, Any]) -> VerifiedBranch:
 class Place:
     """The sheet on which heights are given, in integer coordinates, without the vertices `removed`.
 
-    After `fix_rim` the heights are those of one ray of a branch. If the sheet has a reflex corner,
-    this is `corner`, and `sheet` has its notch closed. `open` is the sheet with the notch.
+    After `fix_boundary` the heights are those of one ray of a branch. If the sheet has a reflex
+    corner, this is `corner`, and `sheet` has its notch closed. `open` is the sheet with the notch.
     """
 
     def __init__(self, given: Sheet, emptied: Any) -> None:
@@ -105,7 +105,7 @@ class Place:
         self.corner: int | None = None
         self.fixed = False
 
-    def fix_rim(self) -> None:
+    def fix_boundary(self) -> None:
         """Require four corners, and heights with a positive saddle or with the reflex corner up."""
         require(len(self.sheet.boundary) == 4, "there are not four boundary vertices")
         self.sheet, self.corner = closed(self.sheet)

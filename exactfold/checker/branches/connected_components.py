@@ -72,7 +72,7 @@ def check(data: dict[str, Any]) -> VerifiedPieces:
     place = Place(given, evidence["emptied"])
     require(len(place.sheet.boundary) > 4, "there are fewer than five boundary vertices")
     check_convex(place.sheet)
-    search = _Search(place)
+    search = _JointSearch(place)
     vertices = search.vertices
     require(same(claims["vertices"], vertices), f"the vertices that can pop are {vertices}")
     chord = evidence["chord"]
@@ -96,7 +96,7 @@ def check(data: dict[str, Any]) -> VerifiedPieces:
     return {"sha256": digest, "interior": len(given.interior), **more, **proved}
 
 
-def _check_joints(listed: list[Any], search: _Search) -> None:
+def _check_joints(listed: list[Any], search: _JointSearch) -> None:
     """Raise unless the listed joints are the largest that are shown, each once up to reflection."""
     largest = search.largest()
     known: set[str] = set()
@@ -108,7 +108,7 @@ def _check_joints(listed: list[Any], search: _Search) -> None:
     require(not left, f"the joint {left[:1]} is not listed")
 
 
-class _Search:
+class _JointSearch:
     """The joints of one sheet that the evidence shows."""
 
     def __init__(self, place: Place) -> None:
@@ -116,8 +116,8 @@ class _Search:
         self.vertices = list(sheet.interior)
         require(self.vertices, "no vertex can pop")
         at_most(len(self.vertices), MOST_VERTICES, "the vertices that can pop", "PIECE_VERTICES")
-        border = set(sheet.boundary)
-        self.chords = {fold for fold in sheet.folds if border.issuperset(fold)}
+        boundary = set(sheet.boundary)
+        self.chords = {fold for fold in sheet.folds if boundary.issuperset(fold)}
         self._kept = sorted(sheet.points)
         self._new = {v: k for k, v in enumerate(self._kept)}
         tower = Tower()

@@ -114,7 +114,8 @@ def _part(spaces: Spaces, part: Space, evidence: Sequence[Any]) -> Found:
 def _are_all(spaces: Spaces, part: Space, joints: list[Signs]) -> bool:
     """Whether the joints have all signs of the vertices that may bend.
 
-    Then any two sign vectors that differ only at a vertex that is held flat are joined.
+    Other joints are not counted. Then any two sign vectors that differ only at a vertex that is
+    held flat are joined.
     """
     touched = sorted({v for fold in folds_of(part) for v in fold if v in spaces.near})
     known = [signs for signs in joints if sorted(signs) == touched]

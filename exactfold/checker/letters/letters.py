@@ -22,7 +22,7 @@ from ..core.reading import counted, integer, items, keys, keys_of, natural, refu
 from ..sheets.sheet import Edge, read_sheet
 from .refuted import Signs, Stars
 
-Half = tuple[tuple[int, ...], int]
+Ray = tuple[tuple[int, ...], int]
 """A ray: the signs of the interior vertices, 0 where the star is flat, and the side."""
 
 _TURNED = str.maketrans("MV", "VM")
@@ -63,33 +63,33 @@ def check(data: dict[str, Any]) -> VerifiedLetters:
     keys(evidence, "emptied refuted tree leaves", "evidence")
     place = Place(given, evidence["emptied"])
     if len(place.sheet.boundary) == 4:
-        place.fix_rim()  # the notch is closed, so that the boundary is convex
+        place.fix_boundary()  # the notch is closed, so that the boundary is convex
     text = claims["letters"]
     fits = isinstance(text, str) and len(text) == len(given.folds) and set(text) <= set("MVFU")
     require(fits, "the letters are not one of M, V, F, U for each fold")
     wanted = dict(zip(given.folds, text, strict=True))
-    search = _Search(place, wanted)
-    rays = search.halves(
+    search = _LetterSearch(place, wanted)
+    matching = search.rays(
         items(evidence["refuted"], "refuted"),
         items(evidence["tree"], "tree"),
         items(evidence["leaves"], "leaves"),
     )
-    listed = [_half(entry, len(given.interior)) for entry in items(claims["halves"], "halves")]
+    listed = [_ray(entry, len(given.interior)) for entry in items(claims["halves"], "halves")]
     require(len(set(listed)) == len(listed), "a half of a branch is listed twice")
-    for half in listed:
-        require(half in rays, "a listed half of a branch does not have these letters")
-    require(len(listed) == len(rays), "a half of a branch with these letters is not listed")
+    for ray in listed:
+        require(ray in matching, "a listed half of a branch does not have these letters")
+    require(len(listed) == len(matching), "a half of a branch with these letters is not listed")
     proved: LettersClaims = claims
     return {"sha256": digest, "interior": len(given.interior), **proved}
 
 
-def _half(entry: Any, size: int) -> Half:
+def _ray(entry: Any, size: int) -> Ray:
     keys(entry, keys_of(HalfClaim), "half")
     signs = items(entry["vertex_signs"], "vertex_signs", size)
     return tuple(map(integer, signs)), integer(entry["side"])
 
 
-class _Search:
+class _LetterSearch:
     """The walk over the tree, for one sheet and the wanted letters."""
 
     def __init__(self, place: Place, wanted: dict[Edge, str]) -> None:
@@ -99,17 +99,17 @@ class _Search:
         own = {fold: wanted[fold] for fold in place.open.folds}
         self.stars = Stars(place.open, own)
 
-    def halves(self, refuted: list[Any], tree: list[Any], leaves: list[Any]) -> set[Half]:
+    def rays(self, refuted: list[Any], tree: list[Any], leaves: list[Any]) -> set[Ray]:
         """The rays with the letters; raises unless the whole tree is verified."""
         sets = [self.stars.refuted(entry, f"refuted set {k}") for k, entry in enumerate(refuted)]
-        rays: set[Half] = set()
+        matching: set[Ray] = set()
         entries = iter(leaves)
         for signs in self._left(sets, tree):
             both = items(next(entries, None), "a leaf", 2)
-            for side, half in zip((1, -1), both, strict=True):
-                rays |= self._matching(signs, side, half)
+            for side, ray in zip((1, -1), both, strict=True):
+                matching |= self._matching(signs, side, ray)
         require(next(entries, None) is None, "the evidence has more leaves than the tree")
-        return rays
+        return matching
 
     def _left(self, sets: list[Signs], tree: list[Any]) -> Iterator[Signs]:
         """Yield the sign vectors at the leaves; raises if the tree does not cover all vectors."""
@@ -144,7 +144,7 @@ class _Search:
                 require(held, f"fold {i}-{j} can fold, or no mountain or valley is asked for there")
         require(not stack, "the tree does not cover all sign vectors")
 
-    def _matching(self, signs: Signs, side: int, entry: Any) -> set[Half]:
+    def _matching(self, signs: Signs, side: int, entry: Any) -> set[Ray]:
         """The ray on one side of a leaf, if it has the letters, as a set of one or none."""
         keys(entry, "heights denominator", "half of a leaf")
         proof = self.place.proof(entry["heights"], entry["denominator"])
@@ -167,10 +167,10 @@ class _Search:
 
 def summary(claims: VerifiedLetters) -> str:
     """One line that states the verified claims."""
-    halves, text = len(claims["halves"]), claims["letters"]
+    rays, text = len(claims["halves"]), claims["letters"]
     asked = counted(len(text) - text.count("U"), "letter", "letters")
-    rays = counted(halves, "half of a branch has", "halves of branches have")
-    which = f"exactly {rays}" if halves else "no branch has"
+    halves = counted(rays, "half of a branch has", "halves of branches have")
+    which = f"exactly {halves}" if rays else "no branch has"
     return f"VALID: {which} the {asked} asked for on {len(text)} folds; sha256 {claims['sha256']}"
 
 

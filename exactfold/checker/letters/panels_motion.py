@@ -39,7 +39,7 @@ def check_motion(
     """
     live = {pair(v, u) for v, around in near.items() for u in around}
     for fold, letter in wanted.items():
-        able = letter not in SIDES or fold in live or sheet.border.issuperset(fold)
+        able = letter not in SIDES or fold in live or sheet.boundary_set.issuperset(fold)
         require(able, f"fold {fold[0]}-{fold[1]} has a letter, but stays flat in every motion")
     groups = connected(near)
     for group, entry in zip(groups, items(given, "motion", len(groups)), strict=True):

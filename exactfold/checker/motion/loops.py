@@ -1,10 +1,10 @@
 """Certificates of loops, line by line: motions from the flat state back to it (docs/motions.md).
 
-Why it is a proof: a loop leaves the flat state as the motions of `motion` do. It passes from tube
-to tube, and through nodes on arcs that are analytic there (`branch_points`). On its last tube lies
-a point of the start tube of another half-branch, which passes it in the opposite direction: so it
-ends in the flat state along this one. Every half-branch is the beginning of one curve only, which
-makes loops that are given a matching, complete if all 2^(n + 1) names occur in it.
+Why it is a proof: a loop leaves the flat state like any motion along a branch. It passes from tube
+to tube, and through branch points on arcs that are analytic there (`branch_points`). A point of the
+start tube of another ray lies on the last tube, and the two go in opposite directions there. So the
+loop ends in the flat state along this other ray. Only one curve begins along each ray. So the loops
+match rays in pairs, and the matching is complete if all 2^(n + 1) rays occur in it.
 """
 
 from __future__ import annotations
@@ -32,16 +32,16 @@ from ..core.reading import (
 from ..sheets.reduced import emptied_sheet
 from ..sheets.sheet import read_sheet
 from .chain import Chain, check_work, equations_of
-from .half_branch import names
+from .ray import names
 from .returns import land
 from .tubes import Start
 
-HalfBranch = tuple[tuple[int, ...], int]
-"""The signs of the interior vertices, 0 for those that cannot fold, and the side."""
+Ray = tuple[tuple[int, ...], int]
+"""A ray: the signs of the interior vertices, 0 if a vertex cannot fold, and the side."""
 
 
 class LoopSheet:
-    """The sheet of a file, and what checks its loops."""
+    """The verified sheet of a file, and the check of its loops."""
 
     def __init__(self, header: dict[str, Any]) -> None:
         self.given, self.sha256 = read_sheet(header["pattern"])
@@ -50,22 +50,22 @@ class LoopSheet:
         self.equations = equations_of(sheet, header["pinned"], header["bits"])
 
     @property
-    def half_branches(self) -> int:
-        """How many there are."""
+    def rays(self) -> int:
+        """The number of rays of the sheet."""
         return 2 << len(self.equations.sheet.interior)
 
-    def half_branch(self, entry: Any) -> HalfBranch:
-        """A half-branch of its keys."""
+    def ray(self, entry: Any) -> Ray:
+        """Read a ray."""
         keys(entry, "vertex_signs side", "half-branch")
         signs = items(entry["vertex_signs"], "vertex_signs", len(self.given.interior))
         return tuple(map(integer, signs)), integer(entry["side"])
 
     def check_loop(self, entry: dict[str, Any]) -> None:
-        """Raise unless a loop, which has the keys of one, is proved by its evidence.
+        """Raise unless the evidence of a loop proves its claims; its keys are verified already.
 
-        The claims are: from the flat state on, the half-branch `from` is followed by one analytic
-        curve of configurations that ends in the flat state along the half-branch `to`. All of them
-        are regular but the nodes it passes. It is at least `length` long, as in `motion`.
+        The claims are: one analytic curve of configurations begins in the flat state along the ray
+        `from`, and ends in the flat state along the ray `to`. All its configurations are regular
+        except the branch points that it passes. Its length is at least `length`, as for motions.
         """
         evidence = entry["evidence"]
         keys(evidence, "start steps landing", "evidence")
@@ -73,17 +73,18 @@ class LoopSheet:
         check_work(self.equations, steps)
         chain = Chain(self.given, self.removed, self.equations, evidence["start"])
         require(
-            self._named(chain.start) == self.half_branch(entry["from"]), "it begins along another"
+            self._named(chain.start) == self.ray(entry["from"]),
+            'it does not begin along the half-branch "from"',
         )
         chain.walk(steps, leaves=False)
         end, side = land(chain, evidence["landing"])
         signs, saddle = self._named(end)
         target = tuple(side * s for s in signs), side * saddle
-        require(target == self.half_branch(entry["to"]), "it ends along another")
+        require(target == self.ray(entry["to"]), 'it does not end along the half-branch "to"')
         claimed = parse_rational(entry["length"])
         require(claimed <= chain.path.length * self.equations.unit, "it is shorter than claimed")
 
-    def _named(self, start: Start) -> HalfBranch:
+    def _named(self, start: Start) -> Ray:
         signs, side = names(self.given, self.removed, start)
         return tuple(signs), side
 
@@ -92,13 +93,13 @@ class LoopSheet:
 
 
 class LoopVerifier:
-    """Verifies the loops of one file."""
+    """The verifier of the loops of one file."""
 
     def __init__(self, header: str) -> None:
         self.sheet = LoopSheet(LOOPS.header(header))
 
     def refusal(self, text: str, number: int) -> str | None:
-        """Verify one loop: None, or why it does not hold."""
+        """Verify one loop; say why it does not hold, or None if it holds."""
         try:
             with refusing():
                 self.sheet.check_loop(read_object(text, "a loop"))
@@ -108,13 +109,13 @@ class LoopVerifier:
 
 
 class Matching:
-    """Which half-branches are matched: there and back, and in the mirror image."""
+    """The rays that loops match. A loop also counts backwards, and so does its mirror image."""
 
     def __init__(self) -> None:
-        self.loops, self.matched = 0, set[HalfBranch]()
+        self.loops, self.matched = 0, set[Ray]()
 
-    def add(self, source: HalfBranch, target: HalfBranch) -> None:
-        """A loop; raises if one of its half-branches is matched already, or with itself."""
+    def add(self, source: Ray, target: Ray) -> None:
+        """Add a loop; raises if it matches a ray with itself, or a ray that is matched already."""
         require(source != target, f"loop {self.loops}: a half-branch is matched with itself")
         ends = {source, target}
         ends |= {(tuple(-s for s in signs), -side) for signs, side in ends}
@@ -125,7 +126,7 @@ class Matching:
 
 
 class LoopsClaims(TypedDict):
-    """How many loops there are, and how many of the half-branches they match."""
+    """The numbers of loops, of the rays that they match, and of all rays."""
 
     sha256: str
     loops: int
@@ -135,17 +136,17 @@ class LoopsClaims(TypedDict):
 
 
 BY_TUBES = Engine(LoopVerifier, 1, on_processes)
-"""Loops are followed from tube to tube."""
+"""The engine that follows loops from tube to tube."""
 
 
-def check_lines(found: Iterator[str], workers: int = 1, engine: Engine = BY_TUBES) -> LoopsClaims:
+def check_lines(texts: Iterator[str], workers: int = 1, engine: Engine = BY_TUBES) -> LoopsClaims:
     """Verify every claim, given the lines of a file; returns the claims.
 
-    With several workers, loops are checked in that many processes. The claims are: so many loops,
-    as `LoopSheet.check_loop` says, which match so many of the half-branches, none twice, none with
-    itself; and whether these are all.
+    If `workers` is more than 1, that many processes share the loops. The claims are: the file has
+    `loops` loops, each as `LoopSheet.check_loop` says. They match `matched` of the `half_branches`
+    rays, none twice and none with itself. `complete` says whether these are all rays.
     """
-    first = next(found, None)
+    first = next(texts, None)
     if first is None:
         raise FormatError("the file is empty")
     header = LOOPS.header(first)
@@ -155,7 +156,7 @@ def check_lines(found: Iterator[str], workers: int = 1, engine: Engine = BY_TUBE
 
     def loops() -> Iterator[tuple[str, int]]:
         try:
-            for text in found:
+            for text in texts:
                 entry = read_object(text, "a line")
                 require(not last, "something follows the claims")
                 if "claims" in entry:
@@ -163,7 +164,7 @@ def check_lines(found: Iterator[str], workers: int = 1, engine: Engine = BY_TUBE
                     last.append(entry["claims"])
                     continue
                 keys(entry, "from to length evidence provenance", "loop")
-                ends = (sheet.half_branch(entry[key]) for key in ("from", "to"))
+                ends = (sheet.ray(entry[key]) for key in ("from", "to"))
                 matching.add(*ends)
                 yield text, matching.loops - 1
         except (CertificateError, FormatError) as error:
@@ -177,7 +178,7 @@ def check_lines(found: Iterator[str], workers: int = 1, engine: Engine = BY_TUBE
         for reason in said:
             if reason is not None:
                 raise CertificateError(reason)
-    if late:  # a loop before it that does not hold comes first
+    if late:  # a loop that does not hold has already been refused above
         raise late[0]
     if not last:
         number = counted(matching.loops, "loop holds", "loops hold")
@@ -186,19 +187,20 @@ def check_lines(found: Iterator[str], workers: int = 1, engine: Engine = BY_TUBE
         "sha256": sheet.sha256,
         "loops": matching.loops,
         "matched": len(matching.matched),
-        "half_branches": sheet.half_branches,
-        "complete": len(matching.matched) == sheet.half_branches,
+        "half_branches": sheet.rays,
+        "complete": len(matching.matched) == sheet.rays,
     }
     (claims,) = last
     keys(claims, keys_of(LoopsClaims), "claims")
     for key, fact in facts.items():
         claim = claims[key]
-        require(type(claim) is type(fact) and claim == fact, f"{key} = {claim!a} is {fact!a}")
+        right = type(claim) is type(fact) and claim == fact
+        require(right, f"claim {key} = {claim!a}, but it is {fact!a}")
     return facts
 
 
 def summary(claims: LoopsClaims) -> str:
-    """One line for verified claims."""
+    """One line that states the verified claims."""
     loops = counted(claims["loops"], "loop", "loops")
     matched, all_of_them = claims["matched"], claims["half_branches"]
     how = f"all {all_of_them}" if claims["complete"] else f"{matched} of {all_of_them}"

@@ -46,7 +46,7 @@ def check(data: dict[str, Any]) -> PanelsClaims:
     large = [group for group in groups if any(len(around) > 4 for around in group.values())]
     small = {v for group in groups if group not in large for v in group}
     modes = Modes(sheet, {v: around for v, around in near.items() if v in small})
-    free = [e for e in sheet.folds if sheet.border.issuperset(e) and e not in held]
+    free = [e for e in sheet.folds if sheet.boundary_set.issuperset(e) and e not in held]
     live = {pair(v, u) for v, around in near.items() for u in around}
     pairs = _paired(_supports(modes), items(claims["supports"], "supports"))
     supports, loops = [support for support, _ in pairs], Loops(modes)
@@ -63,7 +63,7 @@ def check(data: dict[str, Any]) -> PanelsClaims:
     moves = free or any(n for n, _ in extending) or any(part.folds for part in parts)
     facts: PanelFacts = {
         "interior": len(sheet.interior),
-        "border": len(sheet.border),
+        "border": len(sheet.boundary_set),
         "folds": len(sheet.folds),
         "sha256": digest,
         "held": [list(edge) for edge in held],

@@ -82,7 +82,7 @@ def _kinds(given: Any) -> Iterable[tuple[LeafKind, tuple[int, int]]]:
 
 
 def _check_component(spaces: Spaces, leaf: Leaf) -> None:
-    """Refuse a leaf if the zeros of the forms left on some part may be several components."""
+    """Refuse a leaf if the zeros of the forms left on a part of it may be several components."""
     for part in spaces.parts(leaf.basis):
         cones = _cones(part, leaf)
         shown = len(cones) < 2 or cone_motion(spaces, part, cones) is not None

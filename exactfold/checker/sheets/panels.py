@@ -62,12 +62,12 @@ class PanelSheet:
             sides = set(zip(walk, (*walk[1:], walk[0]), strict=True))
             for i, j in sorted(sides):
                 require(i > j or (j, i) not in sides, f"edge {i}-{j} has one face on both sides")
-        rim = outer[0]
-        self.border = set(rim)
-        require(len(self.border) == len(rim), "the border passes a vertex twice")
-        sides = {pair(i, j) for i, j in zip(rim, (*rim[1:], rim[0]), strict=True)}
+        boundary = outer[0]
+        self.boundary_set = set(boundary)
+        require(len(self.boundary_set) == len(boundary), "the border passes a vertex twice")
+        sides = {pair(i, j) for i, j in zip(boundary, (*boundary[1:], boundary[0]), strict=True)}
         self.folds = [edge for edge in edges if edge not in sides]
-        self.interior = [v for v in range(len(points)) if v not in self.border]
+        self.interior = [v for v in range(len(points)) if v not in self.boundary_set]
 
     def vector(self, v: int, u: int) -> Vector:
         """The vector from v to u."""

@@ -52,8 +52,10 @@ class Sheet:
         )
         self._disk()
         self.interior = sorted(set(points) - set(self.boundary))
-        rim = set(zip(self.boundary, self.boundary[1:] + self.boundary[:1], strict=True))
-        self.folds = [(i, j) for i, j in self.edges if (i, j) not in rim and (j, i) not in rim]
+        boundary = set(zip(self.boundary, self.boundary[1:] + self.boundary[:1], strict=True))
+        self.folds = [
+            (i, j) for i, j in self.edges if (i, j) not in boundary and (j, i) not in boundary
+        ]
 
     def _disk(self) -> None:
         follow = {}

@@ -15,7 +15,7 @@ from exactfold import checker, delaunay
 from exactfold.app.schemas import schema
 from exactfold.branches import fold_angles
 from exactfold.pattern import families, write_fold
-from exactfold.rigidity.equations.boundary_heights import default_rim
+from exactfold.rigidity.equations.boundary_heights import default_boundary_heights
 
 RIM = '{"0": 1, "1": "-1/2", "2": 0.25, "3": 0, "4": 1e-1}'
 
@@ -218,7 +218,7 @@ def test_such_a_branch_is_followed_and_proved(here: Path) -> None:
     found = json.loads(run("fold", "six.fold", "--until", "1deg", "--json").stdout)
     jsonschema.validate(found, schema("motion"))
     assert found["theory"] == "branches"
-    rim = default_rim(families.single_vertex(6))
+    rim = default_boundary_heights(families.single_vertex(6))
     assert found["rim"] == {str(v): str(h) for v, h in rim.items()}
 
 

@@ -81,7 +81,9 @@ def test_a_drawing_says_what_was_done_with_it():
 
 
 def test_what_is_no_sheet_is_named():
-    with pytest.raises(UnreadableFileError, match="'crane' is neither a file nor an example"):
+    with pytest.raises(
+        UnreadableFileError, match="'crane' is neither a file nor the name of an example"
+    ):
         exactfold.count("crane")
     with pytest.raises(UsageError, match="3 is not a pattern"):
         exactfold.read(3)
@@ -194,4 +196,6 @@ def test_a_sheet_of_panels_has_modes_instead():
 def test_a_rim_is_taken_along():
     sheet = families.single_vertex(5)
     rim = {0: 1, 1: 0, 2: 0, 3: 0, 4: "1/2"}
-    assert exactfold.branch(sheet, "+", rim=rim) == find_branch(sheet, "+", rim=rim)
+    assert exactfold.branch(sheet, "+", boundary_heights=rim) == find_branch(
+        sheet, "+", boundary_heights=rim
+    )

@@ -43,9 +43,9 @@ def test_the_contact_on_the_arc_is_that_on_tubes():
         "flat-fold",
         ((5, 8),),
     )
-    assert track.node.entry < contact.parameters[0] < contact.parameters[2] < 0
+    assert track.branch_point.entry < contact.parameters[0] < contact.parameters[2] < 0
     other, same = first_contact(find_branch(track.pattern, SIGNS))
-    assert other.node is None
+    assert other.branch_point is None
     assert same.event.folds == contact.event.folds
     low, high = contact.event.time
     first, last = same.event.time
@@ -66,7 +66,7 @@ def test_the_contact_on_the_arc_is_that_on_tubes():
     [
         ({"to": 1}, 'the parameter "to" is out of range'),
         ({"from": "before"}, 'the parameter "from" is out of range'),
-        ({"to": "from"}, "the fold does not close"),
+        ({"to": "from"}, "the fold of the contact is not proved to close"),
         ({"time": "99999/100000"}, "the contact may be later than claimed"),
     ],
 )

@@ -25,7 +25,7 @@ from exactfold.checker.motion import branch_points as motion_nodes
 from exactfold.checker.motion import loops as motion_loops
 from exactfold.checker.motion import patches as motion_patches
 from exactfold.checker.motion.bounds import value as polynomial
-from exactfold.checker.motion.branch_points import NodeTube, Stresses, independent
+from exactfold.checker.motion.branch_points import BranchPointTube, Stresses, independent
 from exactfold.checker.motion.chain import through
 from exactfold.checker.motion.equations import LengthEquations, at
 from exactfold.checker.motion.loops import LoopSheet, Matching
@@ -134,7 +134,7 @@ def test_every_claim_is_compared() -> None:
                 with pytest.raises(FormatError):
                     verified(forged)
             else:
-                refused(forged, f"{key} = {other!a} is {true[key]!a}")
+                refused(forged, f"claim {key} = {other!a}, but it is {true[key]!a}")
     forged = given_lines(ONE)
     forged[-1]["claims"]["more"] = 1
     refused(
@@ -260,7 +260,10 @@ def test_numbers_out_of_range() -> None:
 
 
 def test_other_names_are_refused() -> None:
-    for end, message in (("from", "it begins along another"), ("to", "it ends along another")):
+    for end, message in (
+        ("from", 'it does not begin along the half-branch "from"'),
+        ("to", 'it does not end along the half-branch "to"'),
+    ):
         for change in ({"side": -1}, {"side": 0}, {"vertex_signs": [0]}, {"vertex_signs": None}):
             forged = given_lines(ONE)
             entry = forged[1][end]
@@ -290,7 +293,9 @@ def test_a_landing_on_the_mirror_image_is_refused() -> None:
         verified(forged)
     forged = given_lines(ONE)
     forged[1]["evidence"]["landing"]["tau"] = 0
-    refused(forged, "loop 0: a loop does not land before the flat state")
+    refused(
+        forged, "loop 0: the last tube of a motion must meet the start tube before the flat state"
+    )
 
 
 def test_a_landing_may_be_described_by_its_mirror_image() -> None:
@@ -301,7 +306,7 @@ def test_a_landing_may_be_described_by_its_mirror_image() -> None:
     landing["tau"] *= -1
     assert verified(forged) == forged[-1]["claims"]
     forged[1]["to"]["side"] *= -1
-    refused(forged, "loop 0: it ends along another")
+    refused(forged, 'loop 0: it does not end along the half-branch "to"')
 
 
 def test_a_landing_in_the_same_direction_is_refused() -> None:
@@ -438,10 +443,10 @@ def test_keys_of_a_node() -> None:
 def test_vertices_that_are_not_flat_are_refused() -> None:
     sheet = _node()[0]
     interior, flat = sheet.given.interior, node()["flat"]
-    inner = "a node has no vertices that are flat, or none that fold"
+    inner = "the flat vertices of a node are none, or are not sorted interior vertices"
     for other in ([], [*flat, *flat], [sheet.given.boundary[0]], [99], [*reversed(interior)]):
         not_passed(node() | {"flat": other}, inner)
-    square = "a flat patch leaves no unknowns, or not as many equations"
+    square = "with a flat patch there are no unknowns, or not as many equations as these"
     not_passed(node() | {"flat": interior}, square)  # the flat state
     for v in interior:
         degree = len(sheet.given.star(v))
@@ -505,12 +510,12 @@ def test_a_node_must_be_passed_in_the_direction_of_the_loop() -> None:
         path.meet(*arc.configuration(Fraction(-begin, 1 << PARAMETER_BITS)))
 
 
-def _arc(sheet: LoopSheet, entry: Document) -> NodeTube:
+def _arc(sheet: LoopSheet, entry: Document) -> BranchPointTube:
     equations = sheet.equations
     patch = Patch(equations, entry["flat"])
     near = vector(entry["node"], "node", equations.size, equations.bits)
     reach = Fraction(entry["reach"], 64)
-    return NodeTube(patch, patch.node(near), entry["centre"], entry["row"], reach)
+    return BranchPointTube(patch, patch.branch_point(near), entry["centre"], entry["row"], reach)
 
 
 def test_an_arc_must_go_through_its_node() -> None:
@@ -624,10 +629,10 @@ def moved(row: list[int], size: int, seed: int) -> list[int]:
 def test_the_box_of_a_node_holds_it_wherever_one_begins(seed: int) -> None:
     sheet = _node()[0]
     patch, near = Patch(sheet.equations, node()["flat"]), node()["node"]
-    fine = patch.node(near)
+    fine = patch.branch_point(near)
     assert max(fine.radii) < 1 << 10
     for size in (1 << 20, 1 << 36):
-        box = patch.node(moved(near, size, seed))
+        box = patch.branch_point(moved(near, size, seed))
         assert holds(box, fine.centre, 1 << 10)
         assert size >> 8 < max(box.radii) < size << 8
         # Corners of the panel stay where the base takes them.
@@ -639,12 +644,14 @@ def test_the_box_of_a_node_holds_it_wherever_one_begins(seed: int) -> None:
 def test_an_arc_holds_the_curve_of_every_node_in_its_box(seed: int) -> None:
     sheet, entry = _node()[0], node()
     patch = Patch(sheet.equations, entry["flat"])
-    fine = patch.node(entry["node"])
+    fine = patch.branch_point(entry["node"])
     reach = Fraction(entry["reach"], 64)
-    true = NodeTube(patch, fine, entry["centre"], entry["row"], reach)
+    true = BranchPointTube(patch, fine, entry["centre"], entry["row"], reach)
     size = 1 << 30
     wide = Ball(moved(fine.centre, size, seed), [size + r for r in fine.radii])
-    other = NodeTube(patch, wide, moved(entry["centre"], size, seed + 9), entry["row"], reach)
+    other = BranchPointTube(
+        patch, wide, moved(entry["centre"], size, seed + 9), entry["row"], reach
+    )
     for k in (-2, -1, 0, 1, 2):
         s = reach * Fraction(k, 32)
         for exact, box in zip(true.configuration(s), other.configuration(s), strict=True):
@@ -657,7 +664,7 @@ def test_what_the_box_of_a_node_does_to_an_arc_is_counted() -> None:
     """With exact numbers: the equations and their slope, at every corner that was tried."""
     sheet, entry = _node()[0], node()
     equations, patch = sheet.equations, Patch(sheet.equations, entry["flat"])
-    fine, size = patch.node(entry["node"]), 1 << 44
+    fine, size = patch.branch_point(entry["node"]), 1 << 44
     wide = Ball(fine.centre, [size] * equations.size)
     kept: dict[str, Any] = {}
     bounds = motion_nodes.bounds
@@ -668,7 +675,7 @@ def test_what_the_box_of_a_node_does_to_an_arc_is_counted() -> None:
 
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(motion_nodes, "bounds", seen)
-        arc = NodeTube(patch, wide, entry["centre"], entry["row"], Fraction(1, 64))
+        arc = BranchPointTube(patch, wide, entry["centre"], entry["row"], Fraction(1, 64))
     stresses, one = Stresses(equations, entry["flat"]), Fraction(1, 1 << equations.bits)
     weights = [Fraction(w, 1 << 16) for w in kept["weights"]]
     choose = random.Random(5)
@@ -741,7 +748,7 @@ def test_the_bars_of_a_panel_bend_as_much_as_is_counted() -> None:
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(motion_patches, "bounds", lambda *given: kept.extend(given))
         with pytest.raises(AttributeError):  # there is no proof
-            patch.node(entry["node"])
+            patch.branch_point(entry["node"])
     [squares] = kept[5]
     size, scale = kept[2] - 2 * sheet.equations.bits - 1, 1 << 32
     assert 1 << size <= patch.denominator**2 < 4 << size
@@ -792,7 +799,7 @@ def test_a_node_exists_whichever_face_is_held() -> None:
             near += [round(x * one * float(first.unit / equations.unit)) for x in d]
         patch = Patch(equations, entry["flat"])
         held.add(len(patch.vertices & set(equations.pinned)))
-        ball = patch.node(near)
+        ball = patch.branch_point(near)
         assert max(ball.radii) < one >> 40
         for u, d, r in zip(
             equations.flat,

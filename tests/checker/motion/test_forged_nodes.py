@@ -144,7 +144,7 @@ def test_numbers() -> None:
 
 
 def test_other_vertices_are_not_flat() -> None:
-    inner = "a node has no vertices that are flat, or none that fold"
+    inner = "the flat vertices of a node are none, or are not sorted interior vertices"
     flat: Any
     for flat, message in (
         ([], inner),
@@ -251,7 +251,7 @@ def test_the_time_that_is_clear_is_at_most_that_of_the_node() -> None:
     def later(forged: Document) -> None:
         forged["claims"]["clear"] = longer(forged["claims"]["clear"], "1.00001")
 
-    stopped("what is clear is shorter than claimed", later)
+    stopped("the clear part of the motion is shorter than claimed", later)
 
 
 @pytest.mark.slow
@@ -283,7 +283,7 @@ def test_faces_that_may_touch_on_the_arc() -> None:
     start, tau, steps, claims, contacts = pieces()
     check_contacts(start, tau, steps, claims, contacts)
     arc, begin, end = steps[-1]
-    vague = type("Vague", (), {"node": arc.node, "curve": arc.curve, "bits": arc.bits})()
+    vague = type("Vague", (), {"node": arc.branch_point, "curve": arc.curve, "bits": arc.bits})()
     box, rate = arc.configuration(begin)
     wide = Ball(box.centre, [r + (1 << arc.bits - 2) for r in box.radii])
     vague.configuration = lambda s: (wide, rate)
@@ -345,4 +345,4 @@ def test_a_motion_through_the_paper_is_not_clear_up_to_its_node() -> None:
     with pytest.raises(CertificateError, match=MAY_TOUCH):
         verified(document)
     document["claims"]["node"]["flat"] = [7, 5]
-    refused(document, "a node has no vertices that are flat, or none that fold")
+    refused(document, "the flat vertices of a node are none, or are not sorted interior vertices")

@@ -31,7 +31,7 @@ MAY_TOUCH = r"^the (faces|faces at) .* may touch where the motion is claimed to 
 @cache
 def _text() -> str:
     branch, watch = find_branch(random_square(5, seed=4), SIGNS), ContactWatch()
-    track = follow_proved(branch, until=0.65, stop=watch, through_nodes=True)
+    track = follow_proved(branch, until=0.65, stop=watch, through_branch_points=True)
     return json.dumps(certificate_with_contact(track, watch.result(track)))
 
 
@@ -75,10 +75,10 @@ def test_what_is_claimed_is_proved() -> None:
 @pytest.mark.slow
 def test_the_nodes_that_are_passed_are_claimed() -> None:
     for through, message in (
-        (None, "a motion passes nodes that it does not claim, or none"),
-        ([], "the nodes that are passed are others"),
-        ([[5]], "the nodes that are passed are others"),
-        ([[FLAT], [FLAT]], "the nodes that are passed are others"),
+        (None, "a motion passes nodes but claims none, or claims nodes but passes none"),
+        ([], "the motion passes other nodes than those claimed"),
+        ([[5]], "the motion passes other nodes than those claimed"),
+        ([[FLAT], [FLAT]], "the motion passes other nodes than those claimed"),
         ([[str(FLAT)]], "flat vertex is not a natural number"),
     ):
         forged = given()
@@ -97,7 +97,7 @@ def test_the_nodes_that_are_passed_are_claimed() -> None:
     forged["claims"]["length"] = "0"
     for through in ([], [[FLAT]]):
         forged["claims"]["through"] = through
-        refused(forged, "a motion passes nodes that it does not claim, or none")
+        refused(forged, "a motion passes nodes but claims none, or claims nodes but passes none")
 
 
 @pytest.mark.slow
@@ -143,7 +143,9 @@ def test_contacts_are_looked_for_on_the_arc() -> None:
     check_contacts(start, tau, steps, claims, contacts)
     arc, begin, end = steps[k]
     assert begin < 0 < end
-    vague: Any = type("Vague", (), {"node": arc.node, "curve": arc.curve, "bits": arc.bits})()
+    vague: Any = type(
+        "Vague", (), {"node": arc.branch_point, "curve": arc.curve, "bits": arc.bits}
+    )()
     box, rate = arc.configuration(begin)
     wide = Ball(box.centre, [r + (1 << arc.bits - 2) for r in box.radii])
     vague.configuration = lambda s: (wide, rate)

@@ -160,9 +160,9 @@ def test_times_that_are_too_late_or_too_early() -> None:
         def not_from_there(claims: Document, _: Document) -> None:
             claims["contact"]["time"][0] = "126/1000"
 
-        stopped(forged(name, later), "what is clear is shorter than claimed")
+        stopped(forged(name, later), "the clear part of the motion is shorter than claimed")
         stopped(forged(name, earlier), "the contact may be later than claimed")
-        message = "a contact is not claimed from where the motion is clear"
+        message = 'the first "time" of a contact differs from "clear"'
         stopped(forged(name, not_from_there), message)
 
 
@@ -252,7 +252,7 @@ def test_what_is_no_panel_or_fold() -> None:
     def with_folds(claims: Document, evidence: Document) -> None:
         claims["contact"]["folds"] = [[2, 3]]
 
-    stopped(forged("flaps", with_folds), "a contact has no folds")
+    stopped(forged("flaps", with_folds), "a contact of two faces names folds")
 
     def no_panel(claims: Document, evidence: Document) -> None:
         claims["contact"]["faces"][0] = [0, 2, 3]

@@ -14,15 +14,15 @@ from forge import Document, refused, verified, without
 from exactfold.branches.counting.find import find_branch
 from exactfold.checker.core.reading import CertificateError
 from exactfold.checker.motion import certificate as motion
-from exactfold.checker.motion.boundary import Rim
+from exactfold.checker.motion.boundary import BoundaryHeights
 from exactfold.checker.motion.equations import LengthEquations
-from exactfold.checker.motion.half_branch import check_half_branch
+from exactfold.checker.motion.ray import check_half_branch
 from exactfold.checker.motion.restriction import saddle_of
 from exactfold.checker.motion.tubes import Ball
 from exactfold.checker.sheets.sheet import read_sheet
-from exactfold.motion.curves.boundary_path import rim_claim, ties_of
+from exactfold.motion.curves.boundary_path import boundary_claim, ties_of
 from exactfold.motion.curves.framework import Framework
-from exactfold.motion.tubes.branch_point_tube import prove_node_tube
+from exactfold.motion.tubes.branch_point_tube import prove_branch_point_tube
 from exactfold.motion.tubes.certificate import motion_certificate
 from exactfold.motion.tubes.flat_patches import FlatPatch
 from exactfold.motion.tubes.length_equations import LengthEquations as LengthEquationsOfProver
@@ -43,7 +43,7 @@ HEIGHTS = {0: 0, 1: 1, 2: 0, 3: Fraction(1, 2), 4: 3}
 
 @cache
 def _track() -> Track:
-    return follow_proved(find_branch(STAR, "+", rim=HEIGHTS), most=1)
+    return follow_proved(find_branch(STAR, "+", boundary_heights=HEIGHTS), most=1)
 
 
 @cache
@@ -76,9 +76,9 @@ def test_the_same_rim_in_other_words() -> None:
     document["claims"]["rim"] = [str(h) for h in heights]
     assert verified(document)["side"] == 1
     document["claims"]["rim"] = [str(-h) for h in heights]
-    with without("the side is another"):
+    with without("the side is not the claimed one"):
         verified(document)
-    refused(document, "the side is another")
+    refused(document, "the side is not the claimed one")
     document["claims"]["side"] = -1
     assert verified(document)["side"] == -1
 
@@ -93,16 +93,20 @@ def test_another_rim() -> None:
 
 def test_heights_that_are_no_rim() -> None:
     for rim in (["0", "1", "0", "1/2"], ["0", "1", "0", "1/2", "3", "0"]):
-        refused(_with(rim=rim), "rim has not 5 entries")
-    refused(_with(rim="01023"), "rim is not a list")
-    refused(_with(rim=["0", "1", "0", "1/2", 3]), "3 is not a rational number in quotes")
+        refused(_with(boundary_heights=rim), "rim has not 5 entries")
+    refused(_with(boundary_heights="01023"), "rim is not a list")
+    refused(
+        _with(boundary_heights=["0", "1", "0", "1/2", 3]), "3 is not a rational number in quotes"
+    )
 
 
 def test_a_rim_in_one_plane() -> None:
     """It has no ratio, by which the checker would divide; nothing else says so."""
     for heights in ([x + 2 * y - 3 for x, y in STAR.vertices[:5]], [0] * 5):
-        forged = _with(rim=[str(h) for h in heights])
-        said = f"the rim {', '.join(map(str, heights))} is in one plane: no ratio to keep"
+        forged = _with(boundary_heights=[str(h) for h in heights])
+        said = (
+            f"the given heights {', '.join(map(str, heights))} lie in one plane: there is no ratio"
+        )
         with without(said):
             refused(forged, "malformed: ZeroDivisionError while checking")
         refused(forged, said)
@@ -116,7 +120,7 @@ def _with(**claims: object) -> Document:
 
 def test_bits_of_the_rim() -> None:
     """Rows of integers that do not fit are refused, not rounded."""
-    document = _with(rim=["0", "1", "0", "1/2", f"{10**40 + 1}/{10**40}"])
+    document = _with(boundary_heights=["0", "1", "0", "1/2", f"{10**40 + 1}/{10**40}"])
     refused(document, "the coordinates need more bits")
 
 
@@ -133,7 +137,7 @@ def test_with_four_corners_a_rim_says_the_same() -> None:
 def test_a_side_that_is_not_certain() -> None:
     document = given()
     sheet = read_sheet(document["pattern"])[0]
-    rim = Rim(sheet, document["claims"]["rim"])
+    rim = BoundaryHeights(sheet, document["claims"]["rim"])
     equations = LengthEquations(sheet, document["evidence"]["pinned"], 64, rim)
     centre = document["evidence"]["start"]["centre"]
     place = equations.place
@@ -156,7 +160,7 @@ def test_a_border_that_is_not_convex() -> None:
     ties = ties_of(SimpleNamespace(sheet=dented, gauge=gauge))
     framework = Framework.of(dented, None, ties)
     start = prove_start(framework, gauge, np.array([*map(float, rim.values()), 1.5]))
-    document = motion_certificate(dented, range(6), start, [], [rim_claim(rim)])
+    document = motion_certificate(dented, range(6), start, [], [boundary_claim(rim)])
     with without("the boundary is not convex"):
         verified(json.loads(json.dumps(document)))
     refused(document, "the boundary is not convex")
@@ -174,7 +178,7 @@ def test_the_flat_state_is_no_node_to_come_to() -> None:
     assert patch is not None
     along = np.array(start.coefficients[0], dtype=float)
     along[[i for i in range(len(along)) if i % 3 != 2]] = 0
-    arc = prove_node_tube(framework, patch, np.zeros(framework.size), along)
+    arc = prove_branch_point_tube(framework, patch, np.zeros(framework.size), along)
     assert arc is not None
     early = start.last // 3  # the arc does not reach as far as the start tube
     ahead = onwards(
@@ -199,7 +203,7 @@ def test_the_flat_state_is_no_node_to_come_to() -> None:
     document["evidence"]["tubes"] = [tube]
     document["claims"] |= {"length": "1/100", "node": {"flat": [5], "clear": False}}
     document["evidence"]["node"] = {
-        "node": list(arc.node.centre),
+        "node": list(arc.branch_point.centre),
         "centre": list(arc.coefficients[0]),
         "row": list(arc.row),
         "reach": arc.reach,

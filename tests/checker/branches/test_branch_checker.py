@@ -71,7 +71,7 @@ def test_proofs_are_accepted(name: str, seed: int) -> None:
 def test_a_given_rim_is_accepted() -> None:
     pattern = scrambled(5, HEXAGON, 3)
     rim = {v: Fraction(v * v + 1, 3) for v in pattern.boundary}
-    claims = checker.check(branch_certificate(find_branch(pattern, "+-+", rim=rim)))
+    claims = checker.check(branch_certificate(find_branch(pattern, "+-+", boundary_heights=rim)))
     assert claims["gauge"] == "rim"
     assert checker.summary(claims).startswith("VALID: exactly one solution over the border")
 
@@ -356,7 +356,7 @@ def test_low_heights_over_a_long_denominator_are_accepted() -> None:
     tiny = Fraction(1, 10**40)
     pattern = mapped(scrambled(5, HEXAGON, 3), lambda p: (p[0] + tiny, p[1] * (1 + tiny)))
     rim = {v: Fraction(v * v + 1, 3 << 400) for v in pattern.boundary}
-    document = branch_certificate(find_branch(pattern, "+-+", rim=rim))
+    document = branch_certificate(find_branch(pattern, "+-+", boundary_heights=rim))
     assert checker.check(document)["vertex_signs"] == [1, -1, 1]
 
 

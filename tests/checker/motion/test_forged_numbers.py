@@ -193,8 +193,8 @@ def test_numbers_of_thousands_of_digits() -> None:
         (("evidence", "bits"), beyond("the bits", huge, 2048, "MOTION_BITS")),
         ((*FIRST, "halvings"), "halvings are out of range"),
         ((*FIRST, "reach"), "the reach is out of range"),
-        ((*FIRST, "held"), "the vertex held at its height is pinned, or none"),
-        (("evidence", "pinned", 0), "what is pinned is no face"),
+        ((*FIRST, "held"), "the vertex held at its height is not one that can move"),
+        (("evidence", "pinned", 0), "the pinned vertices are not those of a face"),
         ((*CENTRE, 0), "a number of the centre is out of range"),
     ):
         refused(changed(place, huge), message)

@@ -46,7 +46,7 @@ def test_a_deficit_at_a_vertex_that_stays_flat() -> None:
 
 def test_deficits_without_a_given_rim() -> None:
     document = branch_certificate(
-        find_branch(SQUARE, "+-", rim=saddle(), curvature={4: 1, 5: Fraction(1, 3)})
+        find_branch(SQUARE, "+-", boundary_heights=saddle(), curvature={4: 1, 5: Fraction(1, 3)})
     )
     verified(document)
     document["claims"]["gauge"] = "saddle"

@@ -15,7 +15,7 @@ from exactfold.checker.branches.branch import Place
 from exactfold.checker.letters import letters
 from exactfold.checker.letters.refuted import Stars
 from exactfold.checker.sheets.sheet import read_sheet
-from exactfold.design import match, match_certificate, match_rim
+from exactfold.design import match, match_boundary, match_certificate
 from exactfold.pattern.families import single_vertex
 from exactfold.solve.certify import enclosed
 
@@ -35,7 +35,7 @@ def claimed(document: Document) -> None:
     sheet, _ = read_sheet(document["pattern"])
     evidence = document["evidence"]
     place = Place(sheet, evidence["emptied"])
-    place.fix_rim()
+    place.fix_boundary()
     wanted = dict(zip(sheet.folds, document["claims"]["letters"], strict=True))
     found = letters._Search(place, wanted).halves(
         evidence["refuted"], evidence["tree"], evidence["leaves"]
@@ -433,14 +433,14 @@ def test_sums_are_on_the_side_of_their_letters() -> None:
 def test_a_leaf_is_no_proof_with_five_corners() -> None:
     """Over each rim there is another branch: those over one rim have not the letters of others."""
     pattern = single_vertex(5)
-    document = match_certificate(match_rim(pattern, "MMVVV"))
+    document = match_certificate(match_boundary(pattern, "MMVVV"))
     assert isinstance(document, dict)
     up, down = (
         dict(zip(("heights", "denominator"), heights_evidence(branch, []), strict=True))
         for branch in (find_branch(pattern, "+"), find_branch(pattern, "-"))
     )
     occurring = "MMVMV"
-    assert match_rim(pattern, occurring).branch is not None
+    assert match_boundary(pattern, occurring).branch is not None
     none_left(document, [], [["split", 5], ["leaf"], ["leaf"]])
     document["claims"]["letters"] = occurring
     document["evidence"]["leaves"] = [[up, down], [down, up]]

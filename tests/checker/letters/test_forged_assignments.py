@@ -29,11 +29,11 @@ def stopped(document: Document, message: str) -> None:
     refused(document, message)
 
 
-def round_a_circle(pattern: CreasePattern, rims: list[list[float]]) -> Document:
+def round_a_circle(pattern: CreasePattern, boundaries: list[list[float]]) -> Document:
     """A certificate of a sheet with one vertex, by points over some rims."""
-    free = assignments.free_border(read_sheet(pattern_document(pattern))[0])
+    free = assignments.free_boundary(read_sheet(pattern_document(pattern))[0])
     solver = NappePoints(pattern, free, 17)
-    points = [solver.solved([1], rim) for rim in rims]
+    points = [solver.solved([1], rim) for rim in boundaries]
     assert None not in points
     document = listed("side")
     document["pattern"] = pattern_document(pattern)

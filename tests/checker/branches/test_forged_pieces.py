@@ -12,7 +12,7 @@ from forge import Document, beyond, given, refused, verified, with_one_key_more,
 from sheets import HEXAGON, scrambled, wheel, with_point
 
 from exactfold import CreasePattern, checker, random_square
-from exactfold.branches import find_pieces, pieces_certificate
+from exactfold.branches import components_certificate, find_connected_components
 from exactfold.branches.connected_components.cubes import components
 from exactfold.certificates.entries import pattern_document
 from exactfold.checker.branches import connected_components as pieces
@@ -119,12 +119,12 @@ def test_what_is_said(name: str, text: str) -> None:
     ],
 )
 def test_certificates_are_written_alike(name: str) -> None:
-    found = find_pieces(SHEETS[name])
-    assert pieces_certificate(SHEETS[name], found)["claims"] == piece(name)["claims"]
+    found = find_connected_components(SHEETS[name])
+    assert components_certificate(SHEETS[name], found)["claims"] == piece(name)["claims"]
 
 
 def test_a_pattern_by_name() -> None:
-    document = pieces_certificate("waterbomb", find_pieces("waterbomb"))
+    document = components_certificate("waterbomb", find_connected_components("waterbomb"))
     assert verified(document)["at_least"] == 2
 
 
@@ -137,7 +137,7 @@ def test_bounds_are_said_as_such() -> None:
 def test_no_certificate_without_vertices_or_of_too_many() -> None:
     fan = CreasePattern(HEXAGON[:5], [(0, 1, 2), (0, 2, 3), (0, 3, 4)])
     with pytest.raises(NotApplicableError, match="1 to 16 vertices that can pop; this sheet has 0"):
-        pieces_certificate(fan, find_pieces(fan))
+        components_certificate(fan, find_connected_components(fan))
 
 
 def test_keys() -> None:
@@ -384,9 +384,9 @@ def test_as_many_forms_as_the_chart_needs() -> None:
 def test_limits_and_open_signs(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(pieces_flat, "MOST_UNKNOWNS", 5)
     needed(boxes(), "more than 5 unknowns", OPEN)
-    found = find_pieces(ANTIPRISM)
+    found = find_connected_components(ANTIPRISM)
     with pytest.raises(NotApplicableError, match="refuses the proof: not all solutions"):
-        pieces_certificate(ANTIPRISM, found)
+        components_certificate(ANTIPRISM, found)
     monkeypatch.undo()
     monkeypatch.setattr(pieces_flat, "signs_of", lambda *_: None)
     refused(boxes(), OPEN)
