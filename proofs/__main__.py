@@ -26,7 +26,7 @@ python -m proofs NAME shows the steps of a script (kapovich_millson) or of a sta
 
 @cache
 def load(name: str) -> Proof:
-    """The proof of one module, run once."""
+    """The proof of one module; it is run once."""
     proof = importlib.import_module(f"proofs.{name}").prove()
     if not isinstance(proof, Proof):
         raise TypeError(f"proofs.{name}.prove() returned no Proof")

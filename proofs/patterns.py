@@ -116,7 +116,7 @@ def degenerate_patterns() -> dict[str, CreasePattern]:
 
 
 def flipped(pattern: CreasePattern, source: random.Random) -> CreasePattern:
-    """Thirty random edge flips, those that leave a triangulation."""
+    """The pattern after thirty random edge flips, without those that destroy the triangulation."""
     for _ in range(30):
         if not pattern.folds:
             break

@@ -14,7 +14,7 @@ from forge import FIXTURES, Document, refused, verified, with_one_key_more, with
 from exactfold.checker.core.reading import CertificateError
 from exactfold.checker.motion import certificate as motion
 from exactfold.checker.motion.certificate import MOTION
-from exactfold.checker.motion.drive import Drive, check_reached
+from exactfold.checker.motion.drive import PrescribedAngles, check_reached
 from exactfold.checker.motion.equations import LengthEquations
 from exactfold.checker.motion.pieces import arc_of
 from exactfold.checker.motion.ray import shortened
@@ -173,7 +173,7 @@ def test_folds_that_end_on_the_other_side() -> None:
     sheet = read_sheet(given()["pattern"])[0]
     square = str(Fraction(math.sin(0.1) ** 2))
     claim = {"folds": [[0, 5], [1, 5]], "squares": [square, f"-{square}"], "reached": True}
-    equations = LengthEquations(sheet, [0, 1, 5], 64, Drive(sheet, claim))
+    equations = LengthEquations(sheet, [0, 1, 5], 64, PrescribedAngles(sheet, claim))
     scale = float((1 << 64) / equations.unit)
     centre = [0] * equations.size
     for v, fold, turn in ((4, (0, 5), 0.3), (2, (1, 5), -0.3)):
@@ -186,13 +186,13 @@ def test_folds_that_end_on_the_other_side() -> None:
         k = equations.place[v]
         centre[k : k + 3] = [int(c * scale) for c in moved]
     here = Ball(centre, [0] * equations.size)
-    check_reached(equations, Drive(sheet, claim), here)
+    check_reached(equations, PrescribedAngles(sheet, claim), here)
     claim["squares"] = [square, square]
     message = "the driven fold (1, 5) may end on the other side"
     with without(message):
-        check_reached(equations, Drive(sheet, claim), here)
+        check_reached(equations, PrescribedAngles(sheet, claim), here)
     with pytest.raises(CertificateError) as caught:
-        check_reached(equations, Drive(sheet, claim), here)
+        check_reached(equations, PrescribedAngles(sheet, claim), here)
     assert str(caught.value) == message
 
 
@@ -243,7 +243,7 @@ def test_a_driven_motion_has_no_node() -> None:
     """The patch of a node knows nothing of the equations of a drive."""
     document = given()
     sheet = read_sheet(document["pattern"])[0]
-    drive = Drive(sheet, document["claims"]["drive"])
+    drive = PrescribedAngles(sheet, document["claims"]["drive"])
     equations = LengthEquations(sheet, document["evidence"]["pinned"], 64, drive)
     with pytest.raises(CertificateError) as caught:
         arc_of(equations, [5], {})

@@ -20,7 +20,7 @@ from exactfold.checker.motion.panels import drive as panel_drive
 from exactfold.checker.motion.panels import folding as panel_folding
 from exactfold.checker.motion.panels import times as panel_times
 from exactfold.checker.motion.panels.cut import cut
-from exactfold.checker.motion.panels.drive import Drive
+from exactfold.checker.motion.panels.drive import DrivenModes
 from exactfold.checker.motion.panels.places import Places, shrunk
 from exactfold.checker.motion.panels.series import BITS
 from exactfold.checker.motion.panels.times import OneRate, Rates
@@ -339,7 +339,9 @@ def test_positions_are_those_of_the_frames(name: str) -> None:
     ]
     factor = sizes[0] / sizes[1]
     claims = document["claims"]
-    drive = Drive(sheet, claims["assignment"], claims["drivers"], document["evidence"]["vertices"])
+    drive = DrivenModes(
+        sheet, claims["assignment"], claims["drivers"], document["evidence"]["vertices"]
+    )
     rates = claims.get("rates")
     clock = Rates(claims["drivers"], rates) if rates else OneRate()
     places = Places(drive, clock)
