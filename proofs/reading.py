@@ -99,7 +99,7 @@ def pieces(latex: str) -> list[tuple[bool, str]]:
 def parse(text: str, functions: Sequence[str] = ()) -> Formula:
     """Read the formula of a LaTeX text. Raises `ValueError` if the text has anything else in it.
 
-    `functions` are names that are functions if brackets follow; a name with "_" has its index.
+    `functions` are names of functions, which brackets follow; "_" in a name begins its subscript.
     """
     found = re.fullmatch(r"(.*),\\q?quad\s*([a-z])=(.*),\\dots,(.*)", text, re.DOTALL)
     chain, index, ends = (found[1], found[2], (found[3], found[4])) if found else (text, "", ())

@@ -148,7 +148,7 @@ def test_what_is_not_complete_is_not_claimed_complete() -> None:
     forged = given_lines(ONE)
     del forged[1]
     forged[-1]["claims"] |= {"loops": 0, "matched": 0}
-    refused(forged, "complete = True is False")
+    refused(forged, "claim complete = True, but it is False")
     forged[-1]["claims"]["complete"] = False
     assert verified(forged)["matched"] == 0
     forged = given_lines(NODE)

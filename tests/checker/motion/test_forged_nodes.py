@@ -283,7 +283,8 @@ def test_faces_that_may_touch_on_the_arc() -> None:
     start, tau, steps, claims, contacts = pieces()
     check_contacts(start, tau, steps, claims, contacts)
     arc, begin, end = steps[-1]
-    vague = type("Vague", (), {"node": arc.branch_point, "curve": arc.curve, "bits": arc.bits})()
+    known = {"branch_point": arc.branch_point, "curve": arc.curve, "bits": arc.bits}
+    vague = type("Vague", (), known)()
     box, rate = arc.configuration(begin)
     wide = Ball(box.centre, [r + (1 << arc.bits - 2) for r in box.radii])
     vague.configuration = lambda s: (wide, rate)

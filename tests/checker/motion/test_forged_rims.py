@@ -93,17 +93,15 @@ def test_another_rim() -> None:
 
 def test_heights_that_are_no_rim() -> None:
     for rim in (["0", "1", "0", "1/2"], ["0", "1", "0", "1/2", "3", "0"]):
-        refused(_with(boundary_heights=rim), "rim has not 5 entries")
-    refused(_with(boundary_heights="01023"), "rim is not a list")
-    refused(
-        _with(boundary_heights=["0", "1", "0", "1/2", 3]), "3 is not a rational number in quotes"
-    )
+        refused(_with(rim=rim), "rim has not 5 entries")
+    refused(_with(rim="01023"), "rim is not a list")
+    refused(_with(rim=["0", "1", "0", "1/2", 3]), "3 is not a rational number in quotes")
 
 
 def test_a_rim_in_one_plane() -> None:
     """It has no ratio, by which the checker would divide; nothing else says so."""
     for heights in ([x + 2 * y - 3 for x, y in STAR.vertices[:5]], [0] * 5):
-        forged = _with(boundary_heights=[str(h) for h in heights])
+        forged = _with(rim=[str(h) for h in heights])
         said = (
             f"the given heights {', '.join(map(str, heights))} lie in one plane: there is no ratio"
         )
@@ -120,7 +118,7 @@ def _with(**claims: object) -> Document:
 
 def test_bits_of_the_rim() -> None:
     """Rows of integers that do not fit are refused, not rounded."""
-    document = _with(boundary_heights=["0", "1", "0", "1/2", f"{10**40 + 1}/{10**40}"])
+    document = _with(rim=["0", "1", "0", "1/2", f"{10**40 + 1}/{10**40}"])
     refused(document, "the coordinates need more bits")
 
 
