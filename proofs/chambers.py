@@ -40,7 +40,7 @@ def sign_functionals(pattern: CreasePattern) -> dict[int, dict[int, int]]:
 
 @lru_cache(maxsize=256)
 def counted(pattern: CreasePattern) -> BranchCount:
-    """The branches of a pattern. They are counted once, though proofs run for each mistake."""
+    """The branches of a pattern, remembered, because tests run a proof once for each mistake."""
     return count_branches(pattern)
 
 

@@ -31,7 +31,7 @@ RIM = frozenset(range(4))
 
 
 def prove(change: str | None = None) -> Proof:
-    """The case analysis behind docs/generic.md, Theorem 12, and its hypersurfaces on examples."""
+    """Check the cases behind docs/generic.md, Theorem 12, and examples on its hypersurfaces."""
     script = Script(
         NAME,
         TITLE,

@@ -142,7 +142,7 @@ def coincidences(pattern: CreasePattern) -> Iterator[set[int]]:
 
 
 def _oriented(branch: Branch) -> tuple[str, str]:
-    """The letters and vertex signs on the ray of a branch whose letters come first."""
+    """The letters and vertex signs on a ray of a branch: on the one whose letters sort first."""
     text, signs = branch.assignment_text, branch.sign_text
     turned = text.translate(TRANSPOSED)
     return (text, signs) if text < turned else (turned, signs.translate(TRANSPOSED))

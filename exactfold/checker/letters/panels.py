@@ -55,8 +55,8 @@ def check(data: dict[str, Any]) -> VerifiedPanelLetters:
     claims, evidence = data["claims"], data["evidence"]
     keys(claims, keys_of(PanelLettersClaims), "claims")
     starts, truly, text = claims["starts"], claims["truly"], claims["letters"]
-    require(starts in ("proved", "refuted"), f"starts is {starts!a}")
-    require(truly in _TRULY, f"truly is {truly!a}")
+    require(starts in ("proved", "refuted"), f'"starts" is {starts!a}, not "proved" or "refuted"')
+    require(truly in _TRULY, f'"truly" is {truly!a}, not "proved", "refuted" or "undecided"')
     names = ["flat", "densities", *(["motion"] if starts == "proved" else [])]
     if "refuted" in (starts, truly):
         names += ["refuted", "tree"]

@@ -138,8 +138,9 @@ def _check_regular(
 
 
 def _spokes(sheet: PanelSheet, v: int, around: list[int], unit: int) -> list[tuple[Edge, Vector]]:
-    """The folds at a vertex with their vectors over 2^unit, from the smallest neighbour on.
+    """The folds at a vertex, with their vectors over 2^unit.
 
+    The first fold leads to the neighbour with the smallest number, and the others follow in order.
     Where sum_k w_k d_k does not vanish, the value of the form depends on which fold is the first.
     """
     first = around.index(min(around))

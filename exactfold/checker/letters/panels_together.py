@@ -18,7 +18,7 @@ from .panels_refuted import SIDES, numbers
 def check_never(
     sheet: PanelSheet, near: Near, wanted: Mapping[Edge, str], claimed: Any, steps: list[Any]
 ) -> bool:
-    """Verify that the claimed folds stay flat in all these motions.
+    """Verify that the claimed folds stay flat in all first-order motions that respect the letters.
 
     The evidence is a list of steps, and a step gives a vector at some vertices. The vectors add up
     to a sum at each fold. A sum must be 0 at a fold without a letter, and must not have the side of
@@ -51,10 +51,10 @@ def check_never(
 def check_together(
     sheet: PanelSheet, near: Near, wanted: Mapping[Edge, str], claimed: Any, given: list[Any]
 ) -> bool:
-    """Verify one of these motions, in which all claimed folds follow their letters.
+    """Verify a first-order motion in which all claimed folds follow their letters.
 
-    Returns whether all folds are claimed that follow their letters in this motion, or lie from
-    boundary to boundary and can always do so.
+    Returns whether the claimed folds are complete: all folds with a letter that follow it in this
+    motion, and all that lie from boundary to boundary, which can always follow it.
     """
     live = {pair(v, u) for v, around in near.items() for u in around}
     densities: dict[Edge, Number] = {}

@@ -34,7 +34,7 @@ class Stars:
         keys(entry, "signs heights", name)
         signs: Signs = {}
         for v, sign in items(entry["signs"], "signs"):
-            require(type(sign) is int and abs(sign) == 1, f"{name}: {sign!a} is no sign")
+            require(type(sign) is int and abs(sign) == 1, f"{name}: {sign!a} is not a sign")
             signs[natural(v, "a vertex")] = sign
         if entry["heights"] is None:
             ((v, sign),) = signs.items()
@@ -97,7 +97,10 @@ class Stars:
         require(sign * side >= 0, f"{name}: the star of {v} does not have the sign {sign}")
 
     def form(self, v: int, star: Heights) -> Fraction:
-        """2 K_v: the sum over all neighbours of slope's jump times height, where v has height 0."""
+        """The value of 2 K_v for a star in which v has height 0.
+
+        It is a sum over the neighbours of v: the jump of the slope times the height.
+        """
         return sum((bend * star[w] / area for w, bend, area in self._bent(v, star)), Fraction(0))
 
     def _bent(self, v: int, star: Heights) -> list[tuple[int, Fraction, Fraction]]:

@@ -65,7 +65,7 @@ def derivative(coefficients: Sequence[Fraction]) -> list[Fraction]:
 
 
 def rounded(x: Fraction, places: int) -> Fraction:
-    """x rounded up to `places` binary places after the point; a small x keeps as many digits."""
+    """x rounded up to `places` binary places; if x < 1, zeros after the point are not counted."""
     places += max(0, x.denominator.bit_length() - abs(x.numerator).bit_length())
     return Fraction(-(-(x.numerator << places) // x.denominator), 1 << places)
 

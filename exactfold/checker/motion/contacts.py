@@ -139,7 +139,7 @@ def check_contacts(
     """
     keys(given, "tube clear from to" if "contact" in claims else "tube clear", "contacts")
     number = natural(given["tube"], "tube")
-    require(1 <= number <= len(steps), "there is no such tube")
+    require(1 <= number <= len(steps), "the contacts name a tube that does not exist")
     stretches = stretches_of(start, tau, steps[:number])
     last = stretches[-1]
 

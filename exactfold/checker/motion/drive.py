@@ -86,7 +86,7 @@ class PrescribedAngles(Restriction):
         texts = items(claim["squares"], "squares", number)
         self.squares = [parse_rational(text) for text in texts]
         possible = all(0 < abs(q) <= 1 for q in self.squares)
-        require(possible, "a number of the squares is not from -1 to 1, or is 0")
+        require(possible, "each of the squares must be from -1 to 1, and not 0")
         self.diagonals = [(sheet.next[i][j], sheet.next[j][i]) for i, j in self.folds]
         weights = [
             abs(q) * _areas_over_length(sheet, fold)

@@ -109,7 +109,7 @@ class LoopVerifier:
 
 
 class Matching:
-    """The rays that loops match. A loop also counts backwards, and so does its mirror image."""
+    """The rays that loops match: the two ends of each loop, and those of its mirror image."""
 
     def __init__(self) -> None:
         self.loops, self.matched = 0, set[Ray]()
@@ -158,7 +158,7 @@ def check_lines(texts: Iterator[str], workers: int = 1, engine: Engine = BY_TUBE
         try:
             for text in texts:
                 entry = read_object(text, "a line")
-                require(not last, "something follows the claims")
+                require(not last, "a line follows the claims")
                 if "claims" in entry:
                     keys(entry, "claims", "the last line")
                     last.append(entry["claims"])

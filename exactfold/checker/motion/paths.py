@@ -69,7 +69,7 @@ class Path:
 
     def _tube(self) -> Tube:
         if self.tube is None:
-            raise CertificateError("a motion meets a node, or lands, on no tube")
+            raise CertificateError("a motion meets a node, or lands, where it is on no tube")
         return self.tube
 
 

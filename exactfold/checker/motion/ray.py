@@ -55,7 +55,7 @@ class Length(BranchClaim):
     always = True
 
     def check(self, chain: Chain) -> None:
-        """Refuse a motion whose chords add up to less."""
+        """Refuse a motion whose chords add up to less than the claimed length."""
         claimed, unit = parse_rational(self.claims["length"]), chain.equations.unit
         require(claimed <= chain.path.length * unit, "the motion is shorter than claimed")
 

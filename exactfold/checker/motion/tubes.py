@@ -122,7 +122,7 @@ class Start(Piece):
         Piece.__init__(self, equations, curve, weights, proof, reach)
 
     def configuration(self, tau: Fraction) -> tuple[Ball, Ball]:
-        """Two boxes, which hold d and its derivative by tau."""
+        """Two boxes, which hold the displacements d at tau and their derivative by tau."""
         ball, rate, half = self.enclosure(tau**2), self.velocity(tau**2), 1 << self.halvings
         points, rates = Ball([], []), Ball([], [])
         for i in range(self.equations.size):

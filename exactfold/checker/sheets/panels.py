@@ -46,7 +46,7 @@ class PanelSheet:
         self.tower, self.points, self.edges = tower, points, edges
         self.around: dict[int, list[int]] = {v: [] for v in range(len(points))}
         for i, j in edges:
-            require(i < j < len(points), f"{i}-{j} is no edge")
+            require(i < j < len(points), f"{i}-{j} is not an edge")
             self.around[i].append(j)
             self.around[j].append(i)
         for v, near in self.around.items():
@@ -64,7 +64,7 @@ class PanelSheet:
                 require(i > j or (j, i) not in sides, f"edge {i}-{j} has one face on both sides")
         boundary = outer[0]
         self.boundary_set = set(boundary)
-        require(len(self.boundary_set) == len(boundary), "the border passes a vertex twice")
+        require(len(self.boundary_set) == len(boundary), "the boundary passes a vertex twice")
         sides = {pair(i, j) for i, j in zip(boundary, (*boundary[1:], boundary[0]), strict=True)}
         self.folds = [edge for edge in edges if edge not in sides]
         self.interior = [v for v in range(len(points)) if v not in self.boundary_set]

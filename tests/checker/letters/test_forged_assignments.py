@@ -128,7 +128,7 @@ def test_some_vertex_can_pop_and_not_too_many(monkeypatch: pytest.MonkeyPatch) -
 def test_there_are_circles_for_all_signs() -> None:
     document = listed()
     del document["evidence"]["circles"][1]
-    refused(document, "circles has not 2 entries")
+    refused(document, "circles does not have 2 entries")
 
 
 def test_a_point_is_inside_its_nappes() -> None:

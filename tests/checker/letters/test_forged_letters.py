@@ -129,7 +129,7 @@ def test_keys(place: tuple[str | int, ...], message: str) -> None:
         ("tree", [["split", [4]]], "a number of a step is not a natural number"),
         ("tree", [["refuted", True]], "a number of a step is not a natural number"),
         ("refuted", [{"signs": [[True, 1]], "heights": None}], "a vertex is not a natural number"),
-        ("refuted", [{"signs": [[4, True]], "heights": None}], "refuted set 0: True is no sign"),
+        ("refuted", [{"signs": [[4, True]], "heights": None}], "refuted set 0: True is not a sign"),
         (
             "refuted",
             [{"signs": [[4, 1]], "heights": [[True, []]]}],
@@ -304,7 +304,7 @@ def test_signs_are_up_or_down() -> None:
     [entry, *_] = document["evidence"]["refuted"]
     entry["signs"] = [[4, 0]]
     none_left(document, [entry], [["force", 0, 4], ["refuted", 0]])
-    stopped(document, "refuted set 0: 0 is no sign")
+    stopped(document, "refuted set 0: 0 is not a sign")
 
 
 CROSS = {

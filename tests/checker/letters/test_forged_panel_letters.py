@@ -136,10 +136,10 @@ def test_steps_of_another_kind(tree: list[Any], error: str) -> None:
 def test_claims_are_known_words() -> None:
     document = sheet("twist")
     document["claims"]["starts"] = "undecided"
-    stopped(document, "starts is 'undecided'")
+    stopped(document, '"starts" is \'undecided\', not "proved" or "refuted"')
     document = sheet("twist")
     document["claims"]["truly"] = "no"
-    stopped(document, "truly is 'no'")
+    stopped(document, '"truly" is \'no\', not "proved", "refuted" or "undecided"')
 
 
 def test_letters_fit_the_folds() -> None:
@@ -310,7 +310,7 @@ def test_a_fold_with_a_letter_does_not_stay_flat() -> None:
 
 def test_a_part_with_letters_does_not_rest() -> None:
     stopped(moving("twist", [None]), "the part of vertex 4 has letters, but is given no motion")
-    refused(moving("twist", []), "motion has not 1 entries")
+    refused(moving("twist", []), "motion does not have 1 entries")
 
 
 def test_sides_are_those_of_the_letters() -> None:
@@ -374,7 +374,9 @@ def test_there_are_as_many_unknowns_as_conditions() -> None:
     stopped(regular(unknowns=[], inverse=[]), message)
     refused(regular(unknowns=[1, 1, 4]), "Krawczyk's test fails in row 0")
     refused(regular(unknowns=[1, 2, 99]), "Krawczyk's test fails in row 2")
-    refused(regular(inverse=[[1, 0], [0, 1], [0, 0]]), "a row of the inverse has not 3 entries")
+    refused(
+        regular(inverse=[[1, 0], [0, 1], [0, 0]]), "a row of the inverse does not have 3 entries"
+    )
 
 
 def test_krawczyk() -> None:

@@ -280,7 +280,7 @@ def test_tubes_that_are_not_there() -> None:
         def moved(claims: Document, contacts: Document, other: int = other) -> None:
             contacts["tube"] = other
 
-        refused_alone("corner", "there is no such tube", moved)
+        refused_alone("corner", "the contacts name a tube that does not exist", moved)
 
 
 def test_keys() -> None:

@@ -98,11 +98,11 @@ def test_a_drive_of_another_shape() -> None:
     refused(_with(reached=1), "reached is not true or false")
     with without("reached is not true or false"):
         verified(_with(reached=1))
-    refused(_with(folds=[[0, 5]]), "driven folds has not 2 entries")
-    refused(_with(folds=[[0, 5], [1, 5], [2, 5]]), "driven folds has not 2 entries")
-    refused(_with(folds=[[0, 5], [1, 5, 2]]), "fold has not 2 entries")
+    refused(_with(folds=[[0, 5]]), "driven folds does not have 2 entries")
+    refused(_with(folds=[[0, 5], [1, 5], [2, 5]]), "driven folds does not have 2 entries")
+    refused(_with(folds=[[0, 5], [1, 5, 2]]), "fold does not have 2 entries")
     refused(_with(folds=[[0, 5], [1, -5]]), "vertex is not a natural number")
-    refused(_with(squares=["1/2"]), "squares has not 2 entries")
+    refused(_with(squares=["1/2"]), "squares does not have 2 entries")
 
 
 def test_what_is_driven_is_a_fold_and_no_two_are_the_same() -> None:
@@ -114,7 +114,7 @@ def test_what_is_driven_is_a_fold_and_no_two_are_the_same() -> None:
 
 def test_squares_are_those_of_angles() -> None:
     squares = [Fraction(q) for q in given()["claims"]["drive"]["squares"]]
-    message = "a number of the squares is not from -1 to 1, or is 0"
+    message = "each of the squares must be from -1 to 1, and not 0"
     large = [str(q / max(squares) * 2) for q in squares]
     with without(message):
         verified(_with(squares=large, reached=False))

@@ -108,8 +108,8 @@ def test_the_claims_come_last_and_once() -> None:
     header, loop, claims = given_lines(ONE)
     refused([header, loop], "1 loop holds, but the claims are missing", UnfinishedError)
     refused([header], "0 loops hold, but the claims are missing", UnfinishedError)
-    refused([header, claims, loop], "something follows the claims")
-    refused([header, loop, claims, claims], "something follows the claims")
+    refused([header, claims, loop], "a line follows the claims")
+    refused([header, loop, claims, claims], "a line follows the claims")
     refused(
         [header, loop, claims | {"more": 1}],
         "the last line: expected an object with the keys claims",
@@ -283,7 +283,7 @@ def test_other_names_are_refused() -> None:
                 verified(forged)
         forged = given_lines(ONE)
         forged[1][end]["vertex_signs"].append(1)
-        refused(forged, "vertex_signs has not 1 entries")
+        refused(forged, "vertex_signs does not have 1 entries")
 
 
 def test_a_landing_on_the_mirror_image_is_refused() -> None:
@@ -328,7 +328,9 @@ def test_a_loop_lands_after_it_has_entered_the_last_tube() -> None:
         (tube.enclosure(s), tube.velocity(s)) for s in (Fraction(-1, 1000), Fraction(1, 1000))
     )
     path = Path(later, sheet.equations.bits)
-    with pytest.raises(CertificateError, match=r"^a motion meets a node, or lands, on no tube$"):
+    with pytest.raises(
+        CertificateError, match=r"^a motion meets a node, or lands, where it is on no tube$"
+    ):
         path.meet(*later)
     path.enter(tube)
     with pytest.raises(CertificateError, match=r"^a motion meets another piece before it enters"):
@@ -337,7 +339,7 @@ def test_a_loop_lands_after_it_has_entered_the_last_tube() -> None:
         path.leave(Fraction(-1, 1000))
     forged = given_lines(ONE)
     forged[1]["evidence"]["steps"] = []
-    refused(forged, "loop 0: a motion meets a node, or lands, on no tube")
+    refused(forged, "loop 0: a motion meets a node, or lands, where it is on no tube")
     forged = given_lines(ONE)
     steps_of(forged)[1]["exit"] = -steps_of(forged)[1]["exit"]
     refused(forged, "loop 0: a motion leaves a tube before it enters")
@@ -427,8 +429,8 @@ def test_keys_of_a_node() -> None:
     for key, value, message in (
         ("flat", None, "flat is not a list"),
         ("flat", ["9"], "flat vertex is not a natural number"),
-        ("node", [], f"node has not {_node()[0].equations.size} entries"),
-        ("centre", [1 << 200], f"centre has not {_node()[0].equations.size} entries"),
+        ("node", [], f"node does not have {_node()[0].equations.size} entries"),
+        ("centre", [1 << 200], f"centre does not have {_node()[0].equations.size} entries"),
         ("entry", None, "None is not an integer"),
         ("exit", True, "True is not an integer"),
         ("reach", 0, "the reach is out of range"),
@@ -535,7 +537,9 @@ def test_nodes_follow_tubes() -> None:
     steps = loop["evidence"]["steps"]
     k = next(k for k, step in enumerate(steps) if "flat" in step)
     loop["evidence"]["steps"] = steps[k : k + 1]
-    refused([header, loop, claims], "loop 0: a motion meets a node, or lands, on no tube")
+    refused(
+        [header, loop, claims], "loop 0: a motion meets a node, or lands, where it is on no tube"
+    )
 
 
 def test_an_arc_holds_configurations() -> None:

@@ -111,7 +111,7 @@ def test_every_sign_is_compared(name: str) -> None:
         refused(forged, "the side is not the claimed one")
     forged = given(name)
     forged["claims"]["vertex_signs"].append(1)
-    refused(forged, f"vertex_signs has not {len(interior)} entries")
+    refused(forged, f"vertex_signs does not have {len(interior)} entries")
 
 
 def test_signs_that_are_not_certain_are_refused() -> None:
@@ -164,7 +164,7 @@ def test_numbers_out_of_range() -> None:
         ({"tubes": {}}, "tubes is not a list"),
         ({"pinned": [0, 1, 2]}, "the pinned vertices are not those of a face"),
         ({"pinned": [0, 0, 1]}, "the pinned vertices are not those of a face"),
-        ({"pinned": [0, 1]}, "pinned has not 3 entries"),
+        ({"pinned": [0, 1]}, "pinned does not have 3 entries"),
     ):
         forged = given()
         forged["evidence"] |= change

@@ -124,7 +124,7 @@ def test_a_node_is_claimed_with_its_evidence() -> None:
 def test_numbers() -> None:
     size = len(given()["evidence"]["node"]["node"])
     for key, value, message in (
-        ("node", [], f"node has not {size} entries"),
+        ("node", [], f"node does not have {size} entries"),
         ("centre", None, "centre is not a list"),
         ("row", [1 << 124] * size, "a number of the row is out of range"),
         ("reach", 0, "the reach is out of range"),
@@ -201,7 +201,7 @@ def test_the_arc_begins_on_the_last_tube() -> None:
     with pytest.raises(CertificateError, match=r"^a motion (enters|does not enter)"):
         verified(forged)
     forged["evidence"]["tubes"] = []
-    refused(forged, "a motion meets a node, or lands, on no tube")
+    refused(forged, "a motion meets a node, or lands, where it is on no tube")
     forged = given()
     forged["evidence"]["node"]["entry"] += 1 << 36  # nearer to the node, beyond the tube
     with pytest.raises(CertificateError, match=r"^a motion (enters|does not enter)"):
@@ -266,7 +266,7 @@ def test_there_is_nothing_beyond_the_node() -> None:
     forged["evidence"]["contacts"]["tube"] += 1
     refused(forged, "the motion is not shown to be clear up to its node")
     forged["claims"]["node"]["clear"] = False
-    refused(forged, "there is no such tube")
+    refused(forged, "the contacts name a tube that does not exist")
 
 
 def pieces() -> tuple[Any, ...]:

@@ -143,8 +143,8 @@ def test_empty_lists_prove_nothing() -> None:
         (("evidence", "pinned"), "pinned", 3),
         (("claims", "vertex_signs"), "vertex_signs", 1),
     ):
-        refused(changed(place, []), f"{what} has not {length} entries")
-        refused(changed(place, [1] * (length + 1)), f"{what} has not {length} entries")
+        refused(changed(place, []), f"{what} does not have {length} entries")
+        refused(changed(place, [1] * (length + 1)), f"{what} does not have {length} entries")
     for value in ({}, "", None, 0):
         refused(changed(("evidence", "tubes"), value), "tubes is not a list")
     refused(
@@ -153,7 +153,7 @@ def test_empty_lists_prove_nothing() -> None:
     )
     forged = given_lines(ONE)
     forged[1]["evidence"]["steps"] = []
-    refused_loops(forged, "loop 0: a motion meets a node, or lands, on no tube")
+    refused_loops(forged, "loop 0: a motion meets a node, or lands, where it is on no tube")
 
 
 def test_a_direction_of_zero_is_refused() -> None:

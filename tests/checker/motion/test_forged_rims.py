@@ -93,7 +93,7 @@ def test_another_rim() -> None:
 
 def test_heights_that_are_no_rim() -> None:
     for rim in (["0", "1", "0", "1/2"], ["0", "1", "0", "1/2", "3", "0"]):
-        refused(_with(rim=rim), "rim has not 5 entries")
+        refused(_with(rim=rim), "rim does not have 5 entries")
     refused(_with(rim="01023"), "rim is not a list")
     refused(_with(rim=["0", "1", "0", "1/2", 3]), "3 is not a rational number in quotes")
 

@@ -105,7 +105,7 @@ SIDES = [(0, 1), (1, 2), (2, 3), (0, 3)]
 @pytest.mark.parametrize(
     ("points", "edges", "message"),
     [
-        ([], [(1, 0), (1, 2), (2, 3), (0, 3)], "1-0 is no edge"),
+        ([], [(1, 0), (1, 2), (2, 3), (0, 3)], "1-0 is not an edge"),
         ([(1, 1)], [], "vertex 4 is on no edge"),
         (
             [(1, 1), (2, 1), (1, 2)],
@@ -113,7 +113,7 @@ SIDES = [(0, 1), (1, 2), (2, 3), (0, 3)]
             "the drawing has 2 outer faces, not one",
         ),
         ([(1, 1)], [(0, 4)], "edge 0-4 has one face on both sides"),
-        ([(5, 4), (4, 5)], [(2, 4), (4, 5), (2, 5)], "the border passes a vertex twice"),
+        ([(5, 4), (4, 5)], [(2, 4), (4, 5), (2, 5)], "the boundary passes a vertex twice"),
     ],
 )
 def test_drawings_that_are_no_sheet(

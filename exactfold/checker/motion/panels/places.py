@@ -53,7 +53,7 @@ class Piece:
 
 
 def shrunk(sheet: PanelSheet) -> None:
-    """Move a corner of the sheet to 0, and divide all coordinates by a power of 2 to be below 1."""
+    """Move a corner of the sheet to 0, and scale it by a power of 2: all coordinates below 1."""
     x, y = sheet.points[sheet.panels[0][0]]
     moved = [(a - x, b - y) for a, b in sheet.points]
     bits, most = 32, 0

@@ -69,7 +69,7 @@ def test_a_radicand_that_is_a_square() -> None:
     row["radicand"] = ["4"]
     verified(document)
     row["densities"] = [[u, [c, "0"]] for u, [c] in row["densities"]]
-    refused(document, "a number has not 1 entries")
+    refused(document, "a number does not have 1 entries")
     row["radicand"] = ["-2"]
     refused(document, "a square root is taken of a number that is not positive")
     row["radicand"] = ["2"]

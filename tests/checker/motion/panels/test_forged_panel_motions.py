@@ -99,7 +99,7 @@ def test_rates() -> None:
         document["claims"]["rates"] = rates
         stopped(document, message)
     document["claims"]["rates"] = ["1"]
-    refused(document, "rates has not 2 entries")
+    refused(document, "rates does not have 2 entries")
     document = at_rest(given("rated"))
     del document["claims"]["rates"]
     message = "claims: expected an object with the keys assignment drivers"
