@@ -33,11 +33,11 @@ BITS = 64, 128
 
 _AT_ONCE = 1e-9
 _FARTHER = Fraction(1, 1000)
-"""Of its time: what goes on so much longer than to the node that floats see meets none."""
+"""Of its time: what goes on so much longer than to the branch point that floats see meets none."""
 _BEYOND = 1e-8
 """Of its time: so much longer a motion is followed, so that driven folds are beyond their goals."""
 _NAMED = 3
-_NO_NODE = "no node was met where floats see one"
+_NO_NODE = "no branch point was met where floats see one"
 _STRAYED = "the frames in floats are not near the proved curve: floats have left the branch"
 
 
@@ -50,12 +50,12 @@ class MotionProof:
     tubes, None for a motion until its return. `contact`: how far no two faces touch, and the first
     contact if the motion meets one; None until the return. `passed`: the motion goes on after that
     contact, through the paper, or after it is not known to be clear. `branch_point`: where the
-    proof ends at a node (`Track.branch_point`). `looped`: the proof of a motion until its return.
-    `length` bounds how far it is proved, in the unit of the sheet.
+    proof ends at a branch point (`Track.branch_point`). `looped`: the proof of a motion until its
+    return. `length` bounds how far it is proved, in the unit of the sheet.
 
     `status` is PROVED if all of the motion is, and its contact where it ends at one; of a motion
-    that ends at a node also that no two faces touch up to the node, unless the motion goes through
-    the paper before. Else `reason` says what is missing.
+    that ends at a branch point also that no two faces touch up to the branch point, unless the
+    motion goes through the paper before. Else `reason` says what is missing.
     """
 
     status: Verdict
@@ -75,12 +75,12 @@ class MotionProof:
 
     @property
     def branch_point(self) -> Passage | None:
-        """The way to the node at which the proof ends, None if it ends elsewhere."""
+        """The way to the branch point at which the proof ends, None if it ends elsewhere."""
         return None if self.track is None else self.track.branch_point
 
     @property
     def through(self) -> tuple[Passage, ...]:
-        """The passages of the nodes that the motion goes through."""
+        """The passages of the branch points that the motion goes through."""
         if self.looped is not None:
             return tuple(step for step in self.looped.steps if isinstance(step, Passage))
         return () if self.track is None else self.track.through
@@ -92,14 +92,14 @@ class MotionProof:
 
     @property
     def back_text(self) -> str:
-        """Along which half-branch the motion comes back, in words; empty if it does not."""
+        """Along which ray the motion comes back, in words; empty if it does not."""
         loop = self.loop
         if loop is None or loop.target is None:
             return ""
         if self.motion.boundary_heights is None:
             return str(loop.target)
         way = "as given" if loop.target.saddle > 0 else "the other way up"
-        return f"{loop.target.sign_text}, with the border {way}"
+        return f"{loop.target.sign_text}, with the boundary {way}"
 
     @property
     def reached(self) -> bool | None:
@@ -112,9 +112,9 @@ class MotionProof:
 
     @property
     def through_text(self) -> str:
-        """Which nodes the motion goes through, in words; empty if it meets none."""
+        """Which branch points the motion goes through, in words; empty if it meets none."""
         nodes = [
-            f"a node at the time {in_floats(self._time_of(branch_point))[1]:.6g}, "
+            f"a branch point at the time {in_floats(self._time_of(branch_point))[1]:.6g}, "
             f"where {branch_point.what}"
             for branch_point in self.through
         ]
@@ -122,11 +122,11 @@ class MotionProof:
 
     @property
     def end_text(self) -> str:
-        """Where the node is at which the proof ends, in words; empty if it ends elsewhere."""
+        """The branch point at which the proof ends, in words; empty if it ends elsewhere."""
         if self.branch_point is None:
             return ""
         time = in_floats(self.length)[1]
-        return f"until a node at the time {time:.6g}, where {self.branch_point.what}"
+        return f"until a branch point at the time {time:.6g}, where {self.branch_point.what}"
 
     @property
     def may_succeed_otherwise(self) -> bool:
@@ -205,7 +205,7 @@ class MotionProof:
         }
 
     def _time_of(self, branch_point: Passage) -> Interval:
-        """Bounds of the time at a node, in the unit of the sheet."""
+        """Bounds of the time at a branch point, in the unit of the sheet."""
         low, high = branch_point.time(0)
         unit = branch_point.tube.framework.unit
         return low * unit, high * unit
@@ -227,10 +227,10 @@ def prove(motion: Motion, *, bits: int = BITS[0], progress: Progress | None = No
     Tubes hold one configuration for each parameter, from the flat state to the end of the motion
     (docs/motion.md), and separating planes show what does not touch (docs/contacts.md). A motion
     until its first contact is proved with that contact; any other one with how far it is clear.
-    Through nodes that the motion passes the proof goes on along the same arc (docs/motions.md); a
-    motion that ends at a node is proved up to it. The frames of the motion that is returned are
-    those of the proved curve, each in a box (`Motion.bounds`). `bits`: after the point, of all
-    numbers in the tubes.
+    Through branch points that the motion passes the proof goes on along the same arc
+    (docs/motions.md); a motion that ends at a branch point is proved up to it. The frames of the
+    motion that is returned are those of the proved curve, each in a box (`Motion.bounds`). `bits`:
+    after the point, of all numbers in the tubes.
 
     Raises `UsageError` where the branch is not proved. UNDECIDED says nothing against the motion.
 
@@ -314,7 +314,9 @@ def _judged(motion: Motion, track: Track, contact: FirstContact) -> tuple[Verdic
         return (PROVED, "") if proved else (UNDECIDED, contact.reason)
     if branch_point is None or track.through:
         return UNDECIDED, track.reason
-    unproved = f"floats see a node at the time {branch_point.time[1]:.6g}, which is not proved"
+    unproved = (
+        f"floats see a branch point at the time {branch_point.time[1]:.6g}, which is not proved"
+    )
     return UNDECIDED, f"{track.reason}; {unproved}"
 
 
@@ -326,12 +328,12 @@ def _not_apart(contact: FirstContact) -> str:
 
 
 def _branch_point_of(motion: Motion) -> Event | None:
-    """The first node on a motion, as floats see it."""
+    """The first branch point on a motion, as floats see it."""
     return next((event for event in motion.events if event.kind == NODE), None)
 
 
 def _passes_branch_points(motion: Motion) -> bool:
-    """Whether a motion goes on beyond a node, as floats see it."""
+    """Whether a motion goes on beyond a branch point, as floats see it."""
     return motion.end != NODE and _branch_point_of(motion) is not None
 
 
@@ -365,7 +367,7 @@ def _with_frames(
     longest = in_floats((proof.length[1], proof.length[1]))[0]
     times = [min(time, longest) for time in proof.motion.times.tolist()]
     if proof.branch_point is not None and proof.motion.end == NODE:
-        times[-1] = longest  # the node itself, where floats come near to it only
+        times[-1] = longest  # the branch point itself, where floats come near to it only
     motion = with_enclosed_frames(proof.motion, framework, [frame(time) for time in times])
     if motion is None:
         return replace(proof, status=UNDECIDED, reason=_STRAYED)

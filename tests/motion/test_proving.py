@@ -147,14 +147,15 @@ def test_a_motion_through_a_node_is_proved_with_its_first_contact():
     proof = prove(motion)
     assert (proof.status, proof.reason, proof.branch_point) == (PROVED, "", None)
     assert proof.through_text == (
-        "through a node at the time 1.72875, where vertex 9 is flat and another curve crosses"
+        "through a branch point at the time 1.72875, where vertex 9 is flat and another "
+        "curve crosses"
     )
     low, high = proof.contact.event.time
     assert 1.73 < low <= motion.duration <= high < low * (1 + 1e-5)
     claims = checker.check(proof.certificate())
     assert claims["vertex_signs"] == [-1] * 6 + [1, 1]
     assert (claims["through"], claims["contact"]["kind"]) == ([[9]], "flat-fold")
-    # At the mirror image of the node, after the same time, the mirror image of the motion.
+    # At the mirror image of the branch point, after the same time, the mirror image of the motion.
     image = prove(follow(branch, side=-1, through_branch_points=True, frames=2))
     assert image.status is PROVED
     assert image.through[0].tube.branch_point.misses(proof.through[0].tube.branch_point)

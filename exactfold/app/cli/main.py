@@ -143,7 +143,7 @@ def branch(**options: Any) -> int:
 
     Signs are those of the side with boundary saddle +1 (with a reflex corner:
     on which the corner pops up); the other side has all of them reversed. With
-    more corners they are those of the way with these heights of the border, or of
+    more corners they are those of the way with these boundary heights, or of
     one on which folds start in the ratio of --drive. With --json, one object a line.
     """
     from exactfold.app.commands.branch import Asked
@@ -185,7 +185,7 @@ def export(**options: Any) -> int:
 def assignments(**options: Any) -> int:
     """List every mountain-valley assignment with which a sheet with five corners starts to fold.
 
-    For a convex border of five vertices and up to six vertices inside that can
+    For a convex boundary of five vertices and up to six vertices inside that can
     pop. The list is proved to be complete. With four corners, `count` lists
     them with the branches.
     """
@@ -201,7 +201,7 @@ def fold(**options: Any) -> int:
 
     A triangulated sheet with four corners follows a branch: the one named by
     --signs, --up or --branch, else that on which all vertices pop up. With more
-    corners it does so if --signs, --up or --rim is given (its border then moves
+    corners it does so if --signs, --up or --rim is given (its boundary then moves
     in the ratio of the rim), or --drive (chosen folds then drive it). Any other
     sheet follows modes of rigid panels: --component or --modes. That the branch
     or mode exists is proved; the answer says what is proved of the motion.
@@ -217,7 +217,7 @@ def motions(**options: Any) -> int:
     """Follow every branch, with proof, until the sheet is flat again.
 
     A sheet with n foldable vertices leaves the flat state along 2^(n+1)
-    half-branches. True motions join them in pairs, contact ignored: this says
+    rays. True motions join them in pairs, contact ignored: this says
     which with which.
     """
     from exactfold.app.commands.loops import Wanted

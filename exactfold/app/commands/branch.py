@@ -26,7 +26,7 @@ class Asked(BranchOptions):
 
     @property
     def given(self) -> Given:
-        """Heights of the border and angle deficits, in files."""
+        """Heights of the boundary and angle deficits, in files."""
         return Given(self.boundary_heights, self.curvature)
 
     @property
@@ -130,7 +130,7 @@ def also_found(others: int) -> str:
     """That folds start in a ratio on more branches."""
     return (
         f"{counted(others, 'more branch')} with these signs on which the folds start so: this is "
-        "the one that bends least; --rim FILE starts from other border heights"
+        "the one that bends least; --rim FILE starts from other boundary heights"
     )
 
 

@@ -35,7 +35,7 @@ class Asked(CountOptions):
 
     @property
     def given(self) -> Given:
-        """Heights of the border and angle deficits, in files."""
+        """Heights of the boundary and angle deficits, in files."""
         return Given(self.boundary_heights, self.curvature)
 
     def run(self) -> int:

@@ -46,7 +46,7 @@ class Wanted(DrawOptions):
 
     @property
     def given(self) -> Given:
-        """Heights of the border, in files."""
+        """Heights of the boundary, in files."""
         return Given(self.boundary_heights)
 
     @cached_property

@@ -42,7 +42,7 @@ class Wanted(ExportOptions):
 
     @property
     def given(self) -> Given:
-        """Heights of the border, in files."""
+        """Heights of the boundary, in files."""
         return Given(self.boundary_heights)
 
     def answer(self) -> int:

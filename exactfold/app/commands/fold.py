@@ -35,7 +35,7 @@ if TYPE_CHECKING:  # branches are followed without what panels need
 
 @dataclass(frozen=True)
 class _Begin:
-    """A half-branch, and the folds that are driven along it."""
+    """A ray, and the folds that are driven along it."""
 
     branch: Branch
     side: int
@@ -47,7 +47,7 @@ class Wanted(FoldOptions):
 
     @property
     def given(self) -> Given:
-        """Heights of the border, in files."""
+        """Heights of the boundary, in files."""
         return Given(self.boundary_heights)
 
     def answer(self) -> int:
@@ -111,7 +111,7 @@ class Wanted(FoldOptions):
         return (self.signs or self.up or self.drive) is not None or bool(self.given)
 
     def _begin(self, pattern: CreasePattern, bar: Bar) -> _Begin:
-        """The half-branch to follow, and what is driven."""
+        """The ray to follow, and what is driven."""
         if self.drive is None:
             return _Begin(self._branch(pattern, bar), self.side or 1)
         angles = driven_angles(self.drive)

@@ -1,4 +1,4 @@
-"""`exactfold motions`: how the half-branches are joined by true motions, with proof."""
+"""`exactfold motions`: how the rays are joined by true motions, with proof."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Wanted(MotionsOptions):
         return shlex.join(words)
 
     def answer(self) -> int:
-        """Follow all half-branches and print; the exit code.
+        """Follow all rays and print; the exit code.
 
         Raises the errors of `read`, `find_loops` and `dask_pool`, and `UsageError`.
         """

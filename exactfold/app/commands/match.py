@@ -132,7 +132,7 @@ class Asked(MatchOptions):
 def _in_reach(pattern: CreasePattern) -> None:
     if pattern.interior and pattern.Ve == 3:
         raise NotCountedError(
-            "match takes sheets that can fold, and this one, with three vertices on its border, "
+            "match takes sheets that can fold, and this one, with three vertices on its boundary, "
             "is rigid"
         )
 

@@ -1,4 +1,4 @@
-"""Numbers by vertex in JSON files: heights of the border, angle deficits."""
+"""Numbers by vertex in JSON files: boundary heights, angle deficits."""
 
 from __future__ import annotations
 

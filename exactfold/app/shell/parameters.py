@@ -200,7 +200,7 @@ BoundaryHeights = Annotated[
     Path | None,
     typer.Option(
         metavar="RIM.json",
-        help='Heights of all border vertices, {"0": 1, "1": "-1/2", ...}, of a convex border. '
+        help='Heights of all boundary vertices, {"0": 1, "1": "-1/2", ...}, of a convex boundary. '
         "Default, with more than four: those of a saddle, which are shown.",
     ),
 ]
@@ -209,7 +209,8 @@ Curvature = Annotated[
     typer.Option(
         metavar="FILE.json",
         help='Angle deficits of interior vertices, {"5": "1/10", ...}, 0 for the others: the '
-        "shapes of a sheet that is not flat by itself. Without --rim its border stays in a plane.",
+        "shapes of a sheet that is not flat by itself. Without --rim its boundary stays "
+        "in a plane.",
     ),
 ]
 

@@ -74,7 +74,7 @@ def follow(
     "90deg", the first fold angle of that size; along a branch also "return", the flat sheet again,
     or a number, the time. `frames`: their number, at equal steps of time, or of the angle of the
     fold `by`. `side`: -1 for the mirror image. `held`: the corners of the face that does not move.
-    Along a branch only: `boundary_heights`, the heights of the boundary of a sheet with more than
+    Along a branch only: `boundary_heights`, the boundary heights of a sheet with more than
     four corners; `drive`, the angles in degrees to which folds are driven
     (`exactfold.motion.find_driven`); `through_branch_points`, to go on where another curve crosses.
 

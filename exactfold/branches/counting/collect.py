@@ -42,7 +42,7 @@ def count_branches(
     For D = 1: solve the branch system of the sheet without rigid parts, isolate every solution by
     an exact test, prove by refined Bezout that there are no others (docs/mathematics.md, Krawczyk's
     test to True branches), and decide all vertex signs and folds exactly. For Ve = 3 the sheet is
-    rigid: 0 branches. For D >= 2 and a convex border the solutions are 2^n graphs over the rim
+    rigid: 0 branches. For D >= 2 and a convex boundary the solutions are 2^n graphs over the rim
     heights, and `connected_components` says how they are joined (`find_connected_components`).
     `method` is one of `METHODS`; "auto" takes Newton's method, one start for each sign vector, and
     turns to the exact engine where that does not settle a small pattern. With more than 20 foldable
@@ -111,7 +111,7 @@ def _rigid(pattern: CreasePattern, triangles: tuple[RigidTriangle, ...]) -> Bran
 def _higher(
     pattern: CreasePattern, triangles: tuple[RigidTriangle, ...], progress: Progress | None
 ) -> BranchCount:
-    """D >= 2: one double cone for a single vertex, 2^n graphs over the rim for a convex border."""
+    """D >= 2: one double cone for a single vertex, else 2^n graphs over the boundary heights."""
     from exactfold.branches.connected_components.joining import (
         find_connected_components,  # here, as most counts do without
     )
@@ -147,7 +147,7 @@ def _higher(
         "for all boundary heights there is exactly one solution with each sign vector: "
         f"2^{len(connected_components.vertices)} graphs over the boundary heights, of dimension "
         f"{pattern.D} modulo planes",
-        why="the border is convex, with more than four vertices",
+        why="the boundary is convex, with more than four vertices",
         true_branches=PROVED,
         open_questions=tuple(
             f"whether the star of vertex {v} is flat in other solutions: {reason}"
@@ -169,7 +169,7 @@ def not_convex(pattern: CreasePattern) -> str:
         f"the sheet has {pattern.Ve} boundary vertices, so it has {pattern.degrees_of_freedom} "
         f"degrees of freedom, and a reflex corner, vertex {pattern.reflex_corner}{chords}: with "
         "more than four corners the shapes over a rim need not be real then, so that nothing "
-        "general is known of their number (docs/any_border.md, A border that is not convex)"
+        "general is known of their number (docs/any_border.md, A boundary that is not convex)"
     )
 
 

@@ -61,7 +61,7 @@ def find_branch(
 
     Raises `UsageError` for signs that do not fit the pattern, among them a 0 where no branch with
     the other signs is proved flat; `BoundaryHeightsError` and `BadCurvatureError`, which name the
-    vertex; `NotApplicableError` for a rim of a border that is not convex; `NotCountedError` where
+    vertex; `NotApplicableError` for a rim of a boundary that is not convex; `NotCountedError` where
     signs name no branch, or if no vertex can pop. An `UNDECIDED` result does not say that the
     branch does not exist.
 

@@ -30,7 +30,7 @@ MOST_LISTED = 10
 
 
 class ShapesDocument(TypedDict):
-    """The shapes of a sheet with given angle deficits and a given border."""
+    """The shapes of a sheet with given angle deficits and a given boundary."""
 
     format: Literal["exactfold shapes result"]
     version: Literal[1]
@@ -44,14 +44,14 @@ class ShapesDocument(TypedDict):
     curvature: dict[VertexText, Rational]
     """Angle deficits that are not 0, by interior vertex."""
     rim: dict[VertexText, Rational]
-    """Heights of the border."""
+    """Heights of the boundary."""
     signs: list[Annotated[str, Keywords(pattern="^[-+0]+$")]]
     """Vertex signs of the shapes, if they were found one by one."""
 
 
 @dataclass(frozen=True, repr=False)
 class ShapeCount:
-    """The number of shapes with given angle deficits and a given border, PROVED or UNDECIDED.
+    """The number of shapes with given angle deficits and a given boundary, PROVED or UNDECIDED.
 
     `distinct` lies between the two `bounds`, which agree if it is PROVED; `with_multiplicity` is
     2^n, n the number of vertices that can pop. `signs` are those of the different shapes where they
@@ -101,13 +101,13 @@ def count_shapes(
     boundary_heights: BoundaryHeights | None = None,
     progress: Progress | None = None,
 ) -> ShapeCount:
-    """The shapes of a convex sheet with given angle deficits and a given border.
+    """The shapes of a convex sheet with given angle deficits and a given boundary.
 
     With a positive deficit at each of n vertices there are exactly 2^n, one for each sign vector
     (docs/branch.md, Angle deficits). With deficits 0 at some there are 2^n with multiplicity, and
     they differ unless stars are flat: up to ten vertices all are found and proved; beyond that the
     number lies between 2^p, for p positive deficits, and 2^n. `boundary_heights`: heights of the
-    border, 0 if none are given. Raises as `find_branch`.
+    boundary, 0 if none are given. Raises as `find_branch`.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> count_shapes(single_vertex(5), {5: "1/10"})

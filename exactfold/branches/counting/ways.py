@@ -37,7 +37,7 @@ def count_ways(
     """In how many ways a sheet folds, whatever its faces; the result says which theory applied.
 
     A triangulated sheet with four boundary vertices (D = 1), with three, or with one interior
-    vertex has branches: `count_branches`. So has one with a convex border of more vertices, whose
+    vertex has branches: `count_branches`. So has one with a convex boundary of more vertices, whose
     `families` are its irreducible components besides. Every other sheet has motions of rigid
     panels: `decompose`. Files of all formats are read (`open_pattern`), drawings repaired and made
     exact; `number`, from 1, chooses among the sheets of a drawing with several. Where loops nearly

@@ -46,7 +46,7 @@ class BoundaryClaim(BranchClaim):
     def said(claims: Document) -> str:
         """The given heights, and the face above which they are measured."""
         face = "-".join(map(str, claims["pinned"]))
-        return f", with the border in the ratio of {_shown(claims['rim'])} above the face {face}"
+        return f", with the boundary in the ratio of {_shown(claims['rim'])} above the face {face}"
 
 
 class BoundaryHeights(Restriction):

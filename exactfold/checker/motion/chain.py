@@ -74,7 +74,7 @@ def through(equations: LengthEquations, path: Path, entry: Any) -> Arc:
     keys(entry, "flat node centre row reach entry exit", "node")
     arc = arc_of(equations, entry["flat"], entry)
     begin, end = parameter_of(entry["entry"]), parameter_of(entry["exit"])
-    require(begin < 0 < end, "an arc does not go through its node")
+    require(begin < 0 < end, "an arc does not go through its branch point")
     path.meet(*arc.configuration(begin))
     path.go(*arc.configuration(Fraction(0)))
     path.go(*arc.configuration(end))

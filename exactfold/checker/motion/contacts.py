@@ -64,7 +64,10 @@ class Contacts(BranchClaim):
         text = f"; no two faces touch before {shown(claims['clear'])}"
         if "node" in claims and claims["node"]["clear"]:
             clear = shown(claims["clear"])
-            text = f"; no two faces touch before the node, which is at {clear} or later, nor at it"
+            text = (
+                f"; no two faces touch before the branch point, which is at {clear} or "
+                "later, nor at it"
+            )
         if "contact" not in claims:
             return text
         contact = claims["contact"]

@@ -56,7 +56,7 @@ class LoopSheet:
 
     def ray(self, entry: Any) -> Ray:
         """Read a ray."""
-        keys(entry, "vertex_signs side", "half-branch")
+        keys(entry, "vertex_signs side", "ray")
         signs = items(entry["vertex_signs"], "vertex_signs", len(self.given.interior))
         return tuple(map(integer, signs)), integer(entry["side"])
 
@@ -74,13 +74,13 @@ class LoopSheet:
         chain = Chain(self.given, self.removed, self.equations, evidence["start"])
         require(
             self._named(chain.start) == self.ray(entry["from"]),
-            'it does not begin along the half-branch "from"',
+            'it does not begin along the ray "from"',
         )
         chain.walk(steps, leaves=False)
         end, side = land(chain, evidence["landing"])
         signs, saddle = self._named(end)
         target = tuple(side * s for s in signs), side * saddle
-        require(target == self.ray(entry["to"]), 'it does not end along the half-branch "to"')
+        require(target == self.ray(entry["to"]), 'it does not end along the ray "to"')
         claimed = parse_rational(entry["length"])
         require(claimed <= chain.path.length * self.equations.unit, "it is shorter than claimed")
 
@@ -116,11 +116,11 @@ class Matching:
 
     def add(self, source: Ray, target: Ray) -> None:
         """Add a loop; raises if it matches a ray with itself, or a ray that is matched already."""
-        require(source != target, f"loop {self.loops}: a half-branch is matched with itself")
+        require(source != target, f"loop {self.loops}: a ray is matched with itself")
         ends = {source, target}
         ends |= {(tuple(-s for s in signs), -side) for signs, side in ends}
         new = self.matched.isdisjoint(ends)
-        require(new, f"loop {self.loops}: a half-branch is matched twice")
+        require(new, f"loop {self.loops}: a ray is matched twice")
         self.loops += 1
         self.matched |= ends
 
@@ -205,7 +205,7 @@ def summary(claims: LoopsClaims) -> str:
     matched, all_of_them = claims["matched"], claims["half_branches"]
     how = f"all {all_of_them}" if claims["complete"] else f"{matched} of {all_of_them}"
     digest = claims["sha256"]
-    return f"VALID: {loops} of true motions, which match {how} half-branches; sha256 {digest}"
+    return f"VALID: {loops} of true motions, which match {how} rays; sha256 {digest}"
 
 
 LOOPS = LineKind(

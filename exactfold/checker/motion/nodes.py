@@ -45,17 +45,17 @@ class Through(BranchClaim):
     def check(self, chain: Chain) -> None:
         """Refuse a motion that passes other branch points than those claimed."""
         claimed = "through" in self.claims
-        message = "a motion passes nodes but claims none, or claims nodes but passes none"
+        message = "a motion passes branch points and claims none, or the other way round"
         require(claimed == bool(chain.passed), message)
         lists = items(self.claims["through"], "through") if claimed else []
         listed = [[natural(v, "flat vertex") for v in items(flat, "flat")] for flat in lists]
-        require(listed == chain.passed, "the motion passes other nodes than those claimed")
+        require(listed == chain.passed, "the motion passes other branch points than those claimed")
 
     @staticmethod
     def said(claims: Document) -> str:
         """The branch points, one after the other."""
         return "".join(
-            f", through a node where {_flat(flat)}" for flat in claims.get("through", [])
+            f", through a branch point where {_flat(flat)}" for flat in claims.get("through", [])
         )
 
 
@@ -84,7 +84,7 @@ class Node(BranchClaim):
         begin, end = parameter_of(entry["entry"]), Fraction(0)
         path.meet(*arc.configuration(begin))
         # This can fail only after another branch point, or with a rim: docs/motion.md, Theorem 6.
-        require(begin < end, "an arc does not lead to its node")
+        require(begin < end, "an arc does not lead to its branch point")
         path.go(*arc.configuration(end))
         chain.steps.append(Arc(arc, begin, end))
 
@@ -97,12 +97,12 @@ class Node(BranchClaim):
             return
         given = self.evidence.get("contacts", {})
         to_the_end = (given.get("tube"), given.get("clear")) == (len(chain.steps), 0)
-        require(to_the_end, "the motion is not shown to be clear up to its node")
+        require(to_the_end, "the motion is not shown to be clear up to its branch point")
 
     @staticmethod
     def said(claims: Document) -> str:
         """The branch point."""
-        return f", to a node where {_flat(claims['node']['flat'])}"
+        return f", to a branch point where {_flat(claims['node']['flat'])}"
 
 
 def _flat(flat: list[int]) -> str:

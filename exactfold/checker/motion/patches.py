@@ -31,7 +31,9 @@ class Patch:
     def __init__(self, equations: LengthEquations, flat: list[int]) -> None:
         sheet, pinned = equations.sheet, equations.pinned
         inner = bool(flat) and flat == sorted(set(flat)) and set(flat) <= set(sheet.interior)
-        require(inner, "the flat vertices of a node are none, or are not sorted interior vertices")
+        require(
+            inner, "the flat vertices of a branch point are none, or not sorted interior vertices"
+        )
         self.equations, self.flat = equations, flat
         self.vertices = set[int]().union(*(t for t in sheet.triangles if not t.isdisjoint(flat)))
         self.base = _base(sheet, [v for v in pinned if v in self.vertices], self.vertices)

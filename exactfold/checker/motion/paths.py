@@ -69,7 +69,9 @@ class Path:
 
     def _tube(self) -> Tube:
         if self.tube is None:
-            raise CertificateError("a motion meets a node, or lands, where it is on no tube")
+            raise CertificateError(
+                "a motion meets a branch point, or lands, where it is on no tube"
+            )
         return self.tube
 
 

@@ -31,7 +31,7 @@ def tube_of(equations: LengthEquations, entry: Any) -> Tube:
 def arc_of(equations: LengthEquations, flat: Any, entry: Any) -> BranchPointTube:
     """Read an arc through a branch point with these flat vertices, and prove that it exists."""
     size, bits = equations.size, equations.bits
-    require(not equations.mixed, "a motion with driven folds cannot have a node")
+    require(not equations.mixed, "a motion with driven folds cannot have a branch point")
     patch = Patch(equations, [natural(v, "flat vertex") for v in items(flat, "flat")])
     return BranchPointTube(
         patch,

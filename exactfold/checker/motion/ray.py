@@ -42,7 +42,7 @@ class Ray(BranchClaim):
     def said(claims: Document) -> str:
         """The ray along which the curve begins."""
         name = text_of(claims)
-        return f"the motion along the half-branch {name}, is one curve without a gap"
+        return f"the motion along the ray {name}, is one curve without a gap"
 
 
 class Length(BranchClaim):

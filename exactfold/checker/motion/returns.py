@@ -27,7 +27,7 @@ class Return(BranchClaim):
     def __init__(self, claims: Document, evidence: Document) -> None:
         super().__init__(claims, evidence)
         apart = claims.keys().isdisjoint(("node", "clear", "contact"))
-        require(apart, "a motion that returns may not claim a node at its end, or contacts")
+        require(apart, "a motion that returns may not claim a branch point at its end, or contacts")
         keys(claims["return"], "vertex_signs side", "return")
 
     def go_on(self, chain: Chain) -> None:

@@ -85,7 +85,7 @@ class Motion(SheetInMotion):
 
     @property
     def boundary_heights(self) -> Mapping[int, Fraction] | None:
-        """With more than four corners the heights in the ratio of which the border stays."""
+        """With more than four corners the heights in the ratio of which the boundary stays."""
         return self.branch.boundary_heights if self.curve.framework.ties else None
 
     @property

@@ -102,7 +102,7 @@ def test_the_list_is_the_one_shown() -> None:
 
 
 def test_six_corners_have_more_than_circles() -> None:
-    """A circle of directions of the border is not all of a sphere."""
+    """A circle of directions of the boundary is not all of a sphere."""
     hexagon = wheel([(0, 0), (7, -2), (11, 3), (9, 8), (2, 9), (-2, 5)], (4, 3))
     document = round_a_circle(hexagon, [[*rim, 0.3] for rim in turns(300)])
     stopped(document, "there are not five boundary vertices")

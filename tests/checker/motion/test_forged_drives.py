@@ -240,14 +240,14 @@ def test_driven_folds_that_come_back_are_flat_at_the_end() -> None:
 
 
 def test_a_driven_motion_has_no_node() -> None:
-    """The patch of a node knows nothing of the equations of a drive."""
+    """The patch of a branch point knows nothing of the equations of a drive."""
     document = given()
     sheet = read_sheet(document["pattern"])[0]
     drive = PrescribedAngles(sheet, document["claims"]["drive"])
     equations = LengthEquations(sheet, document["evidence"]["pinned"], 64, drive)
     with pytest.raises(CertificateError) as caught:
         arc_of(equations, [5], {})
-    assert str(caught.value) == "a motion with driven folds cannot have a node"
+    assert str(caught.value) == "a motion with driven folds cannot have a branch point"
 
 
 # --- back to the flat state ----------------------------------------------------------------------
@@ -318,7 +318,7 @@ def test_a_motion_that_comes_back_claims_no_contact() -> None:
     document = back()
     document["claims"]["clear"] = "1/1000"
     document["evidence"]["contacts"] = {"tube": 1, "clear": 0}
-    refused(document, "a motion that returns may not claim a node at its end, or contacts")
+    refused(document, "a motion that returns may not claim a branch point at its end, or contacts")
 
 
 def test_a_motion_that_comes_back_is_shorter_than_claimed() -> None:

@@ -136,7 +136,7 @@ def test_edges_that_touch(points: list[tuple[int, int]], edges: list[tuple[int, 
 
 
 def test_a_strip_that_turns_until_it_overlaps(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Each panel is in order, and only the border meets itself, in several places."""
+    """Each panel is in order, and only the boundary meets itself, in several places."""
     along = [(1, 0), (0, 1), (-1, 0), (0, -1), (1, 1)]
     points = [(r * x, r * y) for x, y in along for r in (1, 3)]
     edges = [(2 * k, 2 * k + 1) for k in range(5)]
