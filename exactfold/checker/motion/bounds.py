@@ -123,7 +123,7 @@ def norm(rows: Sequence[int], weights: Vector, bits: int) -> Fraction:
 
 
 def dot(a: Iterable[int], b: Iterable[int]) -> int:
-    """The scalar product."""
+    """The scalar product of two vectors."""
     return sum(map(mul, a, b))
 
 
