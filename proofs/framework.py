@@ -25,9 +25,9 @@ class Proof:
     statements: tuple[Statement, ...]
     steps: tuple[Step, ...]
     changes: tuple[str, ...] = ()
-    """Names of the deliberate mistakes that `prove(change)` can make; each must be refused."""
+    """Names of deliberate mistakes that `prove(change)` can make; some step must refuse each."""
     claims: tuple[Claim, ...] = field(default=(), compare=False)
-    """Statements that are expressions, with what evaluates them."""
+    """Statements that are formulas, with the geometries in which they are evaluated."""
 
     @property
     def holds(self) -> bool:
@@ -36,13 +36,14 @@ class Proof:
 
     @property
     def verdict(self) -> str:
-        """`proved`; `tested` if at least half of the steps are; `refuted` if a step fails."""
+        """`refuted` if a step fails; else `tested` if half of the steps or more only test cases;
+        else `proved`."""
         if not self.holds:
             return "refuted"
         return "tested" if 2 * self.tested_only >= len(self.steps) else "proved"
 
     def steps_of(self, key: str) -> list[Step]:
-        """The steps that name a statement, for it or against its printed form."""
+        """The steps that name a statement: those for it, and those against its printed form."""
         return [step for step in self.steps if key in (*step.of, *step.against)]
 
     def kind(self, statement: Statement) -> str:
@@ -203,7 +204,7 @@ class Script:
         first = read(printed, names, mentions)
         right = read(corrected, names, mentions) if corrected else first
         if first.formulas and first.expressions != right.expressions:
-            raise ValueError(f"{key}: as many expressions are needed in both forms")
+            raise ValueError(f"{key}: the two forms need the same number of expressions")
         free = tuple(over)
         claim = Claim(key, first, right, free, tuple(at) or free)
         self.claims.append(claim)
