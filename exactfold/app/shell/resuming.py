@@ -21,7 +21,7 @@ def require_file(file: Path, resume: bool) -> None:
     if file.exists() and not file.is_file():
         raise UsageError(f"{file} is not a file")
     if file.exists() and not resume:
-        raise UsageError(f"{file} is there already; --resume continues it")
+        raise UsageError(f"{file} exists already; --resume continues it")
 
 
 @contextmanager
