@@ -185,7 +185,7 @@ def test_a_sheet_of_panels_has_modes_instead():
     with pytest.raises(NotCountedError) as caught:
         exactfold.branch("miura", "+")
     assert str(caught.value) == (
-        "this sheet of rigid panels has modes in place of branches: `count` lists them, and "
+        "this sheet of rigid panels has modes instead of branches: `count` lists them, and "
         "`follow(sheet, 1)` follows the first"
     )
     assert exactfold.follow("miura", 1, frames=2).modes == (1,)
