@@ -107,7 +107,7 @@ class CertificateFormatError(InputError):
     """A file is not a certificate of a known format and version."""
 
 
-class BadRimError(InputError):
+class BoundaryHeightsError(InputError):
     """Boundary heights cannot be used; `vertices` are the vertices to blame.
 
     A boundary vertex has no height, or other vertices have one, or a height is not a number, or all

@@ -297,7 +297,9 @@ def _constraint(script: Script) -> None:
     _, p, q, L0, L1, L2, x0, x1, x2 = field("p q L0 L1 L2 x0 x1 x2", QQ)
     before, after = Angle.twice_arctan(p), Angle.twice_arctan(q)
     both = _sector(before, L0, L1, x0, x1) + _sector(after, L1, L2, x1, x2)
-    rims = -before.csc / (L0 * L1) * (x0 - x1) ** 2 / 2 - after.csc / (L1 * L2) * (x1 - x2) ** 2 / 2
+    boundaries = (
+        -before.csc / (L0 * L1) * (x0 - x1) ** 2 / 2 - after.csc / (L1 * L2) * (x1 - x2) ** 2 / 2
+    )
     far = (before.csc / L1 - before.cot / L0) * x0**2 / (2 * L0)
     far += (after.csc / L1 - after.cot / L2) * x2**2 / (2 * L2)
     last = script.alter("cot alpha_{i-1,i} divided by L_{i-1}", L1, L0)
@@ -305,7 +307,7 @@ def _constraint(script: Script) -> None:
     script.identity(
         "spoke i collects its printed coefficient from the sectors (i-1, i) and (i, i+1); every "
         "(sector, spoke) pair occurs once, so the sum over i is Eq. (constraint) for every N",
-        both - rims - far - spoke * x1**2 / (2 * L1),
+        both - boundaries - far - spoke * x1**2 / (2 * L1),
         of="A.8",
     )
     script.formula(

@@ -259,12 +259,12 @@ def _independence(script: Script) -> None:
     d, stress = wheel.vertices, wheel_stress(wheel, 4)
     c = [cross(d[j], d[(j + 1) % 4]) for j in range(4)]
     sign = script.alter("coefficient opposite to the apex zero", 1, 0)
-    rims = [stress[(min(j, (j + 1) % 4), max(j, (j + 1) % 4))] for j in range(4)]
+    boundaries = [stress[(min(j, (j + 1) % 4), max(j, (j + 1) % 4))] for j in range(4)]
     script.identity(
         "on the edge ab opposite to p the stress of p is -1/c: if sum_v l_v w^v = 0 and l = 0 at "
         "a, b and at the apex beyond ab (or ab is a boundary edge), then l_p = 0; from the rim "
         "inwards along chains of triangles all l_v = 0",
-        *(sign * rims[j] * c[j] + 1 for j in range(4)),
+        *(sign * boundaries[j] * c[j] + 1 for j in range(4)),
         of="IIB.6 IIB.7",
     )
     patterns = (

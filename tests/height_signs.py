@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from exactfold._support.arrays import FloatArray
-from exactfold.motion.loops.rays import HalfBranch
+from exactfold.motion.loops.rays import Ray
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.rigidity.functionals import saddle_functional, vertex_sign_functional
 
@@ -36,7 +36,7 @@ class HeightSigns:
                 row[v] = float(c / largest)
         return rows
 
-    def of(self, heights: FloatArray) -> HalfBranch:
+    def of(self, heights: FloatArray) -> Ray:
         """The half-branch whose tangent has these heights of all vertices, shape (V,)."""
         *signs, saddle = (int(s) for s in np.sign(self._rows @ heights))
-        return HalfBranch(tuple(signs), saddle)
+        return Ray(tuple(signs), saddle)

@@ -1,6 +1,7 @@
-"""Types of what stands in the JSON that commands print; `exactfold.schema` makes schemas of them.
+"""Types of the values in the JSON that commands print.
 
-Every document is a `TypedDict` beside the function that makes it.
+A whole document has a `TypedDict` as its type, in the module of the function that makes the
+document. `exactfold.schema` makes the schemas from these types.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ T = TypeVar("T")
 
 
 class Keywords:
-    """Inside `Annotated`: keywords of JSON Schema that say what a type cannot say."""
+    """Keywords of JSON Schema for what a Python type cannot say; they stand in `Annotated`."""
 
     def __init__(self, **keywords: object) -> None:
         self.keywords = keywords
@@ -26,14 +27,14 @@ NotNegative: TypeAlias = Annotated[float, Keywords(minimum=0)]
 Degrees: TypeAlias = Annotated[float, Keywords(minimum=-180, maximum=180)]
 
 Pair: TypeAlias = Annotated[list[T], Keywords(minItems=2, maxItems=2)]
-"""Two values; of bounds the lower one first."""
+"""Two values; if they are bounds, the lower one comes first."""
 Several: TypeAlias = Annotated[list[T], Keywords(minItems=1)]
 Empty: TypeAlias = Annotated[list[Any], Keywords(maxItems=0)]
 
 VertexText: TypeAlias = Annotated[str, Keywords(pattern="^[0-9]+$")]
-"""A vertex as a key."""
+"""The number of a vertex, as a key."""
 FoldText: TypeAlias = Annotated[str, Keywords(pattern="^[0-9]+-[0-9]+$")]
-"""A fold i-j by its ends."""
+"""A fold, as "i-j" with the vertices at its ends."""
 Fold: TypeAlias = Pair[Natural]
 Face: TypeAlias = Annotated[list[Natural], Keywords(minItems=3)]
 Triangle: TypeAlias = Annotated[list[Natural], Keywords(minItems=3, maxItems=3)]
@@ -43,7 +44,7 @@ Side: TypeAlias = Annotated[int, Keywords(enum=[-1, 1])]
 SignsText: TypeAlias = Annotated[str, Keywords(pattern="^[-+0]*$")]
 """Signs of vertices, as in "+-0"."""
 Letter: TypeAlias = Annotated[str, Keywords(enum=["M", "V", "F", "U"])]
-"""Mountain, valley, flat; undecided or free."""
+"""Mountain, valley or flat; U is a letter that is undecided or free."""
 VertexSigns: TypeAlias = dict[VertexText, Sign]
 Assignment: TypeAlias = dict[FoldText, Letter]
 

@@ -3,11 +3,15 @@ from exactfold.branches.certificates.listing import certificate as certificate
 from exactfold.branches.certificates.read import read_branches as read_branches
 from exactfold.branches.certificates.single import branch_certificate as branch_certificate
 from exactfold.branches.connected_components.certificate import (
-    pieces_certificate as pieces_certificate,
+    components_certificate as components_certificate,
 )
-from exactfold.branches.connected_components.joining import find_pieces as find_pieces
+from exactfold.branches.connected_components.joining import (
+    find_connected_components as find_connected_components,
+)
+from exactfold.branches.connected_components.result import (
+    ConnectedComponents as ConnectedComponents,
+)
 from exactfold.branches.connected_components.result import Joint as Joint
-from exactfold.branches.connected_components.result import Pieces as Pieces
 from exactfold.branches.counting.batch import count_many as count_many
 from exactfold.branches.counting.collect import count_branches as count_branches
 from exactfold.branches.counting.find import BranchFinder as BranchFinder

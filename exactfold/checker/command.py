@@ -1,4 +1,4 @@
-"""One command for certificates of every kind: which kind a file is, and what its check says."""
+"""The command that checks a certificate: it finds the kind of the file and prints a verdict."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ DOCUMENTS: tuple[DocumentKind[Any], ...] = (
     MOTION,
     PANEL_MOTION,
 )
-"""The kinds whose files are one JSON object each."""
+"""The kinds with one JSON object in each file."""
 
 IN_LINES: tuple[LineKind[Any], ...] = (COMPACT, LOOPS)
 """The kinds whose files are written line by line."""
@@ -69,11 +69,11 @@ _ADVICE = defaultdict(
         "branch": "write a certificate with --certificate",
     },
 )
-"""What to give instead, by the kind of result."""
+"""What the user should give instead of a printed result, by the kind of this result."""
 
 
 def load(text: str) -> dict[str, Any]:
-    """The JSON object of a certificate that is one; raises `FormatError`."""
+    """Read a certificate that is one JSON object; raises `FormatError`."""
     try:
         data = read_json(text)
         return _kind_of(data).read(data)
@@ -86,10 +86,11 @@ def check(
     workers: int = 1,
     engine_of: Callable[[LineKind[Any]], Engine] = lambda kind: kind.engine,
 ) -> Verified[Any]:
-    """Verify every claim of a certificate: its JSON object, or the texts of its lines.
+    """Verify every claim of a certificate, given its JSON object or the texts of its lines.
 
-    `workers` and `engine_of` are for lines, as in `verify`. Raises `CertificateError` at the first
-    claim that is not supported, `FormatError` for an object or a first line of no known kind.
+    `workers` and `engine_of` are used for lines only, as in `verify`. Raises `CertificateError` at
+    the first claim that is not supported, and `FormatError` if the object, or the first line, does
+    not belong to a known kind.
     """
     if isinstance(data, tuple):
         in_lines = _kind_in_lines(data[0] if data else "{}")
@@ -99,12 +100,16 @@ def check(
 
 
 def _kind_of(data: Any) -> DocumentKind[Any]:
-    """The kind of a JSON object, by its "format" and, if several have this format, its "kind"."""
-    found = data if isinstance(data, dict) else {}
-    kinds = [kind for kind in DOCUMENTS if kind.format == found.get("format")]
+    """The kind of a JSON object.
+
+    The kind follows from the object's "format". If several kinds share this format, the object's
+    "kind" tells them apart.
+    """
+    document = data if isinstance(data, dict) else {}
+    kinds = [kind for kind in DOCUMENTS if kind.format == document.get("format")]
     if not kinds:
         raise FormatError('the object has no "format" that this checker knows')
-    named = found.get("kind")
+    named = document.get("kind")
     for kind in kinds:
         if kind.named == named:
             return kind
@@ -118,10 +123,10 @@ def verify(
 ) -> Verified[Any]:
     """Verify every claim of a certificate of any kind.
 
-    `workers` processes share the lines of a certificate that is written line by line. Which engine
-    verifies them `engine_of` says, once the first line shows the kind. Raises `CertificateError` if
-    a claim is not supported, `FormatError` if the file is no certificate, `OSError`,
-    `BrokenExecutor` if a process died.
+    If the certificate is written line by line, `workers` processes share its lines. The first line
+    shows the kind, and `engine_of(kind)` is the engine that verifies the lines. Raises
+    `CertificateError` if a claim is not supported, `FormatError` if the file is not a certificate,
+    `OSError` if it cannot be read, and `BrokenExecutor` if a process died.
     """
     with open(path, "rb") as stream:
         first = stream.readline(MOST_LINE)
@@ -137,7 +142,7 @@ def verify(
 
 
 def kind_in_lines(path: str | PathLike[str]) -> LineKind[Any] | None:
-    """The kind of a file that is written line by line, None for any other; raises `OSError`."""
+    """The kind of a file that is written in lines; None for any other file; raises `OSError`."""
     with open(path, "rb") as stream:
         first = stream.readline(MOST_LINE)
     try:
@@ -152,18 +157,21 @@ def is_compact(path: str | PathLike[str]) -> bool:
 
 
 def _sealed(line: bytes) -> bool:
-    """Whether a line ends with a tab and a digest, as those of files of lines do."""
+    """Whether a line ends with a tab and a digest, as in certificates that are written in lines."""
     return re.fullmatch(rb"[0-9a-f]{64}\n", line.rpartition(b"\t")[2]) is not None
 
 
 def _kind_of_file(first: bytes) -> LineKind[Any]:
-    """The kind of a file of lines, by the first; raises `FormatError`."""
+    """The kind of a certificate in lines, by the bytes of its first line; raises `FormatError`."""
     (text,) = lines(BytesIO(first))
     return _kind_in_lines(text)
 
 
 def _kind_in_lines(text: str) -> LineKind[Any]:
-    """The kind of a certificate in lines, by the "format" in the first; raises `FormatError`."""
+    """The kind of a certificate in lines, by the "format" in its first line's text.
+
+    Raises `FormatError`.
+    """
     form = read_object(text, "the first line").get("format")
     for kind in IN_LINES:
         if kind.format == form:
@@ -172,7 +180,10 @@ def _kind_in_lines(text: str) -> LineKind[Any]:
 
 
 def _stranger(text: str) -> str | None:
-    """What a file that is no certificate is, if it is one of those that are taken for one."""
+    """What a file is that is not a certificate, for files that people often mistake for one.
+
+    None for any other file.
+    """
     try:
         data, end = json.JSONDecoder().raw_decode(text.lstrip())
     except (ValueError, RecursionError):
@@ -182,7 +193,7 @@ def _stranger(text: str) -> str | None:
     if data.get("format") in [kind.format for kind in IN_LINES]:
         return "line 1 is cut off or was altered"
     if data.keys() & {"vertices_coords", "faces_vertices", "edges_vertices", "file_spec"}:
-        return "this is a FOLD file, a crease pattern and no certificate"
+        return "this is a FOLD file, which is a crease pattern and not a certificate"
     several = bool(text.lstrip()[end:].strip())
     kind = _PRINTED.fullmatch(str(data.get("format")))
     if kind is None:
@@ -191,7 +202,7 @@ def _stranger(text: str) -> str | None:
 
 
 def _printed(kind: str, several: bool) -> str:
-    """What printed a result."""
+    """Which command printed a result of this kind; `several` results may stand in one file."""
     if kind == "batch-line" or (several and kind.startswith("count")):
         return "a file of results, as count --jsonl writes it"
     if kind == "error":
@@ -201,22 +212,22 @@ def _printed(kind: str, several: bool) -> str:
 
 
 def summary(verified: Verified[Any]) -> str:
-    """One line for verified claims."""
+    """One line that states the verified claims."""
     return verified.kind.summary(verified.claims)
 
 
 def refusal(error: CertificateError) -> str:
-    """One line for a file whose claims do not all hold, or that is not finished."""
+    """One line that says which claim of a file does not hold, or that the file is not finished."""
     unfinished = isinstance(error, UnfinishedError)
     return f"{'UNFINISHED' if unfinished else 'INVALID'}: {plain(error)}"
 
 
 def main(arguments: list[str]) -> int:
-    """Check one file and print the verdict; the exit code.
+    """Check one file, print the verdict, and return the exit code.
 
-    0: every claim holds; 1: some claim is not supported, or the file is not finished; 2: wrong
-    usage; 3: not a certificate, or one beyond the limits; 70: a worker process died, memory is
-    short, or a defect of this program.
+    0: every claim holds. 1: some claim is not supported, or the file is not finished. 2: the
+    arguments are wrong. 3: the file is not a certificate, or asks for more than the limits allow.
+    70: a worker process died, memory is short, or this program has a defect.
     """
     workers = arguments[1] if len(arguments) == 2 else "1"
     usable = workers.isascii() and workers.isdecimal() and len(workers) < 5
@@ -238,7 +249,7 @@ def main(arguments: list[str]) -> int:
         message = "a worker process died, or memory is short: nothing is known of the file"
         print(message, file=sys.stderr)
         return 70
-    except Exception:  # never to be read as one of the other codes
+    except Exception:  # a defect of this program must not end with one of the other codes
         traceback.print_exc()
         return 70
     print(summary(verified))

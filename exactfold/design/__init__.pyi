@@ -5,13 +5,13 @@ from exactfold.design.actuation.every import actuate_all as actuate_all
 from exactfold.design.actuation.orthogonal import OrthogonalTorques as OrthogonalTorques
 from exactfold.design.actuation.result import Actuation as Actuation
 from exactfold.design.actuation.result import Ranked as Ranked
-from exactfold.design.assignments.boundary_match import match_rim as match_rim
-from exactfold.design.assignments.boundary_result import RimMatch as RimMatch
+from exactfold.design.assignments.boundary_match import match_boundary as match_boundary
+from exactfold.design.assignments.boundary_result import BoundaryMatch as BoundaryMatch
 from exactfold.design.assignments.certificate import match_certificate as match_certificate
 from exactfold.design.assignments.nearest import Nearest as Nearest
 from exactfold.design.assignments.nearest import nearest_branches as nearest_branches
 from exactfold.design.assignments.result import Match as Match
-from exactfold.design.assignments.result import Matched as Matched
+from exactfold.design.assignments.result import MatchedRay as MatchedRay
 from exactfold.design.assignments.search import match as match
 from exactfold.design.assignments.why import vertex_conflicts as vertex_conflicts
 from exactfold.design.circles.assignment_list import AllAssignments as AllAssignments

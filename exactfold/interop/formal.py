@@ -91,17 +91,17 @@ def to_coq(pattern: PatternLike) -> str:
             f"the formal proof needs a convex boundary: vertex {sheet.reflex_corner} is reflex"
         )
     points, denominator = sheet.integer_vertices
-    rim = pinned_first(sheet)
+    boundary = pinned_first(sheet)
     words = {
         "denominator": denominator,
         "points": wrapped("points", points, "%Z"),
         "inside": wrapped("inside", sheet.interior),
-        "border": wrapped("border", rim),
+        "border": wrapped("border", boundary),
         "triangles": wrapped("triangles", sheet.triangles),
         "fans": wrapped("fans_of", (listed(_fan(sheet, v)) for v in range(len(points)))),
         "n": sheet.Vi,
     }
-    words |= dict(zip("abcd", rim, strict=False))
+    words |= dict(zip("abcd", boundary, strict=False))
     parts = {3: [_CORNERS, _RIGID], 4: [_CORNERS, _BRANCHES]}.get(sheet.Ve, [])
     return "".join(part.format(**words) for part in [_HEAD, *parts])
 
@@ -140,6 +140,6 @@ def pinned_first(sheet: CreasePattern) -> tuple[int, ...]:
     (1, 2, 3, 0)
     """
     points, _ = sheet.integer_vertices
-    rim = sheet.boundary
-    turned = [rim[k:] + rim[:k] for k in (*range(1, len(rim)), 0)]
+    boundary = sheet.boundary
+    turned = [boundary[k:] + boundary[:k] for k in (*range(1, len(boundary)), 0)]
     return next(r for r in turned if orientation(*(points[v] for v in r[:3])) > 0)

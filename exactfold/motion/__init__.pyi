@@ -2,7 +2,7 @@ from exactfold.motion.contacts.claims import certificate_with_contact as certifi
 from exactfold.motion.contacts.contacts import FirstContact as FirstContact
 from exactfold.motion.contacts.contacts import first_contact as first_contact
 from exactfold.motion.curves.angles import fold_angles_of as fold_angles_of
-from exactfold.motion.curves.drive import Drive as Drive
+from exactfold.motion.curves.drive import PrescribedAngles as PrescribedAngles
 from exactfold.motion.curves.events import Event as Event
 from exactfold.motion.curves.framework import Framework as Framework
 from exactfold.motion.curves.motion import Motion as Motion
@@ -13,7 +13,7 @@ from exactfold.motion.loops.matching import Loops as Loops
 from exactfold.motion.loops.matching import find_loops as find_loops
 from exactfold.motion.loops.proofs import Loop as Loop
 from exactfold.motion.loops.proofs import LoopProof as LoopProof
-from exactfold.motion.loops.rays import HalfBranch as HalfBranch
+from exactfold.motion.loops.rays import Ray as Ray
 from exactfold.motion.panels.clearance import PanelClearance as PanelClearance
 from exactfold.motion.panels.clearance import prove_contacts as prove_contacts
 from exactfold.motion.panels.followable import PanelComponent as PanelComponent
@@ -33,7 +33,7 @@ from exactfold.motion.tubes.piece import Ball as Ball
 from exactfold.motion.tubes.tracks import Frame as Frame
 from exactfold.motion.tubes.tracks import Track as Track
 from exactfold.motion.tubes.tracks import follow_proved as follow_proved
-from exactfold.motion.tubes.tracks import half_branch as half_branch
+from exactfold.motion.tubes.tracks import ray as ray
 from exactfold.motion.tubes.tube import Tube as Tube
 from exactfold.motion.tubes.tube_start import StartTube as StartTube
 from exactfold.motion.writing import write_motion as write_motion

@@ -23,7 +23,7 @@ from exactfold.errors import (
 from exactfold.exact.numbers import approx_number
 from exactfold.motion.curves.boundary_path import framework_of, problem_of
 from exactfold.motion.curves.curve import Curve, LostCurveError, Piece, continued, leaving_piece
-from exactfold.motion.curves.drive import Drive, not_a_fold
+from exactfold.motion.curves.drive import PrescribedAngles, not_a_fold
 from exactfold.motion.curves.events import (
     ANGLE,
     CONTACT,
@@ -58,9 +58,9 @@ def follow(
     until: str | float = CONTACT,
     frames: int = 60,
     by: Edge | None = None,
-    through_nodes: bool = False,
+    through_branch_points: bool = False,
     pinned: Triangle | None = None,
-    drive: Drive | None = None,
+    drive: PrescribedAngles | None = None,
     progress: Progress | None = None,
 ) -> Motion:
     """The motion that continues a simple branch, from the flat sheet until something happens.
@@ -70,10 +70,11 @@ def follow(
     in the length equations. `until` says where to stop. "contact" is the first contact of two
     faces, or the first fold that closes. "return" is the next flat sheet. "90deg" is the first fold
     angle of that size. A number is a time. Where another curve crosses (an event "node") the motion
-    stops, unless `through_nodes` is true. `frames` is the number of frames, at equal steps of time,
-    or of the angle of the fold `by`. `side` is 1 for the ray that `branch` shows, and -1 for its
-    mirror image. `pinned` is the triangle that is held, given by vertices of the sheet without the
-    parts that stay flat (`Problem.sheet`); by default it is the largest one. Times depend on it.
+    stops, unless `through_branch_points` is true. `frames` is the number of frames, at equal steps
+    of time, or of the angle of the fold `by`. `side` is 1 for the ray that `branch` shows, and -1
+    for its mirror image. `pinned` is the triangle that is held, given by vertices of the sheet
+    without the parts that stay flat (`Problem.sheet`); by default it is the largest one. Times
+    depend on it.
 
     With more than four corners the branch has boundary heights. On the motion the heights of the
     border above the held face keep the ratio of these boundary heights, up to an affine function of
@@ -92,7 +93,7 @@ def follow(
     <Motion: branch +-, 5 frames to angle at 1.37421>
     """
     began = clock.perf_counter()
-    goal = Goal.of(until, through_nodes)
+    goal = Goal.of(until, through_branch_points)
     if drive is not None:
         goal = replace(goal, kinds=goal.kinds | {DRIVEN, DEAD_POINT})
     if frames < 2:
@@ -129,7 +130,7 @@ def follow(
     )
 
 
-def _goals(problem: Problem, drive: Drive) -> tuple[tuple[Edge, float], ...]:
+def _goals(problem: Problem, drive: PrescribedAngles) -> tuple[tuple[Edge, float], ...]:
     """The driven folds of the sheet, and the sizes of their goals in radians."""
     folds = (fold for fold, _ in drive.ways(problem.labels))
     return tuple((f, radians(abs(a))) for f, a in zip(folds, drive.angles.values(), strict=True))
@@ -148,13 +149,13 @@ class Goal:
     driven: tuple[tuple[Edge, float], ...] = ()
 
     @classmethod
-    def of(cls, until: str | float, through_nodes: bool = False) -> Goal:
+    def of(cls, until: str | float, through_branch_points: bool = False) -> Goal:
         """The goal that a user describes; raises `UsageError`.
 
         >>> Goal.of("90deg").angle == radians(90)
         True
         """
-        always = {SINGULAR, RETURN} if through_nodes else {SINGULAR, RETURN, NODE}
+        always = {SINGULAR, RETURN} if through_branch_points else {SINGULAR, RETURN, NODE}
         if until == CONTACT:
             return cls(frozenset(always | {CONTACT, FLAT_FOLD}))
         if until == RETURN:
@@ -185,7 +186,7 @@ def _check_followable(branch: Branch) -> None:
         raise UndecidedBranchError(
             f"branch {branch.sign_text} cannot be followed, because nothing is proved of it"
         )
-    if branch.pattern.Ve > 4 and branch.rim is None:
+    if branch.pattern.Ve > 4 and branch.boundary_heights is None:
         raise NotFollowedError(
             f"a sheet with {branch.pattern.Ve} boundary vertices can only be followed along a "
             "branch with given heights of the border (`find_branch` with rim=)"

@@ -26,7 +26,7 @@ from exactfold.motion.loops.proofs import Loop, LoopProof
 from exactfold.motion.tubes.arclength import Interval, in_floats
 from exactfold.motion.tubes.chain import Step
 from exactfold.motion.tubes.passages import Passage
-from exactfold.motion.tubes.tracks import Frame, Track, follow_proved, half_branch
+from exactfold.motion.tubes.tracks import Frame, Track, follow_proved, ray
 
 BITS = 64, 128
 """After the point, of the numbers in tubes: what is tried, one after the other."""
@@ -49,9 +49,9 @@ class MotionProof:
     (`Motion.bounds`); as it was given where it is not proved to its end. `track`: the chain of
     tubes, None for a motion until its return. `contact`: how far no two faces touch, and the first
     contact if the motion meets one; None until the return. `passed`: the motion goes on after that
-    contact, through the paper, or after it is not known to be clear. `node`: where the proof ends
-    at a node (`Track.node`). `looped`: the proof of a motion until its return. `length` bounds how
-    far it is proved, in the unit of the sheet.
+    contact, through the paper, or after it is not known to be clear. `branch_point`: where the
+    proof ends at a node (`Track.branch_point`). `looped`: the proof of a motion until its return.
+    `length` bounds how far it is proved, in the unit of the sheet.
 
     `status` is PROVED if all of the motion is, and its contact where it ends at one; of a motion
     that ends at a node also that no two faces touch up to the node, unless the motion goes through
@@ -74,9 +74,9 @@ class MotionProof:
         return None if self.looped is None else self.looped.outline
 
     @property
-    def node(self) -> Passage | None:
+    def branch_point(self) -> Passage | None:
         """The way to the node at which the proof ends, None if it ends elsewhere."""
-        return None if self.track is None else self.track.node
+        return None if self.track is None else self.track.branch_point
 
     @property
     def through(self) -> tuple[Passage, ...]:
@@ -96,7 +96,7 @@ class MotionProof:
         loop = self.loop
         if loop is None or loop.target is None:
             return ""
-        if self.motion.rim is None:
+        if self.motion.boundary_heights is None:
             return str(loop.target)
         way = "as given" if loop.target.saddle > 0 else "the other way up"
         return f"{loop.target.sign_text}, with the border {way}"
@@ -114,18 +114,19 @@ class MotionProof:
     def through_text(self) -> str:
         """Which nodes the motion goes through, in words; empty if it meets none."""
         nodes = [
-            f"a node at the time {in_floats(self._time_of(node))[1]:.6g}, where {node.what}"
-            for node in self.through
+            f"a node at the time {in_floats(self._time_of(branch_point))[1]:.6g}, "
+            f"where {branch_point.what}"
+            for branch_point in self.through
         ]
         return f"through {' and '.join(nodes)}" if nodes else ""
 
     @property
     def end_text(self) -> str:
         """Where the node is at which the proof ends, in words; empty if it ends elsewhere."""
-        if self.node is None:
+        if self.branch_point is None:
             return ""
         time = in_floats(self.length)[1]
-        return f"until a node at the time {time:.6g}, where {self.node.what}"
+        return f"until a node at the time {time:.6g}, where {self.branch_point.what}"
 
     @property
     def may_succeed_otherwise(self) -> bool:
@@ -148,9 +149,11 @@ class MotionProof:
         >>> exactfold.check(proof.certificate()).text[:57]
         'VALID: 1 loop of true motions, which match 4 of 8 half-br'
         """
-        looped, rim = self.looped, self.motion.rim
+        looped, boundary_heights = self.looped, self.motion.boundary_heights
         if looped is not None and looped.landing is not None:
-            return looped.lines() if rim is None else looped.certificate(rim)
+            return (
+                looped.lines() if boundary_heights is None else looped.certificate(boundary_heights)
+            )
         if self.track is None:
             raise NotApplicableError(f"there is no certificate: {self.reason}")
         if self.contact is None or self.passed:
@@ -188,23 +191,28 @@ class MotionProof:
             "clear": None if contact is None else in_floats((contact.clear, contact.clear))[0],
             "contact": None if event is None else event.to_dict(),
             "through": [
-                {"flat": list(node.vertices), "time": list(in_floats(self._time_of(node)))}
-                for node in self.through
+                {
+                    "flat": list(branch_point.vertices),
+                    "time": list(in_floats(self._time_of(branch_point))),
+                }
+                for branch_point in self.through
             ],
-            "node": None if self.node is None else self._node_dict(self.node),
+            "node": None
+            if self.branch_point is None
+            else self._branch_point_dict(self.branch_point),
             "reached": self.reached,
             "to": None if loop is None or loop.target is None else loop.target.to_dict(),
         }
 
-    def _time_of(self, node: Passage) -> Interval:
+    def _time_of(self, branch_point: Passage) -> Interval:
         """Bounds of the time at a node, in the unit of the sheet."""
-        low, high = node.time(0)
-        unit = node.tube.framework.unit
+        low, high = branch_point.time(0)
+        unit = branch_point.tube.framework.unit
         return low * unit, high * unit
 
-    def _node_dict(self, node: Passage) -> LastBranchPoint:
+    def _branch_point_dict(self, branch_point: Passage) -> LastBranchPoint:
         return {
-            "flat": list(node.vertices),
+            "flat": list(branch_point.vertices),
             "time": list(in_floats(self.length)),
             "clear": self.clear_to_the_end,
         }
@@ -243,7 +251,7 @@ def prove(motion: Motion, *, bits: int = BITS[0], progress: Progress | None = No
 def _tracked(motion: Motion, bits: int, progress: Progress | None) -> MotionProof:
     watch = ContactWatch()
     to_contact = _ends_at_the_first_contact(motion)
-    to_node = motion.end == NODE
+    to_branch_point = motion.end == NODE
     missed = Fraction(motion.duration) * (1 + _FARTHER)
     found: FirstContact | None = None
     seen = 0
@@ -253,7 +261,7 @@ def _tracked(motion: Motion, bits: int, progress: Progress | None) -> MotionProo
         seen += 1
         if progress is not None:
             progress("proving, tubes", seen, 0)
-        if to_node and step.entered[0] * so_far.framework.unit > missed:
+        if to_branch_point and step.entered[0] * so_far.framework.unit > missed:
             return _NO_NODE
         if found is not None:
             return None
@@ -263,17 +271,17 @@ def _tracked(motion: Motion, bits: int, progress: Progress | None) -> MotionProo
         found = watch.result(so_far)
         return None
 
-    until = None if to_contact or to_node else motion.duration
+    until = None if to_contact or to_branch_point else motion.duration
     if motion.end == DRIVEN:
         until = motion.duration * (1 + _BEYOND)
     pinned = motion.curve.framework.pinned
-    so_far = half_branch(motion.branch, motion.side, pinned, bits=bits, drive=motion.drive)
+    so_far = ray(motion.branch, motion.side, pinned, bits=bits, drive=motion.drive)
     track = follow_proved(
         motion.branch,
         motion.side,
         until=until,
         stop=stop,
-        through_nodes=_passes_nodes(motion),
+        through_branch_points=_passes_branch_points(motion),
         pinned=pinned,
         bits=bits,
         drive=motion.drive,
@@ -283,15 +291,15 @@ def _tracked(motion: Motion, bits: int, progress: Progress | None) -> MotionProo
     met = found is not None or (contact.event is not None and not to_contact)
     passed = met and contact.clear < Fraction(motion.duration)
     proof = MotionProof(status, reason, motion, track.length, track.tubes, track, contact, passed)
-    if track.node is not None and status is not PROVED:
+    if track.branch_point is not None and status is not PROVED:
         proof = replace(proof, reason=f"proved {proof.end_text}, but {reason}")
     return _with_frames(proof, track.framework, track.frame)
 
 
 def _judged(motion: Motion, track: Track, contact: FirstContact) -> tuple[Verdict, str]:
     """Whether a motion is proved to its end, or what is missing."""
-    to_contact, node = _ends_at_the_first_contact(motion), _node_of(motion)
-    if motion.end == NODE and track.node is not None:
+    to_contact, branch_point = _ends_at_the_first_contact(motion), _branch_point_of(motion)
+    if motion.end == NODE and track.branch_point is not None:
         if contact.event is None and not contact.clear_to_the_end:
             return UNDECIDED, _not_apart(contact)
         return PROVED, ""
@@ -299,14 +307,14 @@ def _judged(motion: Motion, track: Track, contact: FirstContact) -> tuple[Verdic
         return UNDECIDED, track.reason
     if to_contact and contact.status is PROVED:
         return PROVED, ""
-    if track.node is not None and (to_contact or track.status is not PROVED):
+    if track.branch_point is not None and (to_contact or track.status is not PROVED):
         return UNDECIDED, "floats went on without seeing this node"
     if track.status is PROVED:
         proved = contact.status is PROVED or not to_contact
         return (PROVED, "") if proved else (UNDECIDED, contact.reason)
-    if node is None or track.through:
+    if branch_point is None or track.through:
         return UNDECIDED, track.reason
-    unproved = f"floats see a node at the time {node.time[1]:.6g}, which is not proved"
+    unproved = f"floats see a node at the time {branch_point.time[1]:.6g}, which is not proved"
     return UNDECIDED, f"{track.reason}; {unproved}"
 
 
@@ -317,14 +325,14 @@ def _not_apart(contact: FirstContact) -> str:
     return f"faces {', '.join(names[:_NAMED])}{more} are not proved to stay apart"
 
 
-def _node_of(motion: Motion) -> Event | None:
+def _branch_point_of(motion: Motion) -> Event | None:
     """The first node on a motion, as floats see it."""
     return next((event for event in motion.events if event.kind == NODE), None)
 
 
-def _passes_nodes(motion: Motion) -> bool:
+def _passes_branch_points(motion: Motion) -> bool:
     """Whether a motion goes on beyond a node, as floats see it."""
-    return motion.end != NODE and _node_of(motion) is not None
+    return motion.end != NODE and _branch_point_of(motion) is not None
 
 
 def _ends_at_the_first_contact(motion: Motion) -> bool:
@@ -356,7 +364,7 @@ def _with_frames(
         return proof
     longest = in_floats((proof.length[1], proof.length[1]))[0]
     times = [min(time, longest) for time in proof.motion.times.tolist()]
-    if proof.node is not None and proof.motion.end == NODE:
+    if proof.branch_point is not None and proof.motion.end == NODE:
         times[-1] = longest  # the node itself, where floats come near to it only
     motion = with_enclosed_frames(proof.motion, framework, [frame(time) for time in times])
     if motion is None:

@@ -60,7 +60,7 @@ def certificate_of_panels(result: Decomposition) -> Document:
     spaces = [_spaces(part) for part in result.parts if part.theory == "subspaces"]
     claims: PanelsClaims = {
         "interior": len(pattern.interior),
-        "border": len(pattern.border),
+        "border": len(pattern.boundary_set),
         "folds": len(pattern.folds),
         "sha256": pattern.sha256,
         "held": _pairs(result.held),

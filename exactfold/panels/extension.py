@@ -119,7 +119,7 @@ def cycle_basis(pattern: PanelPattern, graph: nx.Graph) -> list[tuple[int, ...]]
     """
     found: list[tuple[int, ...]] = []
     for block in nx.biconnected_component_edges(graph):
-        sides = {half for i, j in block for half in ((i, j), (j, i))}
+        sides = {half_edge for i, j in block for half_edge in ((i, j), (j, i))}
         if len(sides) == 2:
             continue  # a single fold lies in no loop
         faces = _faces(pattern, sides)
@@ -137,11 +137,11 @@ def _faces(pattern: PanelPattern, sides: set[tuple[int, int]]) -> list[tuple[int
             after[u, v] = (v, around[k - 1])
     faces = []
     while after:
-        start, half = after.popitem()
+        start, half_edge = after.popitem()
         face = [start[1]]
-        while half in after:
-            face.append(half[1])
-            half = after.pop(half)
+        while half_edge in after:
+            face.append(half_edge[1])
+            half_edge = after.pop(half_edge)
         faces.append(tuple(face))
     return faces
 

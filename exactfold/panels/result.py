@@ -235,7 +235,7 @@ class Decomposition(Page, Ways[Mode], Certified):
             "letters": None,
             "rigid": {PROVED: True, REFUTED: False}.get(self.rigid),
             "exceptional_vertices": [],
-            "read": self.read,
+            "read": None if self.read is None else {**self.read},
             **self.keys(),
         }
         if self.status is PROVED:

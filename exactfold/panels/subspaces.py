@@ -64,12 +64,12 @@ def leaves(stars: Mapping[int, Star], rows: Rows, size: int, most: int) -> list[
     Raises `TooManyModesError` if this takes more than `most` steps. A step is one fold of a vertex
     times one dimension, times the square of the degree of the field.
     """
-    search = _Search(stars, most)
+    search = _SubspaceSearch(stars, most)
     found = search.solved(dict(rows), size)
     return [leaf for leaf in found if leaf.size]
 
 
-class _Search:
+class _SubspaceSearch:
     def __init__(self, stars: Mapping[int, Star], most: int) -> None:
         self.stars = stars
         self.most = most
@@ -129,7 +129,7 @@ class _Search:
 def reduced(stars: Mapping[int, Star], rows: Rows, size: int, most: int) -> tuple[Rows, int]:
     """The space after all semidefinite forms; unchanged if that takes more than `most` steps."""
     with suppress(TooManyModesError):
-        rows, size, _, _ = _Search(stars, most).reduced(rows, size)
+        rows, size, _, _ = _SubspaceSearch(stars, most).reduced(rows, size)
     return rows, size
 
 

@@ -32,11 +32,11 @@ class _SheetDocument(TypedDict):
 
 
 class PatternDocument(_SheetDocument):
-    """The pattern that a result is of."""
+    """The pattern to which a result belongs."""
 
     degrees_of_freedom: Natural
     snapped: NotRequired[Rational]
-    """How far --snap moved a coordinate."""
+    """The largest distance by which --snap moved a coordinate."""
     vertices: Annotated[list[Pair[Rational]], Keywords(minItems=3)]
     """Exact coordinates."""
     faces: Several[Triangle]
@@ -44,7 +44,7 @@ class PatternDocument(_SheetDocument):
 
 
 class PanelsDocument(_SheetDocument):
-    """The sheet of rigid panels that a result is of.
+    """The sheet of rigid panels to which a result belongs.
 
     Its numbers are fractions, or sums of products of square roots r1, r2, ... with fractions.
     """
@@ -97,7 +97,7 @@ def described_panels(pattern: PanelPattern, name: str | None = None) -> PanelsDo
     return {
         "name": name,
         "interior": len(pattern.interior),
-        "boundary": len(pattern.border),
+        "boundary": len(pattern.boundary_set),
         "folds": len(pattern.folds),
         "degrees_of_freedom": pattern.D,
         "sha256": pattern.sha256,

@@ -31,11 +31,10 @@ _LARGEST = 10**9
 
 
 class WarningDocument(TypedDict):
-    """What to know of a pattern before its result is read."""
+    """A warning: the pattern is almost a simpler one, which may have another result."""
 
     vertices: Several[Natural]
-    """Those that are almost where a simpler pattern has them, or that a path passes almost
-    straight."""
+    """The vertices that almost have simpler coordinates, or at which a path is almost straight."""
     snap: Positive | None
     """The denominator that rounds to the simpler pattern."""
     text: str

@@ -55,7 +55,7 @@ class ReadDocument(TypedDict):
     """What was read, how coordinates were made exact, and each repair, one sentence each."""
     field: FieldName
     largest_move: NotNegative
-    """Of a coordinate, by the size of the sheet."""
+    """The largest change of a coordinate, as a fraction of the size of the sheet."""
 
 
 @dataclass(frozen=True)

@@ -63,7 +63,7 @@ class PanelPattern(Picture):
             raise MalformedPatternError(
                 "the edges of the drawing enclose no face: draw the boundary of the sheet"
             )
-        self._check_border()
+        self._check_boundary()
 
     # --- combinatorics ---------------------------------------------------------------------------
 
@@ -97,7 +97,7 @@ class PanelPattern(Picture):
         return MappingProxyType(found)
 
     @cached_property
-    def border_edges(self) -> tuple[Edge, ...]:
+    def boundary_edges(self) -> tuple[Edge, ...]:
         """The edges with a face on one side only."""
         return tuple(
             (i, j) for i, j in self.edges if ((i, j) in self.sides) != ((j, i) in self.sides)
@@ -106,18 +106,18 @@ class PanelPattern(Picture):
     @cached_property
     def folds(self) -> tuple[Edge, ...]:
         """The edges between two panels, sorted."""
-        border = set(self.border_edges)
-        return tuple(edge for edge in self.edges if edge not in border)
+        boundary_set = set(self.boundary_edges)
+        return tuple(edge for edge in self.edges if edge not in boundary_set)
 
     @cached_property
-    def border(self) -> frozenset[int]:
+    def boundary_set(self) -> frozenset[int]:
         """The vertices on the boundary of the sheet."""
-        return frozenset(v for edge in self.border_edges for v in edge)
+        return frozenset(v for edge in self.boundary_edges for v in edge)
 
     @cached_property
     def interior(self) -> tuple[int, ...]:
         """The vertices inside the sheet, in increasing order."""
-        return tuple(v for v in range(len(self.vertices)) if v not in self.border)
+        return tuple(v for v in range(len(self.vertices)) if v not in self.boundary_set)
 
     @cached_property
     def stars(self) -> Mapping[int, tuple[int, ...]]:
@@ -169,9 +169,9 @@ class PanelPattern(Picture):
         (ax, ay), (bx, by) = self.scaled_vertices[start], self.scaled_vertices[end]
         return bx - ax, by - ay
 
-    def _check_border(self) -> None:
+    def _check_boundary(self) -> None:
         ends: dict[int, int] = {}
-        for edge in self.border_edges:
+        for edge in self.boundary_edges:
             for v in edge:
                 ends[v] = ends.get(v, 0) + 1
         pinched = sorted(v for v, count in ends.items() if count != 2)

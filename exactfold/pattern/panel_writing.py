@@ -88,6 +88,6 @@ def _letters(
 ) -> dict[Edge, str]:
     letters = {edge: stated.get(edge, "U") for edge in pattern.edges}
     letters = {edge: letter if letter in _FOLDS else "U" for edge, letter in letters.items()}
-    letters.update(dict.fromkeys(pattern.border_edges, "B"))
+    letters.update(dict.fromkeys(pattern.boundary_edges, "B"))
     letters.update(dict.fromkeys(joins, "J"))
     return letters

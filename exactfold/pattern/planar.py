@@ -168,13 +168,13 @@ def counter_clockwise(points: Sequence[AnyPoint], v: int, around: Sequence[int])
     """The neighbours of a vertex in counter-clockwise order, starting from the direction of +x."""
     x, y = points[v]
 
-    def half(u: int) -> int:
+    def half_edge(u: int) -> int:
         dx, dy = points[u][0] - x, points[u][1] - y
         return 0 if (dy, dx) > (0, 0) else 1
 
     def compare(a: int, b: int) -> int:
         turn = orientation((x, y), points[a], points[b])
-        return half(a) - half(b) or (turn < 0) - (turn > 0)
+        return half_edge(a) - half_edge(b) or (turn < 0) - (turn > 0)
 
     return sorted(around, key=cmp_to_key(compare))
 
@@ -183,7 +183,7 @@ def _cycles(
     points: Sequence[AnyPoint], edges: Sequence[Edge], clockwise: Sequence[dict[int, int]]
 ) -> list[tuple[int, ...]]:
     faces = []
-    unseen = {half for i, j in edges for half in ((i, j), (j, i))}
+    unseen = {half_edge for i, j in edges for half_edge in ((i, j), (j, i))}
     for start in sorted(unseen):
         if start not in unseen:
             continue
@@ -205,8 +205,10 @@ def _cycles(
 
 
 def _check_both_sides(cycle: Sequence[int]) -> None:
-    halves = set(zip(cycle, [*cycle[1:], cycle[0]], strict=True))
-    bridge = min((half for half in halves if half[::-1] in halves), default=None)
+    half_edges = set(zip(cycle, [*cycle[1:], cycle[0]], strict=True))
+    bridge = min(
+        (half_edge for half_edge in half_edges if half_edge[::-1] in half_edges), default=None
+    )
     if bridge is not None:
         raise FoldError(
             f"edge {_name(bridge)} has the same face on both sides: it is not a side of a face"

@@ -63,8 +63,8 @@ def _inside(following: Mapping[int, Mapping[int, int]], cycle: Triangle) -> froz
         i, j = stack.pop()
         k = following[i][j]
         vertices.add(k)
-        for half in ((k, j), (i, k)):  # these two sides as directed edges of the next faces
-            if half not in seen and half[::-1] not in seen:
-                seen.add(half)
-                stack.append(half)
+        for half_edge in ((k, j), (i, k)):  # these two sides as directed edges of the next faces
+            if half_edge not in seen and half_edge[::-1] not in seen:
+                seen.add(half_edge)
+                stack.append(half_edge)
     return frozenset(vertices - set(cycle))

@@ -27,7 +27,7 @@ from exactfold.rigidity.self_stress import rigidity_rank
 
 
 class TriangulatedTriangle(TypedDict):
-    """A triangle of folds or sides with vertices inside."""
+    """A ring of three folds or sides, and the vertices inside it."""
 
     corners: Triangle
     inside: Several[Natural]
@@ -45,18 +45,18 @@ class PatternFactsDocument(TypedDict):
     convex: bool
     straight_boundary_vertices: list[Natural]
     chords: list[FoldText]
-    """Folds from border to border."""
+    """The folds between two boundary vertices."""
     degrees: dict[VertexText, Natural]
-    """Folds at each interior vertex."""
+    """The number of folds at each interior vertex."""
     triangulated_triangles: list[TriangulatedTriangle]
     foldable_vertices: list[Natural]
-    """Those in no triangulated triangle."""
+    """The interior vertices that lie in no triangulated triangle."""
     rigidity_rank: Natural
     rigidity_rank_by: str
     """What proves the rank: elimination, or a theorem."""
     self_stresses: Natural
     inertia: dict[VertexText, Annotated[list[Natural], Keywords(minItems=3, maxItems=3)]]
-    """Of the curvature form of each interior vertex."""
+    """The inertia of the curvature form of each interior vertex."""
     warnings: list[WarningDocument]
 
 

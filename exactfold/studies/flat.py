@@ -102,15 +102,15 @@ def has_straight_path(pattern: CreasePattern) -> bool:
     (True, False)
     """
     reduced = pattern.without_rigid_parts()[0]
-    rim = set(reduced.boundary)
+    boundary = set(reduced.boundary)
     after = {
         way for i, v, j in collinear_folds(reduced) for way in (((i, v), (v, j)), ((j, v), (v, i)))
     }
     steps = nx.DiGraph(after)
     return any(
-        last[1] in rim
+        last[1] in boundary
         for first in steps
-        if first[0] in rim
+        if first[0] in boundary
         for last in nx.descendants(steps, first)
     )
 
@@ -134,7 +134,7 @@ def clusters(pattern: CreasePattern, signs: SignArray) -> list[list[int]]:
 
 
 @dataclass
-class _Tally:
+class _FlatTally:
     """The sums over the rows of one number of vertices and one grid."""
 
     squares: int = 0
@@ -183,7 +183,7 @@ def _key(row: Row) -> tuple[int, int]:
 
 def tables(rows: Iterable[Row]) -> list[StudyTable]:
     """How many squares are exceptions, by grid, and which stars are flat on them."""
-    tallies = tallied(rows, _Tally, _key)
+    tallies = tallied(rows, _FlatTally, _key)
     lines = tuple(
         (
             n,
@@ -255,7 +255,7 @@ def tables(rows: Iterable[Row]) -> list[StudyTable]:
     ]
 
 
-def _distances(tallies: dict[tuple[int, int], _Tally]) -> list[StudyTable]:
+def _distances(tallies: dict[tuple[int, int], _FlatTally]) -> list[StudyTable]:
     lines = tuple(
         (
             n,
@@ -305,7 +305,7 @@ def _quantile(values: Sequence[float], part: float) -> str | None:
 
 def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
     """The share of exceptions by grid, and the distances to the nearest ones."""
-    tallies = {key: t for key, t in tallied(rows, _Tally, _key).items() if t.proved}
+    tallies = {key: t for key, t in tallied(rows, _FlatTally, _key).items() if t.proved}
     if not tallies:
         return []
     near = {n: [d for d in t.distances if d] for (n, _), t in tallies.items() if any(t.distances)}

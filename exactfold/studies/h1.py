@@ -123,7 +123,7 @@ def row(recipe: Recipe) -> dict[str, Any]:
 
 
 @dataclass
-class _Tally:
+class _SizeTally:
     """The sums over the random squares of one size."""
 
     number: int = 0
@@ -143,8 +143,8 @@ class _Tally:
         return sum(count for k, count in self.moves.items() if k >= moves)
 
 
-def _sorted(rows: Iterable[Row]) -> tuple[dict[int, _Tally], list[Row]]:
-    tallies: dict[int, _Tally] = defaultdict(_Tally)
+def _sorted(rows: Iterable[Row]) -> tuple[dict[int, _SizeTally], list[Row]]:
+    tallies: dict[int, _SizeTally] = defaultdict(_SizeTally)
     every = []
     for found in rows:
         if found["kind"] == _SQUARE:
@@ -163,7 +163,7 @@ def tables(rows: Iterable[Row]) -> list[StudyTable]:
     return [_shares(tallies), _moves(tallies), _decay(tallies), *found, _sentences(tallies, every)]
 
 
-def _shares(tallies: dict[int, _Tally]) -> StudyTable:
+def _shares(tallies: dict[int, _SizeTally]) -> StudyTable:
     lines: list[tuple[Cell, ...]] = []
     for name, key, paper in _KINDS:
         for size, tally in tallies.items():
@@ -191,7 +191,7 @@ def _shares(tallies: dict[int, _Tally]) -> StudyTable:
     )
 
 
-def _moves(tallies: dict[int, _Tally]) -> StudyTable:
+def _moves(tallies: dict[int, _SizeTally]) -> StudyTable:
     most = max(max(t.moves) for t in tallies.values())
     return StudyTable(
         "moves",
@@ -205,7 +205,7 @@ def _moves(tallies: dict[int, _Tally]) -> StudyTable:
     )
 
 
-def _decay(tallies: dict[int, _Tally]) -> StudyTable:
+def _decay(tallies: dict[int, _SizeTally]) -> StudyTable:
     lines: list[tuple[Cell, ...]] = []
     sizes = [size for size in tallies if size >= 3]
     for size, after in pairwise(sizes):
@@ -234,7 +234,7 @@ def _factors(values: Sequence[float]) -> str:
     return ", ".join(f"{b / a:.2f}" for a, b in pairwise(values) if a)
 
 
-def _sentences(tallies: dict[int, _Tally], every: list[Row]) -> StudyTable:
+def _sentences(tallies: dict[int, _SizeTally], every: list[Row]) -> StudyTable:
     """The sentences of Section IV on these numbers."""
     lines: list[tuple[Cell, ...]] = []
     small = [found for found in every if found["interior"] <= 3]

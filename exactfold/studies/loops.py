@@ -18,7 +18,7 @@ from exactfold.errors import NotFollowedError
 from exactfold.motion.following import follow
 from exactfold.motion.loops.matching import find_loops
 from exactfold.motion.loops.proofs import Loop
-from exactfold.motion.loops.rays import HalfBranch
+from exactfold.motion.loops.rays import Ray
 from exactfold.motion.proving import MotionProof, prove
 from exactfold.motion.tubes.arclength import in_floats
 from exactfold.pattern.crease_pattern import CreasePattern
@@ -64,9 +64,9 @@ def row(recipe: Recipe) -> dict[str, Any]:
     }
 
 
-def _described(loop: Loop, target: HalfBranch, foldable: Sequence[int]) -> dict[str, Any]:
+def _described(loop: Loop, target: Ray, foldable: Sequence[int]) -> dict[str, Any]:
     """The entry of a loop in the row."""
-    ends = [(*half.vertex_signs, half.saddle) for half in (loop.source, target)]
+    ends = [(*ray.vertex_signs, ray.saddle) for ray in (loop.source, target)]
     flipped = [k for k, (a, b) in enumerate(zip(*ends, strict=True)) if a != b]
     winding = [fold.fold for fold in loop.folds if fold.turns]
     there = None
@@ -97,7 +97,7 @@ def _contacts(pattern: CreasePattern) -> list[dict[str, Any]]:
             if event is not None:
                 end, time = event.kind, list(event.time)
                 shared = len(set.intersection(*map(set, event.faces)))
-            elif proof.node is not None:
+            elif proof.branch_point is not None:
                 end, time = "node", list(in_floats(proof.length))
         found.append({"signs": branch.sign_text, "end": end, "time": time, "shared": shared})
     return found
@@ -112,12 +112,12 @@ def _proof_of(branch: Branch) -> MotionProof | None:
 
 
 @dataclass
-class _Tally:
+class _LoopTally:
     """The sums over the rows of one size."""
 
     squares: int = 0
     proved: int = 0
-    half_branches: int = 0
+    rays: int = 0
     alike: int = 0
     loops: list[Row] = field(default_factory=list)
     h1: list[Row] = field(default_factory=list)
@@ -130,7 +130,7 @@ class _Tally:
         """Adds a row."""
         self.squares += 1
         self.proved += row["status"] == str(PROVED)
-        self.half_branches += row["half_branches"]
+        self.rays += row["half_branches"]
         loops = row["loops"]
         self.loops += loops
         if row["h1"]:
@@ -163,17 +163,17 @@ def _flips(loops: Iterable[Row], number: int) -> int:
 
 def tables(rows: Iterable[Row]) -> list[StudyTable]:
     """Loops by the number of signs that flip, the rules, lengths, and first contacts."""
-    tallies = tallied(rows, _Tally, interior_of)
+    tallies = tallied(rows, _LoopTally, interior_of)
     return [_loops(tallies), _rules(tallies), _spans(tallies), _ends(tallies)]
 
 
-def _loops(tallies: dict[int, _Tally]) -> StudyTable:
+def _loops(tallies: dict[int, _LoopTally]) -> StudyTable:
     lines = tuple(
         (
             n,
             t.squares,
             t.proved,
-            t.half_branches // 4,
+            t.rays // 4,
             len(t.loops),
             len(t.loops) - len(t.plain),
             *(_flips(t.loops, number) for number in (1, 2, 3)),
@@ -193,7 +193,7 @@ def _loops(tallies: dict[int, _Tally]) -> StudyTable:
     )
 
 
-def _rules(tallies: dict[int, _Tally]) -> StudyTable:
+def _rules(tallies: dict[int, _LoopTally]) -> StudyTable:
     """How many loops follow each rule, among those to which it applies."""
 
     def share(kept: Iterable[bool]) -> str | None:
@@ -232,7 +232,7 @@ def _rules(tallies: dict[int, _Tally]) -> StudyTable:
     )
 
 
-def _spans(tallies: dict[int, _Tally]) -> StudyTable:
+def _spans(tallies: dict[int, _LoopTally]) -> StudyTable:
     def span(bounds: Sequence[tuple[float, float]]) -> tuple[str | None, ...]:
         if not bounds:
             return None, None, None
@@ -252,7 +252,7 @@ def _spans(tallies: dict[int, _Tally]) -> StudyTable:
     )
 
 
-def _ends(tallies: dict[int, _Tally]) -> StudyTable:
+def _ends(tallies: dict[int, _LoopTally]) -> StudyTable:
     lines = tuple(
         (
             n,
@@ -280,7 +280,7 @@ def _ends(tallies: dict[int, _Tally]) -> StudyTable:
 
 def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
     """The distributions of the lengths of loops, and of motions until the first contact."""
-    tallies = tallied(rows, _Tally, interior_of)
+    tallies = tallied(rows, _LoopTally, interior_of)
     spans = {n: [low for low, _ in t.lengths] for n, t in tallies.items() if t.lengths}
     times = {n: [low for low, _ in t.times] for n, t in tallies.items() if t.times}
 

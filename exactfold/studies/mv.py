@@ -75,7 +75,7 @@ def _differing(letters: SignArray, signs: SignArray) -> list[npt.NDArray[np.bool
 
 
 @dataclass
-class _Tally:
+class _LetterTally:
     """The sums over the rows of one size."""
 
     squares: int = 0
@@ -132,7 +132,7 @@ def _first(known: int | None, other: int) -> int:
 
 def tables(rows: Iterable[Row]) -> list[StudyTable]:
     """How many assignments occur, and what distinguishes branches with equal letters."""
-    tallies = tallied(rows, _Tally, interior_of)
+    tallies = tallied(rows, _LetterTally, interior_of)
     occurring = tuple(
         (
             size,
@@ -192,7 +192,7 @@ def tables(rows: Iterable[Row]) -> list[StudyTable]:
     ]
 
 
-def _pairs(tallies: dict[int, _Tally]) -> StudyTable:
+def _pairs(tallies: dict[int, _LetterTally]) -> StudyTable:
     return StudyTable(
         "pairs",
         "Pairs of branches with equal letters, by how many vertex signs differ",
@@ -214,7 +214,7 @@ def _pairs(tallies: dict[int, _Tally]) -> StudyTable:
     )
 
 
-def _sentences(tallies: dict[int, _Tally]) -> StudyTable:
+def _sentences(tallies: dict[int, _LetterTally]) -> StudyTable:
     """The sentences of Sections III.A and III.C on these numbers."""
     shares = {size: (t.letters, t.known) for size, t in tallies.items() if size >= 5 and t.known}
     z, p = trend(shares)
@@ -268,7 +268,7 @@ def _sentences(tallies: dict[int, _Tally]) -> StudyTable:
 
 def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
     """The share of all assignments that occurs, by the number of vertices."""
-    tallies = {size: t for size, t in tallied(rows, _Tally, interior_of).items() if t.known}
+    tallies = {size: t for size, t in tallied(rows, _LetterTally, interior_of).items() if t.known}
     if not tallies:
         return []
 

@@ -80,7 +80,7 @@ def nearest_exception(count: BranchCount) -> Nearest | None:
     found = [_beside_a_path(pattern)]
     cycles = list(quadrilaterals(pattern))
     if cycles and count.branches:
-        for signs, cycle, place in _Search(count, cycles).nearest():
+        for signs, cycle, place in _SaddleSearch(count, cycles).nearest():
             moved = _moved(pattern, dict(zip(pattern.interior, place.tolist(), strict=True)))
             if moved is not None and proved_between(pattern, moved, cycle, signs):
                 found.append(_nearest(pattern, moved, cycle, signs))
@@ -99,12 +99,12 @@ def quadrilaterals(pattern: CreasePattern) -> Iterator[Cycle]:
     >>> sorted(quadrilaterals(two_vertex()))
     [(0, 1, 5, 3), (4, 1, 2, 3)]
     """
-    rim = set(pattern.boundary)
+    boundary = set(pattern.boundary)
     points, _ = pattern.integer_vertices
     graph = nx.empty_graph(len(pattern.vertices))
     graph.add_edges_from((*pattern.folds, *pattern.boundary_edges))
     for cycle in nx.simple_cycles(graph, length_bound=4):
-        if len(cycle) == 4 and set(cycle) != rim:
+        if len(cycle) == 4 and set(cycle) != boundary:
             a, b, c, d = cycle
             turned: Cycle = (a, b, c, d) if _turn(points, a, b, c) > 0 else (d, c, b, a)
             if min(_turns(points, turned)) > 0 and any(
@@ -266,7 +266,7 @@ def _moved(pattern: CreasePattern, places: Mapping[int, Sequence[Any]]) -> Creas
 # --- floats --------------------------------------------------------------------------------------
 
 
-class _Search:
+class _SaddleSearch:
     """Searches, in floats, for the nearest places at which the saddle of some cycle vanishes.
 
     A derivative is the imaginary part of the value at a point with an imaginary part of 1e-30.

@@ -82,7 +82,7 @@ def row(recipe: Recipe) -> dict[str, Any]:
 
 
 @dataclass
-class _Tally:
+class _SystemTally:
     """The sums over the rows of one number of vertices and one size."""
 
     systems: int = 0
@@ -115,8 +115,8 @@ def _key(row: Row) -> tuple[int, int]:
     return row["interior"], SIZES.index(row["size"])
 
 
-def _tallies(rows: Iterable[Row]) -> dict[tuple[int, str], _Tally]:
-    found = tallied(rows, _Tally, _key)
+def _tallies(rows: Iterable[Row]) -> dict[tuple[int, str], _SystemTally]:
+    found = tallied(rows, _SystemTally, _key)
     return {(n, SIZES[place]): tally for (n, place), tally in found.items()}
 
 
@@ -156,7 +156,7 @@ def tables(rows: Iterable[Row]) -> list[StudyTable]:
     ]
 
 
-def _sentences(tallies: Mapping[tuple[int, str], _Tally]) -> StudyTable:
+def _sentences(tallies: Mapping[tuple[int, str], _SystemTally]) -> StudyTable:
     largest = {n: size for n, size in tallies if size != SIZES[0]}  # sizes come in order
     lines: list[tuple[Cell, ...]] = []
     for n, size in largest.items():

@@ -82,7 +82,7 @@ def _rounded(number: Fraction, context: Context) -> float:
 
 
 @dataclass
-class _Tally:
+class _TorqueTally:
     """The sums over the rows of one size."""
 
     squares: int = 0
@@ -110,7 +110,7 @@ class _Tally:
 
 def tables(rows: Iterable[Row]) -> list[StudyTable]:
     """The dimension of Tachi and Hull, the best margins, and the least margin of each square."""
-    tallies = tallied(rows, _Tally, interior_of)
+    tallies = tallied(rows, _TorqueTally, interior_of)
     proved = {n: t for n, t in tallies.items() if t.margins}
     dimensions = tuple(
         (
@@ -186,7 +186,7 @@ def _five(values: Sequence[float]) -> tuple[Cell, ...]:
 
 def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
     """The distributions of the best margins: of all branches, and of the weakest in each square."""
-    tallies = {n: t for n, t in tallied(rows, _Tally, interior_of).items() if t.margins}
+    tallies = {n: t for n, t in tallied(rows, _TorqueTally, interior_of).items() if t.margins}
 
     def margins(panels: Any) -> None:
         kinds = ("branches", "squares"), ("all branches", "the weakest of each square")

@@ -116,7 +116,7 @@ def _two_for_each_pair(signs: SignArray) -> bool:
 
 
 @dataclass
-class _Tally:
+class _CountTally:
     """The sums over the rows of one size."""
 
     number: int = 0
@@ -162,12 +162,12 @@ class _Tally:
 
 def tables(rows: Iterable[Row]) -> list[StudyTable]:
     """The table of the paper, the comparison with it, and the distances between branches."""
-    tallies = tallied(rows, _Tally, interior_of)
+    tallies = tallied(rows, _CountTally, interior_of)
     beside = [_comparison(tallies)] if PAPER.keys() & tallies else []
     return [_main(tallies), *beside, _distances(tallies)]
 
 
-def _main(tallies: dict[int, _Tally]) -> StudyTable:
+def _main(tallies: dict[int, _CountTally]) -> StudyTable:
     lines = tuple(
         (
             size,
@@ -203,7 +203,7 @@ def _main(tallies: dict[int, _Tally]) -> StudyTable:
 _KINDS = (("Vt > 0", "rigid"), ("same MV", "letters"), ("and signs", "signs"))
 
 
-def _comparison(tallies: dict[int, _Tally]) -> StudyTable:
+def _comparison(tallies: dict[int, _CountTally]) -> StudyTable:
     lines: list[tuple[Cell, ...]] = []
     for size, tally in tallies.items():
         if size not in PAPER:
@@ -237,7 +237,7 @@ def _comparison(tallies: dict[int, _Tally]) -> StudyTable:
     )
 
 
-def _distances(tallies: dict[int, _Tally]) -> StudyTable:
+def _distances(tallies: dict[int, _CountTally]) -> StudyTable:
     lines = tuple(
         (size, f"{t.closest:.2e}", t.closest_seed, t.digits, _median(t.histogram))
         for size, t in tallies.items()
@@ -272,7 +272,7 @@ def _median(histogram: dict[int, int]) -> int:
 
 def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
     """The share of squares with branches that share their letters, and the digits needed."""
-    tallies = {size: t for size, t in tallied(rows, _Tally, interior_of).items() if t.digits}
+    tallies = {size: t for size, t in tallied(rows, _CountTally, interior_of).items() if t.digits}
     if not tallies:
         return []
 

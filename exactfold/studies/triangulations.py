@@ -44,17 +44,17 @@ def types(interior: int) -> list[Triangulation]:
 
 def has_chord(triangles: Triangulation) -> bool:
     """Whether an interior edge joins two boundary vertices."""
-    rim, turn = rim_of(triangles), turns(triangles)
-    return any(a in rim and b in rim and (b, a) in turn for a, b in turn)
+    boundary, turn = boundary_of(triangles), turns(triangles)
+    return any(a in boundary and b in boundary and (b, a) in turn for a, b in turn)
 
 
 def has_low_vertex(triangles: Triangulation) -> bool:
     """Whether an interior vertex has degree 3."""
-    rim, degree = rim_of(triangles), degrees(triangles)
-    return any(d < 4 for v, d in degree.items() if v not in rim)
+    boundary, degree = boundary_of(triangles), degrees(triangles)
+    return any(d < 4 for v, d in degree.items() if v not in boundary)
 
 
-def rim_of(triangles: Triangulation) -> set[int]:
+def boundary_of(triangles: Triangulation) -> set[int]:
     """The set of boundary vertices."""
     turn = turns(triangles)
     return {v for a, b in turn if (b, a) not in turn for v in (a, b)}
@@ -72,7 +72,7 @@ def degrees(triangles: Triangulation) -> dict[int, int]:
 def low_corners(triangles: Triangulation) -> int:
     """The number of boundary vertices of degree 3."""
     degree = degrees(triangles)
-    return sum(degree[v] == 3 for v in rim_of(triangles))
+    return sum(degree[v] == 3 for v in boundary_of(triangles))
 
 
 def reverse_moves(triangles: Triangulation) -> int:
@@ -95,12 +95,12 @@ def _moves(triangles: Triangulation, known: dict[Triangulation, int]) -> int:
 
 
 def _reduced(triangles: Triangulation) -> Iterator[Triangulation]:
-    rim, degree = rim_of(triangles), degrees(triangles)
-    for corner in rim:
+    boundary, degree = boundary_of(triangles), degrees(triangles)
+    for corner in boundary:
         if degree[corner] == 3:
             first, second = (t for t in triangles if corner in t)
             (middle,) = {*first} & {*second} - {corner}
-            if middle not in rim and degree[middle] > 3:
+            if middle not in boundary and degree[middle] > 3:
                 yield triangles - {first, second}
 
 

@@ -404,11 +404,11 @@ def run(
     sys.path[:0] = [str(ROOT)]
     sys.dont_write_bytecode = True
     os.chdir(ROOT)
-    found = [path.stem for path in Path("tests", "checker").glob("test_*.py")]
+    found = {path.stem: str(path) for path in Path("tests", "checker").rglob("test_*.py")}
     quick = sorted(tests or set(found) - SLOW_TESTS)
     options = ["-x", "-s", "-p", "no:cacheprovider", "-p", "no:terminal"]
     pytest.main(
-        [*options, *(f"tests/checker/{name}.py" for name in quick)],
+        [*options, *(found[name] for name in quick)],
         [Bench(todo, what, folder, jobs)],
     )
 

@@ -132,7 +132,7 @@ def without(message: str) -> Iterator[None]:
         yield
 
 
-_BRANCH = re.compile(r"branch (\d+): not (\S*) (\S*?)(?: or .*)? as shown by (its|either)")
+_BRANCH = re.compile(r"branch (\d+): (its|either) [a-z ]*shows (\S*) (\S*?)(?: or .*)?, not")
 _MULTIPLICITY = re.compile(r"branch (\d+): multiplicity is (\d+)")
 _CLAIM = re.compile(r"claim (\w+) = .*, but it is (.*)")
 
@@ -163,7 +163,7 @@ def completed(document: Document) -> Document:
         verified(made)
     for text in said:
         if found := _BRANCH.match(text):
-            number, signs, letters, side = found.groups()
+            number, side, signs, letters = found.groups()
             claims["branches"][int(number)] |= {
                 "vertex_signs": signs,
                 "assignment": letters,

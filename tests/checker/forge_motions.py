@@ -15,8 +15,8 @@ from exactfold.checker.motion import certificate as motion
 from exactfold.checker.motion import chain as motion_chain
 from exactfold.checker.motion import contacts as motion_contacts
 from exactfold.checker.motion import nodes as motion_nodes
-from exactfold.checker.motion.branch_points import NodeTube
-from exactfold.checker.motion.half_branch import HalfBranch
+from exactfold.checker.motion.branch_points import BranchPointTube
+from exactfold.checker.motion.ray import Ray
 from exactfold.checker.motion.stretches import stretches_of
 from exactfold.checker.motion.tubes import Piece
 
@@ -32,11 +32,11 @@ def pieces_once() -> Iterator[None]:
         arc_of = _once(motion_nodes.arc_of)
         for module in (motion_chain, motion_nodes):
             patch.setattr(module, "arc_of", arc_of)
-        patch.setattr(HalfBranch, "begin", lambda *given_: None)  # no name is forged here
+        patch.setattr(Ray, "begin", lambda *given_: None)  # no name is forged here
         patch.setattr(motion_contacts, "stretches_of", _once(stretches_of))
         for method in ("enclosure", "velocity"):
             patch.setattr(Piece, method, cache(getattr(Piece, method)))
-        patch.setattr(NodeTube, "configuration", cache(NodeTube.configuration))
+        patch.setattr(BranchPointTube, "configuration", cache(BranchPointTube.configuration))
         yield
 
 

@@ -33,7 +33,7 @@ def test_every_kind_is_recognised(name: str, code: int) -> None:
 def test_a_fold_file_is_no_certificate() -> None:
     code, text = said(TWO)
     assert code == 3
-    assert text.endswith("this is a FOLD file, a crease pattern and no certificate\n")
+    assert text.endswith("this is a FOLD file, which is a crease pattern and not a certificate\n")
     assert text.count("\n") == 1
 
 

@@ -95,7 +95,9 @@ def test_pairs_of_boundary_edges(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(sheet, "MOST_MEETINGS", 4)
     read_sheet(CROSS)
     monkeypatch.setattr(sheet, "MOST_ABOVE", 4)
-    with pytest.raises(LimitError, match="pairs of boundary edges above one another, 5, are more"):
+    with pytest.raises(
+        LimitError, match="pairs of boundary edges whose x-ranges overlap, 5, are more"
+    ):
         read_sheet(CROSS)
     monkeypatch.setattr(sheet, "MOST_ABOVE", 5)
     monkeypatch.setattr(sheet, "MOST_MEETINGS", 3)
@@ -115,7 +117,7 @@ def test_pairs_of_edges_of_panels(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(panel_sheet, "MOST_MEETINGS", 0)
     read_panels(PANELS)
     monkeypatch.setattr(panel_sheet, "MOST_ABOVE", 22)
-    with pytest.raises(LimitError, match="the pairs of edges above one another, 23, are more"):
+    with pytest.raises(LimitError, match="the pairs of edges whose x-ranges overlap, 23, are more"):
         read_panels(PANELS)
     monkeypatch.setattr(panel_sheet, "MOST_ABOVE", 23)
     near = copy.deepcopy(PANELS)

@@ -15,7 +15,7 @@ from exactfold import checker
 from exactfold.checker import command
 
 NO_FORMAT = 'the object has no "format" that this checker knows'
-FOLD = "this is a FOLD file, a crease pattern and no certificate"
+FOLD = "this is a FOLD file, which is a crease pattern and not a certificate"
 COUNT = (
     "this is the result printed by count --json, and not a certificate; write a certificate with "
     "--certificate or --stream"

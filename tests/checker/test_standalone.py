@@ -127,7 +127,7 @@ def test_false_branches_are_refused(run: Run) -> None:
     document: dict[str, Any] = json.loads((FIXTURES / "branch-convex.json").read_text())
     document["claims"]["vertex_signs"][2] *= -1
     (run.folder / "false.json").write_text(json.dumps(document))
-    assert run("false.json") == (1, "INVALID: vertex 6 has another sign\n", "")
+    assert run("false.json") == (1, "INVALID: vertex 6 does not have the claimed sign\n", "")
 
 
 def test_several_processes_are_started_in_every_way(run: Run) -> None:

@@ -241,7 +241,7 @@ def test_fold_and_rabbit_ear_read_flat_folds(tmp_path, readers):
 @pytest.mark.parametrize("until", ["contact", "return"])
 def test_rabbit_ear_reads_every_frame_of_a_motion(tmp_path, readers, until):
     pattern = random_square(3, seed=0)
-    motion = follow(find_branch(pattern, "+-+"), until=until, through_nodes=True, frames=12)
+    motion = follow(find_branch(pattern, "+-+"), until=until, through_branch_points=True, frames=12)
     path = tmp_path / "motion.fold"
     write_motion(motion, path)
     document = read(path)

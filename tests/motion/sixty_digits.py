@@ -8,7 +8,7 @@ from fractions import Fraction
 import mpmath
 from flint import arb, arb_mat, fmpq
 
-from exactfold.motion.curves.drive import Drive
+from exactfold.motion.curves.drive import PrescribedAngles
 from exactfold.motion.curves.framework import Framework
 from exactfold.motion.tubes.flat_patches import FlatPatch
 from exactfold.motion.tubes.piece import PARAMETER_BITS, Ball
@@ -59,7 +59,9 @@ def newton(
     return [Fraction(int(q.p), int(q.q)) for q in (a.mid().fmpq() for a in x[:n])]
 
 
-def driven_newton(framework: Framework, tube: Tube, parameter: int, drive: Drive) -> list[Fraction]:
+def driven_newton(
+    framework: Framework, tube: Tube, parameter: int, drive: PrescribedAngles
+) -> list[Fraction]:
     """x(s) with 60 digits, of a driven motion: lengths, and cosines of angles between normals.
 
     One more unknown is the factor m: the squares are in the ratio of the drive iff

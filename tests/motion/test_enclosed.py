@@ -213,7 +213,7 @@ def test_a_motion_until_a_fold_closes_after_a_contact_is_proved_to_its_end():
 @pytest.mark.slow
 def test_frames_on_an_arc_through_a_node():
     motion = follow(
-        find_branch(NODE_SHEET, NODE_SIGNS), until="return", through_nodes=True, frames=2
+        find_branch(NODE_SHEET, NODE_SIGNS), until="return", through_branch_points=True, frames=2
     )
     proof = prove(motion)
     assert proof.status is PROVED

@@ -51,7 +51,7 @@ def assert_rigid(motion):
 @pytest.mark.parametrize("n", [2])
 def test_lengths_are_kept_on_random_squares(n):
     for branch in squares(n, 4):
-        motion = follow(branch, until="return", through_nodes=True, frames=9)
+        motion = follow(branch, until="return", through_branch_points=True, frames=9)
         assert motion.end in ("return", "singular")
         assert_rigid(motion)
 
@@ -67,7 +67,7 @@ def test_lengths_are_kept_on_fifty_random_squares(n):
 def test_lengths_are_kept_on_reflex_sheets_and_in_triangulated_triangles(seed):
     sheet = scrambled(seed, reflex_corners(seed), 3, loose=True)
     for branch in count_branches(sheet).branches[::3]:
-        assert_rigid(follow(branch, until="return", through_nodes=True, frames=9))
+        assert_rigid(follow(branch, until="return", through_branch_points=True, frames=9))
     octahedron = read_fold(example_path("flat-octahedron"))
     assert_rigid(follow(count_branches(octahedron).branches[seed], frames=9))
 
@@ -287,7 +287,7 @@ def test_the_last_frame_of_a_return_is_the_flat_sheet():
     motion = follow(
         find_branch(random_square(3, seed=1), "+-+"),
         until="return",
-        through_nodes=True,
+        through_branch_points=True,
         frames=4,
     )
     assert motion.end == "return"

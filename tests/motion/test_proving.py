@@ -54,7 +54,7 @@ def test_a_motion_through_the_paper_is_proved_without_a_claim_on_contact(branch)
 
 
 def test_a_motion_back_to_the_flat_sheet_names_where_it_ends(branch):
-    proof = prove(follow(branch, until="return", through_nodes=True, frames=3))
+    proof = prove(follow(branch, until="return", through_branch_points=True, frames=3))
     assert proof.status is PROVED
     assert proof.loop.source.sign_text == "+-+"
     assert proof.to_dict()["to"] == proof.loop.target.to_dict()
@@ -85,7 +85,7 @@ def test_any_triangle_can_be_held_with_any_bits(branch, bits, tmp_path):
 
 @pytest.mark.slow
 def test_a_loop_with_another_triangle_held_is_written_with_it(branch, tmp_path):
-    back = holding_another(branch, until="return", through_nodes=True, frames=3)
+    back = holding_another(branch, until="return", through_branch_points=True, frames=3)
     proof = prove(back, bits=128)
     assert proof.status is PROVED
     assert proof.write(tmp_path / "loop.txt")
@@ -142,10 +142,10 @@ def test_nothing_more_is_tried_at_a_singular_place(branch, monkeypatch):
 @pytest.mark.slow
 def test_a_motion_through_a_node_is_proved_with_its_first_contact():
     branch = find_branch(random_square(8, seed=1), "------++")
-    motion = follow(branch, until="contact", through_nodes=True, frames=2)
+    motion = follow(branch, until="contact", through_branch_points=True, frames=2)
     assert motion.end == "flat-fold"
     proof = prove(motion)
-    assert (proof.status, proof.reason, proof.node) == (PROVED, "", None)
+    assert (proof.status, proof.reason, proof.branch_point) == (PROVED, "", None)
     assert proof.through_text == (
         "through a node at the time 1.72875, where vertex 9 is flat and another curve crosses"
     )
@@ -155,8 +155,10 @@ def test_a_motion_through_a_node_is_proved_with_its_first_contact():
     assert claims["vertex_signs"] == [-1] * 6 + [1, 1]
     assert (claims["through"], claims["contact"]["kind"]) == ([[9]], "flat-fold")
     # At the mirror image of the node, after the same time, the mirror image of the motion.
-    image = prove(follow(branch, side=-1, through_nodes=True, frames=2))
+    image = prove(follow(branch, side=-1, through_branch_points=True, frames=2))
     assert image.status is PROVED
-    assert image.through[0].tube.node.misses(proof.through[0].tube.node)
-    assert not image.through[0].tube.node.misses(proof.through[0].tube.node.mirrored)
+    assert image.through[0].tube.branch_point.misses(proof.through[0].tube.branch_point)
+    assert not image.through[0].tube.branch_point.misses(
+        proof.through[0].tube.branch_point.mirrored
+    )
     assert image.contact.event.folds == proof.contact.event.folds

@@ -196,6 +196,6 @@ def test_all_fold_and_others_are_excluded_to_second_order_only() -> None:
     assert result.parts[0].spaces_fold == (True,) * 6
     said = str(panels_answer(replace(result, seconds=0.01)))
     assert said == (
-        "6 ways to fold - PROVED (0.01 s); each truly folds, and that there are no others is "
-        "proved to second order only"
+        "6 ways to fold - PROVED (0.01 s); each truly folds; it is proved only to second order "
+        "that there are no others"
     )

@@ -27,7 +27,7 @@ class Asked(BranchOptions):
     @property
     def given(self) -> Given:
         """The files with boundary heights and angle deficits."""
-        return Given(self.rim, self.curvature)
+        return Given(self.boundary_heights, self.curvature)
 
     @property
     def name(self) -> str:
@@ -72,9 +72,13 @@ class Asked(BranchOptions):
         with Bar("reading") as bar:
             pattern = self._read(bar)
             finder = self.given.finder(pattern)
-            rim = None if self.given.rim is None else finder.rim
+            boundary_heights = (
+                None if self.given.boundary_heights is None else finder.boundary_heights
+            )
             signs = given_signs(finder, self.signs, self.up)
-            found = find_driven(pattern, angles, signs, rim=rim, progress=bar)
+            found = find_driven(
+                pattern, angles, signs, boundary_heights=boundary_heights, progress=bar
+            )
             status = found.status
         if found.others:
             say(also_found(found.others))

@@ -36,7 +36,7 @@ class Asked(CountOptions):
     @property
     def given(self) -> Given:
         """The files with boundary heights and angle deficits."""
-        return Given(self.rim, self.curvature)
+        return Given(self.boundary_heights, self.curvature)
 
     def run(self) -> int:
         """Count, write the requested files, print the answer, and return the exit code.
@@ -89,7 +89,12 @@ class Asked(CountOptions):
         with Bar("reading") as bar:
             pattern = read(self.pattern, self.snap, self.sheet, "count").pattern
             finder = self.given.finder(pattern)
-            result = count_shapes(pattern, finder.curvature or {}, rim=finder.rim, progress=bar)
+            result = count_shapes(
+                pattern,
+                finder.curvature or {},
+                boundary_heights=finder.boundary_heights,
+                progress=bar,
+            )
         if self.as_json:
             print(json.dumps(result.to_dict(name_of(self.pattern))))
         else:
@@ -120,8 +125,8 @@ class Asked(CountOptions):
             return None
         if not isinstance(result, BranchCount):
             return self._certified_panels(result, self.certificate)
-        if result.pieces is not None and result.proof is None:
-            return self._certified_pieces(result, self.certificate)
+        if result.connected_components is not None and result.proof is None:
+            return self._certified_components(result, self.certificate)
         if result.families is not None:
             return self._certified_panels(result.families, self.certificate)
         if result.status is not PROVED:
@@ -139,7 +144,7 @@ class Asked(CountOptions):
         file = self.certificate
         return None if file is None else file.with_suffix(f".components{file.suffix}")
 
-    def _certified_pieces(self, result: BranchCount, file: Path) -> str | None:
+    def _certified_components(self, result: BranchCount, file: Path) -> str | None:
         """Write the certificate of the pieces and, beside it, that of the components."""
         written = None
         try:

@@ -47,7 +47,7 @@ class Wanted(DrawOptions):
     @property
     def given(self) -> Given:
         """The file with boundary heights."""
-        return Given(self.rim)
+        return Given(self.boundary_heights)
 
     @cached_property
     def amount(self) -> Amount | None:

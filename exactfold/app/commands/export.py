@@ -43,7 +43,7 @@ class Wanted(ExportOptions):
     @property
     def given(self) -> Given:
         """The file with boundary heights."""
-        return Given(self.rim)
+        return Given(self.boundary_heights)
 
     def answer(self) -> int:
         """Find the branch, write it, say what was written, and return the exit code.
@@ -54,7 +54,7 @@ class Wanted(ExportOptions):
         """
         options = "one of --signs, --up and --branch", self.signs, self.up, self.place
         one_at_most(*options)
-        if self.given.rim is not None and self.place is not None:
+        if self.given.boundary_heights is not None and self.place is not None:
             raise UsageError("--rim goes with --signs or --up")
         output = self.written
         if output is None and self.as_json:
@@ -119,7 +119,7 @@ def write_coq(asked: Wanted) -> int:
     named = asked.signs is not None or asked.up is not None
     if named and asked.everything:
         raise UsageError("--all names all branches: leave out --signs and --up")
-    if asked.given.rim is not None and not named:
+    if asked.given.boundary_heights is not None and not named:
         raise UsageError("--rim goes with --signs or --up")
     output = asked.written
     if output is not None and not _MODULE.match(output.name):

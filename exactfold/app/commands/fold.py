@@ -18,7 +18,7 @@ from exactfold.app.shell.patterns import read_any
 from exactfold.app.shell.shell import EXIT, Bar, name_of, say
 from exactfold.branches.values.branch import Branch
 from exactfold.errors import UndecidedBranchError, UsageError
-from exactfold.motion.curves.drive import Drive
+from exactfold.motion.curves.drive import PrescribedAngles
 from exactfold.motion.curves.motion import Motion
 from exactfold.motion.following import Goal, follow
 from exactfold.motion.writing import checked_ending, write_motion
@@ -39,7 +39,7 @@ class _Begin:
 
     branch: Branch
     side: int
-    drive: Drive | None = None
+    drive: PrescribedAngles | None = None
 
 
 class Wanted(FoldOptions):
@@ -48,7 +48,7 @@ class Wanted(FoldOptions):
     @property
     def given(self) -> Given:
         """The file with boundary heights."""
-        return Given(self.rim)
+        return Given(self.boundary_heights)
 
     def answer(self) -> int:
         """Follow the sheet, write the requested files, print the answer, return the exit code.
@@ -127,8 +127,10 @@ class Wanted(FoldOptions):
         signs = None
         if (self.signs, self.up) != (None, None):
             signs = given_signs(finder, self.signs, self.up)
-        rim = None if self.given.rim is None else finder.rim
-        found = find_driven(pattern, angles, signs, rim=rim, side=self.side, progress=bar)
+        boundary_heights = None if self.given.boundary_heights is None else finder.boundary_heights
+        found = find_driven(
+            pattern, angles, signs, boundary_heights=boundary_heights, side=self.side, progress=bar
+        )
         if signs is None:
             say(
                 "no branch was named (--signs, --up): this is the first branch found on which the "
@@ -163,7 +165,7 @@ class Wanted(FoldOptions):
             until=self.until,
             frames=self.frames,
             by=self.by,
-            through_nodes=self.through_nodes,
+            through_branch_points=self.through_branch_points,
             pinned=pinned,
             drive=begin.drive,
             progress=bar,
@@ -180,9 +182,9 @@ class Wanted(FoldOptions):
             "--up": self.up,
             "--branch": self.place,
             "--side": self.side,
-            "--rim": self.given.rim,
+            "--rim": self.given.boundary_heights,
             "--drive": self.drive,
-            "--through-nodes": self.through_nodes or None,
+            "--through-nodes": self.through_branch_points or None,
         }
         _refuse(
             given,

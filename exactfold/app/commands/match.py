@@ -12,8 +12,8 @@ from exactfold.app.options.branches import MatchOptions
 from exactfold.app.shell.patterns import read_any, warn
 from exactfold.app.shell.shell import EXIT, Bar, name_of, say
 from exactfold.certificates.entries import write_certificate
-from exactfold.design.assignments.boundary_match import can_pop, match_rim
-from exactfold.design.assignments.boundary_result import RimMatch
+from exactfold.design.assignments.boundary_match import can_pop, match_boundary
+from exactfold.design.assignments.boundary_result import BoundaryMatch
 from exactfold.design.assignments.certificate import match_certificate
 from exactfold.design.assignments.nearest import nearest_branches
 from exactfold.design.assignments.result import Match
@@ -54,11 +54,13 @@ class Asked(MatchOptions):
             letters = self._letters(opened.sheet, opened)
             if isinstance(opened.sheet, PanelPattern) or opened.sheet.Ve > 4:
                 if isinstance(opened.sheet, CreasePattern) and can_pop(opened.sheet):
-                    over = match_rim(opened.sheet, letters, most=self.most or _RIMS, progress=bar)
+                    over = match_boundary(
+                        opened.sheet, letters, most=self.most or _RIMS, progress=bar
+                    )
                     if over.status is PROVED:
                         self._write(over, bar)
                         bar.close()
-                        return self._over_a_rim(over)
+                        return self._over_a_boundary(over)
                 started = match_panels(opened, letters, progress=bar)
                 self._write(started, bar)
                 bar.close()
@@ -84,7 +86,7 @@ class Asked(MatchOptions):
         refuted = found.status is PROVED and not found.matches
         return EXIT[REFUTED if refuted else found.status]
 
-    def _write(self, found: Match | RimMatch | PanelMatch, bar: Bar) -> None:
+    def _write(self, found: Match | BoundaryMatch | PanelMatch, bar: Bar) -> None:
         if self.certificate is None:
             return
         if found.status is not PROVED:
@@ -98,14 +100,14 @@ class Asked(MatchOptions):
         else:
             write_certificate(certificate, self.certificate)
 
-    def _over_a_rim(self, found: RimMatch) -> int:
+    def _over_a_boundary(self, found: BoundaryMatch) -> int:
         """Print whether a sheet with more corners starts to fold; return the exit code."""
         if self.as_json:
             print(json.dumps(found.to_dict(name_of(self.file))))
         else:
             from exactfold.app import report
 
-            report.show(report.rim_match_report(found, everything=self.everything))
+            report.show(report.boundary_match_report(found, everything=self.everything))
         return EXIT[found.starts]
 
     def _started(self, found: PanelMatch) -> int:

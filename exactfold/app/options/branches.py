@@ -9,12 +9,12 @@ from typing import Annotated
 import typer
 
 from exactfold.app.shell.parameters import (
+    BoundaryHeights,
     Curvature,
-    Drive,
     Json,
     Pattern,
     Place,
-    Rim,
+    PrescribedAngles,
     Sheet,
     Signs,
     Snap,
@@ -54,8 +54,8 @@ class BranchOptions:
         Path | None,
         written("Write a certificate of a single branch.", "OUT.json"),
     ] = None
-    rim: Rim = None
-    drive: Drive = None
+    boundary_heights: BoundaryHeights = None
+    drive: PrescribedAngles = None
     curvature: Curvature = None
     as_json: Json = False
     snap: Snap = None
@@ -67,7 +67,7 @@ class BranchOptions:
             raise UsageError("--neighbours goes with --signs or --up")
         if self.certificate is not None and (self.pops is not None or self.batch is not None):
             raise UsageError("--certificate goes with a single branch")
-        apart(self.certificate, self.pattern, self.rim, self.curvature)
+        apart(self.certificate, self.pattern, self.boundary_heights, self.curvature)
 
 
 @dataclass(frozen=True)
@@ -154,7 +154,7 @@ class ExportOptions:
             "--force", text="Also write a branch that is enclosed but not proved; see also --all."
         ),
     ] = False
-    rim: Rim = None
+    boundary_heights: BoundaryHeights = None
     everything: Annotated[
         bool,
         flag(
@@ -175,6 +175,6 @@ class ExportOptions:
     sheet: Sheet = None
 
     def __post_init__(self) -> None:
-        apart(self.output, self.file, self.rim)
+        apart(self.output, self.file, self.boundary_heights)
         if self.everything and not self.coq:
             raise UsageError("--all goes with --coq")

@@ -10,13 +10,13 @@ from typing import Annotated
 import typer
 
 from exactfold.app.shell.parameters import (
+    BoundaryHeights,
     Dask,
-    Drive,
     Json,
     Pattern,
     Place,
+    PrescribedAngles,
     Resume,
-    Rim,
     Sheet,
     Side,
     Signs,
@@ -43,10 +43,10 @@ class FoldOptions:
     signs: Signs = None
     up: Up = None
     place: Place = None
-    rim: Rim = None
+    boundary_heights: BoundaryHeights = None
     side: Side = None
-    drive: Drive = None
-    through_nodes: Annotated[
+    drive: PrescribedAngles = None
+    through_branch_points: Annotated[
         bool,
         flag(
             "--through-nodes",
@@ -119,15 +119,17 @@ class FoldOptions:
 
     def __post_init__(self) -> None:
         one_at_most("one of --signs, --up and --branch", self.signs, self.up, self.place)
-        if self.place is not None and (self.rim, self.drive) != (None, None):
-            option = "--drive" if self.rim is None else "--rim"
+        if self.place is not None and (self.boundary_heights, self.drive) != (None, None):
+            option = "--drive" if self.boundary_heights is None else "--rim"
             raise UsageError(f"{option} goes with --signs or --up")
         if self.component is not None and self.modes is not None:
             raise UsageError("give one of --component and --modes")
-        apart(self.output, self.file, self.rim, self.plot, self.picture, self.certificate)
-        apart(self.plot, self.file, self.rim, self.picture, self.certificate)
-        apart(self.picture, self.file, self.rim, self.certificate)
-        apart(self.certificate, self.file, self.rim)
+        apart(
+            self.output, self.file, self.boundary_heights, self.plot, self.picture, self.certificate
+        )
+        apart(self.plot, self.file, self.boundary_heights, self.picture, self.certificate)
+        apart(self.picture, self.file, self.boundary_heights, self.certificate)
+        apart(self.certificate, self.file, self.boundary_heights)
 
 
 @dataclass(frozen=True)

@@ -10,12 +10,12 @@ from typing import Annotated
 import typer
 
 from exactfold.app.shell.parameters import (
+    BoundaryHeights,
     Curvature,
     Json,
     Pattern,
     Patterns,
     Resume,
-    Rim,
     Sheet,
     Snap,
     complete_method,
@@ -88,7 +88,7 @@ class CountOptions:
         ),
     ] = None
     curvature: Curvature = None
-    rim: Rim = None
+    boundary_heights: BoundaryHeights = None
     as_json: Json = False
     snap: Snap = None
     sheet: Sheet = None
@@ -103,7 +103,13 @@ class CountOptions:
             if self.jobs is not None:
                 raise UsageError("--jobs goes with several patterns or --jsonl")
             return
-        single = (self.certificate, self.stream, self.workers, self.curvature, self.rim)
+        single = (
+            self.certificate,
+            self.stream,
+            self.workers,
+            self.curvature,
+            self.boundary_heights,
+        )
         if self.resume or any(value is not None for value in single):
             raise UsageError(
                 "--certificate, --stream, --resume, --workers, --curvature and --rim go with one "

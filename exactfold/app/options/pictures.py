@@ -10,8 +10,8 @@ from typing import Annotated
 import typer
 
 from exactfold.app.shell.parameters import (
+    BoundaryHeights,
     Pattern,
-    Rim,
     Sheet,
     Side,
     Snap,
@@ -60,7 +60,7 @@ class DrawOptions:
         ),
     ] = None
     side: Side = None
-    rim: Rim = None
+    boundary_heights: BoundaryHeights = None
     output: Annotated[
         Path | None,
         typer.Option(
@@ -84,7 +84,7 @@ class DrawOptions:
             raise UsageError("--folded goes with --branch or --up")
         if self.side is not None and self.folded is None:
             raise UsageError("--side goes with --folded")
-        if self.rim is not None and (self.folded is not None or not named):
+        if self.boundary_heights is not None and (self.folded is not None or not named):
             raise UsageError("--rim goes with the vertex signs of a way, and without --folded")
 
 

@@ -285,17 +285,17 @@ class CreaseDrawing:
 
         It is in radians, with y downwards.
         """
-        border = self._border
+        boundary = self._boundary
         around = gaps(self.places, vertex, near)
         found = []
         for n, (k, wide, middle) in enumerate(around):
             after = near[around[(n + 1) % len(around)][0]]
-            if {(vertex, near[k]), (vertex, after)} <= border:
+            if {(vertex, near[k]), (vertex, after)} <= boundary:
                 found.append((wide, middle))
         return max(found)[1]
 
     @cached_property
-    def _border(self) -> frozenset[Edge]:
+    def _boundary(self) -> frozenset[Edge]:
         """The lines of the border, in both directions."""
         pairs = zip(self.lines.edges, self.lines.letters, strict=True)
         sides = [edge for edge, letter in pairs if letter == "B"]

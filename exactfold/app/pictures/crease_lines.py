@@ -87,11 +87,9 @@ def crease_lines(pattern: Drawable, letters: Mapping[Edge, str] | None = None) -
         pairs = tuple((line.start, line.end) for line in pattern.lines)
         own = tuple(_SHOWN.get(line.letter, "U") for line in pattern.lines)
         return CreaseLines(_unit(pattern.points), pairs, own, (), vertices=False)
-    border = set(
-        pattern.boundary_edges if isinstance(pattern, CreasePattern) else pattern.border_edges
-    )
+    boundary = set(pattern.boundary_edges)
     own = tuple(
-        "B" if edge in border else _SHOWN.get(given.get(edge, "U"), "U") for edge in pattern.edges
+        "B" if edge in boundary else _SHOWN.get(given.get(edge, "U"), "U") for edge in pattern.edges
     )
     return CreaseLines(_unit(pattern.vertices), pattern.edges, own, pattern.interior)
 

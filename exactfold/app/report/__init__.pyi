@@ -21,9 +21,9 @@ from exactfold.app.report.info import expectation as expectation
 from exactfold.app.report.info import info_report as info_report
 from exactfold.app.report.info import panels_info as panels_info
 from exactfold.app.report.loops import motions_report as motions_report
+from exactfold.app.report.match import boundary_match_report as boundary_match_report
 from exactfold.app.report.match import match_report as match_report
 from exactfold.app.report.match import panel_match_report as panel_match_report
-from exactfold.app.report.match import rim_match_report as rim_match_report
 from exactfold.app.report.motion import motion_report as motion_report
 from exactfold.app.report.panels import panels_report as panels_report
 from exactfold.app.report.study import row_report as row_report

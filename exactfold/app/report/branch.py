@@ -38,9 +38,9 @@ def branch_report(result: Branch, driven: Driven | None = None) -> Group:
     if result.curvature:
         deficits = _by_vertex(dict(sorted(result.curvature.items())))
         rows.append(("angle deficits", cut(deficits)))
-    if result.rim is not None:
-        rows.append(("heights of the border", cut(rim_text(result.rim))))
-        if straight := result.straight_border:
+    if result.boundary_heights is not None:
+        rows.append(("heights of the border", cut(boundary_heights_text(result.boundary_heights))))
+        if straight := result.straight_boundary:
             rows.append(("on a straight side", f"{_vertices(straight)}: the side may bend there"))
     if driven is not None:
         ratio = cut(f"{driven.drive.ratio}; this ratio is exact on a solution near it, ")
@@ -67,10 +67,10 @@ def _vertices(chosen: Sequence[int]) -> str:
     return f"{'vertex' if len(chosen) == 1 else 'vertices'} {', '.join(map(str, chosen))}"
 
 
-def rim_text(heights: Mapping[int, Fraction]) -> str:
+def boundary_heights_text(heights: Mapping[int, Fraction]) -> str:
     """Heights by vertex; heights that are 0 are not listed.
 
-    >>> rim_text({0: Fraction(1), 1: Fraction(0), 3: Fraction(-11, 20)})
+    >>> boundary_heights_text({0: Fraction(1), 1: Fraction(0), 3: Fraction(-11, 20)})
     '0: 1, 3: -11/20, others 0'
     """
     raised = {v: height for v, height in heights.items() if height}
@@ -92,7 +92,7 @@ def shapes_report(result: ShapeCount, *, everything: bool = False) -> Group:
         ("status", Text.assemble(status_text(result.status), f" ({result.reason})")),
         ("shapes", f"{number}; {result.with_multiplicity} with multiplicity"),
         ("angle deficits", cut(deficits)),
-        ("heights of the border", cut(rim_text(result.rim))),
+        ("heights of the border", cut(boundary_heights_text(result.boundary_heights))),
     ]
     if result.signs:
         texts = ", ".join(result.signs)

@@ -8,58 +8,59 @@ from exactfold._support.plurals import agreeing, counted
 from exactfold._support.verdict import PROVED
 
 if TYPE_CHECKING:
-    from exactfold.branches.connected_components.result import Pieces
+    from exactfold.branches.connected_components.result import ConnectedComponents
     from exactfold.branches.values.result import BranchCount
 
 _SHOWN: Final = 8
 
 
-def graphs(pieces: Pieces) -> str:
+def graphs(connected_components: ConnectedComponents) -> str:
     """The graphs and their connected components, in one sentence.
 
     >>> from exactfold.pattern.families import single_vertex
-    >>> from exactfold.branches import find_pieces
-    >>> graphs(find_pieces(single_vertex(6)))
+    >>> from exactfold.branches import find_connected_components
+    >>> graphs(find_connected_components(single_vertex(6)))
     'for all heights of the border there is exactly one shape for each of 2 choices of the vertices
     that pop up; these 2 graphs of dimension 3 form 2 connected components'
     """
-    number = _power(len(pieces.vertices))
-    one = len(pieces.vertices) == 0
+    number = _power(len(connected_components.vertices))
+    one = len(connected_components.vertices) == 0
     choices = "1 choice" if one else f"{number} choices"
     kinds = "this graph" if one else f"these {number} graphs"
     return (
         f"for all heights of the border there is exactly one shape for each of {choices} of the "
-        f"vertices that pop up; {kinds} of dimension {pieces.dimension} "
-        f"{'forms' if one else 'form'} {_range(pieces.low, pieces.high)}"
+        f"vertices that pop up; {kinds} of dimension {connected_components.dimension} "
+        f"{'forms' if one else 'form'} "
+        f"{_range(connected_components.low, connected_components.high)}"
     )
 
 
 def piece_notes(result: BranchCount) -> list[str]:
     """What is known of joints, of true motions, and of irreducible families."""
-    pieces = result.pieces
-    if pieces is None:
+    connected_components = result.connected_components
+    if connected_components is None:
         return []
     notes = []
-    if pieces.chord is not None:
-        i, j = pieces.chord
+    if connected_components.chord is not None:
+        i, j = connected_components.chord
         notes.append(f"the fold {i}-{j} from border to border joins all graphs")
-    if pieces.joints:
-        shown = ", ".join(joint.sign_text for joint in pieces.joints[:_SHOWN])
-        more = len(pieces.joints) - _SHOWN
-        order = ", ".join(map(str, pieces.vertices[:_SHOWN]))
+    if connected_components.joints:
+        shown = ", ".join(joint.sign_text for joint in connected_components.joints[:_SHOWN])
+        more = len(connected_components.joints) - _SHOWN
+        order = ", ".join(map(str, connected_components.vertices[:_SHOWN]))
         rest = f" and {more} more (--json)" if more > 0 else ""
-        dots = ", ..." if len(pieces.vertices) > _SHOWN else ""
+        dots = ", ..." if len(connected_components.vertices) > _SHOWN else ""
         notes.append(
             "graphs meet at solutions on which some stars are flat; these have the following signs "
             f"of the vertices {order}{dots}, 0 where flat, or the opposite signs: {shown}{rest}"
         )
-    if pieces.never_flat:
-        names = ", ".join(map(str, list(pieces.never_flat)[:_SHOWN]))
-        names += ", ..." if len(pieces.never_flat) > _SHOWN else ""
-        which = counted(len(pieces.never_flat), "vertex")
-        are = agreeing(len(pieces.never_flat), "is")
+    if connected_components.never_flat:
+        names = ", ".join(map(str, list(connected_components.never_flat)[:_SHOWN]))
+        names += ", ..." if len(connected_components.never_flat) > _SHOWN else ""
+        which = counted(len(connected_components.never_flat), "vertex")
+        are = agreeing(len(connected_components.never_flat), "is")
         notes.append(f"{which} {are} never flat when the sheet starts to fold: {names}")
-    true = _range(pieces.low, pieces.true_high)
+    true = _range(connected_components.low, connected_components.true_high)
     notes.append(f"the true motions near the flat state form as many graphs, with {true}")
     families = result.families
     if families is not None and families.status is PROVED and families.second_order is not None:

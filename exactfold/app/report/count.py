@@ -89,12 +89,12 @@ def answer(result: BranchCount) -> Text:
         return Text.assemble(
             "0 ways to start folding - ", status_text(PROVED), took, "; the sheet is rigid"
         )
-    if result.pieces is not None and result.distinct is None:
+    if result.connected_components is not None and result.distinct is None:
         return Text.assemble(
             "infinitely many ways to start folding - ",
             status_text(PROVED),
             took,
-            f"; {graphs(result.pieces)}",
+            f"; {graphs(result.connected_components)}",
         )
     if result.pattern.degrees_of_freedom > 1:
         return Text.assemble(
@@ -162,7 +162,7 @@ def _notes(
         )
     if result.exceptional_vertices:
         notes.append(_exception(result))
-    if result.pieces is not None:
+    if result.connected_components is not None:
         notes += piece_notes(result)
     if result.snapped:
         notes.append(f"coordinates were moved by up to {decimal_above(result.snapped, 3)} (--snap)")

@@ -78,7 +78,7 @@ def panels_info(facts: PanelFacts, *, exact: bool = False) -> Table:
     pattern = facts.pattern
     degrees = ", ".join(f"{n} of degree {d}" for d, n in facts.degree_counts.items())
     rows = [
-        ("vertices", f"{len(pattern.interior)} interior, {len(pattern.border)} boundary"),
+        ("vertices", f"{len(pattern.interior)} interior, {len(pattern.boundary_set)} boundary"),
         (
             "panels, edges, folds",
             f"{len(pattern.faces)}, {len(pattern.edges)}, {len(pattern.folds)}",

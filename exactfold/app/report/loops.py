@@ -16,7 +16,7 @@ from exactfold.app.report.terminal import facts_table, status_text
 if TYPE_CHECKING:
     from exactfold.motion.loops.matching import Loops
     from exactfold.motion.loops.proofs import Loop
-    from exactfold.motion.loops.rays import HalfBranch
+    from exactfold.motion.loops.rays import Ray
 
 _LISTED = 40
 _REASONS = 10
@@ -24,8 +24,8 @@ _REASONS = 10
 
 def motions_report(found: Loops) -> Group:
     """The matching of the rays, loop by loop."""
-    halves = 2 ** (len(found.pattern.foldable_vertices) + 1)
-    matched = f"{len(found.matching)} of {counted(halves, 'half-branch')}"
+    rays = 2 ** (len(found.pattern.foldable_vertices) + 1)
+    matched = f"{len(found.matching)} of {counted(rays, 'half-branch')}"
     rows: list[tuple[str, RenderableType]] = [
         ("matched", Text.assemble(matched, ", ", status_text(found.status))),
     ]
@@ -65,7 +65,7 @@ def _table(loops: Iterable[Loop]) -> Table:
     return table
 
 
-def _changes(source: HalfBranch, target: HalfBranch) -> str:
+def _changes(source: Ray, target: Ray) -> str:
     """The number of signs that differ, and whether the saddle differs."""
     signs = zip(source.vertex_signs, target.vertex_signs, strict=True)
     number = sum(a != b for a, b in signs)

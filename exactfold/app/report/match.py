@@ -17,9 +17,9 @@ from exactfold.design.assignments.why import fold_text
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from exactfold.design.assignments.boundary_result import RimMatch
+    from exactfold.design.assignments.boundary_result import BoundaryMatch
     from exactfold.design.assignments.nearest import Nearest
-    from exactfold.design.assignments.result import Match, Matched
+    from exactfold.design.assignments.result import Match, MatchedRay
     from exactfold.design.panels.match import PanelMatch
 
 _NEAR = 8
@@ -45,7 +45,7 @@ def match_report(
         parts += more_text(len(lines) - limit)
     if nearest is not None:
         parts += ["", *_nearest(nearest, everything)]
-    if found.matches or (nearest is not None and nearest.halves):
+    if found.matches or (nearest is not None and nearest.rays):
         parts += [
             "",
             Text(
@@ -86,7 +86,7 @@ def _first_order(found: PanelMatch, everything: bool) -> list[str | Text]:
     return ["", Text(head, style="bold"), *(Text(f"- {line}") for line in lines)]
 
 
-def rim_match_report(found: RimMatch, *, everything: bool = False) -> Group:
+def boundary_match_report(found: BoundaryMatch, *, everything: bool = False) -> Group:
     """Whether a sheet with more than four corners starts to fold with the letters, and how."""
     answer = {
         PROVED: "the sheet starts to fold with these mountains and valleys",
@@ -101,7 +101,7 @@ def rim_match_report(found: RimMatch, *, everything: bool = False) -> Group:
 
 def _answer(found: Match, seconds: float) -> Text:
     took = f" ({seconds:.2f} s)"
-    ways = len({half.branch.sign_text for half in found.matches})
+    ways = len({ray.branch.sign_text for ray in found.matches})
     proved = status_text(found.status)
     if not ways:
         if found.status is PROVED:
@@ -118,7 +118,7 @@ def _answer(found: Match, seconds: float) -> Text:
     return Text.assemble(f"at least {text}{both}; whether others have is ", proved, took)
 
 
-def _asked(found: Match | PanelMatch | RimMatch) -> str:
+def _asked(found: Match | PanelMatch | BoundaryMatch) -> str:
     counts = Counter(found.letters.values())
     kinds = [counted(counts[x], name) for x, name in _LETTERS.items() if counts[x]]
     return f"asked for: {', '.join(kinds)}"
@@ -175,8 +175,8 @@ def _nearest(nearest: Nearest, everything: bool) -> list[Any]:
     if nearest.status is PROVED:
         text = f"Nearest: {far} to change - "
         rest = ", and no other is as near" if nearest.complete else ", others may be as near"
-        if nearest.complete and len(nearest.halves) > 1:
-            rest = f", and only these {len(nearest.halves)} are as near"
+        if nearest.complete and len(nearest.rays) > 1:
+            rest = f", and only these {len(nearest.rays)} are as near"
         head = Text.assemble(text, status_text(PROVED), f"; none is nearer{rest}")
     else:
         head = Text.assemble(
@@ -184,30 +184,30 @@ def _nearest(nearest: Nearest, everything: bool) -> list[Any]:
             f"every way needs {least} or more, and whether {least} are enough is ",
             status_text(UNDECIDED),
         )
-    limit = len(nearest.halves) if everything else _NEAR
-    table = _table(nearest.halves[:limit], "creases to change", lambda h: _changes(nearest, h))
-    return [head, "", table, *more_text(len(nearest.halves) - limit)]
+    limit = len(nearest.rays) if everything else _NEAR
+    table = _table(nearest.rays[:limit], "creases to change", lambda h: _changes(nearest, h))
+    return [head, "", table, *more_text(len(nearest.rays) - limit)]
 
 
-def _changes(nearest: Nearest, half: Matched) -> str:
-    found = nearest.differences(half)
+def _changes(nearest: Nearest, ray: MatchedRay) -> str:
+    found = nearest.differences(ray)
     return ", ".join(
         f"{fold_text(fold)} {wanted}->{actual}" for fold, (wanted, actual) in sorted(found.items())
     )
 
 
-def _table(halves: Sequence[Matched], title: str, told: Callable[[Matched], str]) -> Table:
+def _table(rays: Sequence[MatchedRay], title: str, told: Callable[[MatchedRay], str]) -> Table:
     table = Table(box=None, pad_edge=False)
     table.add_column("signs", overflow="fold")
     table.add_column("side")
     table.add_column(title, overflow="fold")
-    for half in halves:
-        table.add_row(half.branch.sign_text, "+" if half.side > 0 else "-", told(half))
+    for ray in rays:
+        table.add_row(ray.branch.sign_text, "+" if ray.side > 0 else "-", told(ray))
     return table
 
 
-def _up(half: Matched) -> str:
-    signs = half.vertex_signs
+def _up(ray: MatchedRay) -> str:
+    signs = ray.vertex_signs
     up = ", ".join(str(v) for v, s in sorted(signs.items()) if s > 0) or "none"
     flat = ", ".join(str(v) for v, s in sorted(signs.items()) if s == 0)
     return up + (f" (flat: {flat})" if flat else "")

@@ -12,7 +12,7 @@ from rich.text import Text
 
 from exactfold._support.plurals import counted
 from exactfold._support.verdict import PROVED
-from exactfold.app.report.branch import rim_text
+from exactfold.app.report.branch import boundary_heights_text
 from exactfold.app.report.terminal import cut, facts_table, letters_text, status_text
 from exactfold.motion.curves.events import (
     ANGLE,
@@ -82,8 +82,10 @@ def _branch_rows(motion: Motion) -> list[tuple[str, RenderableType]]:
         ("branch", Text.assemble(cut(branch.sign_text), ", ", status_text(branch.status))),
         ("side", f"{'-' if motion.side < 0 else '+'} ({side})"),
     ]
-    if motion.rim is not None:
-        rows.append(("border", f"in the ratio {cut(rim_text(motion.rim))}"))
+    if motion.boundary_heights is not None:
+        rows.append(
+            ("border", f"in the ratio {cut(boundary_heights_text(motion.boundary_heights))}")
+        )
     if motion.drive is not None:
         rows.append(("driven", cut(f"{motion.drive.text}; sines of half the angles in ratio")))
     return rows

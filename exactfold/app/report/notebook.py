@@ -66,8 +66,8 @@ def _count(result: BranchCount) -> str:
         for way, branch in zip(shown, result.branches, strict=False)
     ]
     count = "" if result.distinct is None else f"{counted(result.distinct, 'branch')}, "
-    if result.pieces is not None and result.distinct is None:
-        count = f"{escape(graphs(result.pieces))}, "
+    if result.connected_components is not None and result.distinct is None:
+        count = f"{escape(graphs(result.connected_components))}, "
     head = f"{count}<b>{result.status}</b> ({escape(result.reason)})"
     return _page(head, heads, rows, len(result.branches), result.warning)
 
@@ -75,14 +75,14 @@ def _count(result: BranchCount) -> str:
 @shows("html", Match)
 def _match(found: Match) -> str:
     heads = ("", "", "vertex signs", "side", "folds")
-    shown = [branch_way(half.branch, k) for k, half in enumerate(found.matches[:ROWS], 1)]
+    shown = [branch_way(ray.branch, k) for k, ray in enumerate(found.matches[:ROWS], 1)]
     shown = [
-        replace(way, letters=half.assignment, signs=half.vertex_signs, name=half.sign_text)
-        for way, half in zip(shown, found.matches, strict=False)
+        replace(way, letters=ray.assignment, signs=ray.vertex_signs, name=ray.sign_text)
+        for way, ray in zip(shown, found.matches, strict=False)
     ]
     rows = [
-        (way, half.sign_text, "+" if half.side > 0 else "-", way.text)
-        for way, half in zip(shown, found.matches, strict=False)
+        (way, ray.sign_text, "+" if ray.side > 0 else "-", way.text)
+        for way, ray in zip(shown, found.matches, strict=False)
     ]
     number = len(found.matches)
     have = agreeing(number, "has")

@@ -11,7 +11,7 @@ from exactfold.app.shell.json_numbers import numbers_by_name
 from exactfold.branches.counting.find import BranchFinder, branch_finder
 from exactfold.errors import (
     BadCurvatureError,
-    BadRimError,
+    BoundaryHeightsError,
 )
 from exactfold.pattern.crease_pattern import CreasePattern
 
@@ -20,11 +20,11 @@ from exactfold.pattern.crease_pattern import CreasePattern
 class Given:
     """The files that --rim and --curvature name; None for an option that is not given."""
 
-    rim: Path | None = None
+    boundary_heights: Path | None = None
     curvature: Path | None = None
 
     def __bool__(self) -> bool:
-        return self.rim is not None or self.curvature is not None
+        return self.boundary_heights is not None or self.curvature is not None
 
     def finder(self, pattern: CreasePattern) -> BranchFinder:
         """The finder of branches of a pattern with these boundary heights and angle deficits.
@@ -32,15 +32,19 @@ class Given:
         If the pattern needs boundary heights and none are given, default heights are used. Raises
         `UnreadableFileError`, and the errors of `BranchFinder` with the name of the file in front.
         """
-        rim = None if self.rim is None else numbers_in(self.rim, BadRimError, "-1/2")
+        boundary_heights = (
+            None
+            if self.boundary_heights is None
+            else numbers_in(self.boundary_heights, BoundaryHeightsError, "-1/2")
+        )
         curvature = None
         if self.curvature is not None:
             curvature = numbers_in(self.curvature, BadCurvatureError, "1/3")
-        finder = branch_finder(pattern, rim, curvature)  # type: ignore[arg-type]
+        finder = branch_finder(pattern, boundary_heights, curvature)  # type: ignore[arg-type]
         try:
             finder.problem  # noqa: B018 - set up here, so that errors name the file
-        except (BadRimError, BadCurvatureError) as error:
-            file = self.curvature if isinstance(error, BadCurvatureError) else self.rim
+        except (BoundaryHeightsError, BadCurvatureError) as error:
+            file = self.curvature if isinstance(error, BadCurvatureError) else self.boundary_heights
             if file is None:
                 raise
             raise type(error)(f"{file}: {error}", error.vertices) from None
@@ -48,7 +52,7 @@ class Given:
 
 
 def numbers_in(
-    path: Path, error: type[BadRimError] | type[BadCurvatureError], example: str
+    path: Path, error: type[BoundaryHeightsError] | type[BadCurvatureError], example: str
 ) -> dict[int | str, Fraction | Any]:
     """The numbers in a JSON file {"vertex": number}, exact; text such as "1/3" is allowed.
 

@@ -191,7 +191,7 @@ Up = Annotated[
         metavar="5,7", help="Instead of --signs: the vertices that pop up. All others pop down."
     ),
 ]
-Drive = Annotated[
+PrescribedAngles = Annotated[
     str | None,
     typer.Option(
         metavar="I-J=DEG,...",
@@ -201,9 +201,10 @@ Drive = Annotated[
     ),
 ]
 
-Rim = Annotated[
+BoundaryHeights = Annotated[
     Path | None,
     typer.Option(
+        "--rim",
         metavar="RIM.json",
         help='Heights of all boundary vertices, {"0": 1, "1": "-1/2", ...}, if the boundary is '
         "convex. Default with more than four corners: the heights of a saddle, which are printed.",

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from exactfold._support.plurals import counted
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED
-from exactfold.branches.counting.find import Deficits, Rim, Signs, branch_finder
+from exactfold.branches.counting.find import BoundaryHeights, Deficits, Signs, branch_finder
 from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.letters import UPSIDE_DOWN
 from exactfold.errors import (
@@ -38,7 +38,7 @@ def the_branch(
     up: Iterable[int] | None,
     letters: Letters | None,
     *,
-    rim: Rim | None = None,
+    boundary_heights: BoundaryHeights | None = None,
     curvature: Deficits | None = None,
     progress: Progress | None = None,
 ) -> Ray:
@@ -49,15 +49,15 @@ def the_branch(
         but = f", not {' and '.join(named)}" if named else ""
         raise UsageError(f"name the branch by one of signs, up, letters and way{but}")
     pattern = _triangulated(opened)
-    if (rim is not None or curvature is not None) and named[0] in ("way", "letters"):
-        raise UsageError(f"rim and curvature go with signs or up, not with {named[0]}")
+    if (boundary_heights is not None or curvature is not None) and named[0] in ("way", "letters"):
+        raise UsageError(f"boundary_heights and curvature go with signs or up, not with {named[0]}")
     if way is not None:
         from exactfold.branches.counting.collect import count_branches
 
         return listed(count_branches(pattern, progress=progress), way), 1
     if letters is not None:
         return _with_letters(pattern, asked_letters(opened, letters), progress)
-    finder = branch_finder(pattern, rim, curvature)
+    finder = branch_finder(pattern, boundary_heights, curvature)
     return finder.find(finder.signs(signs, up), progress=progress), 1
 
 
@@ -142,11 +142,11 @@ def _triangulated(opened: Opened) -> CreasePattern:
 
 def _with_letters(pattern: CreasePattern, letters: Letters, progress: Progress | None) -> Ray:
     """The ray that has the letters, if exactly one ray has them."""
-    from exactfold.design.assignments.boundary_match import match_rim
+    from exactfold.design.assignments.boundary_match import match_boundary
     from exactfold.design.assignments.search import match
 
     if pattern.Ve > 4:
-        over = match_rim(pattern, letters, progress=progress)
+        over = match_boundary(pattern, letters, progress=progress)
         if over.branch is None:
             raise NotCountedError(_none(over.status is PROVED, over.reasons))
         return over.branch, 1

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, TypeGuard, cast, overload
 from exactfold._support.progress import Progress
 from exactfold.app.verbs.choosing import the_branch
 from exactfold.branches.counting.batch import count_many
-from exactfold.branches.counting.find import Deficits, Rim, Signs
+from exactfold.branches.counting.find import BoundaryHeights, Deficits, Signs
 from exactfold.branches.counting.ways import count_ways, decompose_opened
 from exactfold.branches.values.branch import Branch
 from exactfold.errors import UsageError
@@ -163,7 +163,7 @@ def branch(
     way: int | None = None,
     up: Iterable[int] | None = None,
     letters: Mapping[Edge, str] | str | None = None,
-    rim: Rim | None = None,
+    boundary_heights: BoundaryHeights | None = None,
     curvature: Deficits | None = None,
     progress: Progress | None = None,
 ) -> Branch:
@@ -173,8 +173,8 @@ def branch(
     such as "+-+", in the order of the interior vertices, or by vertex; `up`, the vertices that pop
     up, while the others pop down; `letters`, the mountains and valleys in the order of the folds or
     by fold, or "drawn" for the letters of the file; `way`, the number of the branch in the list of
-    `count`, from 1. `rim` gives heights of the boundary vertices of a convex sheet with more than
-    four corners, and `curvature` angle deficits of interior vertices, both as in
+    `count`, from 1. `boundary_heights` gives heights of the boundary vertices of a convex sheet
+    with more than four corners, and `curvature` angle deficits of interior vertices, both as in
     `exactfold.branches.find_branch`.
 
     Raises `NotCountedError` for a sheet of panels, which has modes, and if no branch has the
@@ -190,7 +190,14 @@ def branch(
     '+-'
     """
     chosen, _ = the_branch(
-        open_sheet(sheet), way, signs, up, letters, rim=rim, curvature=curvature, progress=progress
+        open_sheet(sheet),
+        way,
+        signs,
+        up,
+        letters,
+        boundary_heights=boundary_heights,
+        curvature=curvature,
+        progress=progress,
     )
     return chosen
 

@@ -10,7 +10,7 @@ from exactfold._support.verdict import PROVED
 from exactfold.app.verbs.choosing import Letters, asked_letters, the_branch
 from exactfold.branches.counting.find import Signs
 from exactfold.design.actuation.actuate import actuate as actuate_branch
-from exactfold.design.assignments.boundary_match import can_pop, match_rim
+from exactfold.design.assignments.boundary_match import can_pop, match_boundary
 from exactfold.design.assignments.search import match as match_branches
 from exactfold.design.panels.match import match_panels
 from exactfold.design.refutations.asked import by_fold
@@ -21,7 +21,7 @@ from exactfold.pattern.opening import triangles
 
 if TYPE_CHECKING:
     from exactfold.design.actuation.result import Actuation
-    from exactfold.design.assignments.boundary_result import RimMatch
+    from exactfold.design.assignments.boundary_result import BoundaryMatch
     from exactfold.design.assignments.result import Match
     from exactfold.design.panels.match import PanelMatch
     from exactfold.exact.numbers import RationalLike
@@ -33,16 +33,17 @@ def match(
     *,
     most: int | None = None,
     progress: Progress | None = None,
-) -> Match | RimMatch | PanelMatch:
+) -> Match | BoundaryMatch | PanelMatch:
     """Find the ways that have given mountains and valleys, or prove that there are none.
 
     `sheet` is anything that `read` takes. `letters` has M, V, F (flat) or U (free) for each fold,
     as text in the order of the folds or by fold (i, j), i < j; None or "drawn" takes the letters of
     the file. The type of the result depends on the sheet. For a triangulated sheet with four
-    corners, a `Match` has all branches with the letters. For one with more corners, a `RimMatch`
-    says whether the sheet starts to fold with the letters, and has boundary heights with which it
-    does. For rigid panels, a `PanelMatch` says whether they start to fold with the letters. After
-    `most` sign vectors of a triangulated sheet have been tried, the answer is UNDECIDED.
+    corners, a `Match` has all branches with the letters. For one with more corners, a
+    `BoundaryMatch` says whether the sheet starts to fold with the letters, and has boundary heights
+    with which it does. For rigid panels, a `PanelMatch` says whether they start to fold with the
+    letters. After `most` sign vectors of a triangulated sheet have been tried, the answer is
+    UNDECIDED.
 
     Raises `UsageError` for a file without mountains and valleys and for letters that do not fit,
     `NotCountedError` for a triangle, which is rigid.
@@ -57,7 +58,7 @@ def match(
     pattern = opened.sheet
     wanted = by_fold(pattern.folds, asked_letters(opened, letters))
     if isinstance(pattern, CreasePattern) and pattern.Ve > 4 and can_pop(pattern):
-        over = match_rim(pattern, wanted, progress=progress, **_at_most(most))
+        over = match_boundary(pattern, wanted, progress=progress, **_at_most(most))
         if over.status is PROVED:
             return over
     if not isinstance(pattern, CreasePattern) or pattern.Ve > 4:

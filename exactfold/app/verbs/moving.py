@@ -16,14 +16,14 @@ from exactfold.app.verbs.choosing import (
     modes_with,
     the_branch,
 )
-from exactfold.branches.counting.find import Rim, Signs
+from exactfold.branches.counting.find import BoundaryHeights, Signs
 from exactfold.branches.counting.ways import decompose_opened
 from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.result import BranchCount
-from exactfold.design.assignments.result import Matched
+from exactfold.design.assignments.result import MatchedRay
 from exactfold.design.refutations.asked import by_fold
 from exactfold.errors import UsageError
-from exactfold.motion.curves.drive import Drive
+from exactfold.motion.curves.drive import PrescribedAngles
 from exactfold.motion.curves.motion import Motion
 from exactfold.motion.following import follow as follow_branch
 from exactfold.motion.loops.matching import Loops, find_loops
@@ -41,7 +41,7 @@ from exactfold.pattern.opening import Opened, has_branches
 if TYPE_CHECKING:
     from typing import TypeAlias
 
-Way: TypeAlias = "Branch | Matched | BranchCount | Decomposition | PatternLike"
+Way: TypeAlias = "Branch | MatchedRay | BranchCount | Decomposition | PatternLike"
 """What can be followed: a branch or a match, a result with the number of a way, or a sheet."""
 
 
@@ -52,14 +52,14 @@ def follow(
     signs: Signs | None = None,
     up: Iterable[int] | None = None,
     letters: Letters | None = None,
-    rim: Rim | None = None,
+    boundary_heights: BoundaryHeights | None = None,
     drive: Mapping[Edge, float | None] | None = None,
     side: int | None = None,
     until: str | float = "contact",
     frames: int = 60,
     by: Edge | None = None,
     held: Sequence[int] | None = None,
-    through_nodes: bool = False,
+    through_branch_points: bool = False,
     progress: Progress | None = None,
 ) -> Motion | PanelMotion:
     """Follow the motion of a sheet along one way, from the flat state to the event `until`.
@@ -76,10 +76,10 @@ def follow(
     equal steps of time, or of the angle of the fold `by`. `side` is -1 for the mirror image. `held`
     has the corners of the face that does not move.
 
-    These arguments are for branches only: `rim` gives boundary heights of a sheet with more than
-    four corners. `drive` gives angles in degrees to which folds are driven
-    (`exactfold.motion.find_driven`). With `through_nodes` the motion goes on at points where
-    another curve crosses.
+    These arguments are for branches only: `boundary_heights` are for a sheet with more than four
+    corners. `drive` gives angles in degrees to which folds are driven
+    (`exactfold.motion.find_driven`). With `through_branch_points` the motion goes on at points
+    where another curve crosses.
 
     Raises `UsageError` for arguments that do not fit the sheet, `NotFollowedError` for a way that
     cannot be followed, `UndecidedBranchError` for a branch that is not proved, and the errors of
@@ -91,24 +91,26 @@ def follow(
     >>> exactfold.follow("zigzags", 2, until="90deg", frames=5)
     <PanelMotion: mode 2, followed, 5 frames to angle at 1.5708>
     """
-    asked = _Asked(way, signs, up, letters, rim, drive, side)
-    if isinstance(sheet, Branch | Matched):
+    asked = _Asked(way, signs, up, letters, boundary_heights, drive, side)
+    if isinstance(sheet, Branch | MatchedRay):
         asked.refuse_names("a branch")
         start = (sheet, side or 1) if isinstance(sheet, Branch) else (sheet.branch, sheet.side)
-        return _along(start, None, until, frames, by, held, through_nodes, progress)
+        return _along(start, None, until, frames, by, held, through_branch_points, progress)
     if isinstance(sheet, BranchCount):
         if not isinstance(way, int):
             raise UsageError("name a way of the count by its number, as in `follow(result, 3)`")
         start = listed(sheet, way), side or 1
-        return _along(start, None, until, frames, by, held, through_nodes, progress)
+        return _along(start, None, until, frames, by, held, through_branch_points, progress)
     if not isinstance(sheet, Decomposition):
         opened = open_sheet(sheet)
         if isinstance(opened.sheet, CreasePattern) and asked.is_branch(opened.sheet):
             start, drive_found = asked.ray(opened, opened.sheet, progress)
-            return _along(start, drive_found, until, frames, by, held, through_nodes, progress)
+            return _along(
+                start, drive_found, until, frames, by, held, through_branch_points, progress
+            )
         letters = None if letters is None else asked_letters(opened, letters)
         sheet = decompose_opened(opened, progress=progress)
-    asked.refuse_of_panels(through_nodes)
+    asked.refuse_of_panels(through_branch_points)
     wanted = None if letters is None else by_fold(sheet.pattern.folds, letters)
     rates = modes_with(sheet, way, wanted)
     if rates is not None and side == -1:
@@ -185,18 +187,23 @@ class _Asked:
     signs: Signs | None
     up: Iterable[int] | None
     letters: Letters | None
-    rim: Rim | None
+    boundary_heights: BoundaryHeights | None
     drive: Mapping[Edge, float | None] | None
     side: int | None
 
     def is_branch(self, pattern: CreasePattern) -> bool:
         """Whether the way is a branch; with more than four corners, if it is named like one."""
-        like_one = (self.signs, self.up, self.rim, self.drive) != (None, None, None, None)
+        like_one = (self.signs, self.up, self.boundary_heights, self.drive) != (
+            None,
+            None,
+            None,
+            None,
+        )
         return like_one or has_branches(pattern)
 
     def ray(
         self, opened: Opened, pattern: CreasePattern, progress: Progress | None
-    ) -> tuple[Ray, Drive | None]:
+    ) -> tuple[Ray, PrescribedAngles | None]:
         """The chosen ray, and the folds that are driven."""
         if self.drive is not None:
             if self.way is not None or self.letters is not None:
@@ -205,7 +212,12 @@ class _Asked:
             if self.up is not None:
                 signs = the_branch(opened, None, signs, self.up, None)[0].vertex_signs
             driven = find_driven(
-                pattern, self.drive, signs, rim=self.rim, side=self.side, progress=progress
+                pattern,
+                self.drive,
+                signs,
+                boundary_heights=self.boundary_heights,
+                side=self.side,
+                progress=progress,
             )
             return (driven.branch, driven.side), driven.drive
         if self.way is not None and not isinstance(self.way, int):
@@ -214,20 +226,28 @@ class _Asked:
         if (self.way, self.signs, up, self.letters) == (None, None, None, None):
             up = pattern.foldable_vertices
         branch, side = the_branch(
-            opened, self.way, self.signs, up, self.letters, rim=self.rim, progress=progress
+            opened,
+            self.way,
+            self.signs,
+            up,
+            self.letters,
+            boundary_heights=self.boundary_heights,
+            progress=progress,
         )
         return (branch, side * (self.side or 1)), None
 
     def refuse_names(self, what: str) -> None:
         """Raise `UsageError` if an argument chooses a way, although `sheet` is one way already."""
-        for name in ("way", "signs", "up", "letters", "rim", "drive"):
+        for name in ("way", "signs", "up", "letters", "boundary_heights", "drive"):
             if getattr(self, name) is not None:
                 raise UsageError(f"{name} chooses a way of a sheet, and this is {what} already")
 
-    def refuse_of_panels(self, through_nodes: bool) -> None:
+    def refuse_of_panels(self, through_branch_points: bool) -> None:
         """Raise `UsageError` for arguments that are for branches only."""
-        given = {name: getattr(self, name) for name in ("signs", "up", "rim", "drive")}
-        for name, value in (given | {"through_nodes": through_nodes or None}).items():
+        given = {name: getattr(self, name) for name in ("signs", "up", "boundary_heights", "drive")}
+        for name, value in (
+            given | {"through_branch_points": through_branch_points or None}
+        ).items():
             if value is not None:
                 raise UsageError(
                     f"{name} is for branches, and this sheet of rigid panels has modes: choose one "
@@ -237,12 +257,12 @@ class _Asked:
 
 def _along(
     start: Ray,
-    drive: Drive | None,
+    drive: PrescribedAngles | None,
     until: str | float,
     frames: int,
     by: Edge | None,
     held: Sequence[int] | None,
-    through_nodes: bool,
+    through_branch_points: bool,
     progress: Progress | None,
 ) -> Motion:
     branch, side = start
@@ -257,7 +277,7 @@ def _along(
         until=until,
         frames=frames,
         by=by,
-        through_nodes=through_nodes,
+        through_branch_points=through_branch_points,
         pinned=pinned,
         drive=drive,
         progress=progress,

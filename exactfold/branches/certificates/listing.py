@@ -7,7 +7,7 @@ from typing import Any, cast
 
 from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.branches.certificates.blocks import claims_line, line_text
-from exactfold.branches.connected_components.certificate import pieces_certificate
+from exactfold.branches.connected_components.certificate import components_certificate
 from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.result import BranchCount, Proof
 from exactfold.branches.values.roots import AlgebraicRoot, BoxRoot, FlatBoxRoot
@@ -39,8 +39,8 @@ def certificate(result: BranchCount) -> Document | CertificateLines:
     """The certificate of a proved count, which `checker.check` and `write_certificate` take.
 
     It consists of lines. For a sheet with more than four corners it is instead one JSON object, the
-    certificate of the connected components (`pieces_certificate`). Raises `NotApplicableError` if
-    the count is not proved, or if `stream_branches` proved it: then its file is the certificate.
+    certificate of the connected components (`components_certificate`). Raises `NotApplicableError`
+    if the count is not proved, or if `stream_branches` proved it: then its file is the certificate.
 
     >>> from exactfold import checker
     >>> from exactfold.branches.counting.collect import count_branches
@@ -51,8 +51,8 @@ def certificate(result: BranchCount) -> Document | CertificateLines:
     """
     if not isinstance(result, BranchCount):
         raise UsageError(f"{shown(result)} is not a count: give what `count_branches` returns")
-    if result.pieces is not None and result.proof is None:
-        return pieces_certificate(result.pattern, result.pieces)
+    if result.connected_components is not None and result.proof is None:
+        return components_certificate(result.pattern, result.connected_components)
     if result.status is not PROVED or result.proof is None:
         raise NotApplicableError(f"no certificate: the count is {result.status} ({result.reason})")
     return CertificateLines(result.proof.lines or _root_lines(result, result.proof))

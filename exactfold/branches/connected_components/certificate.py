@@ -9,7 +9,11 @@ from fractions import Fraction
 from typing import Final
 
 from exactfold import checker
-from exactfold.branches.connected_components.result import PartProof, Pieces, RegularPoint
+from exactfold.branches.connected_components.result import (
+    ConnectedComponents,
+    PartProof,
+    RegularPoint,
+)
 from exactfold.certificates.entries import Document, emptied_evidence, pattern_document
 from exactfold.checker.branches.connected_components import MOST_VERTICES, PIECES, PiecesClaims
 from exactfold.checker.core.reading import CertificateError, LimitError
@@ -22,32 +26,35 @@ _BITS: Final = 60
 _RADIUS: Final = 1 << 28
 
 
-def pieces_certificate(pattern: PatternLike, pieces: Pieces) -> Document:
-    """The proof of the components that `find_pieces` found, as a JSON object (docs/any_border.md).
+def components_certificate(
+    pattern: PatternLike, connected_components: ConnectedComponents
+) -> Document:
+    """The proof of what `find_connected_components` found, as a JSON object (docs/any_border.md).
 
     For each joint it contains a box with exactly one solution. For each vertex whose joints are all
     known, it contains the proof that there are no others. Raises `NotApplicableError` if no vertex
     can pop, if too many can, or if the checker refuses the proof.
 
-    >>> from exactfold.branches.connected_components.joining import find_pieces
+    >>> from exactfold.branches.connected_components.joining import find_connected_components
     >>> from exactfold.pattern.families import single_vertex
     >>> pattern = single_vertex(6)
-    >>> checker.check(pieces_certificate(pattern, find_pieces(pattern)))["at_least"]
+    >>> evidence = components_certificate(pattern, find_connected_components(pattern))
+    >>> checker.check(evidence)["at_least"]
     2
     """
     sheet = as_pattern(pattern)
-    if not 0 < len(pieces.vertices) <= MOST_VERTICES:
-        number = len(pieces.vertices)
+    if not 0 < len(connected_components.vertices) <= MOST_VERTICES:
+        number = len(connected_components.vertices)
         raise NotApplicableError(
             f"a certificate of connected components needs 1 to {MOST_VERTICES} vertices that can "
             f"pop; this sheet has {number}"
         )
-    complete = {v for proof in pieces.proofs for v in proof.complete}
+    complete = {v for proof in connected_components.proofs for v in proof.complete}
     claims: PiecesClaims = {
-        "vertices": list(pieces.vertices),
-        "at_least": pieces.low,
-        "at_most": pieces.high,
-        "joints": sorted({joint.sign_text for joint in pieces.joints}),
+        "vertices": list(connected_components.vertices),
+        "at_least": connected_components.low,
+        "at_most": connected_components.high,
+        "joints": sorted({joint.sign_text for joint in connected_components.joints}),
         "complete": sorted(complete),
     }
     document: Document = {
@@ -57,14 +64,16 @@ def pieces_certificate(pattern: PatternLike, pieces: Pieces) -> Document:
         "claims": claims,
         "evidence": {
             "emptied": emptied_evidence(sheet),
-            "chord": None if pieces.chord is None else sorted(pieces.chord),
+            "chord": None
+            if connected_components.chord is None
+            else sorted(connected_components.chord),
             "flat": [
                 {
                     "held": list(proof.held),
                     "complete": list(proof.complete),
                     "parts": [_part(part) for part in proof.parts],
                 }
-                for proof in pieces.proofs
+                for proof in connected_components.proofs
             ],
         },
     }

@@ -9,7 +9,7 @@ from typing import Final
 from exactfold._support.progress import Progress
 from exactfold.branches.connected_components.cubes import Cube, components
 from exactfold.branches.connected_components.flat_stars import FlatSolutions, flat_solutions
-from exactfold.branches.connected_components.result import FlatStars, Joint, Pieces
+from exactfold.branches.connected_components.result import ConnectedComponents, FlatStars, Joint
 from exactfold.errors import NotApplicableError
 from exactfold.panels.stars import Star, edge_of, stars
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
@@ -23,7 +23,9 @@ _MOST_LOCAL: Final = 300
 """On sheets with up to this many foldable vertices, joints are looked for at all."""
 
 
-def find_pieces(pattern: PatternLike, *, progress: Progress | None = None) -> Pieces:
+def find_connected_components(
+    pattern: PatternLike, *, progress: Progress | None = None
+) -> ConnectedComponents:
     """The connected components of the solutions of a convex sheet with D >= 2, and their joints.
 
     There is exactly one solution for each sign vector and all boundary heights modulo planes. So
@@ -36,17 +38,17 @@ def find_pieces(pattern: PatternLike, *, progress: Progress | None = None) -> Pi
     Raises `NotApplicableError` for a border with a reflex corner, and for D < 2.
 
     >>> from exactfold.pattern.families import single_vertex
-    >>> find_pieces(single_vertex(6))
+    >>> find_connected_components(single_vertex(6))
     <Pieces: proved, 2 of 2 graphs>
     """
     pattern = as_pattern(pattern)
     require_convex(pattern)
     sheet, labels = pattern.without_rigid_parts()
-    whole = Pieces(tuple(labels[v] for v in sheet.interior), pattern.D, 1, 1, 1)
+    whole = ConnectedComponents(tuple(labels[v] for v in sheet.interior), pattern.D, 1, 1, 1)
     if sheet.chords:
         i, j = sheet.chords[0]
         return replace(whole, chord=(labels[i], labels[j]))
-    return _labelled(_Search(sheet, progress).found(), labels)
+    return _labelled(_JointSearch(sheet, progress).found(), labels)
 
 
 def require_convex(pattern: CreasePattern) -> None:
@@ -63,7 +65,7 @@ def require_convex(pattern: CreasePattern) -> None:
         )
 
 
-class _Search:
+class _JointSearch:
     """What is known of the joints of a sheet that has no rigid parts and no chords."""
 
     def __init__(self, sheet: CreasePattern, progress: Progress | None) -> None:
@@ -78,7 +80,7 @@ class _Search:
         self.open: dict[int, str] = {}
         self.proofs: list[FlatStars] = []
 
-    def found(self) -> Pieces:
+    def found(self) -> ConnectedComponents:
         """The components; their number is bounded where joints are undecided."""
         waiting = self._classes()
         if len(self.vertices) <= _MOST_LOCAL:
@@ -109,7 +111,7 @@ class _Search:
                 self.never |= dict.fromkeys(vertices, reason)
         low, _ = self._count(tuple(self.open))
         _, high = self._count(())
-        return Pieces(
+        return ConnectedComponents(
             self.vertices,
             self.sheet.D,
             low,
@@ -160,13 +162,13 @@ class _Search:
     def _groups(self) -> Iterator[frozenset[int]]:
         """Vertices and pairs of neighbours with enough folds of their own, and straight creases."""
         inside = self.sheet.interior_set
-        border = {v: sum(u not in inside for u in self.sheet.star(v)) for v in self.vertices}
+        boundary = {v: sum(u not in inside for u in self.sheet.star(v)) for v in self.vertices}
         seen: set[frozenset[int]] = set()
-        groups = [frozenset([v]) for v in self.vertices if border[v] >= 4]
+        groups = [frozenset([v]) for v in self.vertices if boundary[v] >= 4]
         groups += [
             frozenset(fold)
             for fold in self.sheet.folds
-            if inside.issuperset(fold) and min(border[v] for v in fold) >= 3
+            if inside.issuperset(fold) and min(boundary[v] for v in fold) >= 3
         ]
         groups += self._straight()
         for group in groups:
@@ -243,28 +245,30 @@ def _within(small: Cube, large: Cube) -> bool:
     return small[0] & large[0] == large[0] and small[1] & large[0] == large[1]
 
 
-def _labelled(pieces: Pieces, labels: Sequence[int]) -> Pieces:
+def _labelled(
+    connected_components: ConnectedComponents, labels: Sequence[int]
+) -> ConnectedComponents:
     """The same result with the pattern's numbers of the vertices."""
     if all(k == v for k, v in enumerate(labels)):
-        return pieces
+        return connected_components
 
     def edge(pair: Edge) -> Edge:
         return labels[pair[0]], labels[pair[1]]
 
     return replace(
-        pieces,
-        vertices=tuple(labels[v] for v in pieces.vertices),
+        connected_components,
+        vertices=tuple(labels[v] for v in connected_components.vertices),
         joints=tuple(
             replace(
                 joint,
                 signs={labels[v]: sign for v, sign in joint.signs.items()},
                 densities={edge(pair): bounds for pair, bounds in joint.densities.items()},
             )
-            for joint in pieces.joints
+            for joint in connected_components.joints
         ),
-        never_flat={labels[v]: why for v, why in (pieces.never_flat or {}).items()},
-        complete=tuple(labels[v] for v in pieces.complete),
-        open={labels[v]: why for v, why in (pieces.open or {}).items()},
+        never_flat={labels[v]: why for v, why in (connected_components.never_flat or {}).items()},
+        complete=tuple(labels[v] for v in connected_components.complete),
+        open={labels[v]: why for v, why in (connected_components.open or {}).items()},
         proofs=tuple(
             FlatStars(
                 tuple(labels[v] for v in proof.held),
@@ -274,6 +278,6 @@ def _labelled(pieces: Pieces, labels: Sequence[int]) -> Pieces:
                     for part in proof.parts
                 ),
             )
-            for proof in pieces.proofs
+            for proof in connected_components.proofs
         ),
     )

@@ -137,7 +137,7 @@ class FlatStars:
 
 
 @dataclass(frozen=True)
-class Pieces:
+class ConnectedComponents:
     """The connected components of the solutions without the flat state.
 
     See docs/any_border.md, Theorem 7. `low` and `high` are bounds of their number; if these are

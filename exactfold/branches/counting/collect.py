@@ -43,7 +43,8 @@ def count_branches(
     every solution, refined Bezout proves that there are no others (docs/mathematics.md, Krawczyk's
     test to True branches), and all vertex signs and folds are decided exactly. For Ve = 3 the sheet
     is rigid: it has 0 branches. For D >= 2 and a convex boundary, the solutions form 2^n graphs
-    over the boundary heights, and `pieces` says how the graphs are joined (`find_pieces`).
+    over the boundary heights, and `connected_components` says how the graphs are joined
+    (`find_connected_components`).
 
     `method` is one of `METHODS`. "auto" runs Newton's method with one start for each sign vector;
     if this does not prove the count of a small pattern, it runs the exact engine. A pattern with
@@ -114,7 +115,7 @@ def _higher(
 ) -> BranchCount:
     """D >= 2: one double cone for a single vertex; for a convex boundary, 2^n graphs over it."""
     from exactfold.branches.connected_components.joining import (
-        find_pieces,  # imported here: most counts do not need it
+        find_connected_components,  # imported here: most counts do not need it
     )
 
     sheet, _ = pattern.without_rigid_parts()
@@ -133,24 +134,28 @@ def _higher(
             true_branches=PROVED,
             proof=Proof("single vertex", triangles),
         )
-        return result if not pattern.is_convex else replace(result, pieces=find_pieces(pattern))
+        return (
+            result
+            if not pattern.is_convex
+            else replace(result, connected_components=find_connected_components(pattern))
+        )
     if not pattern.is_convex:
         return _not_convex(pattern)
-    pieces = find_pieces(pattern, progress=progress)
+    connected_components = find_connected_components(pattern, progress=progress)
     return BranchCount(
         pattern,
         PROVED,
         "theorem",
-        "for all rim heights there is exactly one solution with each sign vector: "
-        f"2^{len(pieces.vertices)} graphs over the rim heights, of dimension {pattern.D} modulo "
-        "planes",
+        "for all boundary heights there is exactly one solution with each sign vector: "
+        f"2^{len(connected_components.vertices)} graphs over the boundary heights, of dimension "
+        f"{pattern.D} modulo planes",
         why="the border is convex, with more than four vertices",
         true_branches=PROVED,
         open_questions=tuple(
             f"whether the star of vertex {v} is flat in other solutions: {reason}"
-            for v, reason in (pieces.open or {}).items()
+            for v, reason in (connected_components.open or {}).items()
         ),
-        pieces=pieces,
+        connected_components=connected_components,
     )
 
 

@@ -30,7 +30,7 @@ from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.rigidity.equations.problem import Problem
 from exactfold.solve.certify.box import IsolatingBox
 from exactfold.solve.certify.float_krawczyk import UNPROVED, FloatBoxes, FloatKrawczyk, FloatSigns
-from exactfold.solve.numeric.dense_newton import Ends, NappeSystem, sign_vectors
+from exactfold.solve.numeric.dense_newton import NappeSystem, SweptPoints, sign_vectors
 
 BLOCK = 1024
 """Sign vectors in a block. An interruption loses at most one block."""
@@ -47,7 +47,9 @@ class Conveyor:
 
     problem: Problem
     block_size: int
-    _solved: dict[int, tuple[Ends, float]] = field(default_factory=dict, repr=False, compare=False)
+    _solved: dict[int, tuple[SweptPoints, float]] = field(
+        default_factory=dict, repr=False, compare=False
+    )
 
     @classmethod
     def of(cls, pattern: CreasePattern | Problem, block_size: int | None = None) -> Conveyor:
@@ -105,7 +107,7 @@ class Conveyor:
     def _maker(self) -> BranchMaker:
         return BranchMaker(self.problem, self.problem.chart)
 
-    def ends(self, index: int) -> Ends:
+    def ends(self, index: int) -> SweptPoints:
         """Candidates for the sign vectors of block `index`; kept until `prove` uses them."""
         if index not in self._solved:
             start = time.process_time()

@@ -22,16 +22,16 @@ from exactfold.errors import UsageError
 from exactfold.exact.numbers import RationalLike
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.loading import PatternLike, as_pattern
-from exactfold.rigidity.equations.boundary_heights import default_rim
+from exactfold.rigidity.equations.boundary_heights import default_boundary_heights
 from exactfold.rigidity.equations.problem import Problem
-from exactfold.rigidity.equations.sheet import Sheet
+from exactfold.rigidity.equations.sheet import VertexEquations
 from exactfold.solve.certify.enclosed import enclosed
 from exactfold.solve.certify.enclosure import Enclosure
 from exactfold.solve.numeric.sparse_newton import End, solve
 from exactfold.solve.numeric.sparse_sheet import FloatSheet
 
 Signs = str | Mapping[int, int] | Sequence[int]
-Rim = Mapping[int, RationalLike]
+BoundaryHeights = Mapping[int, RationalLike]
 Deficits = Mapping[int, RationalLike]
 
 
@@ -40,7 +40,7 @@ def find_branch(
     signs: Signs | None = None,
     *,
     up: Iterable[int] | None = None,
-    rim: Rim | None = None,
+    boundary_heights: BoundaryHeights | None = None,
     curvature: Deficits | None = None,
     progress: Progress | None = None,
 ) -> Branch:
@@ -53,26 +53,26 @@ def find_branch(
     Newton's method on the nappes proposes heights (docs/mathematics.md, Nappes). Exact arithmetic
     refines them, and a theorem that needs no factorisation encloses them (docs/branch.md,
     `enclose`), so that the cost of the proof grows like the number of folds. `Branch` explains the
-    gauge. `rim` gives the heights of all boundary vertices of a convex boundary of any length; the
-    result is the branch with these boundary heights. A convex sheet with more than four boundary
-    vertices has the heights `default_rim` if `rim` is not given. `curvature` gives angle deficits
-    K_v > 0 of interior vertices, 0 for vertices that it does not name; the result is then the one
-    shape with these signs (docs/branch.md, Angle deficits), and the boundary has height 0 if `rim`
-    is not given. A vertex that is proved flat on the branch gets the sign 0. The signs +, - and 0
-    of such a vertex all lead to this branch.
+    gauge. `boundary_heights` gives the heights of all boundary vertices of a convex boundary of any
+    length; the result is the branch with these boundary heights. A convex sheet with more than four
+    boundary vertices has the heights `default_boundary_heights` if `boundary_heights` is not given.
+    `curvature` gives angle deficits K_v > 0 of interior vertices, 0 for vertices that it does not
+    name; the result is then the one shape with these signs (docs/branch.md, Angle deficits), and
+    the boundary has height 0 if `boundary_heights` is not given. A vertex that is proved flat on
+    the branch gets the sign 0. The signs +, - and 0 of such a vertex all lead to this branch.
 
     Raises `UsageError` for signs that do not fit the pattern, also for a sign 0 if the vertex is
-    not flat on the branch with the other signs; `BadRimError` and `BadCurvatureError`, which name
-    the vertex; `NotApplicableError` for a `rim` if the boundary is not convex; `NotCountedError` if
-    signs name no branch or no vertex can pop. UNDECIDED does not mean that the branch does not
-    exist.
+    not flat on the branch with the other signs; `BoundaryHeightsError` and `BadCurvatureError`,
+    which name the vertex; `NotApplicableError` for `boundary_heights` if the boundary is not
+    convex; `NotCountedError` if signs name no branch or no vertex can pop. UNDECIDED does not mean
+    that the branch does not exist.
 
     >>> from exactfold.pattern.random_squares import random_square
     >>> branch = find_branch(random_square(8, seed=1), "+-++--+-")
     >>> branch.status, branch.assignment_text, float(branch.radius) < 1e-9
     (<Verdict.PROVED: 'proved'>, 'MMMVMVVMMVVMMVMVMMVVMVVVM', True)
     """
-    finder = branch_finder(as_pattern(pattern), rim, curvature)
+    finder = branch_finder(as_pattern(pattern), boundary_heights, curvature)
     return finder.find(finder.signs(signs, up), progress=progress)
 
 
@@ -80,7 +80,7 @@ def find_branches(
     pattern: PatternLike,
     many: Iterable[Signs],
     *,
-    rim: Rim | None = None,
+    boundary_heights: BoundaryHeights | None = None,
     curvature: Deficits | None = None,
     progress: Progress | None = None,
 ) -> Iterator[Branch]:
@@ -90,7 +90,7 @@ def find_branches(
     >>> [b.sign_text for b in find_branches(random_square(3, seed=0), ["+-+", "---"])]
     ['+-+', '---']
     """
-    finder = branch_finder(as_pattern(pattern), rim, curvature)
+    finder = branch_finder(as_pattern(pattern), boundary_heights, curvature)
     for signs in many:
         yield finder.find(finder.signs(signs, None), progress=progress)
 
@@ -100,7 +100,7 @@ def neighbours(
     signs: Signs,
     vertices: Iterable[int] | None = None,
     *,
-    rim: Rim | None = None,
+    boundary_heights: BoundaryHeights | None = None,
     curvature: Deficits | None = None,
     progress: Progress | None = None,
 ) -> dict[int, Branch]:
@@ -114,46 +114,51 @@ def neighbours(
     >>> {v: b.sign_text for v, b in neighbours(random_square(3, seed=0), "+-+").items()}
     {4: '--+', 5: '+++', 6: '+--'}
     """
-    finder = branch_finder(as_pattern(pattern), rim, curvature)
+    finder = branch_finder(as_pattern(pattern), boundary_heights, curvature)
     return finder.neighbours(finder.signs(signs, None), vertices, progress=progress)
 
 
 def branch_finder(
-    pattern: CreasePattern, rim: Rim | None = None, curvature: Deficits | None = None
+    pattern: CreasePattern,
+    boundary_heights: BoundaryHeights | None = None,
+    curvature: Deficits | None = None,
 ) -> BranchFinder:
-    """The finder of a pattern, with the boundary heights `default_rim` if it needs some.
+    """The finder of a pattern, with `default_boundary_heights` if it needs boundary heights.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> branch_finder(single_vertex(5)).problem.gauge
-    <Gauge: rim, 5 vertices on the rim>
+    <Gauge: rim, 5 boundary vertices>
     """
-    if rim is None and curvature is None and pattern.Ve > 4 and pattern.is_convex:
-        rim = default_rim(pattern)
-    return BranchFinder(pattern, rim, curvature)
+    if boundary_heights is None and curvature is None and pattern.Ve > 4 and pattern.is_convex:
+        boundary_heights = default_boundary_heights(pattern)
+    return BranchFinder(pattern, boundary_heights, curvature)
 
 
 @dataclass(frozen=True)
 class BranchFinder:
     """Finds branches of one pattern; whatever does not depend on the signs is computed once.
 
-    `rim` and `curvature` have the same meaning as in `find_branch`, but `rim` has no default.
+    `boundary_heights` and `curvature` have the same meaning as in `find_branch`, but
+    `boundary_heights` has no default.
     """
 
     pattern: CreasePattern
-    rim: Rim | None = None
+    boundary_heights: BoundaryHeights | None = None
     curvature: Deficits | None = None
 
     @cached_property
     def problem(self) -> Problem:
-        """The problem, in the gauge that `rim` and `curvature` ask for."""
-        problem = Problem.of(self.pattern, rim=self.rim, curvature=self.curvature)
+        """The problem, in the gauge that `boundary_heights` and `curvature` ask for."""
+        problem = Problem.of(
+            self.pattern, boundary_heights=self.boundary_heights, curvature=self.curvature
+        )
         problem.require_foldable()
         return problem
 
     @cached_property
-    def sheet(self) -> Sheet:
+    def sheet(self) -> VertexEquations:
         """The exact equations, fold by fold."""
-        return Sheet(self.problem)
+        return VertexEquations(self.problem)
 
     @cached_property
     def _floats(self) -> FloatSheet:

@@ -19,7 +19,7 @@ from exactfold._support.documents import (
 from exactfold._support.plurals import counted
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
-from exactfold.branches.counting.find import BranchFinder, Deficits, Rim
+from exactfold.branches.counting.find import BoundaryHeights, BranchFinder, Deficits
 from exactfold.exact.numbers import format_rational
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import PatternDocument, described
@@ -60,7 +60,7 @@ class ShapeCount:
 
     pattern: CreasePattern
     curvature: Mapping[int, Fraction]
-    rim: Mapping[int, Fraction]
+    boundary_heights: Mapping[int, Fraction]
     status: Verdict
     reason: str
     bounds: tuple[int, int]
@@ -84,7 +84,7 @@ class ShapeCount:
             "bounds": list(self.bounds),
             "with_multiplicity": self.with_multiplicity,
             "curvature": {str(v): format_rational(k) for v, k in sorted(self.curvature.items())},
-            "rim": {str(v): format_rational(h) for v, h in sorted(self.rim.items())},
+            "rim": {str(v): format_rational(h) for v, h in sorted(self.boundary_heights.items())},
             "signs": list(self.signs),
         }
 
@@ -98,7 +98,7 @@ def count_shapes(
     pattern: PatternLike,
     curvature: Deficits,
     *,
-    rim: Rim | None = None,
+    boundary_heights: BoundaryHeights | None = None,
     progress: Progress | None = None,
 ) -> ShapeCount:
     """Count the shapes of a convex sheet with given angle deficits and boundary heights.
@@ -107,18 +107,18 @@ def count_shapes(
     each sign vector (docs/branch.md, Angle deficits). If some deficits are 0, there are 2^n shapes
     with multiplicity, and shapes coincide only if stars are flat. For at most ten vertices, all
     shapes are found and proved. For more vertices, the number lies between 2^p, for p positive
-    deficits, and 2^n. `rim` gives the boundary heights, which are 0 by default. Raises the errors
-    of `find_branch`.
+    deficits, and 2^n. `boundary_heights` gives the boundary heights, which are 0 by default. Raises
+    the errors of `find_branch`.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> count_shapes(single_vertex(5), {5: "1/10"})
     <ShapeCount: proved, 2 shapes of <CreasePattern: 1 interior and 5 boundary vertices>>
     """
-    finder = BranchFinder(as_pattern(pattern), rim, curvature)
+    finder = BranchFinder(as_pattern(pattern), boundary_heights, curvature)
     problem = finder.problem
     gauge, size = problem.gauge, problem.size
     curved = {problem.labels[v]: k for v, k in gauge.curvature.items()}
-    heights = {problem.labels[v]: h for v, h in gauge.rim.items()}
+    heights = {problem.labels[v]: h for v, h in gauge.boundary_heights.items()}
 
     def made(
         status: Verdict, reason: str, bounds: tuple[int, int], signs: tuple[str, ...] = ()

@@ -100,9 +100,9 @@ class Branch(Picture, Certified):
     boundary vertex has height 1 and the three others 0 (`saddle_functional` is 1). "notch", used if
     this is not known to be possible: the sign functional of the reflex corner is 1 in the closed
     sheet. "corner", for a single branch: the curvature of the reflex corner is
-    `Gauge.corner_curvature`. "rim": the boundary heights are given (`rim`). `curvature` gives the
-    nonzero angle deficits of vertices; if there are any, this is a single shape, not a line, and
-    its opposite is another shape.
+    `Gauge.corner_curvature`. "rim": the boundary heights are given (`boundary_heights`).
+    `curvature` gives the nonzero angle deficits of vertices; if there are any, this is a single
+    shape, not a line, and its opposite is another shape.
 
     Heights are the values of `height_rows` at the root, divided by the value of `unit_row` if there
     is one. `saddle` is the proved sign of the boundary saddle; it is 0 if it is not proved or there
@@ -226,7 +226,7 @@ class Branch(Picture, Certified):
         return None if None in found.values() else found
 
     @property
-    def straight_border(self) -> tuple[int, ...]:
+    def straight_boundary(self) -> tuple[int, ...]:
         """Boundary vertices on a straight side of a branch with given boundary heights.
 
         The side may bend there. `pattern.boundary_turns` is 0 at these vertices.
@@ -237,13 +237,13 @@ class Branch(Picture, Certified):
         return tuple(sorted(v for v, turn in turns if not turn))
 
     @property
-    def rim(self) -> dict[int, Fraction] | None:
+    def boundary_heights(self) -> dict[int, Fraction] | None:
         """The boundary heights that were given; None in another gauge, or if nothing is proved.
 
         >>> from exactfold.branches.counting.find import find_branch
         >>> from exactfold.pattern.families import single_vertex
         >>> branch = find_branch(single_vertex(5), "+")
-        >>> sorted(map(str, branch.rim.values()))
+        >>> sorted(map(str, branch.boundary_heights.values()))
         ['-1', '0', '0', '0', '11/20']
         """
         if self.gauge != "rim" or not isinstance(self.root, EnclosedRoot):
@@ -315,7 +315,7 @@ class Branch(Picture, Certified):
             "assignment": {f"{i}-{j}": a for (i, j), a in sorted(self.assignment.items())},
             "gauge": self.gauge,
             "curvature": {str(v): format_rational(k) for v, k in sorted(self.curvature.items())},
-            "straight_border": list(self.straight_border),
+            "straight_border": list(self.straight_boundary),
             "saddle": self.saddle,
             "centres": {str(v): format_rational(c) for v, c in sorted(self.centres.items())},
             "radius": None if radius is None else format_rational(radius),

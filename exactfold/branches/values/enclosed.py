@@ -13,13 +13,13 @@ from exactfold.branches.values.letters import LETTERS
 from exactfold.branches.values.roots import EnclosedRoot
 from exactfold.pattern.crease_pattern import Edge
 from exactfold.rigidity.equations.problem import Problem
-from exactfold.rigidity.equations.sheet import Sheet
+from exactfold.rigidity.equations.sheet import VertexEquations
 from exactfold.rigidity.functionals import saddle_functional
 from exactfold.solve.certify.enclosure import Enclosure, height_radius, root_above, round_up
 
 
 def of_enclosure(
-    sheet: Sheet,
+    sheet: VertexEquations,
     proof: Enclosure,
     signs: Mapping[int, int],
     *,

@@ -24,7 +24,7 @@ from exactfold.rigidity.rigid_triangles import RigidTriangle
 from exactfold.solve.certify.algebraic import AlgebraicProof
 
 if TYPE_CHECKING:  # counting branches does not load what panels need
-    from exactfold.branches.connected_components.result import Pieces
+    from exactfold.branches.connected_components.result import ConnectedComponents
     from exactfold.branches.values.count_document import (
         BranchCountDocument,
         BranchCountKeys,
@@ -90,9 +90,9 @@ class BranchCount(Page, Ways[Branch], Certified):
 
     `branches` contains every branch that is decided. These are all branches if the status is PROVED
     and D = 1. For D > 1 a branch is not a line, and none is listed. There, for a convex border, the
-    solutions are 2^n graphs over the boundary heights, and `pieces` says how many connected
-    components they have. `families` are their irreducible components, if `count_ways` computed
-    them. The counts are then None, except for a single vertex.
+    solutions are 2^n graphs over the boundary heights, and `connected_components` says how many
+    connected components they have. `families` are their irreducible components, if `count_ways`
+    computed them. The counts are then None, except for a single vertex.
 
     A certificate is written from `proof`. `open_questions` says what is missing; if the status is
     PROVED, it names folds with the letter "U". `letters` are those of the file, by fold; it is
@@ -120,7 +120,7 @@ class BranchCount(Page, Ways[Branch], Certified):
     snapped: Fraction = Fraction(0)
     read: ReadDocument | None = None
     letters: Mapping[Edge, str] = field(default_factory=dict)
-    pieces: Pieces | None = None
+    connected_components: ConnectedComponents | None = None
     families: Decomposition | None = None
     seconds: float = field(default=0.0, compare=False)
 
@@ -203,7 +203,9 @@ class BranchCount(Page, Ways[Branch], Certified):
         Raises `ArithmeticError` for a count that is proved and lacks numbers, which is a defect.
         """
         keys, many = self._keys(certificate, name), self.with_multiplicity
-        pieces = None if self.pieces is None else self.pieces.to_dict()
+        connected_components = (
+            None if self.connected_components is None else self.connected_components.to_dict()
+        )
         if self.status is not PROVED:
             return {
                 **keys,
@@ -214,9 +216,9 @@ class BranchCount(Page, Ways[Branch], Certified):
                 "with_multiplicity": None if many is None else _number(many),
                 "real": None,
                 "nonreal": self.nonreal,
-                "pieces": pieces,
+                "pieces": connected_components,
             }
-        if self.method == "theorem" and pieces is not None:
+        if self.method == "theorem" and connected_components is not None:
             return {
                 **keys,
                 "status": "proved",
@@ -226,7 +228,7 @@ class BranchCount(Page, Ways[Branch], Certified):
                 "with_multiplicity": None if many is None else _number(many),
                 "real": None,
                 "nonreal": self.nonreal,
-                "pieces": pieces,
+                "pieces": connected_components,
             }
         if self.distinct is None or many is None or self.real is None or self.nonreal is None:
             raise ArithmeticError("numbers are missing from a count that is proved")
@@ -239,7 +241,7 @@ class BranchCount(Page, Ways[Branch], Certified):
             "with_multiplicity": _number(many),
             "real": self.real,
             "nonreal": self.nonreal,
-            "pieces": pieces,
+            "pieces": connected_components,
         }
 
     def _keys(self, certificate: str | None, name: str | None) -> BranchCountKeys:
@@ -264,7 +266,7 @@ class BranchCount(Page, Ways[Branch], Certified):
             "letters": None if self.lettered is None else self.lettered.to_dict(),
             "rigid": self.distinct == 0 if self.status is PROVED else None,
             "exceptional_vertices": list(self.exceptional_vertices),
-            "read": self.read,
+            "read": None if self.read is None else {**self.read},
             **self._families(),
         }
 
@@ -326,13 +328,13 @@ class BranchCount(Page, Ways[Branch], Certified):
         return sum(count for count in counts.values() if count > 1)
 
     def __repr__(self) -> str:
-        if self.pieces is not None and self.distinct is None:
-            return f"<BranchCount: {self.status}, {self.pieces!r}, {self.pattern!r}>"
+        if self.connected_components is not None and self.distinct is None:
+            return f"<BranchCount: {self.status}, {self.connected_components!r}, {self.pattern!r}>"
         found = counted("?" if self.distinct is None else self.distinct, "branch")
         return f"<BranchCount: {self.status}, {found}, {self.pattern!r}>"
 
     def _repr_latex_(self) -> str | None:
-        if self.pieces is not None and self.distinct is None:
+        if self.connected_components is not None and self.distinct is None:
             return None
         if self.distinct is None:
             return r"$B = {?}\quad \text{(undecided)}$"

@@ -1,4 +1,4 @@
-"""All zeros of a system, some of them multiple: in classes, in boxes and on flat sheets."""
+"""All zeros of a branch system, also multiple ones: in classes, in boxes, and on flat sheets."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from .flat_sheets import FlatBox, FlatSheets
 
 
 def check_algebraic(system: BranchSystem, evidence: Any) -> tuple[list[tuple[Root, int]], int]:
-    """All zeros, in classes or boxes: (real roots with multiplicities, number of the others).
+    """All zeros: a list of (real root, multiplicity), and the number of zeros that are not real.
 
-    That no zero is listed in two ways is left to `check_branches`.
+    A zero might still be listed in two different ways; `check_branches` excludes that.
     """
     keys(evidence, "kind triangles chart multipliers separating classes roots", "evidence")
     check_finite(system.sheet, evidence["multipliers"])
@@ -32,7 +32,7 @@ def check_algebraic(system: BranchSystem, evidence: Any) -> tuple[list[tuple[Roo
     ]
     in_boxes = sum("flat" not in entry and "class" not in entry for entry in listed)
     total = in_boxes + sum(1 << min(len(flat), system.size) for flat in flat_sets)
-    for entry in entries:  # before any arithmetic, so that a small file cannot ask for much
+    for entry in entries:  # counted before any arithmetic, so that a small file cannot ask for much
         keys(entry, "polynomial numerators flat", "class")
         degree = len(items(entry["polynomial"], "polynomial")) - 1
         total += degree << min(len(items(entry["flat"], "flat vertices")), system.size)
@@ -54,7 +54,7 @@ def check_algebraic(system: BranchSystem, evidence: Any) -> tuple[list[tuple[Roo
         elif "class" in entry:
             keys(entry, "class interval", "root")
             index = natural(entry["class"], "class")
-            require(index < len(classes), "no such class")
+            require(index < len(classes), f"there is no class {index}")
             low, high = (parse_rational(x) for x in items(entry["interval"], "interval", 2))
             intervals[index].append((low, high))
             roots.append((AlgebraicRoot(classes[index], low, high), classes[index].multiplicity))

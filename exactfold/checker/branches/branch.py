@@ -1,13 +1,14 @@
 """Certificates of one branch with given vertex signs (docs/branch.md).
 
-Why it is a proof: heights with K_v > 0 at every interior vertex bound the distance to the only
-solution with the same signs (Theorem 5 of docs/branch.md, which also describes the file); heights
-that solve the equations exactly are that solution. The boundary must be convex, or that of a
-quadrilateral whose notch is closed here. Vertices inside a 3-cycle of edges stay flat (Theorem 2
-(a), applied to the triangle) and are removed. In version 2 the curvatures K_v are not 0 but the
-angle deficits that are claimed, for a given rim; Theorem 5 holds as it is, and a vertex with a
-positive deficit is not flat. Other folds are flat if the heights are exact and
-flat there, or if K_v = 0 at a vertex leaves them no other choice (`close_flat`).
+Why it is a proof: the file gives heights with K_v > 0 at every interior vertex. Theorem 5 of
+docs/branch.md (which also describes the file) then bounds the distance to the only solution with
+the same signs. Heights that solve the equations exactly are this solution. The boundary must be
+convex, or it is a quadrilateral whose notch is closed here. Vertices inside a 3-cycle of edges stay
+flat (Theorem 2 (a), applied to the triangle) and are removed. In version 2 the boundary heights are
+given, and the curvatures K_v are the claimed angle deficits instead of 0; Theorem 5 holds without
+change, and a vertex with a positive deficit is not flat. Any other fold is proved flat in one of
+two ways: the heights are exact and do not bend it, or K_v = 0 at one of its vertices leaves it no
+other choice (`close_flat`).
 """
 
 from __future__ import annotations
@@ -23,11 +24,12 @@ from ..sheets.sheet import Sheet, read_sheet, turn
 from .branch_proof import Heights, Proof
 
 FLAT, CURVED = 1, 2
-"""The versions: of a branch, and of one shape of a sheet with angle deficits."""
+"""The versions: 1 for one branch of a flat sheet, 2 for one shape of a sheet with angle deficits.
+"""
 
 
 class BranchClaims(TypedDict):
-    """What a file claims, with exact numbers in quotes (see `check`)."""
+    """The claims of a file of version 1, with exact numbers in quotes (see `check`)."""
 
     gauge: str
     vertex_signs: list[int]
@@ -36,13 +38,13 @@ class BranchClaims(TypedDict):
 
 
 class CurvedClaims(BranchClaims, total=False):
-    """The same, with the angle deficits that every file of version 2 has."""
+    """The claims of a file of version 2, which also has angle deficits."""
 
     curvature: list[str]
 
 
 class VerifiedBranch(CurvedClaims):
-    """What is verified, with the number of interior vertices and the digest of the pattern."""
+    """The verified claims, with the number of interior vertices and the digest of the pattern."""
 
     interior: int
     sha256: str
@@ -52,11 +54,12 @@ class VerifiedBranch(CurvedClaims):
 def check(data: dict[str, Any]) -> VerifiedBranch:
     """Verify every claim of a loaded certificate; raises `CertificateError` at the first failure.
 
-    Returns the claims and the SHA-256 of the pattern. The claims are: of all branches, or of all
-    solutions with the rim of the heights if `gauge` is "rim", exactly one has these vertex signs,
-    all of them exact, 0 where the star is flat; its folds have these letters, "U" making no claim;
-    and for its heights h the integral of |grad(h - heights)|^2 is at most `squared_distance`. In
-    version 2 "solutions" are those with K_v = `curvature`, in the order of the interior vertices.
+    Returns the claims and the SHA-256 of the pattern. The claims are: exactly one branch has these
+    vertex signs, or if `gauge` is "rim", exactly one solution over the boundary heights in the
+    file. All signs are exact; a sign is 0 where the star is flat. The folds of this branch have
+    these letters, where "U" claims nothing. For its heights h the integral of |grad(h - heights)|^2
+    is at most `squared_distance`. In version 2 a solution satisfies K_v = `curvature`, with one
+    entry for each interior vertex in order.
     """
     given, digest = read_sheet(data["pattern"])
     claims, evidence = data["claims"], data["evidence"]
@@ -66,9 +69,9 @@ def check(data: dict[str, Any]) -> VerifiedBranch:
     place = Place(given, evidence["emptied"])
     targets = place.targets(claims["curvature"]) if curved else {}
     if claims["gauge"] != "rim":
-        require(not curved, "angle deficits need a given rim")
+        require(not curved, 'angle deficits need the gauge "rim"')
         require(claims["gauge"] == "saddle", "the gauge is neither saddle nor rim")
-        place.fix_rim()
+        place.fix_boundary()
     check_convex(place.sheet)
     proof = place.proof(evidence["heights"], evidence["denominator"], targets)
     require(
@@ -85,10 +88,10 @@ def check(data: dict[str, Any]) -> VerifiedBranch:
 
 
 class Place:
-    """The sheet that heights are given for, in integers and without the vertices `removed`.
+    """The sheet on which heights are given, in integer coordinates, without the vertices `removed`.
 
-    Once its rim is fixed, its notch is closed if it has the reflex corner `corner`, and the heights
-    are those of one half of a branch. `open` is the sheet with the notch.
+    After `fix_boundary` the heights are those of one ray of a branch. If the sheet has a reflex
+    corner, this is `corner`, and `sheet` has its notch closed. `open` is the sheet with the notch.
     """
 
     def __init__(self, given: Sheet, emptied: Any) -> None:
@@ -102,32 +105,32 @@ class Place:
         self.corner: int | None = None
         self.fixed = False
 
-    def fix_rim(self) -> None:
-        """Ask for a quadrilateral, with its saddle positive or its reflex corner up."""
+    def fix_boundary(self) -> None:
+        """Require four corners, and heights with a positive saddle or with the reflex corner up."""
         require(len(self.sheet.boundary) == 4, "there are not four boundary vertices")
         self.sheet, self.corner = closed(self.sheet)
         self.fixed = True
 
     def targets(self, texts: Any) -> dict[int, Fraction]:
-        """The angle deficits that are not 0, for integer lengths."""
+        """The angle deficits that are not 0, in the unit in which all coordinates are integers."""
         interior = self.given.interior
         deficits = [parse_rational(text) for text in items(texts, "curvature", len(interior))]
-        found = {}
+        nonzero = {}
         for v, deficit in zip(interior, deficits, strict=True):
             require(deficit >= 0, f"the angle deficit of vertex {v} is negative")
             bent = not deficit or v not in self.removed
-            require(bent, f"vertex {v} is not flat, as it has a deficit")
+            require(bent, f"vertex {v} has an angle deficit, so that it is not flat in a triangle")
             if deficit:
-                found[v] = deficit / self.unit**2
-        return found
+                nonzero[v] = deficit / self.unit**2
+        return nonzero
 
     def proof(
         self, numerators: Any, denominator: Any, targets: dict[int, Fraction] | None = None
     ) -> Proof:
-        """What heights prove."""
+        """Read heights, and work out what they prove."""
         texts = items(numerators, "heights", len(self.given.points))
         fits = all((texts[v] is None) == (v in self.removed) for v in self.given.points)
-        require(fits, "heights do not fit")
+        require(fits, "heights must be null for the vertices that are removed, and for no others")
         heights = {v: parse_integer(texts[v]) for v in self.sheet.points}
         q = parse_integer(denominator)
         require(q > 0, "the denominator is not positive")
@@ -164,7 +167,8 @@ class Place:
 
 def _check_gauge(sheet: Sheet, heights: Heights, corner: int | None) -> None:
     if corner is not None:
-        require(all(heights[v] == 0 for v in sheet.boundary), "the rim is not flat")
+        flat = all(heights[v] == 0 for v in sheet.boundary)
+        require(flat, "the boundary vertices are not all at height 0")
         return
     a, b, c, d = sheet.boundary
     p, q, r, s = (sheet.points[v] for v in sheet.boundary)
@@ -181,18 +185,20 @@ def _check_gauge(sheet: Sheet, heights: Heights, corner: int | None) -> None:
 def _check_signs(place: Place, signs: Any, proof: Proof) -> None:
     values = items(signs, "vertex_signs", len(place.given.interior))
     for v, sign, expected in zip(place.given.interior, values, place.signs(proof), strict=True):
-        require(type(sign) is int and sign == expected, f"vertex {v} has another sign")
+        right = type(sign) is int and sign == expected
+        require(right, f"vertex {v} does not have the claimed sign")
 
 
 def _check_letters(place: Place, letters: Any, proof: Proof) -> None:
     folds = place.given.folds
-    require(isinstance(letters, str) and len(letters) == len(folds), "letters do not fit")
+    fits = isinstance(letters, str) and len(letters) == len(folds)
+    require(fits, "the assignment does not have one letter for each fold")
     for fold, letter, expected in zip(folds, letters, place.letters(proof), strict=True):
         require(letter == expected or letter == "U", f"fold {fold} is not known to be {letter!a}")
 
 
 def summary(claims: VerifiedBranch) -> str:
-    """One line for verified claims."""
+    """One line that states the verified claims."""
     signs = "".join("-0+"[s + 1] for s in claims["vertex_signs"])
     shown = signs if len(signs) <= 60 else signs[:60] + "..."
     decided = len(claims["assignment"]) - claims["assignment"].count("U")

@@ -1,8 +1,8 @@
-"""Heights with K_v > 0 at every interior vertex, and the one solution they are near to.
+"""Heights with K_v > 0 at every interior vertex, and the one solution near them.
 
-The curvature forms and the sides are computed by other formulas than those of the listing checker
-and of the program that writes certificates: wedge by wedge as defined, by rational timelike
-vectors. Divisions of integers are rounded in the safe direction.
+The formulas differ from those of the listing checker and of the program that writes certificates:
+the curvature forms are summed wedge by wedge as in their definition, and rational timelike vectors
+give the signs of vertices. Divisions of integers are rounded in the safe direction.
 """
 
 from __future__ import annotations
@@ -21,10 +21,11 @@ Heights = Mapping[int, int]
 
 
 class Proof:
-    """Signs, bends and the distance for heights over q; lengths are integers.
+    """What heights prove: signs of vertices, letters of folds, and the distance to the solution.
 
-    `corner` has the target K = 1 / size^2, the vertices of `targets` have those, all other interior
-    vertices 0.
+    The heights are integers over q, and the coordinates are integers. On the solution
+    K_v = 1 / size^2 at `corner`, K_v = targets[v] at the vertices of `targets`, and K_v = 0 at all
+    other interior vertices.
     """
 
     def __init__(
@@ -47,10 +48,11 @@ class Proof:
         self.letters = self._letters()
 
     def wedges(self, v: int, a: Heights, b: Heights) -> Iterator[tuple[int, int]]:
-        """Numerators and denominators of the terms of K_v(a, b), wedge by wedge as defined.
+        """Yield numerator and denominator of each term of K_v(a, b), one term for each wedge.
 
         K_v(a, b) = sum_j [(x_j y_j+1 + y_j x_j+1) L^2 L'^2 - s (x_j y_j L'^2 + x_j+1 y_j+1 L^2)]
-        / (2 c L^2 L'^2) with x = a_j - a_v, y = b_j - b_v, L = L_j and L' = L_j+1.
+        / (2 c L^2 L'^2) with x = a_j - a_v, y = b_j - b_v, L = L_j and L' = L_j+1. Here c and s are
+        the cross product and the scalar product of the two spokes of the wedge.
         """
         ring = self.sheet.star(v)
         points: Mapping[int, Any] = self.sheet.points
@@ -63,26 +65,27 @@ class Proof:
             yield int(top), int(2 * c * k * m)
 
     def form(self, v: int, a: Heights, b: Heights) -> tuple[int, int]:
-        """Integers that enclose 2^bits K_v(a, b)."""
+        """Two integers with 2^bits K_v(a, b) between them."""
         terms = [(top << self.bits) // bottom for top, bottom in self.wedges(v, a, b)]
         return sum(terms), sum(terms) + len(terms)
 
     def exact_form(self, v: int, a: Heights, b: Heights) -> Fraction:
-        """K_v(a, b)."""
+        """The exact value of K_v(a, b)."""
         return sum((Fraction(*term) for term in self.wedges(v, a, b)), Fraction(0))
 
     def _on_target(self, v: int) -> bool:
-        """Whether K_v is exactly what it is on a solution."""
+        """Whether K_v of the heights has exactly the value that it has on a solution."""
         low, high = self.form(v, self.heights, self.heights)
         target = self.q**2 * self.targets.get(v, Fraction(0))
         near = low <= target * (1 << self.bits) <= high
         return near and self.exact_form(v, self.heights, self.heights) == target
 
     def _sign(self, v: int) -> int:
-        """The nappe of K_v that holds the heights, by a timelike t that points up.
+        """The sign of the nappe of K_v in which the heights lie: 1 for up, -1 for down, 0 if flat.
 
-        t_j - t_v < 0 for all j, and K_v(t) > 0: up, as K_v(t, t') > 0 for the round cone t', which
-        is a mountain on all spokes. On a solution, K_v(t, .) is 0 only where the star is flat.
+        It is the sign of K_v(t, heights) for a timelike t that points up: K_v(t) > 0, and
+        t_j - t_v < 0 for all j. Such a t points up because K_v(t, t') > 0 for the round cone t',
+        which is a mountain on all spokes. On a solution K_v(t, .) is 0 only where the star is flat.
         """
         positive = self.exact or self.form(v, self.heights, self.heights)[0] > 0
         require(positive, f"K is not positive at vertex {v}")
@@ -100,11 +103,11 @@ class Proof:
         if self.exact and low <= 0 <= high:
             side = self.exact_form(v, cone, self.heights)
             return (side > 0) - (side < 0)
-        require(low > 0 or high < 0, f"the side of vertex {v} is not certain")
+        require(low > 0 or high < 0, f"the sign of vertex {v} is not certain")
         return 1 if low > 0 else -1
 
     def _distance(self, x: int, y: int) -> Fraction:
-        """sum_v m_v (sqrt K_v - sqrt k_v)^2 from above, for a disk around (x/2, y/2)."""
+        """An upper bound of sum_v m_v (sqrt K_v - sqrt k_v)^2, with a disk about (x/2, y/2)."""
         points, unit = self.sheet.points, self.q**2 << self.bits
         if self.exact:
             return Fraction(0)
@@ -127,7 +130,7 @@ class Proof:
         return total + Fraction(plain, 4 * unit)
 
     def _side(self, fold: tuple[int, int]) -> int | None:
-        """The sign of a bend if the distance cannot undo it, None if it can."""
+        """The sign of a bend on the solution, None if the distance allows both signs."""
         bend = sum(w * self.heights[v] for v, w in self.sheet.bend(fold).items())
         i, j = fold
         left, right = self.sheet.next[i][j], self.sheet.next[j][i]
@@ -141,7 +144,7 @@ class Proof:
         return None
 
     def _letters(self) -> dict[Edge, str]:
-        """The letters of all folds of the sheet, those left open closed where K_v = 0 can."""
+        """The letters of all folds; a fold is also "F" where `close_flat` proves it flat."""
         sides = {fold: self._side(fold) for fold in self.sheet.folds}
         close_flat(self.sheet, sides, self.targets)
         return {fold: "U" if s is None else "MFV"[s + 1] for fold, s in sides.items()}

@@ -1,4 +1,4 @@
-"""Zeros as the roots of a squarefree polynomial."""
+"""Classes of zeros: each zero is a rational function of one root of a squarefree polynomial."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from ..sheets.equations import BranchSystem
 class RootClass:
     """Zeros x_i = w_i(t) / p'(t) of the branch system, one for each root t of p.
 
-    The keys of the entry are verified before, by `check_algebraic`.
+    `check_algebraic` has already verified the keys of the entry.
     """
 
     def __init__(self, system: BranchSystem, separating: list[int], entry: Any) -> None:
@@ -58,7 +58,7 @@ class RootClass:
                 v not in flat or not any(remainder(g, self.p) for g in gradient[:n]),
                 f"the quadric of vertex {v} has order 1",
             )
-        self.multiplicity = 1 << len(flat)  # at least: the product of the orders of the quadrics
+        self.multiplicity = 1 << len(flat)  # a lower bound: the product of the quadrics' orders
         form: Poly = []
         for s, w in zip(separating, self.w, strict=True):
             form = plus(form, scaled(w, s))
@@ -69,7 +69,10 @@ class RootClass:
 
 
 class AlgebraicRoot:
-    """One real root of a class, in an interval on whose ends its polynomial changes sign."""
+    """One real zero of a class, given by an interval in which the polynomial p has one root.
+
+    At the two ends p has opposite signs, or both ends are the root.
+    """
 
     kind = "class"
 
@@ -83,7 +86,10 @@ class AlgebraicRoot:
         self.rising = value(root_class.slope, low) > 0 if low == high else right > 0
 
     def sign(self, row: Sequence[int]) -> int | None:
-        """Sign of a functional at the root; 0 if it vanishes identically on the class."""
+        """The sign of a functional at the zero; 0 if it vanishes there, None if it stays open.
+
+        The interval is halved until it shows the sign.
+        """
         p = self.root_class.p
         f: Poly = []
         for c, w in zip(row, [*self.root_class.w, self.root_class.slope], strict=True):

@@ -1,6 +1,7 @@
-"""Compact certificates (docs/compact-certificate.md): checked in one pass, block by block.
+"""Compact certificates (docs/compact-certificate.md) are checked in one pass, block by block.
 
-Memory does not grow with the file. Blocks may be shared among processes.
+In version 1 the memory that this takes does not grow with the file, and several processes may share
+the blocks. In version 2 all entries are kept.
 """
 
 from __future__ import annotations
@@ -25,7 +26,8 @@ from .compact_roots import check_roots
 from .listing import CountClaims, summary
 
 CHAMBERS, ROOTS = 1, 2
-"""The versions: one simple root for each sign vector; an entry for each root, of any kind."""
+"""The versions: 1 has one simple root for each sign vector, 2 an entry for each root of any kind.
+"""
 
 
 class IntegerVerifier:
@@ -35,7 +37,7 @@ class IntegerVerifier:
         self.sheet = CompactSheet(COMPACT.header(header))
 
     def refusal(self, text: str, number: int) -> str | None:
-        """Verify one block: None, or why it does not hold."""
+        """Verify one block; say why it does not hold, or None if it holds."""
         try:
             with refusing(f"in block {number}"):
                 self.sheet.check_block(self.sheet.decode(text, number))
@@ -45,62 +47,64 @@ class IntegerVerifier:
 
 
 INTEGERS = Engine(IntegerVerifier, 1, on_processes)
-"""All in integers, by the standard library alone."""
+"""The engine that verifies all blocks in integers, by the standard library alone."""
 
 
 def check(path: str, workers: int = 1, engine: Engine = INTEGERS) -> CountClaims:
     """Verify every claim of a compact certificate; returns the claims.
 
-    Raises `CertificateError` if one is not supported, `FormatError` if the file is no compact
-    certificate, `OSError`, `BrokenExecutor` if a worker process died.
+    Raises `CertificateError` if a claim is not supported, `FormatError` if the file is not a
+    compact certificate, `OSError` if it cannot be read, and `BrokenExecutor` if a worker process
+    died.
     """
     with open(path, "rb") as stream:
         return check_lines(lines(stream), workers, engine)
 
 
-def check_lines(found: Iterator[str], workers: int = 1, engine: Engine = INTEGERS) -> CountClaims:
+def check_lines(texts: Iterator[str], workers: int = 1, engine: Engine = INTEGERS) -> CountClaims:
     """Verify every claim, given the lines of a file; returns the claims.
 
-    With several workers, blocks are checked in that many processes.
+    If `workers` is more than 1, that many processes share the blocks.
     """
-    first = next(found, None)
+    first = next(texts, None)
     if first is None:
         raise FormatError("the file is empty")
     header = COMPACT.header(first)
     if header["version"] == ROOTS:
-        facts, blocks = check_roots(header, found)
+        facts, blocks = check_roots(header, texts)
     else:
         with refusing("in the first line"):
             sheet = CompactSheet(header)
-        _check_blocks(found, first, sheet.blocks, workers, engine)
+        _check_blocks(texts, first, sheet.blocks, workers, engine)
         facts, blocks = sheet.claims(), sheet.blocks
-    _check_claims(found, facts, blocks)
+    _check_claims(texts, facts, blocks)
     return facts
 
 
-def _check_claims(found: Iterator[str], facts: CountClaims, blocks: int) -> None:
-    """The last line claims what was found, no more and no less."""
-    last = next(found, None)
+def _check_claims(texts: Iterator[str], facts: CountClaims, blocks: int) -> None:
+    """Raise unless the last line claims exactly the facts that were proved."""
+    last = next(texts, None)
     if last is None:
         raise UnfinishedError(f"all {blocks} blocks hold, but the claims are missing")
     claims = read_object(last, "the last line")
     keys(claims, "claims", "the last line")
-    require(next(found, None) is None, "something follows the claims")
+    require(next(texts, None) is None, "something follows the claims")
     keys(claims["claims"], keys_of(CountClaims), "claims")
     for key, fact in facts.items():
         claim = claims["claims"][key]
-        require(type(claim) is type(fact) and claim == fact, f"{key} = {claim!a} is {fact!a}")
+        right = type(claim) is type(fact) and claim == fact
+        require(right, f"claim {key} = {claim!a}, but it is {fact!a}")
 
 
 def _check_blocks(
-    found: Iterator[str], header: str, blocks: int, workers: int, engine: Engine
+    texts: Iterator[str], header: str, blocks: int, workers: int, engine: Engine
 ) -> None:
     missing: list[CertificateError | FormatError] = []
 
     def there() -> Iterator[tuple[str, int]]:
         for number in range(blocks):
             try:
-                text = next(found, None)
+                text = next(texts, None)
             except FormatError as error:
                 missing.append(error)
                 return
@@ -117,7 +121,7 @@ def _check_blocks(
         for reason in said:
             if reason is not None:
                 raise CertificateError(reason)
-    if missing:  # a block before it that does not hold comes first
+    if missing:  # a block that does not hold has already been refused above
         raise missing[0]
 
 

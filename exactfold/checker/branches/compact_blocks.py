@@ -1,9 +1,9 @@
 """The blocks of a compact certificate, and the tests of their roots.
 
-Root number s lies in a box with exactly one zero (Krawczyk); on the whole box the sign functional
-of the k-th foldable vertex is negative if bit k of s is set and positive if not. So the 2^n zeros
-are pairwise different without any comparison, and by refined Bezout they are all zeros of n
-quadrics in P^n, all simple and real.
+Root number s lies in a box with exactly one zero, by Krawczyk's test. On the whole box the sign
+functional of the k-th foldable vertex is negative if bit k of s is set, and positive if it is not.
+So the 2^n zeros differ from each other without any comparison. By refined Bezout these are all
+zeros of n quadrics in P^n, and all are simple and real.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from ..sheets.stress import check_triangles
 from .listing import CountClaims, agrees, counts_of, digit
 
 UNPROVED = 255
-"""The radius byte of a root that is given under "exact"."""
+"""The radius byte of a root that the block gives under "exact" instead."""
 
 
 class Block(NamedTuple):
@@ -49,18 +49,19 @@ class Block(NamedTuple):
 
 
 class CompactSheet:
-    """The sheet of a header, verified, with everything that tests its roots."""
+    """The verified sheet of a header, and everything that the tests of its roots need."""
 
     def __init__(self, header: dict[str, Any]) -> None:
         evidence = header["evidence"]
         keys(evidence, "kind triangles chart block", "evidence")
         require(evidence["kind"] == "chambers", "unknown kind of evidence")
         faces, vertices = (len(header["pattern"][k]) for k in ("triangles", "vertices"))
-        require(  # by Euler; so the boundary is short before it is looked at
-            faces == 2 * vertices - 6 > 2, "the sheet has not four boundary vertices and an inner"
+        require(  # by Euler's formula; so the boundary is known to be short before it is walked
+            faces == 2 * vertices - 6 > 2,
+            "the sheet does not have four boundary vertices and an interior vertex",
         )
         self.sheet, self.sha256 = read_sheet(header["pattern"])
-        require(len(self.sheet.boundary) == 4, "the sheet has not D = 1")
+        require(len(self.sheet.boundary) == 4, "the sheet does not have four boundary vertices")
         self.emptied = check_triangles(self.sheet, evidence["triangles"])
         self.system = BranchSystem(self.emptied, read_chart(evidence["chart"]))
         self.size = self.system.size
@@ -81,12 +82,12 @@ class CompactSheet:
         self.letter_bytes = (len(self.fold_rows) + 7) // 8
 
     def claims(self) -> CountClaims:
-        """What a complete file proves."""
+        """The claims that a complete file proves."""
         counts = counts_of(1 << self.size, 1 << len(self.sheet.interior))
         return {**facts_of(self.sheet, self.sha256), **counts}
 
     def decode(self, text: str, number: int) -> Block:
-        """The block of a line, which must be block `number`."""
+        """Decode the block of a line, which must be block `number`."""
         what = f"block {number}"
         data = read_object(text, what)
         keys(data, "block bits width centers radii folds exact open", what)
@@ -126,7 +127,7 @@ class CompactSheet:
         return Block(first, bits, width, centers, radii, folds, exact)
 
     def check_block(self, block: Block, done: Sequence[bool] | None = None) -> None:
-        """Verify every root of a block but those marked as done; raises `CertificateError`."""
+        """Verify every root of a block that is not marked in `done`; raises `CertificateError`."""
         for index in range(self.block):
             given = index in block.exact
             what = f"root {block.first + index}"
@@ -143,24 +144,26 @@ class CompactSheet:
                 self.check_root(root, block.first + index, self.letters(block, index))
 
     def letters(self, block: Block, index: int) -> str:
-        """The assignment of a root: M where the bit of a fold is not set, V where it is."""
+        """The assignment of a root: a fold is V if its bit is set, else M."""
         start = index * self.letter_bytes
         bits = int.from_bytes(block.folds[start : start + self.letter_bytes], "little")
         require(not bits >> len(self.fold_rows), "a bit of no fold is set")
         return "".join("MV"[bits >> k & 1] for k in range(len(self.fold_rows)))
 
     def check_root(self, root: Box, number: int, letters: str) -> None:
-        """One regular zero in the box, with the signs of its number and the folds given."""
+        """Raise unless the box holds one regular zero with the right vertex signs and letters.
+
+        The bits of `number` give the vertex signs.
+        """
         self.krawczyk.check(root.center, root.radius, root.bits)
         for k, row in enumerate(self.vertex_rows):
-            require(
-                root.sign(row) == (-1 if number >> k & 1 else 1),
-                f"root {number}: vertex {self.emptied.interior[k]} has not the sign of its number",
-            )
+            vertex, sign = self.emptied.interior[k], -1 if number >> k & 1 else 1
+            shown = f"root {number}: vertex {vertex} does not have the sign {sign}"
+            require(root.sign(row) == sign, shown)
         signs = {
             f: root.sign(row) for f, row in zip(self.emptied.folds, self.fold_rows, strict=True)
         }
         if None in signs.values():
             close_flat(self.emptied, signs)
-        found = "".join("MFVU"[1 + digit(signs[f])] for f in self.emptied.folds)
-        require(agrees(letters, found), f"root {number}: folds are {found}, not {letters}")
+        proved = "".join("MFVU"[1 + digit(signs[f])] for f in self.emptied.folds)
+        require(agrees(letters, proved), f"root {number}: folds are {proved}, not {letters}")

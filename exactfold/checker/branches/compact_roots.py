@@ -1,6 +1,6 @@
-"""Compact certificates, version 2: an entry for each root, with the branch that it is.
+"""Compact certificates of version 2: each entry has a root, and the branch that the root gives.
 
-What the evidence proves is written in `listing`, whose certificates hold the same in one object.
+The module `listing` says what the evidence proves. Its certificates hold the same in one object.
 """
 
 from __future__ import annotations
@@ -16,27 +16,27 @@ from . import listing
 
 
 @refusing()
-def check_roots(header: dict[str, Any], found: Iterator[str]) -> tuple[listing.CountClaims, int]:
-    """What the blocks that follow a header prove, and their number; all of them are kept."""
+def check_roots(header: dict[str, Any], texts: Iterator[str]) -> tuple[listing.CountClaims, int]:
+    """Check the blocks that follow a header: the claims that they prove, and their number."""
     sheet, digest = read_sheet(header["pattern"])
-    evidence, branches, blocks = gathered(header, found)
+    evidence, branches, blocks = gathered(header, texts)
     counts = listing.proved(sheet, evidence, branches)
     return {**facts_of(sheet, digest), **counts}, blocks
 
 
-def gathered(header: dict[str, Any], found: Iterator[str]) -> tuple[dict[str, Any], list[Any], int]:
-    """The evidence with all roots, and the branches, as a listing in one object has them.
+def gathered(header: dict[str, Any], texts: Iterator[str]) -> tuple[dict[str, Any], list[Any], int]:
+    """Put the blocks together: the evidence with all roots, the branches, the number of blocks.
 
-    The last is the number of blocks.
+    Evidence and branches have the form that they have in a listing of one object.
     """
     evidence, branches, roots = header["evidence"], list[Any](), list[Any]()
-    if "roots" not in evidence:  # the sheet is rigid, or a single vertex
+    if "roots" not in evidence:  # the sheet is rigid, or has a single vertex that can fold
         return evidence, branches, 0
     number, block = natural(evidence["roots"], "roots"), natural(evidence["block"], "block")
     at_most(number, MOST_ENTRIES, "the roots", "MOST_ENTRIES")
     total, blocks = 0, -(-number // block)
     for k in range(blocks):
-        text = next(found, None)
+        text = next(texts, None)
         if text is None:
             raise UnfinishedError(f"only {k} of {blocks} blocks are there")
         total += len(text)

@@ -1,13 +1,15 @@
 """Certificates of the pieces of the solutions of a sheet (docs/any_border.md).
 
-Why it is a proof: with a convex border of five or more vertices the solutions are 2^n graphs, one
-for each sign vector of the n vertices that can pop (Theorem 6), and the pieces are the components
-of the sign vectors, two that differ at v being joined if some solution with these signs is flat at
-v (Theorem 7). Evidence names stars that are held flat; the checker leaves their folds out, makes
-the flat closure, and finds the solutions that are left (`pieces_flat`). Each joins all sign vectors
-that agree with its signs. At a vertex of which all such solutions are found nothing else is joined;
-at others every two are taken to be joined for the lower bound. A fold from border to border joins
-all.
+The pieces are the connected components of the solutions without the flat state.
+
+Why it is a proof: if the boundary is convex and has five or more vertices, the solutions are 2^n
+graphs, one for each sign vector of the n vertices that can pop (Theorem 6). Two sign vectors that
+differ only at v are joined if some solution with these signs is flat at v, and the pieces are the
+components of the sign vectors (Theorem 7). The evidence names stars that are held flat. The checker
+leaves out their folds, makes the flat closure, and finds the solutions that remain (`flat_stars`).
+Each of these joins all sign vectors that agree with its signs. If all such solutions are found for
+a vertex, nothing else is joined at this vertex; for the lower bound, all sign vectors that differ
+at any other vertex are taken to be joined. A fold from boundary to boundary joins everything.
 """
 
 from __future__ import annotations
@@ -28,11 +30,11 @@ from .flat_stars import Signs, solutions
 MOST_VERTICES = limits.PIECE_VERTICES
 _REFLECTED = str.maketrans("+-", "-+")
 Cube = tuple[int, int]
-"""All sign vectors that agree with the second number on the bits of the first."""
+"""A pair (mask, value): all sign vectors that agree with `value` on the bits of `mask`."""
 
 
 class PiecesClaims(TypedDict):
-    """What a file claims (see `check`)."""
+    """The claims of a file (see `check`)."""
 
     vertices: list[int]
     at_least: int
@@ -46,7 +48,7 @@ class _Chord(TypedDict, total=False):
 
 
 class VerifiedPieces(PiecesClaims, _Chord):
-    """What is verified, with the fold from border to border that joins all, if there is one."""
+    """The verified claims, with the fold from boundary to boundary that joins all, if any."""
 
     interior: int
     sha256: str
@@ -57,10 +59,11 @@ def check(data: dict[str, Any]) -> VerifiedPieces:
     """Verify every claim of a loaded certificate; raises `CertificateError` at the first failure.
 
     Returns the claims, the SHA-256 of the pattern, and the `chord` that joins all, if there is one.
-    The claims are: `vertices` can pop; the solutions, without the flat state, fall into `at_least`
-    to `at_most` pieces; `joints` are the signs of all solutions with flat stars that the evidence
-    shows, "0" at these stars, each up to reflection, and none that joins only what another joins;
-    no others join sign vectors that differ at one vertex of `complete` only.
+    The claims are: `vertices` are the vertices that can pop. Without the flat state the solutions
+    fall into `at_least` to `at_most` pieces. `joints` are the signs of all solutions with flat
+    stars that the evidence shows, with "0" at these stars; of a joint and its reflection one is
+    listed, and a joint that joins only what another joins is left out. No other solution joins two
+    sign vectors that differ only at one vertex of `complete`.
     """
     given, digest = read_sheet(data["pattern"])
     claims, evidence = data["claims"], data["evidence"]
@@ -69,21 +72,23 @@ def check(data: dict[str, Any]) -> VerifiedPieces:
     place = Place(given, evidence["emptied"])
     require(len(place.sheet.boundary) > 4, "there are fewer than five boundary vertices")
     check_convex(place.sheet)
-    search = _Search(place)
-    require(same(claims["vertices"], search.vertices), "other vertices can pop")
+    search = _JointSearch(place)
+    vertices = search.vertices
+    require(same(claims["vertices"], vertices), f"the vertices that can pop are {vertices}")
     chord = evidence["chord"]
     if chord is not None:
         i, j = (natural(v, "a vertex") for v in items(chord, "chord", 2))
-        require((i, j) in search.chords, "no fold from border to border is named")
+        require((i, j) in search.chords, f"{i}-{j} is not a fold from boundary to boundary")
         low = high = 1
     else:
-        require(not search.chords, "a fold goes from border to border")
+        require(not search.chords, "a fold goes from boundary to boundary, and no chord is named")
         for entry in items(evidence["flat"], "flat"):
             search.hold(entry)
         low, high = search.bounds()
     _check_joints(items(claims["joints"], "joints"), search)
-    complete = same(claims["complete"], sorted(search.complete))
-    require(complete, "other vertices are complete")
+    complete = sorted(search.complete)
+    shown = f"the evidence is complete at the vertices {complete}"
+    require(same(claims["complete"], complete), shown)
     shown = f"the evidence shows {low} to {high} pieces"
     require(same([claims["at_least"], claims["at_most"]], [low, high]), shown)
     more: _Chord = {} if chord is None else {"chord": chord}
@@ -91,8 +96,8 @@ def check(data: dict[str, Any]) -> VerifiedPieces:
     return {"sha256": digest, "interior": len(given.interior), **more, **proved}
 
 
-def _check_joints(listed: list[Any], search: _Search) -> None:
-    """The joints that are listed are the largest that are shown, each once up to reflection."""
+def _check_joints(listed: list[Any], search: _JointSearch) -> None:
+    """Raise unless the listed joints are the largest that are shown, each once up to reflection."""
     largest = search.largest()
     known: set[str] = set()
     for text in listed:
@@ -103,16 +108,16 @@ def _check_joints(listed: list[Any], search: _Search) -> None:
     require(not left, f"the joint {left[:1]} is not listed")
 
 
-class _Search:
-    """What is shown of the joints of one sheet."""
+class _JointSearch:
+    """The joints of one sheet that the evidence shows."""
 
     def __init__(self, place: Place) -> None:
         sheet = self.sheet = place.sheet
         self.vertices = list(sheet.interior)
         require(self.vertices, "no vertex can pop")
         at_most(len(self.vertices), MOST_VERTICES, "the vertices that can pop", "PIECE_VERTICES")
-        border = set(sheet.boundary)
-        self.chords = {fold for fold in sheet.folds if border.issuperset(fold)}
+        boundary = set(sheet.boundary)
+        self.chords = {fold for fold in sheet.folds if boundary.issuperset(fold)}
         self._kept = sorted(sheet.points)
         self._new = {v: k for k, v in enumerate(self._kept)}
         tower = Tower()
@@ -124,24 +129,25 @@ class _Search:
         self.complete: set[int] = set()
 
     def hold(self, entry: Any) -> None:
-        """Find the solutions with some stars held flat."""
+        """Find the solutions in which the stars that an entry names are flat."""
         keys(entry, "held complete parts", "a set of flat stars")
         near = self._near([natural(v, "a vertex") for v in items(entry["held"], "held")])
         parts = [self._renamed(part) for part in items(entry["parts"], "parts")]
-        found = True
+        all_found = True
         if near:
             spaces = Spaces(self._panels, near)
-            joints, found = solutions(spaces, spaces.first_order, parts)
+            joints, all_found = solutions(spaces, spaces.first_order, parts)
             for signs in joints:
                 self._add(signs)
         for v in (natural(v, "a vertex") for v in items(entry["complete"], "complete")):
-            require(found, f"not all solutions with vertex {v} flat are shown")
+            require(all_found, f"not all solutions with vertex {v} flat are shown")
             require(self._near([v]) == near, f"other folds may bend with vertex {v} flat")
             self.complete.add(v)
 
     def _near(self, held: list[int]) -> dict[int, list[int]]:
         inside = set(self.vertices)
-        require(held and inside.issuperset(held), "a star that is held flat is none")
+        inner = held and inside.issuperset(held)
+        require(inner, f"the vertices held flat, {held[:20]}, are none, or not all can pop")
         flat = {pair(self._new[v], self._new[u]) for v in held for u in self.sheet.star(v)}
         return self._panels.live(flat)
 
@@ -161,7 +167,7 @@ class _Search:
             self.cubes.add((mask, sum(1 << k for k, value in enumerate(values) if value > 0)))
 
     def largest(self) -> set[str]:
-        """The joints that join sign vectors which no other joint joins, with their reflections."""
+        """The joints that are not contained in another joint, with their reflections."""
         return {
             text
             for text in self.joints
@@ -169,7 +175,7 @@ class _Search:
         }
 
     def bounds(self) -> tuple[int, int]:
-        """The least and the largest number of pieces."""
+        """A lower and an upper bound of the number of pieces."""
         high = components(len(self.vertices), self.cubes)
         kept = [k for k, v in enumerate(self.vertices) if v in self.complete]
         cut = {(_bits(mask, kept), _bits(value, kept)) for mask, value in self.cubes}
@@ -177,7 +183,7 @@ class _Search:
 
 
 def _within(joint: str, other: str) -> bool:
-    """Whether a joint joins only what another one joins."""
+    """Whether another joint joins everything that this joint joins."""
     return all(b in (a, "0") for a, b in zip(joint, other, strict=True))
 
 
@@ -186,7 +192,7 @@ def _bits(number: int, kept: list[int]) -> int:
 
 
 def components(size: int, cubes: set[Cube]) -> int:
-    """The components of 2^size sign vectors if those in each cube are joined."""
+    """The number of components of 2^size sign vectors, if all vectors of each cube are joined."""
     waiting = set(cubes)
     number = 0
     while waiting:
@@ -204,13 +210,13 @@ def components(size: int, cubes: set[Cube]) -> int:
 
 
 def summary(claims: VerifiedPieces) -> str:
-    """One line for verified claims."""
+    """One line that states the verified claims."""
     low, high = claims["at_least"], claims["at_most"]
     graphs = 1 << len(claims["vertices"])
     pieces = counted(high, "piece", "pieces") if low == high else f"{low} to {high} pieces"
     joints = f"with {counted(len(claims['joints']), 'joint', 'joints')} shown"
     if "chord" in claims:
-        joints = "joined by the fold {}-{} from border to border".format(*claims["chord"])
+        joints = "joined by the fold {}-{} from boundary to boundary".format(*claims["chord"])
     return (
         f"VALID: the solutions are {graphs} graphs in {pieces}, {joints}; sha256 {claims['sha256']}"
     )
@@ -224,4 +230,4 @@ PIECES = DocumentKind(
     check=check,
     summary=summary,
 )
-"""Into how many pieces the solutions fall with more than four corners (docs/any_border.md)."""
+"""The number of pieces of the solutions, with more than four corners (docs/any_border.md)."""

@@ -1,4 +1,4 @@
-"""Zeros in boxes on the sheets that are flat at given vertices."""
+"""Zeros of the branch system at which the stars of given vertices are flat, proved in boxes."""
 
 from __future__ import annotations
 
@@ -14,10 +14,11 @@ from ..sheets.equations import BranchSystem
 
 
 class FlatSheets:
-    """The sheets that are flat at given vertices, x = A (y, 1), and the quadrics on them.
+    """The sheets that are flat at given vertices, as x = A (y, 1), and the quadrics on them.
 
-    The y are the unknowns x that are not pivots of "fold flat". Of the quadrics a basis of their
-    span is kept, which must have as many elements as there are unknowns y.
+    The equations "these folds are flat" are solved for their pivot unknowns; the y are the other
+    unknowns x. `quadrics` is a basis of the span of all quadrics in y. It must have as many
+    elements as there are unknowns y.
     """
 
     def __init__(self, system: BranchSystem, flat: list[Any]) -> None:
@@ -46,14 +47,14 @@ class FlatSheets:
         for line in span.values():
             scale = lcm(*(c.denominator for c in line))
             quadric = {ij: int(c * scale) for ij, c in zip(places, line, strict=True) if c}
-            # c x_i x_j as c/2 each of (i, j) and (j, i), over integers
+            # twice the form, so that c y_i y_j becomes the two integer entries c of (i, j), (j, i)
             both = {(i, j): c * (1 + (i == j)) for (i, j), c in quadric.items()}
             self.quadrics.append(both | {(j, i): c for (i, j), c in both.items()})
 
     def _restricted(
         self, quadric: dict[tuple[int, int], int], places: list[tuple[int, int]]
     ) -> list[Fraction]:
-        """Coefficients of y_i y_j, i >= j."""
+        """A quadric in terms of (y, 1): the coefficients of y_i y_j for i >= j."""
         total = dict.fromkeys(places, Fraction(0))
         for (p, q), c in quadric.items():
             for i, x in enumerate(self.lifts[p]):
@@ -63,7 +64,7 @@ class FlatSheets:
         return list(total.values())
 
     def row(self, row: Sequence[int]) -> list[int]:
-        """A functional on these sheets, signs kept."""
+        """A functional of x as a functional of y, times a positive number."""
         total = [Fraction(0)] * (self.size + 1)
         for c, line in zip(row, self.lifts, strict=True):
             if c:
@@ -81,5 +82,5 @@ class FlatBox:
         self.box = read_box({k: v for k, v in entry.items() if k != "flat"}, sheets.size)
 
     def sign(self, row: Sequence[int]) -> int | None:
-        """1 or -1 if the functional keeps that sign on the box, 0 if it is 0 there, else None."""
+        """1 or -1 if the functional has this sign on the whole box, 0 if it is 0, else None."""
         return self.box.sign(self.sheets.row(row))

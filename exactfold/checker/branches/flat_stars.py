@@ -1,19 +1,22 @@
-"""All solutions on some stars of a sheet, all others being flat, as far as their signs matter.
+"""The vertex signs of all solutions in which the stars of given vertices are flat.
 
-In densities of folds the conditions are those of rigid panels. A semidefinite form leaves its
-kernel; what is left falls into parts that share no fold, and a solution is a sum of solutions on
-parts (docs/any_border.md, How joints are decided). On a part with m unknowns
+The unknowns are the densities of the folds that may bend, with the conditions of rigid panels. A
+semidefinite form vanishes on its kernel only. The remaining space falls into parts that share no
+fold, and a solution is a sum of solutions on parts (docs/any_border.md, How joints are decided).
+On a part with m unknowns there are these cases:
 
-- where all forms vanish there is one line;
-- where the products of the forms with the monomials of some degree span all monomials of that
-  degree, modulo a prime, there is only 0;
-- m - 1 forms with 2^(m-1) disjoint boxes in a chart have no other zeros, by refined Bezout;
-- a form of inertia (1, 1) is a product, and both factors are parts of their own;
-- else boxes show that some solutions are there. If all signs of the vertices that may bend are
-  among theirs, no other joins more by a flip at a vertex that is flat in all of them; if not,
-  nothing is known of others.
+- if all forms vanish, the solutions are one line;
+- if the products of the forms with all monomials of some degree span all monomials of their own
+  degree, modulo a prime, the only solution is 0;
+- if there are m - 1 forms, and 2^(m-1) disjoint boxes in a chart hold one zero each, there are no
+  other zeros, by refined Bezout;
+- if a form has inertia (1, 1), it is a product of two linear factors, and the zeros of each factor
+  are a part of their own;
+- otherwise boxes show some solutions. If these have all signs of the vertices that may bend, no
+  other solution joins more by a flip at a vertex that is flat in all of them. If not, nothing is
+  known of other solutions.
 
-Evidence that does not hold proves nothing, so that claims which need it fail.
+Evidence that does not hold proves nothing, so that the claims that need it are refused.
 """
 
 from __future__ import annotations
@@ -38,13 +41,16 @@ from .ranks import have_no_common_zero
 MOST_UNKNOWNS = limits.PIECE_UNKNOWNS
 
 Signs = dict[int, int]
-"""By vertex; those that are left out are flat."""
+"""The signs of vertices; a vertex that is left out is flat."""
 Row = list[Fraction]
 Matrix = list[Row]
 
 
 class Found(NamedTuple):
-    """Signs of solutions; if `closed`, of all but sums of solutions on different parts."""
+    """The signs of solutions that are found.
+
+    `closed` says that these are all solutions, apart from sums of solutions on different parts.
+    """
 
     joints: list[Signs]
     closed: bool
@@ -52,20 +58,20 @@ class Found(NamedTuple):
 
 @dataclass
 class System:
-    """Quadrics for `Krawczyk`."""
+    """Quadrics in the form that `Krawczyk` takes."""
 
     size: int
     quadrics: list[dict[tuple[int, int], int]]
 
 
 def solutions(spaces: Spaces, space: Space, evidence: Sequence[Any]) -> Found:
-    """The signs of the solutions in a space, with what is given for some of its parts."""
+    """The signs of the solutions in a space; the evidence gives boxes for some of its parts."""
     joints: list[Signs] = []
     closed = True
     for part in spaces.parts(space):
-        found = _part(spaces, part, evidence)
-        joints += found.joints
-        closed = closed and found.closed
+        result = _part(spaces, part, evidence)
+        joints += result.joints
+        closed = closed and result.closed
     return Found(joints, closed)
 
 
@@ -106,10 +112,10 @@ def _part(spaces: Spaces, part: Space, evidence: Sequence[Any]) -> Found:
 
 
 def _are_all(spaces: Spaces, part: Space, joints: list[Signs]) -> bool:
-    """Whether all signs of the vertices that may bend occur.
+    """Whether the joints have all signs of the vertices that may bend.
 
-    Then sign vectors that differ at a vertex of another star only are all joined. Joints that are
-    flat at one of them are left out.
+    Other joints are not counted. Then any two sign vectors that differ only at a vertex that is
+    held flat are joined.
     """
     touched = sorted({v for fold in folds_of(part) for v in fold if v in spaces.near})
     known = [signs for signs in joints if sorted(signs) == touched]
@@ -118,14 +124,17 @@ def _are_all(spaces: Spaces, part: Space, joints: list[Signs]) -> bool:
 
 
 def _line(spaces: Spaces, part: Space) -> Found:
-    """The one line on which all forms vanish: an isotropic space of each Lorentzian form."""
+    """The solutions of a part on which all forms vanish.
+
+    Such a part is isotropic for each Lorentzian form, so that it is one line.
+    """
     enclosed = {fold: value.enclosed(BITS) for fold, value in part[0].items()}
     signs = signs_of(spaces, enclosed) if len(part) == 1 else None
     return Found([], False) if signs is None else Found([signs], True)
 
 
 def signs_of(spaces: Spaces, densities: dict[Edge, Interval]) -> Signs | None:
-    """The sign of -sum_e w_e L_e at each vertex with a fold that bends; None if one is open."""
+    """The sign of -sum_e w_e L_e at each vertex with a bent fold; None if one sign is open."""
     signs = {}
     for v, around in spaces.near.items():
         total = Interval(0, 0, BITS)
@@ -141,12 +150,12 @@ def signs_of(spaces: Spaces, densities: dict[Edge, Interval]) -> Signs | None:
 
 
 def _values(spaces: Spaces, part: Space, v: int) -> Matrix:
-    """The form of a vertex on the basis of a rational part."""
+    """The matrix of the form of a vertex in the basis of a rational part."""
     return [[spaces.form(v, a, b).parts[0] for b in part] for a in part]
 
 
 class _Part:
-    """A rational part in coordinates: the densities of the folds that the evidence names."""
+    """A rational part, with the densities of the folds named by the evidence as coordinates."""
 
     def __init__(
         self, spaces: Spaces, part: Space, curved: list[int], forms: list[Matrix], entry: Any
@@ -161,7 +170,7 @@ class _Part:
         self.forms = [_times(_transposed(basis), _times(form, basis)) for form in forms]
 
     def system(self, lifted: Matrix) -> System:
-        """The forms on (x, 1), the coordinates being `lifted` times that."""
+        """The forms in terms of (x, 1), where the coordinates are `lifted` times (x, 1)."""
         quadrics = []
         for form in self.forms:
             matrix = _times(_transposed(lifted), _times(form, lifted))
@@ -177,7 +186,7 @@ class _Part:
         return System(len(lifted[0]) - 1, quadrics)
 
     def signs(self, box: Box, lifted: Matrix) -> Signs | None:
-        """The signs of the solution in a box."""
+        """The vertex signs of the solution in a box; None if one is open."""
         ends = [
             (Fraction(c - box.radius, 1 << box.bits), Fraction(c + box.radius, 1 << box.bits))
             for c in box.center
@@ -195,7 +204,11 @@ class _Part:
 
 
 def _boxes(part: _Part) -> Found:
-    """What boxes show: all solutions in a chart, or some with given values of some coordinates."""
+    """The solutions that the boxes of the evidence show.
+
+    With a "chart" they are all solutions of the part, with "points" only some of them: at each
+    point some coordinates are fixed at given values.
+    """
     entry, size = part.entry, part.size
     if "chart" in entry:
         keys(entry, "folds chart roots", "a part")
@@ -223,7 +236,7 @@ def _boxes(part: _Part) -> Found:
 
 
 def _all_zeros(part: _Part, lifted: Matrix, entries: list[Any]) -> list[Signs]:
-    """The signs of the real zeros among 2^n disjoint boxes."""
+    """The vertex signs of all real zeros, which 2^n disjoint boxes in C^n hold with the others."""
     system = part.system(lifted)
     both = _doubled(system)
     real: list[Box] = []
@@ -249,7 +262,7 @@ def _known(signs: Signs | None) -> Signs:
 
 
 def _doubled(system: System) -> System:
-    """The real and the imaginary part of F(u + i v), as quadrics in (u, v)."""
+    """The real and the imaginary parts of F(u + i v), as quadrics in (u, v)."""
     n = system.size
     quadrics = []
     for quadric in system.quadrics:
@@ -268,7 +281,7 @@ def _doubled(system: System) -> System:
 
 
 def _at(k: int, n: int) -> int:
-    """The place of a real part, or of the constant."""
+    """The index in (u, v, 1) of the real part of unknown k, or of the constant if k = n."""
     return 2 * n if k == n else k
 
 

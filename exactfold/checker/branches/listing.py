@@ -1,15 +1,16 @@
 """Certificates that list every branch (docs/certificate.md).
 
-What each kind of evidence proves, in short:
+There are four kinds of evidence:
 
-  isolated       2^n disjoint boxes, each with exactly one zero by Krawczyk's test in integers:
-                 by refined Bezout these are all zeros of n quadrics in P^n, all real and simple;
-  algebraic      zeros as roots of squarefree polynomials, in boxes, or in boxes on the sheets
-                 that are flat at given vertices; a zero at which f of the
-                 quadrics have order 2 has multiplicity 2^f or more, and the sum reaches 2^n, so
-                 that the bounds are exact and nothing is missing;
-  rigid          a positive definite stress: the sheet cannot fold;
-  single vertex  the inertia (1, N - 3, 3) of one curvature form, N >= 5: one double cone.
+  isolated       2^n disjoint boxes hold exactly one zero each, by Krawczyk's test in integers. By
+                 refined Bezout these are all zeros of n quadrics in P^n, all real and simple.
+  algebraic      The zeros are roots of squarefree polynomials, or lie in boxes, or in boxes on the
+                 sheets that are flat at given vertices. A zero at which f quadrics have order 2 has
+                 multiplicity 2^f or more. These bounds add up to 2^n, so that they are exact and no
+                 zero is missing.
+  rigid          A positive definite stress shows that the sheet cannot fold.
+  single vertex  One curvature form has inertia (1, N - 3, 3) with N >= 5, so that the solutions are
+                 one double cone.
 """
 
 from __future__ import annotations
@@ -38,7 +39,7 @@ UPSIDE_DOWN = str.maketrans("+-MV", "-+VM")
 
 
 class Counts(TypedDict):
-    """How many branches there are, and whether all of them extend to a finite flex."""
+    """How many branches there are, and whether all are proved to extend to a finite flex."""
 
     distinct: int
     with_multiplicity: int
@@ -48,7 +49,11 @@ class Counts(TypedDict):
 
 
 class ListedBranch(TypedDict):
-    """A branch by its signs and letters, as shown by its positive saddle or by either side."""
+    """A branch, named by the signs and letters on one ray.
+
+    `representative` is "saddle" for the ray with the positive saddle, "either" if the saddle is 0
+    or its sign is open.
+    """
 
     vertex_signs: str
     assignment: str
@@ -57,11 +62,11 @@ class ListedBranch(TypedDict):
 
 
 class CountClaims(SheetFacts, Counts):
-    """What is claimed of the branches of a sheet together."""
+    """The claims about a sheet and about the numbers of its branches."""
 
 
 class ListingClaims(CountClaims):
-    """The same, with all of them."""
+    """The same claims, with a list of all branches."""
 
     branches: list[ListedBranch]
 
@@ -87,7 +92,7 @@ def check(data: dict[str, Any]) -> ListingClaims:
 
 
 def proved(sheet: Sheet, evidence: Any, branches: list[Any]) -> Counts:
-    """The counts that the evidence proves of a sheet, whose branches are those listed."""
+    """The counts that the evidence proves; raises unless `branches` lists exactly the branches."""
     require(isinstance(evidence, dict), "the evidence is not an object")
     emptied = check_triangles(sheet, evidence.get("triangles"))
     kind = evidence.get("kind")
@@ -105,7 +110,10 @@ def proved(sheet: Sheet, evidence: Any, branches: list[Any]) -> Counts:
 def counts_of(
     real: int, with_multiplicity: int, nonreal: int = 0, *, simple: bool = True
 ) -> Counts:
-    """Real and other branches; all extend to a finite flex if all are real and simple."""
+    """The counts of real and of other branches.
+
+    If all are real and simple, all are proved to extend to a finite flex.
+    """
     return {
         "distinct": real + nonreal,
         "with_multiplicity": with_multiplicity,
@@ -119,7 +127,7 @@ def _rigid(sheet: Sheet, emptied: Sheet, evidence: Any, branches: list[Any]) -> 
     keys(evidence, "kind triangles", "evidence")
     require(
         len(sheet.boundary) == 3 and not emptied.interior and sheet.interior,
-        "the sheet is no triangulated triangle",
+        "the sheet is not a triangulated triangle",
     )
     require(not branches, "a rigid sheet has no branches")
     return counts_of(0, 0)
@@ -130,7 +138,7 @@ def _single_vertex(sheet: Sheet, emptied: Sheet, evidence: Any, branches: list[A
     require(
         len(emptied.interior) == 1
         and len(emptied.star(emptied.interior[0])) == len(emptied.boundary) >= 5,
-        "the emptied sheet is no single vertex of degree 5 or more",
+        "the emptied sheet is not the star of a single vertex of degree 5 or more",
     )
     check_lorentzian(emptied, emptied.interior[0])
     require(not branches, "a branch of dimension two or more is not listed")
@@ -138,8 +146,9 @@ def _single_vertex(sheet: Sheet, emptied: Sheet, evidence: Any, branches: list[A
 
 
 def _lines(sheet: Sheet, emptied: Sheet, evidence: Any, branches: list[Any]) -> Counts:
-    """D = 1: each branch is a line, a zero of the branch system of the emptied sheet."""
-    require(len(sheet.boundary) == 4 and sheet.interior, "the sheet has not D = 1")
+    """The counts if D = 1: each branch is a line, a zero of the branch system."""
+    four = len(sheet.boundary) == 4 and sheet.interior
+    require(four, "the sheet does not have four boundary vertices and an interior vertex")
     system, nonreal = BranchSystem(emptied, read_chart(evidence.get("chart"))), 0
     if evidence["kind"] == "isolated":
         roots = check_isolated(system, evidence)
@@ -154,10 +163,10 @@ def _lines(sheet: Sheet, emptied: Sheet, evidence: Any, branches: list[Any]) -> 
 def check_branches(
     sheet: Sheet, system: BranchSystem, roots: list[tuple[Root, int]], branches: list[Any]
 ) -> None:
-    """Vertex signs, mountain-valley assignment and multiplicity of every branch.
+    """Raise unless every listed branch has the signs, letters and multiplicity of its root.
 
-    The letter U claims nothing. The signs that are known on all branches must tell zeros listed in
-    different ways apart.
+    The letter U claims nothing. Two roots that are listed in different ways must be different
+    zeros: their vertex signs, or the letters that are known on all branches, must differ.
     """
     texts: list[tuple[str, str]] = []
     emptied = system.sheet
@@ -172,7 +181,7 @@ def check_branches(
         at = {v: root.sign(row) for v, row in vertex_rows.items()}
         up_down = "".join("-0+?"[1 + digit(at.get(v, 0))] for v in sheet.interior)
         letters = "".join("MFVU"[1 + digit(signs.get(f, 0))] for f in sheet.folds)
-        require("?" not in up_down, f"branch {number}: signs are open")
+        require("?" not in up_down, f"branch {number}: the sign of a vertex is open")
         seen = (up_down, letters)
         texts.append(seen)
         mirror = (up_down.translate(UPSIDE_DOWN), letters.translate(UPSIDE_DOWN))
@@ -184,8 +193,8 @@ def check_branches(
                 for up_down, letters in allowed
             )
             and branch["representative"] == ("saddle" if side else "either"),
-            f"branch {number}: not {' or '.join(map(' '.join, allowed))} as shown by "
-            f"{'its positive saddle' if side else 'either side'}",
+            f"branch {number}: {'its positive saddle' if side else 'either side'} shows "
+            f"{' or '.join(map(' '.join, allowed))}, not what is claimed",
         )
         require(
             type(branch["multiplicity"]) is int
@@ -196,23 +205,24 @@ def check_branches(
     kinds: dict[tuple[str, str], object] = {}
     for (up_down, letters), (root, _) in zip(texts, roots, strict=True):
         key = (up_down, "".join(letters[k] for k in known))
-        require(kinds.setdefault(key, root.kind) == root.kind, "a root may be counted twice")
+        once = kinds.setdefault(key, root.kind) == root.kind
+        require(once, "two entries may be the same root")
 
 
 def agrees(claimed: str, letters: str) -> bool:
-    """Whether every letter claimed is right; U claims nothing."""
+    """Whether every claimed letter is right; the letter U claims nothing."""
     return len(claimed) == len(letters) and all(
         a in (b, "U") for a, b in zip(claimed, letters, strict=True)
     )
 
 
 def digit(sign: int | None) -> int:
-    """-1, 0 or 1 for a sign, 2 for an open one."""
+    """The sign itself, or 2 for an open sign."""
     return 2 if sign is None else sign
 
 
 def summary(claims: CountClaims) -> str:
-    """One line for verified claims."""
+    """One line that states the verified claims."""
     branches = counted(claims["distinct"], "branch", "branches")
     return (
         f"VALID: {branches} ({claims['with_multiplicity']} with "

@@ -1,7 +1,8 @@
-"""Quadratic forms without a common zero: the rank of Macaulay's matrix modulo a prime.
+"""Quadratic forms without a common zero, proved by the rank of Macaulay's matrix modulo a prime.
 
-If the products of forms with all monomials of some degree span all monomials modulo a prime, they
-do so over Q, and all monomials vanish at a common zero.
+Multiply the forms by all monomials of one degree. If these products span all monomials of their
+degree modulo a prime, they span them over Q as well. Then all monomials vanish at a common zero, so
+that 0 is the only one.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ MOST_MONOMIALS = limits.MOST_MONOMIALS
 
 
 def have_no_common_zero(forms: Sequence[Sequence[Sequence[Fraction]]]) -> bool:
-    """Whether rational forms are shown to have no complex common zero but 0 (Macaulay)."""
+    """Whether rational forms are proved to have no common complex zero but 0 (Macaulay)."""
     size = len(forms[0])
     if len(forms) < size:
         return False
@@ -43,7 +44,7 @@ def have_no_common_zero(forms: Sequence[Sequence[Sequence[Fraction]]]) -> bool:
 
 
 def _spans(forms: list[dict[tuple[int, int], int]], size: int, degree: int, columns: int) -> bool:
-    """Whether the products with all monomials have the full rank modulo the prime."""
+    """Whether the products of the forms with all monomials have full rank modulo the prime."""
     place = {m: k for k, m in enumerate(combinations_with_replacement(range(size), degree))}
     pivots: dict[int, dict[int, int]] = {}
     for form in forms:

@@ -1,1 +1,1 @@
-"""Reading files, exact numbers, linear algebra, Krawczyk's test: what every kind needs."""
+"""What every kind of certificate needs: reading, exact numbers, linear algebra, Krawczyk's test."""

@@ -1,4 +1,7 @@
-"""Intervals with ends over a power of two, rounded outwards: they prove that numbers differ."""
+"""Intervals that prove the sign of a number, and so that two numbers differ.
+
+Their ends are integers over a power of two, and every operation rounds outwards.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +10,7 @@ from math import isqrt
 
 
 class Interval:
-    """The real numbers from low / 2^bits to high / 2^bits."""
+    """All real numbers from low / 2^bits to high / 2^bits."""
 
     __slots__ = ("bits", "high", "low")
 
@@ -16,7 +19,7 @@ class Interval:
 
     @classmethod
     def of(cls, value: Fraction, bits: int) -> Interval:
-        """The smallest interval that holds a rational number."""
+        """The smallest interval with this many bits that holds a rational number."""
         scaled = value.numerator << bits
         return cls(scaled // value.denominator, -(-scaled // value.denominator), bits)
 
@@ -37,15 +40,15 @@ class Interval:
     def __truediv__(self, other: Interval) -> Interval:
         """The quotient; raises `ZeroDivisionError` if the divisor may be 0."""
         if other.sign() == 0:
-            raise ZeroDivisionError("an interval around 0")
+            raise ZeroDivisionError("the divisor is an interval that may hold 0")
         one = 1 << 2 * self.bits
         return self * Interval(one // other.high, -(-one // other.low), self.bits)
 
     def root(self) -> Interval:
-        """The square roots; of what is below 0 none is taken."""
+        """An interval that holds the square roots; the negative part is clipped."""
         low, high = max(self.low, 0) << self.bits, max(self.high, 0) << self.bits
         return Interval(isqrt(low), isqrt(high) + 1, self.bits)
 
     def sign(self) -> int:
-        """1 or -1 if all numbers have that sign, else 0."""
+        """1 if all numbers of the interval are positive, -1 if all are negative, else 0."""
         return (self.low > 0) - (self.high < 0)

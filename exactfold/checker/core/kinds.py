@@ -1,6 +1,6 @@
-"""What a kind of certificate is: how its files are read and checked, and what is said of them.
+"""A kind of certificate: how its files are read, checked, and summed up in one line.
 
-Each theory defines its kinds beside what it proves. `command` has the table of all of them.
+Each theory defines its kinds beside what it proves. `command` has the table of all kinds.
 """
 
 from __future__ import annotations
@@ -19,9 +19,10 @@ Claims = TypeVar("Claims", bound=Mapping[str, Any])
 class Kind(Generic[Claims]):
     """A kind of certificate.
 
-    The writer takes `format` and a version from here, and the types of what it writes from the
-    module of the kind. `names` are the keys of the object, or of the first line of a file of lines.
-    `claims` is the type of verified claims, and `summary` says them in one line.
+    The program that writes such files takes `format` and a version from here, and the types of the
+    documents from the module that defines the kind. `names` are the keys of the object, or of the
+    first line if the file is written in lines. `claims` is the type of the verified claims, and
+    `summary` states them in one line.
     """
 
     format: str
@@ -32,13 +33,13 @@ class Kind(Generic[Claims]):
 
     @property
     def version(self) -> int:
-        """The newest."""
+        """The newest version."""
         return self.versions[-1]
 
     def read(self, data: Any) -> dict[str, Any]:
-        """`data` if it is an object of this kind, of a version that is read, with its keys.
+        """Return `data` if it is an object of this kind, in a known version, with the right keys.
 
-        Raises `FormatError`.
+        Raises `FormatError` if it is not.
         """
         if not isinstance(data, dict) or data.get("format") != self.format:
             raise FormatError(f'the object has no "format": "{self.format}"')
@@ -51,11 +52,12 @@ class Kind(Generic[Claims]):
 
 @dataclass(frozen=True, kw_only=True)
 class DocumentKind(Kind[Claims]):
-    """A kind whose files are one JSON object each.
+    """A kind with one JSON object in each file.
 
-    `check` verifies every claim of an object that was read, and returns the claims; it raises
-    `CertificateError` at the first that is not supported. Kinds with the same format are told apart
-    by `named`: what their objects have under "kind", None if they have no such key.
+    `check` verifies every claim of an object that was read, and returns the claims. It raises
+    `CertificateError` at the first claim that is not supported. Several kinds may share a format:
+    `named` tells them apart. It is the value of "kind" in their objects, or None if they have no
+    such key.
     """
 
     check: Callable[[dict[str, Any]], Claims]
@@ -64,23 +66,23 @@ class DocumentKind(Kind[Claims]):
 
 @dataclass(frozen=True, kw_only=True)
 class LineKind(Kind[Claims]):
-    """A kind whose files are JSON objects line by line, which `lines` reads.
+    """A kind whose files have one JSON object on each line; `lines` reads them.
 
-    `check(lines, workers, engine)` verifies every claim of a file and returns the claims. The parts
-    of the file are verified by `engine` if no other is asked for.
+    `check(lines, workers, engine)` verifies every claim of a file and returns the claims. The field
+    `engine` is the engine that verifies the parts of the file, unless the caller passes another.
     """
 
     check: Callable[[Iterator[str], int, Engine], Claims]
     engine: Engine
 
     def header(self, text: str) -> dict[str, Any]:
-        """The first line of a file, if it is one of this kind; raises `FormatError`."""
+        """Read the first line of a file; raises `FormatError` if it is not of this kind."""
         return self.read(read_json(text))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Verified(Mapping[str, Any], Generic[Claims]):
-    """The claims of one file, all of them verified, and the kind that says what they mean."""
+    """The claims of one file, all verified, and the kind that says what they mean."""
 
     kind: Kind[Claims]
     claims: Claims

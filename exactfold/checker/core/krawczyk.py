@@ -12,7 +12,10 @@ from .reading import CertificateError
 
 
 class Quadrics(Protocol):
-    """Quadrics F_p(x) = (1/2) z^T S_p z in `size` unknowns, as {(i, j): entry of S_p}."""
+    """Quadrics F_p(x) = (1/2) z^T S_p z, z = (x, 1), in `size` unknowns.
+
+    Each quadric is a dictionary {(i, j): entry of S_p}.
+    """
 
     size: int
     quadrics: list[dict[tuple[int, int], int]]
@@ -37,8 +40,9 @@ class Krawczyk:
     def check(self, center: list[int], radius: int, bits: int) -> None:
         """Raise unless the box |x - center/2^bits| <= radius/2^bits holds exactly one zero.
 
-        With eta = |Y F(m)|, k0 = |I - Y F'(m)|, M >= max_i sum_jk |sum_p Y_ip (H_p)_jk| it is
-        enough that k0 + r M < 1 and eta + (k0 + r M) r < r.
+        Let m be the centre, r the radius, and Y any matrix. With eta = |Y F(m)|,
+        k0 = |I - Y F'(m)| and M >= max_i sum_jk |sum_p Y_ip (H_p)_jk| it is enough that
+        k0 + r M < 1 and eta + (k0 + r M) r < r.
         """
         n, z = self.n, [*center, 1 << bits]
         gradients, values = [], []
@@ -71,12 +75,14 @@ class Krawczyk:
     def _preconditioners(
         self, gradients: list[list[int]], bits: int
     ) -> Iterator[tuple[list[list[int]], int]]:
-        """Approximate inverses Y = y / 2^shift of F'(m): from doubles, then to many digits.
+        """Two approximate inverses Y = y / 2^shift of F'(m).
 
-        If any Y passes the test, so does F'(m)^-1, for which eta, k0, M become at most
-        eta / (1 - k0), 0, M / (1 - k0). The second Y is as good up to 2^-29 of these bounds: it is
-        rounded to 2^-30 / sum |F'(m)|, and its digits allow for |Y| <= 2^(bits + scale), which
-        r M < 1 implies if every quadric has a quadratic part; if not, it is found in rationals.
+        The first is computed in doubles. The second is computed to many digits, and the caller asks
+        for it only if the first does not pass the test. If any Y passes, so does F'(m)^-1: its eta,
+        k0 and M are at most eta / (1 - k0), 0 and M / (1 - k0). The second Y reaches these bounds
+        up to 2^-29 of them, because it is rounded to 2^-30 / sum |F'(m)|. Its digits are enough for
+        |Y| <= 2^(bits + scale). If every quadric has a quadratic part, r M < 1 implies this
+        inequality. If some quadric has none, Y is computed in rationals.
         """
         n, down = self.n, 1 << (self.scale + bits)
         jacobian = [row[:n] for row in gradients]
@@ -87,11 +93,11 @@ class Krawczyk:
             room = 2 * (max(total, 0) + max(bits, 64) + self.scale + n)
             with localcontext(Context(room * 31 // 100 + 30, Emin=MIN_EMIN, Emax=MAX_EMAX)):
                 many = [[Decimal(g) / down for g in row] for row in jacobian]
-                found = _inverse_or_none(many)
+                precise = _inverse_or_none(many)
         else:
-            found = _inverse_or_none([[Fraction(g, down) for g in row] for row in jacobian])
-        if found is not None:
-            yield self._rounded(found, bits + 8, total + 30)
+            precise = _inverse_or_none([[Fraction(g, down) for g in row] for row in jacobian])
+        if precise is not None:
+            yield self._rounded(precise, bits + 8, total + 30)
 
     def _rounded(
         self, matrix: list[list[Any]], digits: int, least: int | None = None

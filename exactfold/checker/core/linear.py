@@ -8,7 +8,10 @@ from math import isqrt
 
 
 def inertia(matrix: list[list[Fraction]]) -> tuple[int, int, int]:
-    """(positive, negative, zero) of a symmetric rational matrix, by completing squares."""
+    """The inertia (positive, negative, zero) of a symmetric rational matrix.
+
+    The form is written as a sum of squares with weights, and the signs of the weights are counted.
+    """
     work, live, counts = [list(row) for row in matrix], list(range(len(matrix))), [0, 0]
     while live:
         k = next((i for i in live if work[i][i]), None)
@@ -32,12 +35,12 @@ def inertia(matrix: list[list[Fraction]]) -> tuple[int, int, int]:
 
 
 def matrix_of(form: Mapping[tuple[int, int], Fraction], labels: list[int]) -> list[list[Fraction]]:
-    """The matrix of a form on the given variables, the others being 0."""
+    """The matrix of a form in the variables of `labels`, with all other variables set to 0."""
     return [[Fraction(form.get((i, j), 0)) for j in labels] for i in labels]
 
 
 def kernel(rows: list[list[Fraction]], size: int) -> list[list[Fraction]]:
-    """A basis of the vectors of length `size` that all rows annihilate."""
+    """A basis of the vectors of length `size` whose product with every row is 0."""
     work, pivots = [list(map(Fraction, row)) for row in rows], list[int]()
     for column in range(size):
         lead = next((r for r in range(len(pivots), len(work)) if work[r][column]), None)
@@ -60,7 +63,7 @@ def kernel(rows: list[list[Fraction]], size: int) -> list[list[Fraction]]:
 
 
 def echelon(rows: list[list[Fraction]]) -> dict[int, list[Fraction]]:
-    """Reduced echelon form: nonzero rows by pivot column."""
+    """The reduced echelon form, as {pivot column: row}; rows that are 0 are left out."""
     lines: dict[int, list[Fraction]] = {}
     for row in rows:
         for k, line in lines.items():

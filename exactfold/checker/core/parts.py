@@ -1,4 +1,4 @@
-"""Files that are verified part by part, such as blocks or loops, which processes may share."""
+"""Verifying a file part by part. A part is a block or a loop; several processes may share them."""
 
 from __future__ import annotations
 
@@ -11,23 +11,23 @@ if TYPE_CHECKING:
     from concurrent.futures import Future
 
 Said = Generator[str | None, None, None]
-"""What is wrong with each part of a file, or None."""
+"""For each part of a file, in order: why it does not hold, or None if it holds."""
 
 
 class Verifier(Protocol):
-    """What verifies the parts of one file, and holds all that is known of this file."""
+    """An object that verifies the parts of one file, and holds all that is known of this file."""
 
     def refusal(self, text: str, number: int) -> str | None:
-        """Verify the line of one part: None, or why it does not hold."""
+        """Verify the line of one part; say why the part does not hold, or None if it holds."""
 
 
 class Engine(NamedTuple):
     """How the parts of a file are verified.
 
-    `verifier(header)` makes the verifier of one file, from its first line; it is a function or a
-    class that worker processes can import. They are started only if there are `least` parts for
-    each. `share(engine, workers, header, parts)` starts them and yields what their verifiers say of
-    the parts, in order.
+    `verifier(header)` makes the verifier of one file from the file's first line. `verifier` is a
+    function or a class that worker processes can import. Worker processes are started only if there
+    are at least `least` parts for each of them. `share(engine, workers, header, parts)` starts them
+    and yields what their verifiers say of the parts, in order.
     """
 
     verifier: Callable[[str], Verifier]
@@ -39,7 +39,7 @@ Share = Callable[[Engine, int, str, Iterator[tuple[str, int]]], Said]
 
 
 def here(engine: Engine, header: str, parts: Iterator[tuple[str, int]]) -> Said:
-    """Parts verified in this process, by a verifier that nobody else knows."""
+    """Verify the parts in this process, by a verifier that belongs to this check alone."""
     verifier = engine.verifier(header)
     for text, number in parts:
         yield verifier.refusal(text, number)
@@ -48,8 +48,8 @@ def here(engine: Engine, header: str, parts: Iterator[tuple[str, int]]) -> Said:
 def on_processes(
     engine: Engine, workers: int, header: str, parts: Iterator[tuple[str, int]]
 ) -> Said:
-    """Parts verified in several processes of this check, at most two waiting for each."""
-    # Loaded where processes are started: that takes longer than to check a small certificate.
+    """Verify the parts in processes of this check; at most two parts wait for each process."""
+    # These imports take longer than the check of a small certificate, so they are made only here.
     from concurrent.futures import ProcessPoolExecutor
     from multiprocessing import get_context
 
@@ -68,11 +68,11 @@ def on_processes(
 
 
 _of_this_worker: Verifier | None = None
-"""In a worker process of `on_processes`: the verifier of the one file for which it was started."""
+"""In a worker process of `on_processes`: the verifier of the one file that the process serves."""
 
 
 def _become_worker(verifier: Callable[[str], Verifier], header: str) -> None:
-    """The first thing that a worker process does; no other process may do it."""
+    """Make the verifier of a file; only a new worker process may do this, as its first action."""
     global _of_this_worker
     from multiprocessing import parent_process
 
@@ -82,7 +82,7 @@ def _become_worker(verifier: Callable[[str], Verifier], header: str) -> None:
 
 
 def _in_worker(text: str, number: int) -> str | None:
-    """What a worker process does with each part."""
+    """Verify one part in a worker process."""
     if _of_this_worker is None:
         raise RuntimeError("this process is not a worker of a check")
     return _of_this_worker.refusal(text, number)

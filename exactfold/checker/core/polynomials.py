@@ -1,4 +1,4 @@
-"""Polynomials over the rationals, constant term first."""
+"""Polynomials over the rationals, as lists of coefficients with the constant term first."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ Poly = list[Any]
 
 
 def trim(p: Iterable[Any]) -> Poly:
-    """A polynomial (constant term first) without leading zeros, over the rationals.
+    """The polynomial without its leading zeros, with fractions as coefficients.
 
-    Integers become fractions here: the quotient of two integers would be a float.
+    Integers are turned into fractions, because Python's quotient of two integers is a float.
     """
     p = [Fraction(c) for c in p]
     while p and not p[-1]:
@@ -42,7 +42,7 @@ def scaled(p: Poly, c: Any) -> Poly:
 
 
 def remainder(p: Poly, modulus: Poly) -> Poly:
-    """p modulo a polynomial with non-zero leading coefficient."""
+    """The remainder of p divided by a polynomial whose leading coefficient is not 0."""
     p = trim(p)
     while len(p) >= len(modulus):
         factor = Fraction(p[-1]) / modulus[-1]
@@ -68,7 +68,7 @@ def derivative(p: Poly) -> Poly:
 
 
 def value(p: Poly, x: Fraction) -> Fraction:
-    """p(x)."""
+    """The value p(x)."""
     result = Fraction(0)
     for a in reversed(p):
         result = result * x + a
@@ -76,7 +76,7 @@ def value(p: Poly, x: Fraction) -> Fraction:
 
 
 def bounds(p: Poly, low: Fraction, high: Fraction) -> tuple[Fraction, Fraction]:
-    """Bounds of p on [low, high] by interval Horner."""
+    """Bounds of p on [low, high], by Horner's scheme in intervals."""
     a = b = Fraction(0)
     for c in reversed(p):
         ends = (a * low, a * high, b * low, b * high)
@@ -85,7 +85,7 @@ def bounds(p: Poly, low: Fraction, high: Fraction) -> tuple[Fraction, Fraction]:
 
 
 def count_real_roots(p: Poly) -> int:
-    """Number of distinct real roots of a squarefree polynomial (Sturm)."""
+    """The number of real roots of a squarefree polynomial, by Sturm's theorem."""
     chain = [trim(p), trim(derivative(p))]
     while len(chain[-1]) > 1:
         last = remainder(chain[-2], chain[-1])

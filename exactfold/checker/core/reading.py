@@ -1,4 +1,4 @@
-"""Reading what a file holds: exact numbers, lists and objects, and how it is refused."""
+"""Reading the exact numbers, lists and objects of a file, and refusing what is malformed."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import Any, NoReturn
 from .limits import LONG_COORDINATE, MOST_COORDINATE, MOST_NUMBER, MOST_PRODUCTS
 
 MALFORMED = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
-"""What the arithmetic raises on values that nothing else has refused."""
+"""The errors that the arithmetic raises on malformed values that no earlier test refused."""
 
 
 class CertificateError(Exception):
@@ -20,7 +20,7 @@ class CertificateError(Exception):
 
 
 class UnfinishedError(CertificateError):
-    """The file ends before its claims, as an interrupted run leaves it; what is there holds."""
+    """The file ends before its claims, as after an interrupted run; all that it has holds."""
 
 
 class FormatError(Exception):
@@ -28,16 +28,17 @@ class FormatError(Exception):
 
 
 class LimitError(FormatError):
-    """The file asks for more than `limits` allow: nothing is known of its claims."""
+    """The file asks for more than `limits` allows, so that nothing is known of its claims."""
 
 
-def at_most(found: int, most: int, what: str, limit: str) -> None:
-    """Raise `LimitError` for more than the limit of what is counted.
+def at_most(number: int, most: int, what: str, limit: str) -> None:
+    """Raise `LimitError` if a number exceeds a limit; `what` says what the number counts.
 
-    `limit` is its name in `limits`, where whoever wants such a file checked may raise it.
+    `limit` is the name of this limit in `limits`. Whoever wants to check such a file may raise the
+    limit there.
     """
-    if found > most:
-        said = f"{what}, {found}, are more than the limit, {most}"
+    if number > most:
+        said = f"{what}, {number}, are more than the limit, {most}"
         raise LimitError(f"not checked: {said} ({limit} in checker/core/limits.py)")
 
 
@@ -49,9 +50,10 @@ def require(condition: object, message: str) -> None:
 
 @contextmanager
 def refusing(where: str = "while checking") -> Iterator[None]:
-    """Refuse as malformed what the arithmetic stumbles over; `with refusing():` or `@refusing()`.
+    """Refuse a file as malformed if the arithmetic raises one of the errors of `MALFORMED`.
 
-    Raises `CertificateError` in place of each of `MALFORMED`, with the name of that error.
+    Used as `with refusing():` or `@refusing()`. Raises `CertificateError` with the name of the
+    error.
     """
     try:
         yield
@@ -60,7 +62,10 @@ def refusing(where: str = "while checking") -> Iterator[None]:
 
 
 def plain(error: object) -> str:
-    """A message in printable ASCII on one line, at most 1000 characters, whatever it quotes."""
+    """A message as one line of printable ASCII, cut after 1000 characters.
+
+    What the message quotes from a file may hold any characters; they are escaped.
+    """
     return "".join(c if " " <= c <= "~" else ascii(c)[1:-1] for c in str(error)[:1000])[:1000]
 
 
@@ -70,7 +75,7 @@ def counted(number: int, one: str, many: str) -> str:
 
 
 def parse_integer(text: str) -> int:
-    """Exact integer from decimal digits; raises `LimitError` for more than `MOST_NUMBER`."""
+    """The integer with these decimal digits; raises `LimitError` beyond `MOST_NUMBER` digits."""
     sign, digits = (-1, text[1:]) if text[:1] == "-" else (1, text)
     if not (digits.isascii() and digits.isdigit()):
         raise CertificateError(f"{text[:40]!a} is not an integer")
@@ -83,7 +88,7 @@ def parse_integer(text: str) -> int:
 
 
 def parse_rational(text: Any) -> Fraction:
-    """Exact rational from "p" or "p/q"."""
+    """The rational number that is written "p" or "p/q"."""
     require(isinstance(text, str), f"{text!a} is not a rational number in quotes")
     numerator, slash, denominator = text.partition("/")
     q = parse_integer(denominator) if slash else 1
@@ -92,13 +97,13 @@ def parse_rational(text: Any) -> Fraction:
 
 
 class Coordinates:
-    """Reads the coordinates of one sheet, which are few if they are long."""
+    """Reads the coordinates of one sheet; limits how many of them may be long."""
 
     def __init__(self) -> None:
         self.products = 0
 
     def __call__(self, text: Any) -> Fraction:
-        """Exact rational from "p" or "p/q"; raises `LimitError`."""
+        """The coordinate that is written "p" or "p/q"; raises `LimitError`."""
         above, below = (len(part) for part in text_of(text).partition("/")[::2])
         longer = max(above, below)
         at_most(longer, MOST_COORDINATE, "the digits of a coordinate", "MOST_COORDINATE")
@@ -110,13 +115,13 @@ class Coordinates:
 
 
 def read_json(text: str) -> Any:
-    """A JSON value without floats, repeated keys or integers that Python would not print."""
+    """Read a JSON value; raises `FormatError` for floats, repeated keys and too long integers."""
 
     def refuse(number: str) -> NoReturn:
         raise FormatError(f"a certificate holds no floats, but here is {number[:40]}")
 
     def integer(number: str) -> int:
-        if len(number) > 4000:  # longer ones are written as text; Python would not print them
+        if len(number) > 4000:  # certificates write longer integers as text; Python prints none
             raise FormatError(f"an integer is too long: {number[:40]}...")
         return int(number)
 
@@ -145,33 +150,33 @@ def keys(value: Any, names: str, what: str, error: type[Exception] = Certificate
 
 
 def keys_of(form: type) -> str:
-    """The keys of a typed dictionary, as `keys` takes them."""
+    """The keys of a typed dictionary, in the form in which `keys` takes them."""
     return " ".join(form.__annotations__)
 
 
 def items(value: Any, what: str, length: int | None = None) -> list[Any]:
-    """`value` if it is a list (of the given length)."""
+    """Return `value` if it is a list, and has `length` entries if a length is given."""
     require(isinstance(value, list), f"{what} is not a list")
     require(length is None or len(value) == length, f"{what} has not {length} entries")
     return list(value)
 
 
 def natural(value: Any, what: str) -> int:
-    """`value` if it is an integer >= 0."""
+    """Return `value` if it is an integer >= 0."""
     if type(value) is not int or value < 0:
         raise CertificateError(f"{what} is not a natural number")
     return value
 
 
 def integer(value: Any) -> int:
-    """`value` if it is an integer."""
+    """Return `value` if it is an integer."""
     if type(value) is not int:
         raise CertificateError(f"{value!a} is not an integer")
     return value
 
 
 def same(claim: Any, fact: Any) -> bool:
-    """Whether a claim equals a fact, and holds integers where the fact does, not true or false."""
+    """Whether a claim equals a fact, with the same types: `true` does not stand for 1."""
     if isinstance(fact, dict):
         return (
             isinstance(claim, dict)
@@ -184,14 +189,14 @@ def same(claim: Any, fact: Any) -> bool:
 
 
 def text_of(value: Any) -> str:
-    """`value` if it is a string."""
+    """Return `value` if it is a string."""
     if not isinstance(value, str):
         raise CertificateError(f"{value!a} is not a number in quotes")
     return value
 
 
 def digits(n: int) -> str:
-    """Decimal text of an integer of any length."""
+    """The decimal digits of an integer of any length."""
     if n < 0:
         return "-" + digits(-n)
     if n.bit_length() < 13000:  # fewer than 4000 digits, which Python prints
@@ -202,12 +207,12 @@ def digits(n: int) -> str:
 
 
 def shown(text: str, *, up: bool = False) -> str:
-    """A rational number in six digits: rounded down, as what is at least so large, or up."""
+    """A rational number in six digits, rounded down as a lower bound, or up as an upper bound."""
     return rounded(parse_rational(text), 6, up=up)
 
 
 def rounded(value: Fraction, places: int, *, up: bool) -> str:
-    """A number in so many digits, rounded down or up, also one that is too large for a float."""
+    """A number in `places` digits, rounded down or up; it may be too large for a float."""
     context = Context(places, ROUND_CEILING if up else ROUND_FLOOR, MIN_EMIN, MAX_EMAX)
     quotient = context.divide(Decimal(value.numerator), Decimal(value.denominator))
     short = context.normalize(quotient)

@@ -1,8 +1,9 @@
-"""Exact real numbers in towers of square roots, Q(sqrt a)(sqrt b)..., and enclosures of them.
+"""Exact real numbers in towers of square roots, Q(sqrt a)(sqrt b)..., and intervals round them.
 
-A tower is a chain of fields; each level adjoins the positive square root of a positive number of
-the level below that is no square there. A number has 2^m rational coefficients: those of the level
-below, then those that belong to the new root.
+A tower is a chain of fields. Each level adjoins the positive square root of a positive number of
+the level below, which is not a square there. A number of level m is x + y r, where r is the new
+root and x, y are numbers of the level below. It is stored as 2^m rational coefficients: first those
+of x, then those of y.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ _BITS = 128
 
 
 class Tower:
-    """Q with the square roots of `radicands`, one after the other."""
+    """The field Q with the square roots of `radicands`, adjoined one after the other."""
 
     def __init__(self, radicands: tuple[Parts, ...] = ()) -> None:
         self.radicands = radicands
@@ -27,19 +28,22 @@ class Tower:
         self._enclosed: dict[int, list[Interval]] = {}
 
     def number(self, value: Fraction | int | Number) -> Number:
-        """A rational number, or a number of a lower level, here."""
+        """A rational number, or a number of a lower level, as a number of this tower."""
         parts: Parts
         if isinstance(value, Number):
             parts, below = value.parts, value.tower.radicands
             same = self.radicands[: len(below)] == below
-            require(same, "two numbers of fields of which none extends the other")
+            require(same, "two numbers lie in fields neither of which contains the other")
         else:
             parts = (Fraction(value),)
         return Number(self, parts + (Fraction(0),) * (self.size - len(parts)))
 
     def adjoined(self, radicand: Number) -> tuple[Tower, Number]:
-        """The positive root of a positive number, in this field or in one level more."""
-        require(radicand.sign() > 0, "the square root of a number that is not positive")
+        """The positive square root of a positive number, and the tower that holds it.
+
+        That is this tower if the root lies in it, else a tower with one level more.
+        """
+        require(radicand.sign() > 0, "a square root is taken of a number that is not positive")
         value = self.number(radicand)
         known = self._root(value.parts)
         if known is not None:
@@ -49,7 +53,7 @@ class Tower:
         return above, Number(above, (Fraction(0),) * self.size + (Fraction(1),) + value.zeros)
 
     def times(self, a: Parts, b: Parts) -> Parts:
-        """The product of two numbers of one level."""
+        """The product of two numbers of the same level."""
         if len(a) == 1:
             return (a[0] * b[0],)
         half = len(a) // 2
@@ -63,13 +67,13 @@ class Tower:
         return _plus(low, square) + cross
 
     def norm(self, a: Parts) -> Parts:
-        """(x + y r)(x - y r) = x^2 - y^2 r^2, one level below."""
+        """The norm (x + y r)(x - y r) = x^2 - y^2 r^2, a number of the level below."""
         half = len(a) // 2
         square = self.times(self.times(a[half:], a[half:]), self._radicand(half))
         return _minus(self.times(a[:half], a[:half]), square)
 
     def inverse(self, a: Parts) -> Parts:
-        """1 / (x + y r) = (x - y r) / norm."""
+        """The inverse 1 / (x + y r) = (x - y r) / norm."""
         if len(a) == 1:
             return (1 / a[0],)
         half = len(a) // 2
@@ -77,7 +81,10 @@ class Tower:
         return self.times(a[:half], over) + tuple(-c for c in self.times(a[half:], over))
 
     def sign(self, a: Parts) -> int:
-        """The sign of x + y r: where x and y have opposite signs, x decides if x^2 > y^2 r^2."""
+        """The sign of x + y r.
+
+        If x and y have opposite signs, the sum has the sign of x where x^2 > y^2 r^2, else of y.
+        """
         if len(a) == 1:
             return (a[0] > 0) - (a[0] < 0)
         half = len(a) // 2
@@ -87,23 +94,23 @@ class Tower:
         return first or second
 
     def products(self, bits: int) -> list[Interval]:
-        """Enclosures of the products of roots that the coefficients belong to."""
+        """Intervals round the products of roots by which the coefficients are multiplied."""
         if bits not in self._enclosed:
-            found = [Interval.of(Fraction(1), bits)]
+            enclosures = [Interval.of(Fraction(1), bits)]
             for radicand in self.radicands:
-                root = enclosed(radicand, found, bits).root()
-                found += [product * root for product in found]
-            self._enclosed[bits] = found
+                root = enclosed(radicand, enclosures, bits).root()
+                enclosures += [product * root for product in enclosures]
+            self._enclosed[bits] = enclosures
         return self._enclosed[bits]
 
     def _radicand(self, half: int) -> Parts:
         return self.radicands[half.bit_length() - 1]
 
     def _root(self, a: Parts) -> Parts | None:
-        """A square root in the field, None if there is none.
+        """A square root of p + q r in the field; None if the field has none.
 
-        (x + y r)^2 = p + q r means x^2 + y^2 r^2 = p and 2 x y = q, so that x^2 = (p + n) / 2 with
-        n one of the roots of the norm p^2 - q^2 r^2.
+        (x + y r)^2 = p + q r means x^2 + y^2 r^2 = p and 2 x y = q. So x^2 = (p + n) / 2, where n
+        is one of the two square roots of the norm p^2 - q^2 r^2.
         """
         if len(a) == 1:
             return _rational_root(a[0])
@@ -125,7 +132,10 @@ class Tower:
 
 
 class Number:
-    """A number of a tower; two numbers go together if the tower of one extends the other's."""
+    """A number of a tower.
+
+    Two numbers may be added and multiplied if the tower of one extends the tower of the other.
+    """
 
     __slots__ = ("__dict__", "parts", "tower")
 
@@ -134,7 +144,7 @@ class Number:
 
     @property
     def zeros(self) -> Parts:
-        """As many zeros as there are coefficients after the first."""
+        """One zero for each coefficient after the first."""
         return (Fraction(0),) * (len(self.parts) - 1)
 
     def _both(self, other: Number) -> tuple[Tower, Parts, Parts]:
@@ -163,7 +173,7 @@ class Number:
         return Number(self.tower, tuple(-c for c in self.parts))
 
     def sign(self) -> int:
-        """1, 0 or -1, exactly: an enclosure decides where it can."""
+        """The exact sign, 1, 0 or -1. An interval decides where it can, else exact arithmetic."""
         return self._sign
 
     @cached_property
@@ -178,7 +188,10 @@ class Number:
 
 
 def enclosed(parts: Parts, products: list[Interval], bits: int) -> Interval:
-    """An interval that holds the sum of coefficients times products of roots."""
+    """An interval that holds the number with these coefficients.
+
+    The number is the sum of the coefficients times the products of roots, given as intervals.
+    """
     total = Interval.of(Fraction(0), bits)
     for c, product in zip(parts, products, strict=True):
         if c:

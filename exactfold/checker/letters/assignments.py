@@ -62,14 +62,14 @@ def _shown(given: Sheet, evidence: dict[str, Any]) -> list[str]:
     sheet = Place(given, evidence["emptied"]).sheet
     require(len(sheet.boundary) == 5, "there are not five boundary vertices")
     check_convex(sheet)
-    border = set(sheet.boundary)
-    chords = [fold for fold in sheet.folds if border.issuperset(fold)]
+    boundary = set(sheet.boundary)
+    chords = [fold for fold in sheet.folds if boundary.issuperset(fold)]
     circles = _Circles(_without_ear(sheet) if chords else sheet)
     words = circles.shown(evidence["circles"])
     return sorted(text for word in words for text in circles.texts(word, given.folds, chords))
 
 
-def free_border(sheet: Sheet) -> list[int]:
+def free_boundary(sheet: Sheet) -> list[int]:
     """The border vertices but three that are not on a line, which modulo planes have height 0."""
     first, second, *others = sheet.boundary
     p, q = sheet.points[first], sheet.points[second]
@@ -92,7 +92,7 @@ class _Circles:
         require(sheet.interior, "no vertex can pop")
         number = len(sheet.interior)
         at_most(number, MOST_VERTICES, "the vertices that can pop", "ASSIGNED_VERTICES")
-        free = free_border(sheet)
+        free = free_boundary(sheet)
         self.free = len(free)
         self.arcs = Arcs(sheet, [*free, *sheet.interior])
         self.signs = [(1, *rest) for rest in product((1, -1), repeat=number - 1)]

@@ -21,7 +21,7 @@ from ..core.reading import counted, integer, items, keys, keys_of, natural, refu
 from ..sheets.sheet import Edge, read_sheet
 from .refuted import Signs, Stars
 
-Half = tuple[tuple[int, ...], int]
+Ray = tuple[tuple[int, ...], int]
 """The signs of the interior vertices, 0 where the star is flat, and the side."""
 
 _TURNED = str.maketrans("MV", "VM")
@@ -61,33 +61,33 @@ def check(data: dict[str, Any]) -> VerifiedLetters:
     keys(evidence, "emptied refuted tree leaves", "evidence")
     place = Place(given, evidence["emptied"])
     if len(place.sheet.boundary) == 4:
-        place.fix_rim()  # the boundary is convex then
+        place.fix_boundary()  # the boundary is convex then
     text = claims["letters"]
     fits = isinstance(text, str) and len(text) == len(given.folds) and set(text) <= set("MVFU")
     require(fits, "letters do not fit")
     wanted = dict(zip(given.folds, text, strict=True))
-    search = _Search(place, wanted)
-    found = search.halves(
+    search = _LetterSearch(place, wanted)
+    found = search.rays(
         items(evidence["refuted"], "refuted"),
         items(evidence["tree"], "tree"),
         items(evidence["leaves"], "leaves"),
     )
-    listed = [_half(entry, len(given.interior)) for entry in items(claims["halves"], "halves")]
+    listed = [_ray(entry, len(given.interior)) for entry in items(claims["halves"], "halves")]
     require(len(set(listed)) == len(listed), "a half is listed twice")
-    for half in listed:
-        require(half in found, "a half that is listed has not these letters")
+    for ray in listed:
+        require(ray in found, "a half that is listed has not these letters")
     require(len(listed) == len(found), "a half with these letters is not listed")
     proved: LettersClaims = claims
     return {"sha256": digest, "interior": len(given.interior), **proved}
 
 
-def _half(entry: Any, size: int) -> Half:
+def _ray(entry: Any, size: int) -> Ray:
     keys(entry, keys_of(HalfClaim), "half")
     signs = items(entry["vertex_signs"], "vertex_signs", size)
     return tuple(map(integer, signs)), integer(entry["side"])
 
 
-class _Search:
+class _LetterSearch:
     """The walk over the tree, for one sheet and its letters."""
 
     def __init__(self, place: Place, wanted: dict[Edge, str]) -> None:
@@ -97,15 +97,15 @@ class _Search:
         own = {fold: wanted[fold] for fold in place.open.folds}
         self.stars = Stars(place.open, own)
 
-    def halves(self, refuted: list[Any], tree: list[Any], leaves: list[Any]) -> set[Half]:
+    def rays(self, refuted: list[Any], tree: list[Any], leaves: list[Any]) -> set[Ray]:
         """The halves with the letters, once all that is refuted and the cover are verified."""
         sets = [self.stars.refuted(entry, f"refuted set {k}") for k, entry in enumerate(refuted)]
-        found: set[Half] = set()
+        found: set[Ray] = set()
         entries = iter(leaves)
         for signs in self._left(sets, tree):
             both = items(next(entries, None), "a leaf", 2)
-            for side, half in zip((1, -1), both, strict=True):
-                found |= self._matching(signs, side, half)
+            for side, ray in zip((1, -1), both, strict=True):
+                found |= self._matching(signs, side, ray)
         require(next(entries, None) is None, "there are more leaves than the tree has")
         return found
 
@@ -140,7 +140,7 @@ class _Search:
                 require(held, "no mountain or valley is asked for where the sheet is rigid")
         require(not stack, "the tree does not cover all sign vectors")
 
-    def _matching(self, signs: Signs, side: int, entry: Any) -> set[Half]:
+    def _matching(self, signs: Signs, side: int, entry: Any) -> set[Ray]:
         """The half on one side of a leaf, if it has the letters."""
         keys(entry, "heights denominator", "half of a leaf")
         proof = self.place.proof(entry["heights"], entry["denominator"])
@@ -162,10 +162,10 @@ class _Search:
 
 def summary(claims: VerifiedLetters) -> str:
     """One line for verified claims."""
-    halves, text = len(claims["halves"]), claims["letters"]
+    rays, text = len(claims["halves"]), claims["letters"]
     asked = counted(len(text) - text.count("U"), "letter", "letters")
-    found = counted(halves, "half of a branch has", "halves of branches have")
-    which = f"exactly {found}" if halves else "no branch has"
+    found = counted(rays, "half of a branch has", "halves of branches have")
+    which = f"exactly {found}" if rays else "no branch has"
     return f"VALID: {which} the {asked} asked for on {len(text)} folds; sha256 {claims['sha256']}"
 
 

@@ -35,7 +35,7 @@ def check_motion(
     """Verify a motion with the letters for each part; with `true`, that true ones begin like it."""
     live = {pair(v, u) for v, around in near.items() for u in around}
     for fold, letter in wanted.items():
-        able = letter not in SIDES or fold in live or sheet.border.issuperset(fold)
+        able = letter not in SIDES or fold in live or sheet.boundary_set.issuperset(fold)
         require(able, f"fold {fold[0]}-{fold[1]} has a letter and stays flat")
     groups = connected(near)
     for group, entry in zip(groups, items(given, "motion", len(groups)), strict=True):

@@ -81,7 +81,7 @@ class Cases:
             else:
                 require(kind == "flat", f"a step of the tree is {kind!a}")
                 i, j = (natural(v, "a vertex") for v in at)
-                flat = (i, j) not in self.live and not self.sheet.border.issuperset((i, j))
+                flat = (i, j) not in self.live and not self.sheet.boundary_set.issuperset((i, j))
                 held = flat and self.wanted[i, j] in SIDES
                 require(held, f"fold {i}-{j} may fold, or has no letter")
         require(not stack, "the tree does not cover all cases")

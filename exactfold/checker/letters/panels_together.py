@@ -25,7 +25,7 @@ def check_never(
     whether all folds with a letter of which this is shown are claimed.
     """
     live = {pair(v, u) for v, around in near.items() for u in around}
-    flat = {e for e in wanted if e not in live and not sheet.border.issuperset(e)}
+    flat = {e for e in wanted if e not in live and not sheet.boundary_set.issuperset(e)}
     for number, step in enumerate(steps):
         total: dict[Edge, Number] = {}
         for v, values in items(step, "a step"):
@@ -73,7 +73,8 @@ def check_together(
     going = {
         fold
         for fold, letter in wanted.items()
-        if letter in SIDES and (sheet.border.issuperset(fold) or densities.get(fold, zero).sign())
+        if letter in SIDES
+        and (sheet.boundary_set.issuperset(fold) or densities.get(fold, zero).sign())
     }
     together = read_edges(claimed, "together")
     for i, j in together:

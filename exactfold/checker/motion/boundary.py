@@ -23,7 +23,7 @@ Row = dict[int, Fraction]
 _MOST_HEIGHTS = 8  # of a border in a summary or a message
 
 
-class RimClaim(BranchClaim):
+class BoundaryClaim(BranchClaim):
     """The heights of the boundary vertices of a convex border stay in the ratio of those given.
 
     They are given in the order of the vertices, and taken above the face `pinned` that is held,
@@ -32,9 +32,9 @@ class RimClaim(BranchClaim):
 
     names = ("rim",)
 
-    def restriction(self, given: Sheet, sheet: Sheet) -> Rim:
+    def restriction(self, given: Sheet, sheet: Sheet) -> BoundaryHeights:
         """The ties of the heights."""
-        return Rim(given, self.claims["rim"])
+        return BoundaryHeights(given, self.claims["rim"])
 
     def check(self, chain: Chain) -> None:
         """The ties hold all along; it remains to say above which face."""
@@ -47,7 +47,7 @@ class RimClaim(BranchClaim):
         return f", with the border in the ratio of {_shown(claims['rim'])} above the face {face}"
 
 
-class Rim(Restriction):
+class BoundaryHeights(Restriction):
     """The equations `ties` of given heights, and the factor l as a functional of the heights."""
 
     def __init__(self, sheet: Sheet, texts: Any) -> None:

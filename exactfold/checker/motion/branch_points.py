@@ -68,22 +68,22 @@ def independent(rows: list[dict[int, int]]) -> list[int]:
     return chosen
 
 
-class NodeTube(Piece):
+class BranchPointTube(Piece):
     """Configurations x* + s y(s), T . y(s) = 1, of an arc through the node x* in a box.
 
     T = row / 2^ROW_BITS. The pieces of `Piece` are those of y.
     """
 
     def __init__(
-        self, patch: Patch, node: Ball, centre: Vector, row: Vector, reach: Fraction
+        self, patch: Patch, branch_point: Ball, centre: Vector, row: Vector, reach: Fraction
     ) -> None:
-        equations, self.node = patch.equations, node
+        equations, self.branch_point = patch.equations, branch_point
         bits, stresses = equations.bits, Stresses(equations, patch.flat)
         more, replaced = stresses.bits, stresses.replaced
         kept = [int(e not in replaced) for e in range(len(equations.edges))]
         x = [
             tuple(a + b for a, b in zip(u, d, strict=True))
-            for u, d in zip(equations.flat, equations.along(node.centre), strict=True)
+            for u, d in zip(equations.flat, equations.along(branch_point.centre), strict=True)
         ]
 
         def derivative(parts: Parts, k: int) -> Columns:
@@ -138,7 +138,7 @@ class NodeTube(Piece):
             weights,
         )
         # How far X_e may be from x_e, and what that does to the equations and their derivatives.
-        spread = equations.weight_sums(node.radii)
+        spread = equations.weight_sums(branch_point.radii)
         sizes = [[abs(a) * m for a, m in zip(line, kept, strict=False)] for line in p]
 
         def off(rows: list[tuple[int, ...]], places: int) -> Fraction:
@@ -154,7 +154,7 @@ class NodeTube(Piece):
     def configuration(self, s: Fraction) -> tuple[Ball, Ball]:
         """Boxes that hold the displacements x* + s y and their derivative y + s y'."""
         y, rate = self.enclosure(s), self.velocity(s)
-        return _sum(self.node, s, y), _sum(y, s, rate)
+        return _sum(self.branch_point, s, y), _sum(y, s, rate)
 
 
 def _sum(a: Ball, s: Fraction, b: Ball) -> Ball:

@@ -12,22 +12,22 @@ from ..core.kinds import DocumentKind
 from ..core.reading import counted, items, refusing
 from ..sheets.reduced import emptied_sheet
 from ..sheets.sheet import read_sheet
-from .boundary import RimClaim
+from .boundary import BoundaryClaim
 from .chain import Chain, check_work, equations_of
 from .claims import BranchClaim, read_claims, words
 from .contacts import Contacts, TouchingFaces
 from .drive import DriveClaim, DrivenFolds
-from .half_branch import HalfBranch, Length, NamedHalf
 from .nodes import FlatStars, Node, Through
+from .ray import Length, NamedHalf, Ray
 from .returns import Return
 
 CLAIMS: tuple[type[BranchClaim], ...] = (
-    HalfBranch,
+    Ray,
     Length,
     Through,
     Node,
     Return,
-    RimClaim,
+    BoundaryClaim,
     DriveClaim,
     Contacts,
 )
@@ -49,8 +49,8 @@ class _Optional(_Return, total=False):
 class VerifiedMotion(NamedHalf, _Optional):
     """What is verified of a motion along a branch: the keys of its `CLAIMS`.
 
-    To these the checker adds the digest of the pattern, the number of `tubes` and, with a `rim`,
-    the vertices of the face that is held, `pinned`.
+    To these the checker adds the digest of the pattern, the number of `tubes` and, with a
+    `boundary_heights`, the vertices of the face that is held, `pinned`.
     """
 
     length: str

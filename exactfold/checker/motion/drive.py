@@ -40,9 +40,9 @@ class DriveClaim(BranchClaim):
 
     names = ("drive",)
 
-    def restriction(self, given: Sheet, sheet: Sheet) -> Drive:
+    def restriction(self, given: Sheet, sheet: Sheet) -> PrescribedAngles:
         """The equations of the ratio."""
-        self.drive = Drive(sheet, self.claims["drive"])
+        self.drive = PrescribedAngles(sheet, self.claims["drive"])
         return self.drive
 
     def check(self, chain: Chain) -> None:
@@ -65,7 +65,7 @@ class DriveClaim(BranchClaim):
         )
 
 
-class Drive(Restriction):
+class PrescribedAngles(Restriction):
     """The folds and the numbers q_k of a claim, and the equations w_m g_k = w_k g_m of their ratio.
 
     sin(a_k / 2)^2 is in the ratio of |q_k| iff they hold for w_k = |q_k| A B / l^2. `rows` are
@@ -133,7 +133,7 @@ def _length(row: Vector) -> int:
     return max(abs(c).bit_length() for c in row)
 
 
-def check_reached(equations: LengthEquations, drive: Drive, here: Ball) -> None:
+def check_reached(equations: LengthEquations, drive: PrescribedAngles, here: Ball) -> None:
     """Raise unless all driven folds are bent as far as claimed, or farther, in a box at the end.
 
     There g <= -2 w for one of them, and so for all, and they are valleys or mountains as claimed.

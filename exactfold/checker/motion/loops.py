@@ -32,11 +32,11 @@ from ..core.reading import (
 from ..sheets.reduced import emptied_sheet
 from ..sheets.sheet import read_sheet
 from .chain import Chain, check_work, equations_of
-from .half_branch import names
+from .ray import names
 from .returns import land
 from .tubes import Start
 
-HalfBranch = tuple[tuple[int, ...], int]
+Ray = tuple[tuple[int, ...], int]
 """The signs of the interior vertices, 0 for those that cannot fold, and the side."""
 
 
@@ -50,11 +50,11 @@ class LoopSheet:
         self.equations = equations_of(sheet, header["pinned"], header["bits"])
 
     @property
-    def half_branches(self) -> int:
+    def rays(self) -> int:
         """How many there are."""
         return 2 << len(self.equations.sheet.interior)
 
-    def half_branch(self, entry: Any) -> HalfBranch:
+    def ray(self, entry: Any) -> Ray:
         """A half-branch of its keys."""
         keys(entry, "vertex_signs side", "half-branch")
         signs = items(entry["vertex_signs"], "vertex_signs", len(self.given.interior))
@@ -72,18 +72,16 @@ class LoopSheet:
         steps = items(evidence["steps"], "steps")
         check_work(self.equations, steps)
         chain = Chain(self.given, self.removed, self.equations, evidence["start"])
-        require(
-            self._named(chain.start) == self.half_branch(entry["from"]), "it begins along another"
-        )
+        require(self._named(chain.start) == self.ray(entry["from"]), "it begins along another")
         chain.walk(steps, leaves=False)
         end, side = land(chain, evidence["landing"])
         signs, saddle = self._named(end)
         target = tuple(side * s for s in signs), side * saddle
-        require(target == self.half_branch(entry["to"]), "it ends along another")
+        require(target == self.ray(entry["to"]), "it ends along another")
         claimed = parse_rational(entry["length"])
         require(claimed <= chain.path.length * self.equations.unit, "it is shorter than claimed")
 
-    def _named(self, start: Start) -> HalfBranch:
+    def _named(self, start: Start) -> Ray:
         signs, side = names(self.given, self.removed, start)
         return tuple(signs), side
 
@@ -111,9 +109,9 @@ class Matching:
     """Which half-branches are matched: there and back, and in the mirror image."""
 
     def __init__(self) -> None:
-        self.loops, self.matched = 0, set[HalfBranch]()
+        self.loops, self.matched = 0, set[Ray]()
 
-    def add(self, source: HalfBranch, target: HalfBranch) -> None:
+    def add(self, source: Ray, target: Ray) -> None:
         """A loop; raises if one of its half-branches is matched already, or with itself."""
         require(source != target, f"loop {self.loops}: a half-branch is matched with itself")
         ends = {source, target}
@@ -163,7 +161,7 @@ def check_lines(found: Iterator[str], workers: int = 1, engine: Engine = BY_TUBE
                     last.append(entry["claims"])
                     continue
                 keys(entry, "from to length evidence provenance", "loop")
-                ends = (sheet.half_branch(entry[key]) for key in ("from", "to"))
+                ends = (sheet.ray(entry[key]) for key in ("from", "to"))
                 matching.add(*ends)
                 yield text, matching.loops - 1
         except (CertificateError, FormatError) as error:
@@ -186,8 +184,8 @@ def check_lines(found: Iterator[str], workers: int = 1, engine: Engine = BY_TUBE
         "sha256": sheet.sha256,
         "loops": matching.loops,
         "matched": len(matching.matched),
-        "half_branches": sheet.half_branches,
-        "complete": len(matching.matched) == sheet.half_branches,
+        "half_branches": sheet.rays,
+        "complete": len(matching.matched) == sheet.rays,
     }
     (claims,) = last
     keys(claims, keys_of(LoopsClaims), "claims")

@@ -51,7 +51,7 @@ class Patch:
         square = bool(self.moving) and number == 3 * len(self.moving)
         require(square, "a flat patch leaves no unknowns, or not as many equations")
 
-    def node(self, near: Vector) -> Ball:
+    def branch_point(self, near: Vector) -> Ball:
         """A box that holds a configuration with a flat patch, from unknowns near to it.
 
         Newton's test for the equations D^2 (|X_i - X_j|^2 - |U_i - U_j|^2) / 2^(k + 1), with the
@@ -162,15 +162,15 @@ def wheel_stress(sheet: Sheet, vertex: int) -> dict[Edge, Fraction]:
     ring, (x, y) = sheet.star(vertex), sheet.points[vertex]
     spokes = [(sheet.points[j][0] - x, sheet.points[j][1] - y) for j in ring]
     found: dict[Edge, Fraction] = {}
-    rim = [
+    boundary = [
         1 / Fraction(ax * by - ay * bx)
         for (ax, ay), (bx, by) in zip(spokes, spokes[1:] + spokes[:1], strict=True)
     ]
     for k, (j, (ax, ay)) in enumerate(zip(ring, spokes, strict=True)):
         after = (k + 1) % len(ring)
-        found[_pair(j, ring[after])] = rim[k]
+        found[_pair(j, ring[after])] = boundary[k]
         force = [Fraction(0), Fraction(0)]
-        for w, (bx, by) in ((rim[k], spokes[after]), (rim[k - 1], spokes[k - 1])):
+        for w, (bx, by) in ((boundary[k], spokes[after]), (boundary[k - 1], spokes[k - 1])):
             force = [force[0] + w * (bx - ax), force[1] + w * (by - ay)]
         found[_pair(vertex, j)] = (force[0] * ax + force[1] * ay) / (ax * ax + ay * ay)
     return found

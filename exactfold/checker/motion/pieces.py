@@ -7,7 +7,7 @@ from typing import Any
 
 from ..core.limits import MOTION_BITS
 from ..core.reading import integer, items, keys, natural, require
-from .branch_points import NodeTube
+from .branch_points import BranchPointTube
 from .equations import SPARE, LengthEquations
 from .patches import Patch
 from .tubes import Start, Tube
@@ -28,14 +28,14 @@ def tube_of(equations: LengthEquations, entry: Any) -> Tube:
     )
 
 
-def arc_of(equations: LengthEquations, flat: Any, entry: Any) -> NodeTube:
+def arc_of(equations: LengthEquations, flat: Any, entry: Any) -> BranchPointTube:
     """An arc through a node at which some vertices are flat, of its keys."""
     size, bits = equations.size, equations.bits
     require(not equations.mixed, "a driven motion has a node")
     patch = Patch(equations, [natural(v, "flat vertex") for v in items(flat, "flat")])
-    return NodeTube(
+    return BranchPointTube(
         patch,
-        patch.node(vector(entry["node"], "node", size, bits)),
+        patch.branch_point(vector(entry["node"], "node", size, bits)),
         vector(entry["centre"], "centre", size, bits),
         vector(entry["row"], "row", size, 0),
         reach_of(entry["reach"]),

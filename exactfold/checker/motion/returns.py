@@ -12,8 +12,8 @@ from typing import Any
 from ..core.reading import integer, keys, require
 from .chain import Chain
 from .claims import BranchClaim, Document
-from .half_branch import check_half_branch, text_of
 from .pieces import ROOT_BITS, start_of
+from .ray import check_half_branch, text_of
 from .tubes import Ball, Start
 
 

@@ -6,7 +6,7 @@ from fractions import Fraction
 from itertools import zip_longest
 from typing import NamedTuple
 
-from .branch_points import NodeTube
+from .branch_points import BranchPointTube
 from .lengths import Path, entry
 from .tubes import Ball, Start, Tube
 
@@ -28,7 +28,7 @@ class Arc(NamedTuple):
     The second is after the node or, where the motion ends there, at it.
     """
 
-    tube: NodeTube
+    tube: BranchPointTube
     begin: Fraction
     end: Fraction
 
@@ -88,5 +88,7 @@ def _on_arc(arc: Arc) -> Stretch:
     piece, begin, end = arc
     far = max(-begin, end)
     box, rate = piece.configuration(far)
-    path = Path.of_tube([piece.node.centre, *piece.curve], piece.bits, far, box.radii, rate.radii)
+    path = Path.of_tube(
+        [piece.branch_point.centre, *piece.curve], piece.bits, far, box.radii, rate.radii
+    )
     return Stretch(path, (begin, begin), (end, end), begin, end)

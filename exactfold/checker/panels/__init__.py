@@ -1,1 +1,1 @@
-"""Certificates of all motions of a sheet of rigid panels."""
+"""Certificates that list all motions of a sheet of rigid panels."""

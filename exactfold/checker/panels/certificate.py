@@ -1,10 +1,11 @@
 """Certificates of all motions of a sheet of rigid panels (docs/certificate.md, panels).
 
-Only the pattern and the folds that are held flat are taken from the file. The flat closure, the
-lines of motions at each vertex, the supports with the numbers of their modes, the components and
-which modes truly fold are found again, and every claim is compared. Why the answer is complete:
-the structure theorem, and the theorem of transmissions, in docs/panels.md, 2 and 4. Parts of the
-sheet where more than four folds of a vertex may fold are split into spaces (`panel_leaves`).
+The checker takes only the pattern and the folds that are held flat from the file. It finds
+everything else again and compares every claim: the flat closure, the lines of motions at each
+vertex, the supports with the numbers of their modes, the components, and which modes extend to true
+motions. The structure theorem and the extension theorem (docs/panels.md, 2 and 4) show that the
+answer is complete. If more than four folds of some vertex may fold, the part of the sheet with this
+vertex is split into spaces (`leaves`).
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ MOST_SUPPORTS = limits.MOST_SUPPORTS
 def check(data: dict[str, Any]) -> PanelsClaims:
     """Verify every claim of a certificate; raises `CertificateError` at the first failure.
 
-    Returns the verified claims. They hold for the pattern in the file, if the folds in `held` are
+    Returns the verified claims. They are about the pattern in the file, with the folds in `held`
     held flat.
     """
     claims = data["claims"]
@@ -39,30 +40,30 @@ def check(data: dict[str, Any]) -> PanelsClaims:
     sheet, digest = read_panels(data["pattern"])
     held = read_edges(claims["held"], "held")
     for i, j in held:
-        require((i, j) in sheet.folds, f"{i}-{j} is held flat, and no fold")
+        require((i, j) in sheet.folds, f"{i}-{j} is held flat, but is not a fold")
     near = sheet.live(held)
     groups = connected(near)
     large = [group for group in groups if any(len(around) > 4 for around in group.values())]
     small = {v for group in groups if group not in large for v in group}
     modes = Modes(sheet, {v: around for v, around in near.items() if v in small})
-    free = [e for e in sheet.folds if sheet.border.issuperset(e) and e not in held]
+    free = [e for e in sheet.folds if sheet.boundary_set.issuperset(e) and e not in held]
     live = {pair(v, u) for v, around in near.items() for u in around}
     pairs = _paired(_supports(modes), items(claims["supports"], "supports"))
-    found, loops = [support for support, _ in pairs], Loops(modes)
+    supports, loops = [support for support, _ in pairs], Loops(modes)
     extending = [_extending(loops, support, entry) for support, entry in pairs]
     parts = _parts(sheet, large, items(given, "spaces"))
-    second = components([(s.vertices, s.count) for s in found], len(free))
+    second = components([(s.vertices, s.count) for s in supports], len(free))
     second = times(second, [part.second for part in parts])
     true = None
     known = [part.true for part in parts if part.true is not None]
     if all(complete for _, complete in extending) and len(known) == len(parts):
-        counted = zip(found, extending, strict=True)
-        true = components([(s.vertices, n) for s, (n, _) in counted if n], len(free))
+        numbers = zip(supports, extending, strict=True)
+        true = components([(s.vertices, n) for s, (n, _) in numbers if n], len(free))
         true = times(true, known)
     moves = free or any(n for n, _ in extending) or any(part.folds for part in parts)
     facts: PanelFacts = {
         "interior": len(sheet.interior),
-        "border": len(sheet.border),
+        "border": len(sheet.boundary_set),
         "folds": len(sheet.folds),
         "sha256": digest,
         "held": [list(edge) for edge in held],
@@ -71,9 +72,9 @@ def check(data: dict[str, Any]) -> PanelsClaims:
         "second_order": second,
         "true": true,
         "rigid": _rigid(second, true, moves),
-        "modes": None if large else sum(support.count for support in found),
+        "modes": None if large else sum(support.count for support in supports),
     }
-    if claims["rigid"] == "undecided":  # which claims nothing
+    if claims["rigid"] == "undecided":  # "undecided" claims nothing, so that it is always right
         facts["rigid"] = "undecided"
     for key, fact in facts.items():
         require(same(claims[key], fact), f"claim {key} = {claims[key]!a}, but it is {fact!a}")
@@ -88,7 +89,7 @@ def _rigid(second: dict[str, int], true: dict[str, int] | None, moves: object) -
 
 
 def _parts(sheet: PanelSheet, large: list[Near], given: list[Any]) -> list[PartComponents]:
-    """Each part with vertices of more than four folds, with what the file says of it."""
+    """Verify each part that has a vertex with more than four folds; return its components."""
     entries: dict[tuple[int, ...], Any] = {}
     for entry in given:
         keys(entry, keys_of(PartClaim), "a part")
@@ -96,7 +97,8 @@ def _parts(sheet: PanelSheet, large: list[Near], given: list[Any]) -> list[PartC
         entries[vertices] = entry
     require(len(entries) == len(given), "a part of the sheet appears twice")
     places = [tuple(part) for part in large]
-    require(sorted(entries) == sorted(places), "the parts with spaces of motions are others")
+    right = sorted(entries) == sorted(places)
+    require(right, "the parts listed are not those with a vertex of more than four folds")
     return [verified_part(sheet, part, entries[tuple(part)]) for part in large]
 
 
@@ -104,21 +106,21 @@ def _parts(sheet: PanelSheet, large: list[Near], given: list[Any]) -> list[PartC
 
 
 def _supports(modes: Modes) -> list[Support]:
-    found = []
+    supports = []
     for support in modes.supports():
-        found.append(support)
-        at_most(len(found), MOST_SUPPORTS, "the supports", "MOST_SUPPORTS")
-    return found
+        supports.append(support)
+        at_most(len(supports), MOST_SUPPORTS, "the supports", "MOST_SUPPORTS")
+    return supports
 
 
-def _paired(found: Sequence[Support], given: list[Any]) -> list[tuple[Support, dict[str, Any]]]:
-    """Each support with what the file says of it: all of them, each once, and no other."""
-    known = {support.folds: support for support in found}
+def _paired(supports: Sequence[Support], given: list[Any]) -> list[tuple[Support, dict[str, Any]]]:
+    """Each support with its entry in the file; raises unless the file lists each of them once."""
+    known = {support.folds: support for support in supports}
     entries: dict[tuple[Edge, ...], dict[str, Any]] = {}
     for entry in given:
         keys(entry, keys_of(SupportClaim), "a support")
         folds = tuple(read_edges(entry["folds"], "folds of a support"))
-        require(folds in known, f"the folds {list(folds)[:20]} are no support")
+        require(folds in known, f"the folds {list(folds)[:20]} are not the folds of a support")
         require(folds not in entries, f"a support with the folds {list(folds)[:20]} appears twice")
         entries[folds] = entry
     for folds, support in known.items():
@@ -130,11 +132,12 @@ def _paired(found: Sequence[Support], given: list[Any]) -> list[tuple[Support, d
 
 
 def _extending(loops: Loops, support: Support, entry: dict[str, Any]) -> tuple[int, bool]:
-    """How many modes of a support truly fold, verified, and whether that is claimed of all."""
+    """How many modes of a support are verified to extend, and whether all modes are decided."""
     kind = kind_of(loops, support)
     by, number = entry["by"], entry["extending"]
     require(by == kind, f"{named(support)} extends by {kind}, not by {by!a}")
-    require(number is not None or kind == "loops", f"all modes of {named(support)} extend")
+    decided = number is not None or kind == "loops"
+    require(decided, f"all modes of {named(support)} extend, but their number is left open")
     if entry["modes"] is None and (number is None or kind != "loops"):
         good = 0 if number is None else support.count
     else:
@@ -151,18 +154,22 @@ def _extending(loops: Loops, support: Support, entry: dict[str, Any]) -> tuple[i
 
 
 def kind_of(loops: Loops, support: Support) -> str:
-    """Why the modes of a support extend, or by what it is to be decided."""
+    """Why the modes of a support extend: "forest", "linear", or "loops" if loops must decide."""
     if not support.loops:
         return "forest"
-    chosen = {v: choices[0] for v, choices in support.choices.items()}  # all are linear, or none
-    steps = [found for loop in support.loops for found in loops.steps(chosen, loop)]
-    return "linear" if all(found.quadratic is None for found in steps) else "loops"
+    # Whether a transmission is linear does not depend on the line, so that any choice will do.
+    chosen = {v: choices[0] for v, choices in support.choices.items()}
+    steps = [step for loop in support.loops for step in loops.steps(chosen, loop)]
+    return "linear" if all(step.quadratic is None for step in steps) else "loops"
 
 
 def _listed(
     modes: Modes, support: Support, rows: list[dict[int, int]], given: Any
 ) -> list[tuple[dict[int, int], dict[str, Any] | None]]:
-    """Each mode with what the file says of it: all of them, if any are listed."""
+    """Each mode with its entry in the file, or with None if the file lists no modes.
+
+    Raises if the file lists some modes, but not each of them once.
+    """
     if given is None:
         return [(row, None) for row in rows]
     known = {_choice(support, row): row for row in rows}
@@ -170,7 +177,7 @@ def _listed(
     for mode in items(given, "modes"):
         keys(mode, keys_of(ModeClaim), "a mode")
         choice = mode["choice"]
-        require(choice in known, f"{choice!a} is no mode of {named(support)}")
+        require(choice in known, f"{choice!a} is not a mode of {named(support)}")
         require(choice not in entries, f"the mode {choice} of {named(support)} appears twice")
         entries[choice] = mode
     for choice, row in known.items():
@@ -185,13 +192,13 @@ def _listed(
 
 
 def _choice(support: Support, row: dict[int, int]) -> str:
-    """The lines of a mode, vertex by vertex: 0 where there is only one, else - and +."""
+    """The line that a mode has at each vertex: 0 if there is only one line, else - or +."""
     places = ((support.choices[v], row[v]) for v in support.vertices)
     return "".join("0" if len(lines) == 1 else "-+"[lines.index(k)] for lines, k in places)
 
 
 def letters_of(modes: Modes, support: Support, row: dict[int, int]) -> str:
-    """V or M for each active fold, as its density has the sign of the first or not."""
+    """The letters of the active folds: V if the density has the sign of the first fold, else M."""
     signs = {support.folds[0]: 1}
     waiting = set(support.vertices)
     while waiting:
@@ -211,7 +218,10 @@ def _extends(
     mode: dict[str, Any] | None,
     open_ones: bool,
 ) -> bool | None:
-    """Whether a mode truly folds, which must be what the file says of it; None if it is open."""
+    """Whether a mode extends to true motions, None if that is left open.
+
+    Raises if the file says otherwise.
+    """
     said = None if mode is None else mode["extends"]
     if mode is not None and said == "refuted":
         loop = tuple(natural(v, "vertex") for v in items(mode["loop"], "a loop"))
@@ -220,12 +230,13 @@ def _extends(
         for v, before, after in corners_of(loop):
             require(
                 {before, after} <= support.active.get(v, frozenset()) and before != after,
-                f"{name(loop)} is no loop of {named(support)}",
+                f"{name(loop)} is not a loop of {named(support)}",
             )
-        shown = f"the loop {name(loop)} of {named(support)} is not seen to fail at order {order}"
+        shown = f"the loop {name(loop)} of {named(support)} is not proved to fail at order {order}"
         require(loops.fails(row, loop, order), shown)
         return False
-    require(mode is None or mode["loop"] is mode["order"] is None, "a loop that fails nothing")
+    plain = mode is None or mode["loop"] is mode["order"] is None
+    require(plain, f"a mode of {named(support)} names a loop or an order, but is not refuted")
     if open_ones and (mode is None or said == "undecided"):
         return None
     good = all(loops.closes(row, loop) for loop in support.loops)
@@ -237,21 +248,21 @@ def _extends(
 
 
 def summary(claims: PanelsClaims) -> str:
-    """One line for verified claims."""
+    """One line that states the verified claims."""
     shown = ", ".join(f"{n} of dimension {d}" for d, n in claims["second_order"].items())
-    true = "not decided" if claims["true"] is None else "the same"
+    true = "are not decided" if claims["true"] is None else "are the same"
     leaves = [leaf for part in claims.get("spaces", ()) for leaf in part["leaves"]]
     folding = sum(leaf["extending"] for leaf in leaves)
     if claims["true"] is None and folding:
-        true += f" (of the components of its parts at least {folding} truly fold)"
+        true += f" (at least {folding} components of its parts extend to true motions)"
     if claims["true"] not in (None, claims["second_order"]):
-        true = ", ".join(f"{n} of dimension {d}" for d, n in claims["true"].items())
+        true = "are " + ", ".join(f"{n} of dimension {d}" for d, n in claims["true"].items())
     held = f", {counted(len(claims['held']), 'fold', 'folds')} held flat" if claims["held"] else ""
     size = counted(claims["folds"], "fold", "folds")
     inner = counted(claims["interior"], "interior vertex", "interior vertices")
     return (
         f"VALID: the motions of the sheet of {size} and {inner}{held} have the components "
-        f"{shown} to second order, truly {true}; sha256 {claims['sha256']}"
+        f"{shown} to second order, and those of the true motions {true}; sha256 {claims['sha256']}"
     )
 
 

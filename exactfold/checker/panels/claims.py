@@ -1,4 +1,4 @@
-"""What a certificate of a sheet of rigid panels claims (docs/certificate.md, panels)."""
+"""The claims in a certificate of a sheet of rigid panels (docs/certificate.md, panels)."""
 
 from __future__ import annotations
 
@@ -6,7 +6,10 @@ from typing import TypedDict
 
 
 class LeafClaim(TypedDict):
-    """Spaces with the same folds, dimension and cones: how many, and how many of them extend."""
+    """The leaves with the same folds, dimension and cones.
+
+    `number` says how many there are, `extending` how many of them extend to true motions.
+    """
 
     folds: list[list[int]]
     dimension: int
@@ -16,7 +19,7 @@ class LeafClaim(TypedDict):
 
 
 class ModeClaim(TypedDict):
-    """A mode of a support, by which line of motions it has at each vertex."""
+    """A mode of a support. `choice` says which line of motions it has at each vertex."""
 
     choice: str
     assignment: str
@@ -26,7 +29,11 @@ class ModeClaim(TypedDict):
 
 
 class SupportClaim(TypedDict):
-    """Folds that move together, in how many modes, and how many of these extend by what."""
+    """A support: folds that move together.
+
+    `count` is the number of its modes, `extending` the number of modes that extend to true motions,
+    and `by` the reason why they extend.
+    """
 
     vertices: list[int]
     folds: list[list[int]]
@@ -37,7 +44,7 @@ class SupportClaim(TypedDict):
 
 
 class PartClaim(TypedDict):
-    """A part of the sheet with vertices of more than four folds."""
+    """A part of the sheet in which some vertex has more than four folds."""
 
     vertices: list[int]
     complete: bool
@@ -45,7 +52,7 @@ class PartClaim(TypedDict):
 
 
 class PanelFacts(TypedDict):
-    """What the checker finds again: the sheet, its components and the number of its modes."""
+    """The claims that the checker finds again: the sheet, its components, the number of modes."""
 
     interior: int
     border: int
@@ -61,12 +68,12 @@ class PanelFacts(TypedDict):
 
 
 class ModesClaims(PanelFacts):
-    """What a file claims, with each support."""
+    """The claims of a file, which also list each support."""
 
     supports: list[SupportClaim]
 
 
 class PanelsClaims(ModesClaims, total=False):
-    """The same, with the parts that are split into spaces, if there are any."""
+    """The same claims, with the parts that are split into spaces if there are any."""
 
     spaces: list[PartClaim]

@@ -1,4 +1,4 @@
-"""Components of the motions of a sheet of panels: maximal sets of modes without common vertex."""
+"""Components of the motions of a sheet of panels: maximal sets of modes with no common vertex."""
 
 from __future__ import annotations
 
@@ -10,29 +10,30 @@ from ..core.reading import at_most
 MOST_SETS = limits.MOST_SETS
 
 Weighted = Sequence[tuple[tuple[int, ...], int]]
-"""The vertices of each support, and how many modes it stands for."""
+"""For each support its vertices, and the number of its modes."""
 
 
 def components(supports: Weighted, free: int) -> dict[str, int]:
-    """{dimension: number} of the spans of maximal sets of modes without a common vertex.
+    """The numbers of components, as {dimension: number}.
 
-    `free` folds in no condition add to each dimension. Supports that share no vertex, directly or
-    by way of others, are chosen independently.
+    A component is the span of a maximal set of modes with no common vertex. `free` is the number of
+    folds that are in no condition; each adds 1 to every dimension. Supports are grouped by common
+    vertices, and each group is treated independently.
     """
     total = {free: 1}
     for group in _groups(supports):
-        found: dict[int, int] = {}
+        counts: dict[int, int] = {}
         for chosen in _maximal([supports[k][0] for k in group]):
             number = 1
             for k in chosen:
                 number *= supports[group[k]][1]
-            found[len(chosen)] = found.get(len(chosen), 0) + number
-        total = _product(total, found)
+            counts[len(chosen)] = counts.get(len(chosen), 0) + number
+        total = _product(total, counts)
     return {str(dimension): total[dimension] for dimension in sorted(total)}
 
 
 def times(counts: dict[str, int], others: Sequence[Mapping[int, int]]) -> dict[str, int]:
-    """The components of independent parts: dimensions add, numbers multiply."""
+    """The components of independent parts together: dimensions add, numbers multiply."""
     total = {int(dimension): number for dimension, number in counts.items()}
     for other in others:
         total = _product(total, other)
@@ -48,12 +49,12 @@ def _product(total: Mapping[int, int], other: Mapping[int, int]) -> dict[int, in
 
 
 def _groups(supports: Weighted) -> list[list[int]]:
-    """The supports, those together that are joined by common vertices."""
+    """Group the supports: two are in one group if a chain of common vertices joins them."""
     users: dict[int, list[int]] = {}
     for k, (vertices, _) in enumerate(supports):
         for v in vertices:
             users.setdefault(v, []).append(k)
-    found, seen = [], set()
+    groups, seen = [], set()
     for start in range(len(supports)):
         if start in seen:
             continue
@@ -66,15 +67,15 @@ def _groups(supports: Weighted) -> list[list[int]]:
                 fresh = [other for other in users.pop(v, ()) if other not in seen]
                 seen.update(fresh)
                 stack += fresh
-        found.append(group)
-    return found
+        groups.append(group)
+    return groups
 
 
 def _maximal(groups: list[tuple[int, ...]]) -> Iterator[list[int]]:
-    """Sets of supports without a common vertex to which no other can be added.
+    """Yield each maximal set of supports with no common vertex.
 
-    Bron and Kerbosch's search, with bits for supports: `open_ones` may still be added, `closed`
-    were tried before.
+    This is the search of Bron and Kerbosch, with one bit for each support. The supports in
+    `open_ones` may still be added; those in `closed` were tried before.
     """
     sets = [set(vertices) for vertices in groups]
     apart = [

@@ -1,9 +1,10 @@
-"""Cones of several forms: when they are one component, and a motion on it (docs/panels.md, 5).
+"""Cones of several forms: a proof that they are one component, and a motion (docs/panels.md, 5).
 
-The forms of some vertices are put in an order, each with a direction u on which those before do not
-depend and where it is not 0. With K(w, u) for the bilinear form, D(w) = K(w, u)^2 - K(w) K(u), the
-line along u through w has two zeros of K, which are real where D is positive. If D has both signs
-at regular zeros of the forms before, it is no square there, and the zeros stay one component.
+The forms of some vertices are put in an order. Each form K gets a direction u with K(u) != 0 on
+which the earlier forms do not depend. Let K(w, u) be the bilinear form and
+D(w) = K(w, u)^2 - K(w) K(u). The line along u through w has two zeros of K, which are real where D
+is positive. If D has both signs at regular zeros of the earlier forms, it is not a square there,
+and the zeros stay one component.
 """
 
 from __future__ import annotations
@@ -26,15 +27,16 @@ KEPT = 4
 MOST_FORMS = limits.CONE_FORMS
 
 Place = dict[Edge, Interval]
-"""A motion, enclosed; what is left out is 0."""
+"""A motion, with an interval for the density of each fold; a fold that is left out has 0."""
 
 
 def cone_motion(spaces: Spaces, space: Space, vertices: Sequence[int]) -> Place | None:
-    """A motion where the forms of these vertices vanish, if they are shown to be one component.
+    """A motion at which the forms of these vertices vanish; None if no proof is found.
 
-    Zeros of one form after the other are found on lines. A step leaves those of the forms before,
-    and after it the derivative along u is not 0, so that at the end all are independent. The first
-    form is one component if its rank is 3 or more.
+    The proof shows that the common zeros of the forms are one component. One form is added after
+    the other, and its zeros are found on lines along u. A step along u keeps the earlier forms at
+    0. At the new zero the derivative along u is not 0, so that at the end all derivatives are
+    independent. The zeros of the first form are one component if its rank is 3 or more.
     """
     at_most(len(vertices), MOST_FORMS, "the vertices whose forms one space has", "CONE_FORMS")
     places: list[Place] = [{}]
@@ -55,24 +57,25 @@ def cone_motion(spaces: Spaces, space: Space, vertices: Sequence[int]) -> Place 
 
 
 def _ordered(spaces: Spaces, space: Space, vertices: Sequence[int]) -> list[int]:
-    """An order: the last form has the highest rank where the others depend on nothing, and so on.
+    """An order of the vertices for `cone_motion`.
 
-    It is chosen by intervals; any order would do.
+    The last form is the one with the highest rank on the space on which the others do not depend,
+    and so on backwards. Intervals choose the order. Any order is valid.
     """
     forms = {}
     for v in vertices:
         squares = spaces.squares(v, space)
         rows = [{(0, k): x.enclosed(BITS) for k, x in enumerate(values)} for _, values in squares]
         forms[v] = list(zip((d.enclosed(BITS) for d, _ in squares), rows, strict=True))
-    waiting, found = list(vertices), list[int]()
+    waiting, order = list(vertices), list[int]()
     while waiting:
         ranks = {}
         for v in waiting:
             others = reduced(row for u in waiting if u != v for _, row in forms[u])
             ranks[v] = _rank([(d, dict(rest_of(row, others))) for d, row in forms[v]])
-        found.insert(0, max(waiting, key=ranks.__getitem__))
-        waiting.remove(found[0])
-    return found
+        order.insert(0, max(waiting, key=ranks.__getitem__))
+        waiting.remove(order[0])
+    return order
 
 
 def _rank(squares: Sequence[tuple[Interval, Place]]) -> int:
@@ -89,7 +92,7 @@ def _rank(squares: Sequence[tuple[Interval, Place]]) -> int:
 
 
 def _directions(spaces: Spaces, v: int, room: Sequence[Place]) -> Iterator[Place]:
-    """The vectors of a basis where the form is not 0, then such sums and differences of two."""
+    """Yield vectors at which the form is not 0: basis vectors, then sums and differences of two."""
     pairs = list(combinations([u for u in room if spaces.gradient(v, u, BITS)], 2))
     sums = (_plus(a, _whole(sign), b) for a, b in pairs for sign in (1, -1))
     for u in chain(room, sums):
@@ -100,14 +103,15 @@ def _directions(spaces: Spaces, v: int, room: Sequence[Place]) -> Iterator[Place
 def _sides(
     spaces: Spaces, v: int, places: Sequence[Place], room: Sequence[Place], u: Place
 ) -> tuple[list[Place], bool]:
-    """Zeros of a form on lines along u, and whether the discriminant is negative somewhere.
+    """Zeros of a form on lines along u, and whether its discriminant D is negative somewhere.
 
-    The lines go through the places, each shifted in the space that the forms before do not depend
-    on, so that it stays a zero of them: as it is, and after steps to where D is critical.
+    Each line goes through one of the places, shifted along the vectors of `room`. The earlier forms
+    do not depend on these vectors, so that the shifted place is still a zero of the earlier forms.
+    The shifts start at the place itself, and at a nearby point where D is critical.
     """
     slopes = spaces.gradient(v, u, BITS)
     last = _value(slopes, u)
-    found: list[Place] = []
+    zeros: list[Place] = []
     below = False
     for place in [*places, *(_centred(spaces, v, place, room, u) for place in places)]:
         for number in range(SHIFTS):
@@ -117,12 +121,12 @@ def _sides(
             middle = _value(slopes, w)
             first = _value(spaces.gradient(v, w, BITS), w)
             square = middle * middle - first * last
-            if square.sign() > 0 and len(found) < KEPT:
-                found.append(_plus(w, (square.root() - middle) / last, u))
+            if square.sign() > 0 and len(zeros) < KEPT:
+                zeros.append(_plus(w, (square.root() - middle) / last, u))
             below = below or square.sign() < 0
-            if below and len(found) == KEPT:
-                return found, below
-    return found, below
+            if below and len(zeros) == KEPT:
+                return zeros, below
+    return zeros, below
 
 
 def _whole(value: int) -> Interval:
@@ -130,7 +134,7 @@ def _whole(value: int) -> Interval:
 
 
 def _centred(spaces: Spaces, v: int, w: Place, room: Sequence[Place], u: Place) -> Place:
-    """A place shifted to where the discriminant is critical, nearly: along each vector in turn."""
+    """A place shifted along each vector in turn, nearly to a critical point of the discriminant."""
     slopes = spaces.gradient(v, u, BITS)
     last = _value(slopes, u)
     bends = [spaces.gradient(v, b, BITS) for b in room]
@@ -146,7 +150,7 @@ def _centred(spaces: Spaces, v: int, w: Place, room: Sequence[Place], u: Place) 
 
 
 def _shift(number: int, k: int) -> Interval:
-    """The weight of a vector of a basis in one of the shifts, from small ones to large ones."""
+    """The weight of basis vector k in a shift; five sizes of shifts, small to large, take turns."""
     weight = pow(31 * number + k + 2, 5, 101) % 7 - 3
     return Interval.of(weight * Fraction(8) ** (number % 5 - 1), BITS)
 
@@ -156,7 +160,7 @@ def _value(weights: Place, w: Place) -> Interval:
 
 
 def _plus(w: Place, weight: Interval, u: Place) -> Place:
-    found = dict(w)
+    total = dict(w)
     for fold, value in u.items():
-        found[fold] = found[fold] + weight * value if fold in found else weight * value
-    return found
+        total[fold] = total[fold] + weight * value if fold in total else weight * value
+    return total

@@ -1,4 +1,4 @@
-"""Which spaces of motions truly fold, and whether they are all true motions (docs/panels.md, 5)."""
+"""Which leaves extend to true motions, and whether there are no others (docs/panels.md, 5)."""
 
 from __future__ import annotations
 
@@ -22,9 +22,10 @@ LeafKind = tuple[tuple[Edge, ...], int, tuple[int, ...]]
 
 @dataclass
 class PartComponents:
-    """{dimension: number} of the components of a part: to second order, and truly if it is known.
+    """The components of a part, as {dimension: number}.
 
-    `folds` says whether some of them are shown to fold.
+    `second` counts the components to second order. `true` counts those of the true motions, or is
+    None if they are not known. `folds` says whether some component is proved to fold.
     """
 
     second: dict[int, int]
@@ -33,27 +34,28 @@ class PartComponents:
 
 
 def verified_part(sheet: PanelSheet, near: Mapping[int, list[int]], given: Any) -> PartComponents:
-    """The components of a part, found again and compared with what the file says of it.
+    """Find the components of a part again, and compare them with the entry in the file.
 
-    The file gives the leaves by their folds, dimension and cones, with how many there are, and how
-    many of these are said to fold; "complete" says that all true motions are among them.
+    For each kind of leaf (its folds, dimension and cones) the file says how many leaves there are,
+    and how many of these extend to true motions. "complete" claims that there are no other true
+    motions.
     """
     what = f"the part of vertex {next(iter(near))}"
     spaces = Spaces(sheet, near)
-    found: dict[LeafKind, list[Leaf]] = {}
+    by_kind: dict[LeafKind, list[Leaf]] = {}
     for leaf in spaces.leaves():
         _check_component(spaces, leaf)
-        found.setdefault((leaf.folds, leaf.dimension, leaf.cones), []).append(leaf)
+        by_kind.setdefault((leaf.folds, leaf.dimension, leaf.cones), []).append(leaf)
     claimed = dict(_kinds(given["leaves"]))
     require(len(claimed) == len(given["leaves"]), f"{what} has leaves of one kind twice")
-    require(claimed.keys() == found.keys(), f"{what} has other leaves than those listed")
+    require(claimed.keys() == by_kind.keys(), f"{what} has other leaves than those listed")
     second: dict[int, int] = {}
     folding = 0
     for kind, (number, extending) in claimed.items():
-        leaves = found.get(kind, [])
+        leaves = by_kind.get(kind, [])
         require(number == len(leaves), f"{what} has {len(leaves)} leaves of a kind, not {number}")
         shown = sum(extends(spaces, leaf) for leaf in leaves) if extending else 0
-        folds = f"{what} has {shown} leaves of a kind that fold, not {extending}"
+        folds = f"{what}: {shown} leaves of a kind are proved to fold, not {extending}"
         require(extending <= shown, folds)
         second[kind[1]] = second.get(kind[1], 0) + number
         folding += extending
@@ -62,8 +64,8 @@ def verified_part(sheet: PanelSheet, near: Mapping[int, list[int]], given: Any) 
     require(type(given["complete"]) is bool, f'{what}: "complete" is neither true nor false')
     if given["complete"]:
         total = sum(number for number, _ in claimed.values())
-        require(folding == total, f"{what} has leaves that are not shown to fold")
-        regular = complete(spaces, [leaf for leaves in found.values() for leaf in leaves])
+        require(folding == total, f"{what} has leaves that are not proved to fold")
+        regular = complete(spaces, [leaf for leaves in by_kind.values() for leaf in leaves])
         require(regular, f"{what} may have other true motions")
         true = second
     return PartComponents(second, true, folding > 0)
@@ -80,26 +82,27 @@ def _kinds(given: Any) -> Iterable[tuple[LeafKind, tuple[int, int]]]:
 
 
 def _check_component(spaces: Spaces, leaf: Leaf) -> None:
-    """Refuse a leaf with several forms of one part that are not shown to be one component."""
+    """Refuse a leaf if the zeros of the forms left on a part of it may be several components."""
     for part in spaces.parts(leaf.basis):
         cones = _cones(part, leaf)
         shown = len(cones) < 2 or cone_motion(spaces, part, cones) is not None
-        require(shown, f"the forms of vertices {', '.join(map(str, cones))} stay")
+        vertices = ", ".join(map(str, cones))
+        require(shown, f"the zeros of the forms of vertices {vertices} may be several components")
 
 
 def _cones(part: list[Motion], leaf: Leaf) -> list[int]:
-    """The vertices of a part whose forms are left."""
+    """The vertices of a part whose forms are left as cones."""
     active = {v for fold in folds_of(part) for v in fold}
     return [v for v in leaf.cones if v in active]
 
 
 def extends(spaces: Spaces, leaf: Leaf) -> bool:
-    """Whether a leaf is shown to be tangent to true motions: its parts fold apart from each other.
+    """Whether a leaf is proved to be tangent to true motions.
 
-    A part that is all local motions of one vertex folds, by Morse's lemma; one at a point of which
-    all closing conditions are independent, by the implicit function theorem. A part with one
-    parameter, at whose vertices two or four folds are active, is a mode, which folds if its loops
-    close.
+    Its parts fold independently of each other. A part that consists of all local motions of one
+    vertex folds by Morse's lemma. A part with a point at which all closing conditions are
+    independent folds by the implicit function theorem. A part with one parameter, and with two or
+    four active folds at each vertex, is a mode; it folds if its loops close.
     """
     return all(_folds(spaces, part, _cones(part, leaf)) for part in spaces.parts(leaf.basis))
 
@@ -122,7 +125,10 @@ def _folds(spaces: Spaces, part: list[Motion], cones: list[int]) -> bool:
 
 
 def _closes(sheet: PanelSheet, near: Mapping[int, list[int]], motion: Motion) -> bool:
-    """Whether the mode of a motion closes its loops: it is the one that intervals leave over."""
+    """Whether the mode of a motion closes its loops.
+
+    Intervals exclude all other modes on the same folds, so that the remaining one is the mode.
+    """
     modes = Modes(sheet, near)
     support = modes.support({v: frozenset(around) for v, around in near.items()})
     rows = [row for row in modes.listed(support) if _agrees(modes, support, row, motion)]
@@ -131,7 +137,7 @@ def _closes(sheet: PanelSheet, near: Mapping[int, list[int]], motion: Motion) ->
 
 
 def _agrees(modes: Modes, support: Support, row: dict[int, int], motion: Motion) -> bool:
-    """Whether the quotients of the densities may be those of a mode."""
+    """Whether intervals allow the quotients of the densities to be those of a mode."""
     for v, around in support.active.items():
         first, *others = sorted(around)
         for u in others:
@@ -143,11 +149,12 @@ def _agrees(modes: Modes, support: Support, row: dict[int, int], motion: Motion)
 
 
 def complete(spaces: Spaces, leaves: list[Leaf]) -> bool:
-    """Whether true motions are shown to be no more than the leaves that extend.
+    """Whether the leaves that extend are proved to be all true motions.
 
-    So it is for one vertex alone; where each leaf is a line at which the derivatives of all forms
-    leave, in the space of first-order motions, that line alone; and where all first-order motions
-    are one leaf, with the form of every vertex that has one, and their conditions are independent.
+    This holds in three cases. The part has one vertex only. Or each leaf is a line, and there the
+    derivatives of all forms vanish on this line alone, in the space of first-order motions. Or one
+    leaf is the whole space of first-order motions, with the form of every vertex that has a form,
+    and the first-order conditions are independent.
     """
     if len(spaces.near) == 1 or all(_regular(spaces, leaf) for leaf in leaves):
         return True
@@ -157,9 +164,9 @@ def complete(spaces: Spaces, leaves: list[Leaf]) -> bool:
 
 
 def _all_count(spaces: Spaces) -> bool:
-    """Whether the conditions of first order are independent.
+    """Whether the first-order conditions are independent.
 
-    They are two for each vertex, and one for a straight pair, which has no form.
+    Each vertex has two conditions. A vertex with a straight pair has one, and it has no form.
     """
     folds = {pair(v, u) for v, around in spaces.near.items() for u in around}
     full = [v for v, around in spaces.near.items() if len(around) > 2]
@@ -173,15 +180,16 @@ def _regular(spaces: Spaces, leaf: Leaf) -> bool:
 
 
 def _sum(spaces: Spaces, part: list[Motion]) -> Motion:
-    """A motion of a part: once the first of its basis, twice the second, and so on."""
-    found: Motion = {}
+    """A motion of a part: once the first basis vector, plus twice the second, and so on."""
+    total: Motion = {}
     for weight, motion in enumerate(part, 1):
-        found = spaces.plus(found, spaces.sheet.tower.number(weight), motion)
-    return found
+        total = spaces.plus(total, spaces.sheet.tower.number(weight), motion)
+    return total
 
 
 def _independent(spaces: Spaces, point: Place) -> bool:
-    """Whether the conditions of first order are independent, and all forms at a motion."""
+    """Whether the first-order conditions, and the derivatives of all forms at a motion, are
+    independent."""
     full = [v for v, around in spaces.near.items() if len(around) > 2]
     if not _all_count(spaces):
         return False
@@ -191,7 +199,7 @@ def _independent(spaces: Spaces, point: Place) -> bool:
 
 
 def _rank(spaces: Spaces, place: Place) -> int:
-    """A lower bound of the rank of the derivatives of all forms at a point, by intervals."""
+    """A lower bound, by intervals, of the rank of the derivatives of all forms at a point."""
     basis = [enclosed(motion) for motion in spaces.first_order]
     rows = []
     for v in spaces.near:

@@ -1,8 +1,8 @@
-"""Motions of one vertex of a sheet of panels with at most four folds.
+"""The motions of one vertex with at most four folds in a sheet of panels.
 
-Fold densities w (angle / length) solve `sum_j w_j d_j = 0` and, to second order,
-`sum_{k<j} w_k w_j [d_k, d_j] = 0`: one line for a straight pair, two for four folds with all
-sectors less than pi (docs/panels.md, 2).
+The fold densities w (angle / length) solve `sum_j w_j d_j = 0` and, to second order,
+`sum_{k<j} w_k w_j [d_k, d_j] = 0`. The solutions are one line for a straight pair, and two lines
+for four folds with all sectors less than pi (docs/panels.md, 2).
 """
 
 from __future__ import annotations
@@ -15,24 +15,27 @@ from ..sheets.panels import PanelSheet, cross
 
 @dataclass
 class Line:
-    """One line of motions at a vertex: density by neighbour, only those that are not 0.
+    """One line of motions at a vertex.
 
-    `radicand` is what the root in the densities is of, None if they are in the field of the sheet.
+    `densities` has the density of the fold to each neighbour; densities that are 0 are left out.
+    The densities lie in the field of the sheet with the square root of `radicand`, or in the field
+    of the sheet itself if `radicand` is None.
     """
 
     densities: dict[int, Number]
     radicand: Number | None
 
     def gain(self, start: int, end: int) -> Number:
-        """density of the fold to `end` / that of the fold to `start`."""
+        """The density of the fold to `end`, divided by that of the fold to `start`."""
         return self.densities[end] / self.densities[start]
 
 
 def lines_at(sheet: PanelSheet, v: int, near: list[int]) -> list[Line]:
     """The lines of motions of a vertex with a straight pair or four folds.
 
-    Those of four folds with the same active folds are in the order of the quotient of the densities
-    of the second and the first fold, by the numbers of the neighbours.
+    Suppose that both lines of four folds have all four folds active. They are then sorted by the
+    quotient of two densities: that of the fold to the neighbour with the second smallest number,
+    divided by that of the fold to the neighbour with the smallest number.
     """
     d = [sheet.vector(v, u) for u in near]
     one = sheet.tower.number(1)
@@ -42,7 +45,7 @@ def lines_at(sheet: PanelSheet, v: int, near: list[int]) -> list[Line]:
     zero = sheet.tower.number(0)
 
     def motion(x: Number, y: Number) -> list[Number]:
-        """x d_1 + y d_2 + z d_3 + w d_4 = 0."""
+        """The densities (x, y, z, w) with x d_1 + y d_2 + z d_3 + w d_4 = 0."""
         rest = [-(x * d[0][k] + y * d[1][k]) for k in (0, 1)]
         last = cross(d[2], d[3])
         return [
@@ -71,12 +74,12 @@ def lines_at(sheet: PanelSheet, v: int, near: list[int]) -> list[Line]:
         radicand = None if above is sheet.tower else square
         half = sheet.tower.number(2) * c
         ratios = [(half, -b - root), (half, root - b)]
-    found = []
+    lines = []
     for x, y in ratios:
         w = dict(zip(near, motion(x, y), strict=True))
-        found.append(Line({u: w[u] for u in sorted(near) if w[u].sign()}, radicand))
-    if len(found[0].densities) == len(found[1].densities) == 4:
+        lines.append(Line({u: w[u] for u in sorted(near) if w[u].sign()}, radicand))
+    if len(lines[0].densities) == len(lines[1].densities) == 4:
         i, j = sorted(near)[:2]
-        if (found[0].gain(i, j) - found[1].gain(i, j)).sign() > 0:
-            found.reverse()
-    return found
+        if (lines[0].gain(i, j) - lines[1].gain(i, j)).sign() > 0:
+            lines.reverse()
+    return lines

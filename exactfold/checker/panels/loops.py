@@ -1,9 +1,10 @@
-"""Whether modes truly fold: the transmissions round loops of vertices, as exact power series.
+"""Whether modes extend to true motions: transmissions round loops, as exact power series.
 
-With tau = tan(angle / 2) / length one tau at a vertex with four folds determines the others along a
-line of motions, tau_end = tau_start u(tau_start^2), and u solves (p + q s) u^2 + b u + c = 0. If k
-of the transmissions round a loop are not linear and their composite agrees with the identity up to
-the order 2^k + 1, it is the identity (docs/panels.md, 3 and 4).
+Let tau = tan(angle / 2) / length. Along a line of motions of a vertex with four folds, one tau
+determines the others: tau_end = tau_start u(tau_start^2), and u solves
+(p + q s) u^2 + b u + c = 0. Suppose that k of the transmissions round a loop are not linear. If
+their composite agrees with the identity up to the order 2^k + 1, it is the identity
+(docs/panels.md, 3 and 4).
 """
 
 from __future__ import annotations
@@ -24,12 +25,15 @@ MOST_BENT = limits.MOST_BENT
 MOST_ORDER = 2**MOST_BENT + 1
 _BITS = (256, 1024)
 Series = list[Any]
-"""Coefficients of a power series: numbers or intervals."""
+"""The coefficients of a power series, as numbers or as intervals."""
 
 
 @dataclass
 class Step:
-    """The transmission at one vertex of a loop: its gain u(0), and (p, q, b), None if linear."""
+    """The transmission at one vertex of a loop.
+
+    `gain` is u(0). `quadratic` is (p, q, b), or None if the transmission is linear.
+    """
 
     vertex: int
     gain: Number
@@ -37,7 +41,7 @@ class Step:
 
 
 class Loops:
-    """The transmissions of a sheet, and which loops they close; what was found is kept."""
+    """The transmissions of a sheet, and which loops they close; all results are remembered."""
 
     def __init__(self, modes: Modes) -> None:
         self.modes = modes
@@ -45,7 +49,7 @@ class Loops:
         self._closing: dict[object, bool] = {}
 
     def step(self, v: int, line: int, start: int, end: int) -> Step:
-        """From the fold v-start to the fold v-end, on one line of motions at v."""
+        """The transmission from the fold v-start to the fold v-end, on one line of motions at v."""
         key = (v, line, start, end)
         if key not in self._steps:
             self._steps[key] = self._made(*key)
@@ -81,7 +85,10 @@ class Loops:
         return [self.step(v, chosen[v], u, w) for v, u, w in corners_of(loop)]
 
     def closes(self, chosen: Mapping[int, int], loop: tuple[int, ...]) -> bool:
-        """Whether the composite round a loop, which closes at first order, is the identity."""
+        """Whether the composite of the transmissions round a loop is the identity.
+
+        The loop must close at first order.
+        """
         key = (loop, tuple(chosen[v] for v in loop))
         if key not in self._closing:
             self._closing[key] = self._closes(chosen, loop)
@@ -89,7 +96,7 @@ class Loops:
 
     def _closes(self, chosen: Mapping[int, int], loop: tuple[int, ...]) -> bool:
         steps = self.steps(chosen, loop)
-        bent = sum(found.quadratic is not None for found in steps)
+        bent = sum(step.quadratic is not None for step in steps)
         if not bent:
             return True
         what = f"the transmissions of the loop {name(loop)} that are not linear"
@@ -113,25 +120,29 @@ class Loops:
 
 
 def _differs(steps: Sequence[Step], order: int, bits: int) -> int | None:
-    """The last order up to this at which intervals prove the composite not to be the identity."""
+    """The highest order up to `order` at which intervals prove that the composite is not the
+    identity; None if there is none."""
     zero, one = Interval.of(Fraction(0), bits), Interval.of(Fraction(1), bits)
     try:
-        found = composed(steps, order, lambda _, value: value.enclosed(bits), zero, one)
-    except ZeroDivisionError:  # too coarse
+        series = composed(steps, order, lambda _, value: value.enclosed(bits), zero, one)
+    except ZeroDivisionError:  # the intervals are too wide
         return None
-    return next((2 * n + 1 for n in range(order // 2, 0, -1) if found[n].sign()), None)
+    return next((2 * n + 1 for n in range(order // 2, 0, -1) if series[n].sign()), None)
 
 
 def composed(
     steps: Sequence[Step], order: int, of: Callable[[int, Number], Any], zero: Any, one: Any
 ) -> Series:
-    """f with tau = t f(t^2) after all steps, up to that order of tau; `of` converts numbers."""
+    """The series f with tau = t f(t^2) after all steps, where t is the first tau.
+
+    It is computed up to the given order of tau; `of` converts the numbers of a vertex.
+    """
     terms = order // 2 + 1
     f: Series = [one] + [zero] * (terms - 1)
-    for found in steps:
+    for step in steps:
         square = _times(f, f, zero)
         argument = [zero, *square[:-1]]
-        u = _series(found, terms, of, zero)
+        u = _series(step, terms, of, zero)
         value = [zero] * terms
         for coefficient in reversed(u):
             value = _times(value, argument, zero)
@@ -140,12 +151,12 @@ def composed(
     return f
 
 
-def _series(found: Step, terms: int, of: Callable[[int, Number], Any], zero: Any) -> Series:
-    """u with (p + q s) u^2 + b u + c = 0: the coefficient of s^n gives u_n."""
-    u: Series = [of(found.vertex, found.gain)]
-    if found.quadratic is None:
+def _series(step: Step, terms: int, of: Callable[[int, Number], Any], zero: Any) -> Series:
+    """The series u(s) with (p + q s) u^2 + b u + c = 0; the coefficient of s^n gives u_n."""
+    u: Series = [of(step.vertex, step.gain)]
+    if step.quadratic is None:
         return u
-    p, q, b = (of(found.vertex, value) for value in found.quadratic)
+    p, q, b = (of(step.vertex, value) for value in step.quadratic)
     divisor = p * u[0] + p * u[0] + b
     for n in range(1, terms):
         rest = zero

@@ -1,8 +1,8 @@
-"""The sets of vertices of a sheet of panels that move together, and in how many ways.
+"""The supports of a sheet of panels, and the number of modes on each.
 
-A support is a connected set of vertices with the folds that are active there; a mode chooses a line
-of motions at each, so that round each loop the gains, quotients of densities, have the product 1
-(docs/panels.md, 2).
+A support is a connected set of vertices that move together, with the folds that are active there. A
+mode chooses a line of motions at each vertex. A gain is a quotient of densities; round each loop
+the gains must have the product 1 (docs/panels.md, 2).
 """
 
 from __future__ import annotations
@@ -26,10 +26,11 @@ Folds = dict[Edge, bool]
 
 @dataclass
 class Support:
-    """Vertices that move together, with their active neighbours, and the number of modes.
+    """Vertices that move together, and the number of their modes, `count`.
 
-    `loops` are the bounded faces of the graph of the active folds between them; `choices` are the
-    numbers of the lines that have just these active folds.
+    `active` has the active neighbours of each vertex, and `folds` all active folds. `loops` are the
+    bounded faces of the graph of the active folds between the vertices. `choices` has for each
+    vertex the numbers of the lines whose active folds are exactly these.
     """
 
     active: dict[int, frozenset[int]]
@@ -46,7 +47,7 @@ class Support:
 
 @dataclass
 class Modes:
-    """All supports of a sheet, found by trying at each vertex all sets of active folds."""
+    """All supports of a sheet, found by trying all sets of active folds at each vertex."""
 
     sheet: PanelSheet
     near: Mapping[int, list[int]]
@@ -66,7 +67,7 @@ class Modes:
                         self._panels[v].append(panel)
 
     def supports(self) -> Iterator[Support]:
-        """Every support that has a mode, with the number of its modes."""
+        """Yield every support that has a mode, with the number of its modes."""
         for seed in self.near:
             for active in self._grown(seed):
                 support = self.support(active)
@@ -74,7 +75,7 @@ class Modes:
                     yield support
 
     def support(self, active: dict[int, frozenset[int]]) -> Support:
-        """The loops of the active graph and the number of modes."""
+        """The support with these active folds: its loops, and the number of its modes."""
         folds = {pair(v, u) for v, near in active.items() for u in near}
         near = {v: [u for u in self.near[v] if u in active[v]] for v in active}
         loops = loops_of(self.sheet, near)
@@ -85,7 +86,7 @@ class Modes:
         return support
 
     def listed(self, support: Support) -> list[dict[int, int]]:
-        """The line at each vertex, for every mode of a support."""
+        """The modes of a support, each as {vertex: number of its line}."""
         order = sorted(support.active)
         return [dict(zip(order, row, strict=True)) for row in self._table(support, merged=False)]
 
@@ -93,10 +94,10 @@ class Modes:
         return [k for k, line in enumerate(self.lines[v]) if line.densities.keys() == active]
 
     def _grown(self, seed: int) -> Iterator[dict[int, frozenset[int]]]:
-        """Connected sets of active vertices, the smallest of which is `seed`.
+        """Yield the connected sets of active vertices whose smallest vertex is `seed`.
 
-        A fold is active at both its ends or at none. A set in which a panel cannot close is not
-        continued.
+        A fold is active at both its ends or at none. The search drops a set as soon as some panel
+        cannot close.
         """
         stack: list[tuple[dict[int, frozenset[int]], Folds, tuple[int, ...]]] = [({}, {}, (seed,))]
         while stack:
@@ -133,7 +134,7 @@ class Modes:
         return True
 
     def _closed(self, loop: tuple[int, ...], choices: Mapping[int, list[int]]) -> frozenset[Row]:
-        """The choices of lines at the vertices of a loop, in their order, that close it."""
+        """The choices of lines that close a loop, one line for each vertex in increasing order."""
         corners = sorted(set(loop))
         key = (loop, tuple(tuple(choices[v]) for v in corners))
         if key not in self._closing:
@@ -148,7 +149,10 @@ class Modes:
         return self._closing[key]
 
     def closes(self, loop: tuple[int, ...], chosen: Mapping[int, int]) -> bool:
-        """Whether the gains round a loop have the product 1: refuted by intervals, or exactly."""
+        """Whether the gains round a loop have the product 1.
+
+        Intervals refute it where they can; otherwise it is decided exactly.
+        """
         for bits in (64, 256):
             total = self.sheet.tower.number(1).enclosed(bits)
             for v, before, after in corners_of(loop):
@@ -162,17 +166,18 @@ class Modes:
         return (exact - joined.tower.number(1)).sign() == 0
 
     def gain(self, v: int, line: int, start: int, end: int) -> Number:
-        """The gain at a vertex, remembered."""
+        """The gain at a vertex from one fold to another; gains are remembered."""
         key = (v, line, start, end)
         if key not in self._gains:
             self._gains[key] = self.lines[v][line].gain(start, end)
         return self._gains[key]
 
     def _table(self, support: Support, *, merged: bool) -> dict[Row, int]:
-        """Rows of lines that close all loops, with their number.
+        """The rows of lines that close all loops, as {row: how many modes have it}.
 
-        Merged, a vertex is left out when no loop is left that passes it; so the empty row is left.
-        Otherwise the rows have all vertices in increasing order.
+        If `merged`, a vertex is dropped from the rows as soon as no remaining loop passes it; at
+        the end one empty row has the number of all modes. Otherwise a row has the lines of all
+        vertices in increasing order.
         """
         waiting = [
             (sorted(set(loop)), self._closed(loop, support.choices)) for loop in support.loops
@@ -208,7 +213,7 @@ class Modes:
 
 
 class Joined:
-    """A tower that holds the numbers at the vertices of a loop."""
+    """A tower that holds the numbers of all vertices of a loop."""
 
     def __init__(self, modes: Modes, loop: Sequence[int], chosen: Mapping[int, int]) -> None:
         self.ground = modes.sheet.tower
@@ -223,7 +228,7 @@ class Joined:
                 at_most(roots, MOST_ROOTS, what, "MODE_ROOTS")
 
     def of(self, v: int, value: Number) -> Number:
-        """A number at a vertex, in the tower."""
+        """The number of a vertex as a number of this tower."""
         size = self.ground.size
         low = self.tower.number(Number(self.ground, value.parts[:size]))
         if len(value.parts) == size:
@@ -233,17 +238,17 @@ class Joined:
 
 
 def corners_of(loop: Sequence[int]) -> Iterator[tuple[int, int, int]]:
-    """Each vertex of a loop, with the one before and the one after it."""
+    """Yield each vertex of a loop, with the vertices before and after it."""
     for k, v in enumerate(loop):
         yield v, loop[k - 1], loop[(k + 1) % len(loop)]
 
 
 def loops_of(sheet: PanelSheet, near: Mapping[int, list[int]]) -> list[tuple[int, ...]]:
-    """The bounded faces of a connected plane graph, once its dangling trees are taken off.
+    """The bounded faces of a connected plane graph, after its dangling trees are cut off.
 
-    Whatever is carried round a loop comes back unchanged if it does round these: they fill what the
-    loop encloses. `near` holds neighbours counter-clockwise; those that are no vertices of the
-    graph are left out.
+    Every loop encloses some of these faces. If a quantity comes back unchanged round each of the
+    faces, it comes back unchanged round every loop. `near` has the neighbours of each vertex,
+    counter-clockwise; a neighbour that is not a vertex of the graph is left out.
     """
     graph = {v: [u for u in around if u in near] for v, around in near.items()}
     while any(len(around) < 2 for around in graph.values()):
@@ -253,10 +258,10 @@ def loops_of(sheet: PanelSheet, near: Mapping[int, list[int]]) -> list[tuple[int
 
 
 def name(loop: Sequence[int]) -> str:
-    """A loop in words."""
+    """The name of a loop in messages."""
     return "-".join(map(str, loop))
 
 
 def named(support: Support) -> str:
-    """A support in words."""
+    """The name of a support in messages."""
     return f"the support of vertices {name(support.vertices)[:200]}"

@@ -1,4 +1,4 @@
-"""Vectors of densities by fold, reduced by others: exactly in one field, or in intervals."""
+"""Gaussian elimination for vectors of fold densities, exactly in one field or in intervals."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ MOST_ROOTS = limits.SPACE_ROOTS
 BITS = 256
 
 Vector = Mapping[Edge, Any]
-"""Numbers of one field, or intervals, by fold; what is left out is 0."""
+"""For each fold a number of one field, or an interval; a fold that is left out has 0."""
 Rows = list[tuple[Edge, Vector]]
 
 
 def zero(value: Any) -> bool:
-    """Whether a number is 0; of an interval that is not known."""
+    """Whether a value is known to be 0; an interval never is."""
     return isinstance(value, Number) and not any(value.parts)
 
 
 def rest_of(vector: Vector, rows: Rows) -> Vector:
-    """The vector less multiples of the rows, so that none of their leading folds is left."""
+    """The vector minus multiples of the rows, so that the leading folds of all rows vanish."""
     rest = dict(vector)
     for lead, row in rows:
         if lead in rest:
@@ -37,9 +37,9 @@ def rest_of(vector: Vector, rows: Rows) -> Vector:
 
 
 def reduced(vectors: Iterable[Vector]) -> Rows:
-    """A basis of the span, each with a leading fold that is in none of those after it.
+    """A basis of the span; the leading fold of each row does not occur in the later rows.
 
-    Vectors of intervals that are not shown to be independent of those before are left out.
+    A vector of intervals is left out if it is not proved to be independent of the earlier rows.
     """
     rows: Rows = []
     for vector in vectors:
@@ -51,15 +51,15 @@ def reduced(vectors: Iterable[Vector]) -> Rows:
 
 
 def enclosed(vector: Mapping[Edge, Number]) -> dict[Edge, Interval]:
-    """The vector in intervals."""
+    """The vector with an interval in place of each number."""
     return {fold: value.enclosed(BITS) for fold, value in vector.items()}
 
 
 def inside(space: Sequence[Mapping[Edge, Number]], other: Sequence[Mapping[Edge, Number]]) -> bool:
-    """Whether the span of some vectors lies in that of independent others.
+    """Whether the span of `space` lies in the span of `other`, whose vectors are independent.
 
-    Refuted by intervals where they show that the others and one more are independent; else decided
-    in one field.
+    Intervals refute it if they show that a vector of `space` is independent of `other`. Otherwise
+    it is decided exactly, in one field.
     """
     folds = {fold for vector in other for fold in vector}
     if any(fold not in folds for vector in space for fold in vector):
@@ -75,18 +75,18 @@ def inside(space: Sequence[Mapping[Edge, Number]], other: Sequence[Mapping[Edge,
 
 
 class Joined:
-    """A tower that numbers of several towers are taken to."""
+    """One tower into which the numbers of several towers are mapped."""
 
     def __init__(self) -> None:
         self.tower = Tower()
         self._roots: dict[tuple[Parts, ...], Number] = {}
 
     def vector(self, vector: Mapping[Edge, Number]) -> dict[Edge, Number]:
-        """The vector in the tower."""
+        """The vector with its numbers mapped into the tower."""
         return {fold: self.of(value) for fold, value in vector.items()}
 
     def of(self, value: Number) -> Number:
-        """A number in the tower, which is made higher if that is needed."""
+        """The number mapped into the tower, to which levels are added if they are needed."""
         radicands = value.tower.radicands
         for k, radicand in enumerate(radicands):
             key = radicands[: k + 1]

@@ -1,9 +1,10 @@
-"""Motions of a part of a sheet whose vertices may have more than four folds: spaces and cones.
+"""The motions of a part of a sheet whose vertices may have more than four folds: spaces and cones.
 
-A space of first-order motions is given by a basis; a basis vector holds its densities by fold. On a
-space a form that is semidefinite leaves its kernel, a form of inertia (1, 1) two spaces, and one
-of inertia (1, q) with q > 1, left alone, a cone that spans the space (docs/panels.md, 5). Where
-several are left, `panel_cones` is to show that they are one component.
+A space of first-order motions is given by a basis, and a basis vector is {fold: density}. On a
+space the form of a vertex vanishes as follows (docs/panels.md, 5). A semidefinite form vanishes on
+its kernel. A form of inertia (1, 1) vanishes on two spaces. A form of inertia (1, q) with q > 1
+vanishes on a cone that spans the space. If several such forms are left on one space, `cones` must
+show that their common zeros are one component.
 """
 
 from __future__ import annotations
@@ -23,55 +24,61 @@ MOST_STEPS = limits.SPACE_STEPS
 MOST_LEAVES = limits.SPACE_LEAVES
 
 Motion = dict[Edge, Number]
-"""The densities that are not 0."""
+"""A motion, as the densities of the folds; densities that are 0 are left out."""
 Space = list[Motion]
 Squares = list[tuple[Number, list[Number]]]
 
 
 @dataclass
 class Leaf:
-    """A space on which all forms vanish but those of the vertices `cones`."""
+    """A space on which the forms of all vertices vanish, except those of the vertices `cones`."""
 
     basis: Space
     cones: tuple[int, ...]
 
     @property
     def dimension(self) -> int:
-        """Of the motions, if they are one component, which is to be shown of several forms."""
+        """The dimension of the motions, if they are one component.
+
+        If there are several cones, that they are one component must still be proved.
+        """
         return len(self.basis) - len(self.cones)
 
     @property
     def folds(self) -> tuple[Edge, ...]:
-        """Those that are not flat on all of it."""
+        """The folds that are not flat in all motions of the leaf."""
         return folds_of(self.basis)
 
 
 def folds_of(basis: Space) -> tuple[Edge, ...]:
-    """The folds that are not flat in all motions."""
+    """The folds that are not flat in all motions of a space."""
     return tuple(sorted({fold for motion in basis for fold in motion}))
 
 
 def tower_of(basis: Space) -> Tower:
-    """The field of all densities."""
+    """The largest field of the densities of a basis."""
     towers = (value.tower for motion in basis for value in motion.values())
     return max(towers, key=lambda tower: tower.size)
 
 
 class Work:
-    """The products of densities made so far; one of numbers with n coefficients counts n^2."""
+    """Counts products of densities; a product of numbers with n coefficients counts n^2 steps."""
 
     def __init__(self) -> None:
         self.steps = 0
 
     def count(self, products: int, value: Any) -> None:
-        """Add products with this number, or interval; too many are refused."""
+        """Count products with this number or interval; raises `LimitError` if they are too many."""
         size = value.tower.size if isinstance(value, Number) else 1
         self.steps += products * size * size
         at_most(self.steps, MOST_STEPS, "the steps to the spaces of motions", "SPACE_STEPS")
 
 
 class Spaces:
-    """The spaces of motions of a part: vertices with the neighbours over folds that may fold."""
+    """The spaces of motions of a part of a sheet.
+
+    `near` has for each vertex of the part its neighbours across folds that may fold.
+    """
 
     def __init__(
         self, sheet: PanelSheet, near: Mapping[int, list[int]], work: Work | None = None
@@ -81,11 +88,14 @@ class Spaces:
         self.first_order = self._first_order()
 
     def leaves(self) -> list[Leaf]:
-        """All components of the motions, but for the flat state alone."""
+        """All components of the motions; the flat state alone is not counted."""
         return [leaf for leaf in self._leaves(self.first_order) if leaf.basis]
 
     def _first_order(self) -> Space:
-        """All densities with sum_j w_j d_j = 0 at each vertex, one condition after the other."""
+        """The space of all densities with sum_j w_j d_j = 0 at each vertex.
+
+        The conditions are imposed one after the other.
+        """
         one = self.sheet.tower.number(1)
         folds = sorted({pair(v, u) for v, around in self.near.items() for u in around})
         space: Space = [{fold: one} for fold in folds]
@@ -103,7 +113,8 @@ class Spaces:
         return total
 
     def vanishing(self, space: Space, rows: Sequence[Sequence[Number]]) -> Space:
-        """Where linear functions are 0 that have these values on the basis."""
+        """The subspace on which linear functions vanish; each row has the values of one function
+        on the basis."""
         todo = [list(row) for row in rows]
         for n, row in enumerate(todo):
             active = [k for k, value in enumerate(row) if not zero(value)]
@@ -124,20 +135,20 @@ class Spaces:
 
     def plus(self, motion: Motion, weight: Number, other: Motion) -> Motion:
         """The sum of a motion and a multiple of another."""
-        found = dict(motion)
+        motion_sum = dict(motion)
         self.work.count(len(other), weight)
         for fold, value in other.items():
             total = weight * value
-            if fold in found:
-                total = found[fold] + total
+            if fold in motion_sum:
+                total = motion_sum[fold] + total
             if zero(total):
-                del found[fold]
+                del motion_sum[fold]
             else:
-                found[fold] = total
-        return found
+                motion_sum[fold] = total
+        return motion_sum
 
     def _leaves(self, space: Space) -> list[Leaf]:
-        """The leaves of a space: sums of those of its parts that share no fold."""
+        """The leaves of a space: all sums of one leaf of each part."""
         total = [Leaf([], ())]
         for part in self.parts(space):
             leaves = self._maximal(self._split(part))
@@ -146,10 +157,13 @@ class Spaces:
             total = [self._sum(a, b) for a in total for b in leaves]
         return total
 
-    def _maximal(self, found: list[Leaf]) -> list[Leaf]:
-        """The leaves that are in no other; what is in the space of one is in the leaf as well."""
+    def _maximal(self, leaves: list[Leaf]) -> list[Leaf]:
+        """The leaves whose space lies in the space of no other leaf.
+
+        A leaf whose space lies in the space of another leaf also lies in this other leaf.
+        """
         kept: list[Leaf] = []
-        for leaf in sorted(found, key=lambda leaf: (-len(leaf.basis), len(leaf.cones))):
+        for leaf in sorted(leaves, key=lambda leaf: (-len(leaf.basis), len(leaf.cones))):
             if not any(inside(leaf.basis, other.basis) for other in kept):
                 kept.append(leaf)
         return kept
@@ -158,10 +172,10 @@ class Spaces:
         return Leaf([*a.basis, *b.basis], tuple(sorted(a.cones + b.cones)))
 
     def parts(self, space: Space) -> list[Space]:
-        """The space as a direct sum: one part for each set of folds joined by vertices.
+        """The space as a direct sum, with one part for each set of folds that vertices join.
 
-        All conditions met so far are conditions on the densities at one vertex, so that the part of
-        a motion on such a set, the other folds flat, meets them as well.
+        Each condition imposed so far is about the densities at one vertex. So if a motion meets
+        them all, its restriction to one such set, with the other folds flat, meets them too.
         """
         groups: list[set[Edge]] = []
         for fold in folds_of(space):
@@ -183,7 +197,11 @@ class Spaces:
         return parts
 
     def _split(self, space: Space) -> list[Leaf]:
-        """The leaves of a part: of a semidefinite form the kernel, of a product both factors."""
+        """The leaves of a part.
+
+        A semidefinite form leaves its kernel, and a form of inertia (1, 1) the zeros of both
+        factors.
+        """
         products: list[Squares] = []
         left: list[int] = []
         for v in sorted({v for fold in folds_of(space) for v in fold if v in self.near}):
@@ -197,17 +215,17 @@ class Spaces:
                 left.append(v)
         if not products:
             return [Leaf(space, tuple(left))]
-        found = []
+        leaves = []
         for values in self.factors(products, space):
-            found += self._leaves(self.vanishing(space, [values]))
-            at_most(len(found), MOST_LEAVES, "the spaces of motions", "SPACE_LEAVES")
-        return found
+            leaves += self._leaves(self.vanishing(space, [values]))
+            at_most(len(leaves), MOST_LEAVES, "the spaces of motions", "SPACE_LEAVES")
+        return leaves
 
     def squares(self, v: int, space: Space) -> Squares:
-        """The form of a vertex as sum d_k l_k^2, with the values of the l_k on the basis."""
+        """The form of a vertex as sum d_k l_k^2; each l_k is given by its values on the basis."""
         gradients = [self.gradient(v, motion) for motion in space]
         work = [[self._value(weights, motion) for motion in space] for weights in gradients]
-        found: Squares = []
+        result: Squares = []
         while True:
             k = next((k for k, row in enumerate(work) if not zero(row[k])), None)
             if k is not None:
@@ -216,11 +234,11 @@ class Spaces:
                 pairs = ((i, j) for i, row in enumerate(work) for j in range(i))
                 first = next(((i, j) for i, j in pairs if not zero(work[i][j])), None)
                 if first is None:
-                    return found
+                    return result
                 i, j = first
                 values = [x + y for x, y in zip(work[i], work[j], strict=True)]
                 value = work[i][j] + work[i][j]
-            found.append((self.sheet.tower.number(1) / value, values))
+            result.append((self.sheet.tower.number(1) / value, values))
             self.work.count(len(work) ** 2, value)
             work = [
                 [x - a * b / value for x, b in zip(row, values, strict=True)]
@@ -228,35 +246,41 @@ class Spaces:
             ]
 
     def gradient(self, v: int, motion: Vector, bits: int | None = None) -> dict[Edge, Any]:
-        """The derivatives of sum_{k<j} w_k w_j [d_k, d_j] at a motion of numbers, or intervals."""
-        found: dict[Edge, Any] = {}
+        """The derivatives of sum_{k<j} w_k w_j [d_k, d_j] by each density, at a motion.
+
+        The motion has numbers as densities or, if `bits` is given, intervals.
+        """
+        slopes: dict[Edge, Any] = {}
         for start, end, bracket in self._brackets(v, bits):
             for fold, other in ((start, end), (end, start)):
                 if other in motion:
                     self.work.count(1, motion[other])
                     term = bracket * motion[other]
-                    found[fold] = found[fold] + term if fold in found else term
-        return found
+                    slopes[fold] = slopes[fold] + term if fold in slopes else term
+        return slopes
 
     def form(self, v: int, a: Motion, b: Motion) -> Number:
-        """The bilinear form whose square is twice sum_{k<j} w_k w_j [d_k, d_j]."""
+        """The bilinear form B with B(w, w) = 2 sum_{k<j} w_k w_j [d_k, d_j]."""
         return self._value(self.gradient(v, a), b)
 
     def _brackets(self, v: int, bits: int | None) -> list[tuple[Edge, Edge, Any]]:
         if (v, bits) not in self._known:
             spokes = [(pair(v, u), self.sheet.vector(v, u)) for u in self.near[v]]
             pairs = combinations(spokes, 2)
-            found: list[tuple[Edge, Edge, Any]] = [(f, g, cross(c, d)) for (f, c), (g, d) in pairs]
+            brackets: list[tuple[Edge, Edge, Any]] = [
+                (f, g, cross(c, d)) for (f, c), (g, d) in pairs
+            ]
             if bits is not None:
-                found = [(f, g, bracket.enclosed(bits)) for f, g, bracket in found]
-            self._known[v, bits] = found
+                brackets = [(f, g, bracket.enclosed(bits)) for f, g, bracket in brackets]
+            self._known[v, bits] = brackets
         return self._known[v, bits]
 
     def factors(self, products: Sequence[Squares], space: Space) -> Iterator[list[Number]]:
-        """d l^2 + e m^2, signs apart, is d (l - r m)(l + r m) with r^2 = -e / d.
+        """Yield the values on the basis of the two linear factors of one of the products.
 
-        The root is adjoined to a field that holds the whole space, as numbers of the space and the
-        root are multiplied later; a form whose root is there is taken first.
+        If d and e have opposite signs, d l^2 + e m^2 = d (l - r m)(l + r m) with r^2 = -e / d. A
+        product is preferred whose root r already lies in the field. The root is adjoined to a field
+        that holds the whole space, because numbers of the space are multiplied by it later.
         """
         tower = tower_of(space)
         best, fewest = None, None

@@ -1,1 +1,1 @@
-"""The sheet in a certificate, rebuilt from its vertices and faces, and its equations."""
+"""The sheet of a certificate, rebuilt from its vertices and its faces or edges; its equations."""

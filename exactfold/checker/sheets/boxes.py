@@ -1,4 +1,4 @@
-"""Boxes with one zero each, and the proof that 2^n of them hold all zeros."""
+"""Boxes that hold one zero each, and the proof that 2^n of them hold all zeros of n quadrics."""
 
 from __future__ import annotations
 
@@ -12,18 +12,25 @@ from .equations import BranchSystem
 
 
 class Root(Protocol):
-    """A proved real zero; zeros of different kinds must be told apart by their signs."""
+    """A proved real zero of the branch system."""
 
     @property
     def kind(self) -> object:
-        """How the zero is listed: zeros of one kind are told apart by what shows them."""
+        """How the zero is listed.
+
+        The evidence itself shows that zeros of one kind differ. Two zeros of different kinds are
+        proved to differ only by their signs.
+        """
 
     def sign(self, row: Sequence[int]) -> int | None:
-        """Sign of the functional (c_1, ..., c_n, c_0); 0 if proved to vanish, None if open."""
+        """The sign at the zero of c_1 x_1 + ... + c_n x_n + c_0, with row = (c_1, ..., c_n, c_0).
+
+        0 if the functional is proved to vanish, None if its sign is open.
+        """
 
 
 class Box(NamedTuple):
-    """A box |x - center / 2^bits| <= radius / 2^bits."""
+    """The box |x - center / 2^bits| <= radius / 2^bits."""
 
     center: list[int]
     radius: int
@@ -31,14 +38,14 @@ class Box(NamedTuple):
 
     @property
     def kind(self) -> object:
-        """A box in the unknowns of the system."""
+        """Every box in the unknowns of the system has the same kind."""
         return "box"
 
     def sign(self, row: Sequence[int]) -> int | None:
-        """1 or -1 if the functional keeps that sign on the box, 0 if it is 0, else None."""
+        """1 or -1 if the functional has this sign on the whole box, 0 if it is 0, else None."""
         value = row[-1] << self.bits
         reach = 0
-        for c, m in zip(row, self.center, strict=False):  # the row is longer by its constant
+        for c, m in zip(row, self.center, strict=False):  # the last entry of row is its constant
             value += c * m
             reach += abs(c)
         reach *= self.radius
@@ -48,7 +55,7 @@ class Box(NamedTuple):
 
 
 def read_box(entry: Any, size: int) -> Box:
-    """The box of an entry with `size` unknowns; that it holds a zero is for `Krawczyk` to show."""
+    """Read a box in `size` unknowns; that it holds a zero must still be shown by `Krawczyk`."""
     keys(entry, "bits radius center", "root")
     bits = natural(entry["bits"], "bits")
     at_most(bits, MOST_BITS, "the bits of a box", "MOST_BITS")
@@ -60,14 +67,18 @@ def read_box(entry: Any, size: int) -> Box:
 
 
 def short(value: Any) -> str:
-    """`value` if it is a string of bounded length."""
+    """Return `value` if it is a string of bounded length."""
     text = text_of(value)
     at_most(len(text), MOST_BITS, "the digits of a number of a box", "MOST_BITS")
     return text
 
 
 def check_disjoint(boxes: list[Box]) -> None:
-    """No two boxes meet. Sorted by a fixed functional; compared only where values overlap."""
+    """Raise if two boxes meet.
+
+    A fixed functional takes an interval of values on each box. The boxes are sorted by these
+    intervals, and two boxes are compared only if their intervals overlap.
+    """
     top = max((box.bits for box in boxes), default=0)
     keyed = []
     for index, box in enumerate(boxes):
@@ -92,7 +103,11 @@ def check_disjoint(boxes: list[Box]) -> None:
 
 
 def check_isolated(system: BranchSystem, evidence: Any) -> list[tuple[Root, int]]:
-    """All zeros by Krawczyk and refined Bezout: a list of (root, multiplicity)."""
+    """All zeros of the system, as a list of (root, multiplicity).
+
+    Krawczyk's test shows that each box holds one zero, and the boxes are disjoint. By refined
+    Bezout 2^n such boxes hold all zeros.
+    """
     keys(evidence, "kind triangles chart roots", "evidence")
     boxes = [read_box(entry, system.size) for entry in items(evidence["roots"], "roots")]
     if system.size:

@@ -13,10 +13,10 @@ from .sheet import Form, Sheet, turn
 class BranchSystem:
     """K_v = 0 with three boundary vertices at height 0, in an affine chart.
 
-    By default the fourth boundary vertex, `unit`, has height 1: it is the first, in cyclic order
-    from the smallest index, at which the affine dependency of the four (the boundary saddle) does
-    not vanish, so that the saddle is positive. Given a functional, `unit` is the reflex corner and
-    its height is such that the functional is 1.
+    By default the fourth boundary vertex, `unit`, has height 1. It is the first vertex, in cyclic
+    order from the smallest index, at which the affine dependency of the four (the boundary saddle)
+    does not vanish. So the saddle is positive. If a functional is given, `unit` is the reflex
+    corner, and its height is chosen so that the functional is 1.
     """
 
     def __init__(self, sheet: Sheet, functional: dict[int, Fraction] | None) -> None:
@@ -31,12 +31,15 @@ class BranchSystem:
             reflex = [v for v, t in zip(b, turns, strict=True) if t < 0]
             require(reflex, "a chart other than the saddle's needs a reflex corner")
             self.unit = reflex[0]  # the other three corners span a triangle
-            require(set(functional) <= {self.unit, *sheet.interior}, "a bad chart functional")
+            known = set(functional) <= {self.unit, *sheet.interior}
+            require(
+                known, "the chart functional uses a vertex that is neither its corner nor interior"
+            )
         functional = functional or {self.unit: Fraction(1)}
         lead = functional.get(self.unit)
         require(lead, "the chart functional does not fix the height of its corner")
         self.size = len(sheet.interior)
-        self.lifts: dict[int, dict[int, Fraction]] = {v: {} for v in b}  # heights over (x, 1)
+        self.lifts: dict[int, dict[int, Fraction]] = {v: {} for v in b}  # heights by (x, 1)
         self.lifts |= {v: {k: Fraction(1)} for k, v in enumerate(sheet.interior)}
         weights = {k: -functional.get(v, Fraction(0)) for k, v in enumerate(sheet.interior)}
         weights[self.size] = Fraction(1)
@@ -44,7 +47,7 @@ class BranchSystem:
         self.quadrics = [self._quadric(sheet.curvature(v)) for v in sheet.interior]
 
     def _quadric(self, form: Form) -> dict[tuple[int, int], int]:
-        """A form on (x, 1), with coprime integer coefficients."""
+        """A form of the heights as a form in (x, 1), with coprime integer coefficients."""
         rows: Form = {}
         for (i, j), w in form.items():
             for p, x in self.lifts[i].items():
@@ -56,7 +59,10 @@ class BranchSystem:
         return {pq: w // common for pq, w in whole.items()}
 
     def row(self, functional: dict[int, Fraction]) -> list[int]:
-        """A linear functional of the heights as integers (c_1, ..., c_n, c_0), signs kept."""
+        """A linear functional of the heights as integers (c_1, ..., c_n, c_0).
+
+        It is multiplied by a positive number, so that it keeps its sign.
+        """
         row = [Fraction(0)] * (self.size + 1)
         for v, weight in functional.items():
             for place, x in self.lifts[v].items():
@@ -66,7 +72,7 @@ class BranchSystem:
 
 
 def read_chart(evidence: Any) -> dict[int, Fraction] | None:
-    """The functional of the chart, if the evidence names one."""
+    """The functional of the chart, or None if the evidence names none."""
     if evidence is None:
         return None
     if not isinstance(evidence, dict):

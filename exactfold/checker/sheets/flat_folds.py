@@ -1,4 +1,4 @@
-"""Folds that are exactly flat, because a curvature form that vanishes leaves no other choice."""
+"""Folds that are proved to be exactly flat, because K_v = 0 leaves them no other choice."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from ..core.linear import kernel, matrix_of, rational_sqrt
 from .sheet import Edge, Sheet
 
 MOST_KNOWN = 4096
-"""So many answers of `forced_flat` a sheet remembers at a time."""
+"""The largest number of answers of `forced_flat` that a sheet remembers at a time."""
 
 
 def flat_at(
     sheet: Sheet, vertex: int, folds: tuple[Edge, ...], signs: tuple[int | None, ...]
 ) -> list[Edge]:
-    """The answer of `forced_flat`, which the sheet remembers: many branches ask the same."""
+    """The answer of `forced_flat`. The sheet remembers it, because many branches ask the same."""
     known, question = sheet.forced_flat, (vertex, folds, signs)
     if question not in known:
         if len(known) >= MOST_KNOWN:
@@ -27,14 +27,16 @@ def flat_at(
 def forced_flat(
     sheet: Sheet, vertex: int, folds: tuple[Edge, ...], signs: tuple[int | None, ...]
 ) -> list[Edge]:
-    """Those of the folds around a vertex that must be flat, given right signs (None where open).
+    """The folds around a vertex that must be flat, given the signs of some (None where open).
 
-    The bends at the vertex that agree with the flat folds span a space on which the curvature form
-    vanishes at the branch. In dimension 1 a non-zero form leaves only 0; in dimension 2 a form that
-    splits into rational lines leaves the lines that agree with the known signs.
+    The given signs are those of the folds on the branch. The heights of the star for which the
+    folds with sign 0 are flat form a space, and the branch has a point in this space at which the
+    curvature form vanishes. If the space has dimension 1 and the form is not 0, the point is 0. In
+    dimension 2 the form vanishes at 0 only, or on two lines. If these lines are rational, the point
+    lies on a line that agrees with the known signs.
     """
     ring = sheet.star(vertex)
-    free = ring[2:]  # hub and two neighbouring rim vertices at 0: heights modulo planes
+    free = ring[2:]  # modulo planes: the hub and two neighbouring vertices of the ring are at 0
     if len(free) - signs.count(0) > 2:
         return []
     rows = [[Fraction(sheet.bend(f).get(j, 0)) for j in free] for f in folds]
@@ -83,9 +85,10 @@ def forced_flat(
 
 
 def close_flat(sheet: Sheet, signs: dict[Edge, int | None], curved: Iterable[int] = ()) -> None:
-    """Settle open folds by `flat_at` until nothing changes.
+    """Set the open signs to 0 that `flat_at` proves to be 0, until nothing changes.
 
-    `curved`: interior vertices at which the curvature form does not vanish.
+    `curved` are the interior vertices at which the curvature form does not vanish, so that they are
+    left out.
     """
     inner = set(sheet.interior) - set(curved)
     pending = {v for fold, sign in signs.items() if sign is None for v in fold} & inner

@@ -1,4 +1,4 @@
-"""The sheet of rigid panels: rebuilt from vertices and edges, and verified to be one disk."""
+"""The sheet of rigid panels, rebuilt from vertices and edges and verified to be one disk."""
 
 from __future__ import annotations
 
@@ -15,30 +15,31 @@ from ..core.towers import Number, Tower
 Edge = tuple[int, int]
 Vector = tuple[Number, Number]
 Near = dict[int, list[int]]
-"""The neighbours of vertices, counter-clockwise."""
-_GRID = 64  # bits of the rounded boxes in which edges are looked for
+"""The neighbours of each vertex, counter-clockwise."""
+_GRID = 64  # bits of the rounded boxes by which edges that may meet are found
 
 
 def cross(a: Vector, b: Vector) -> Number:
-    """a x b."""
+    """The cross product a x b."""
     return a[0] * b[1] - a[1] * b[0]
 
 
 def dot(a: Vector, b: Vector) -> Number:
-    """a . b."""
+    """The scalar product a . b."""
     return a[0] * b[0] + a[1] * b[1]
 
 
 def pair(i: int, j: int) -> Edge:
-    """The edge with these ends."""
+    """The edge with these two ends, the smaller number first."""
     return (i, j) if i < j else (j, i)
 
 
 class PanelSheet:
-    """A plane drawing of panels that make up one disk, verified.
+    """A plane drawing of panels, verified to make up one disk.
 
-    `around` holds the neighbours of each vertex, counter-clockwise; `panels` the corners of each
-    panel, counter-clockwise; `border` the vertices of the border; `folds` the other edges.
+    `around` holds the neighbours of each vertex, counter-clockwise. `panels` holds the corners of
+    each panel, counter-clockwise. `border` holds the boundary vertices, and `folds` all edges that
+    are not on the boundary.
     """
 
     def __init__(self, tower: Tower, points: list[Vector], edges: list[Edge]) -> None:
@@ -61,31 +62,32 @@ class PanelSheet:
             sides = set(zip(walk, (*walk[1:], walk[0]), strict=True))
             for i, j in sorted(sides):
                 require(i > j or (j, i) not in sides, f"edge {i}-{j} has one face on both sides")
-        rim = outer[0]
-        self.border = set(rim)
-        require(len(self.border) == len(rim), "the border passes a vertex twice")
-        sides = {pair(i, j) for i, j in zip(rim, (*rim[1:], rim[0]), strict=True)}
+        boundary = outer[0]
+        self.boundary_set = set(boundary)
+        require(len(self.boundary_set) == len(boundary), "the border passes a vertex twice")
+        sides = {pair(i, j) for i, j in zip(boundary, (*boundary[1:], boundary[0]), strict=True)}
         self.folds = [edge for edge in edges if edge not in sides]
-        self.interior = [v for v in range(len(points)) if v not in self.border]
+        self.interior = [v for v in range(len(points)) if v not in self.boundary_set]
 
     def vector(self, v: int, u: int) -> Vector:
-        """From v to u."""
+        """The vector from v to u."""
         (ax, ay), (bx, by) = self.points[v], self.points[u]
         return bx - ax, by - ay
 
     def area(self, walk: tuple[int, ...]) -> Number:
-        """Twice the area inside, positive if the walk is counter-clockwise."""
+        """Twice the signed area inside a closed walk, positive if it runs counter-clockwise."""
         total = self.tower.number(0)
         for i, j in pairwise(walk[1:]):
             total = total + cross(self.vector(walk[0], i), self.vector(walk[0], j))
         return total
 
     def live(self, held: Iterable[Edge]) -> dict[int, list[int]]:
-        """The flat closure: the neighbours over folds that may fold, for each inner vertex.
+        """The flat closure: for each interior vertex the neighbours across folds that may fold.
 
-        A vertex keeps all its folds if there are four or more and all sectors are less than pi, two
-        that form a straight line at the side of an empty half plane, or none. A fold is flat if it
-        is at one end.
+        The folds `held` are flat. A vertex keeps all its folds if there are four or more and all
+        sectors are less than pi. It keeps two folds if they form a straight line and one of the two
+        half planes beside it is empty. Otherwise it keeps none. A fold that is flat at one end is
+        flat at the other end.
         """
         flat = set(held)
         inner = set(self.interior)
@@ -114,7 +116,7 @@ class PanelSheet:
         return near if len(near) > 3 else []
 
     def _turned(self, v: int, near: list[int]) -> list[int]:
-        """Neighbours in counter-clockwise order."""
+        """The neighbours of a vertex in counter-clockwise order; raises if two edges overlap."""
         spokes = {u: self.vector(v, u) for u in near}
         upper = {u: (y.sign() or x.sign()) > 0 for u, (x, y) in spokes.items()}
 
@@ -130,7 +132,7 @@ class PanelSheet:
         return turned
 
     def _check_apart(self) -> None:
-        """No two edges without a common end meet; compared where their boxes do."""
+        """Raise if two edges without a common end meet; they are compared if their boxes meet."""
         spots = [tuple(c.enclosed(_GRID) for c in point) for point in self.points]
         boxes = []
         for i, j in self.edges:
@@ -148,7 +150,7 @@ class PanelSheet:
                 if other[2] <= box[3] and box[2] <= other[3] and not {i, j} & {*other[4]}
             ]
             above, meetings = above + len(active), meetings + len(near)
-            at_most(above, MOST_ABOVE, "the pairs of edges above one another", "MOST_ABOVE")
+            at_most(above, MOST_ABOVE, "the pairs of edges whose x-ranges overlap", "MOST_ABOVE")
             at_most(meetings, MOST_MEETINGS, "the pairs of edges whose boxes meet", "MOST_MEETINGS")
             for k, m in near:
                 require(not self._meet((k, m), box[4]), f"edges {k}-{m} and {i}-{j} meet")
@@ -169,8 +171,11 @@ class PanelSheet:
 
 
 def connected(near: Near) -> list[Near]:
-    """The parts of a graph, its vertices sorted; neighbours that are no vertices join nothing."""
-    found, left = [], dict(near)
+    """The connected parts of a graph, each with its vertices sorted.
+
+    A neighbour that is not itself a vertex of the graph joins nothing.
+    """
+    parts, left = [], dict(near)
     while left:
         stack = [min(left)]
         part = {stack[0]: left.pop(stack[0])}
@@ -178,13 +183,13 @@ def connected(near: Near) -> list[Near]:
             fresh = [u for u in part[stack.pop()] if u in left]
             part.update({u: left.pop(u) for u in fresh if u in left})
             stack += fresh
-        found.append(dict(sorted(part.items())))
-    return found
+        parts.append(dict(sorted(part.items())))
+    return parts
 
 
 def walks(around: Mapping[int, list[int]]) -> list[tuple[int, ...]]:
-    """The faces of a plane graph, each with its corners in the order that has it to the left."""
-    found = []
+    """The faces of a plane graph; each face lies to the left of the walk along its corners."""
+    faces = []
     left = {(v, u) for v, near in around.items() for u in near}
     for start in sorted(left):
         walk, (v, u) = [], start
@@ -193,12 +198,12 @@ def walks(around: Mapping[int, list[int]]) -> list[tuple[int, ...]]:
             walk.append(v)
             v, u = u, around[u][around[u].index(v) - 1]
         if walk:
-            found.append(tuple(walk))
-    return found
+            faces.append(tuple(walk))
+    return faces
 
 
 def read_panels(data: Any) -> tuple[PanelSheet, str]:
-    """The verified sheet and its SHA-256."""
+    """Read and verify the sheet of a pattern; return the sheet and the SHA-256 of the pattern."""
     keys(data, "radicands vertices edges", "pattern")
     lines = ["exactfold panels 1"]
     tower = Tower()
@@ -231,13 +236,13 @@ def read_panels(data: Any) -> tuple[PanelSheet, str]:
 
 
 def read_edges(value: Any, what: str) -> list[Edge]:
-    """Folds, sorted, each once."""
-    found = []
+    """Read a list of edges, which must be sorted and name each edge once."""
+    edges = []
     for edge in items(value, what):
         i, j = (natural(v, "a vertex") for v in items(edge, "an edge", 2))
-        found.append((i, j))
-    require(found == sorted(set(found)), f"{what} are not sorted")
-    return found
+        edges.append((i, j))
+    require(edges == sorted(set(edges)), f"{what} are not sorted")
+    return edges
 
 
 def _text(value: Number) -> str:

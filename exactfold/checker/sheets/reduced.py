@@ -1,4 +1,4 @@
-"""What of a sheet can fold: without the vertices inside 3-cycles, and with its notch closed."""
+"""The part of a sheet that can fold: vertices inside 3-cycles are removed, a notch is closed."""
 
 from __future__ import annotations
 
@@ -9,7 +9,10 @@ from .sheet import Sheet, turn
 
 
 def emptied_sheet(given: Sheet, points: dict[int, Any], evidence: Any) -> tuple[Sheet, set[int]]:
-    """The sheet in integer coordinates without the vertices inside the 3-cycles of the list."""
+    """The sheet without the vertices inside the listed 3-cycles, and the set of these vertices.
+
+    `points` are the coordinates to use, such as those of `given` scaled to integers.
+    """
     removed: set[int] = set()
     added: list[tuple[int, ...]] = []
     edges = set(given.edges)
@@ -24,13 +27,16 @@ def emptied_sheet(given: Sheet, points: dict[int, Any], evidence: Any) -> tuple[
             removed.add(v)
         added.append((a, b, c))
     kept = [given.face(t) for t in given.triangles if removed.isdisjoint(t)]
-    # What is left is verified again: a disk of positive faces with a simple boundary.
+    # `Sheet` verifies the rest again: it is one disk of counter-clockwise faces.
     rest = {v: p for v, p in points.items() if v not in removed}
     return Sheet(rest, [*kept, *added]), removed
 
 
 def closed(sheet: Sheet) -> tuple[Sheet, int | None]:
-    """The sheet with the notch at its reflex corner closed, and that corner."""
+    """The sheet with the notch at its reflex corner closed by a face, and this corner.
+
+    If no corner is reflex: the sheet itself and None.
+    """
     cycle = sheet.boundary
     for k, v in enumerate(cycle):
         before, after = cycle[k - 1], cycle[(k + 1) % len(cycle)]

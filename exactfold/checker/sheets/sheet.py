@@ -1,4 +1,4 @@
-"""The flat sheet: rebuilt from vertices and triangles, and verified to be one triangulated disk."""
+"""The flat sheet, rebuilt from vertices and triangles and verified to be one triangulated disk."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Form = dict[tuple[int, int], Fraction]
 
 
 class SheetFacts(TypedDict):
-    """What claims say of the sheet itself: how much it has of what, and its digest."""
+    """What claims say of the sheet itself: numbers of vertices and folds, and its digest."""
 
     interior: int
     boundary: int
@@ -52,8 +52,10 @@ class Sheet:
         )
         self._disk()
         self.interior = sorted(set(points) - set(self.boundary))
-        rim = set(zip(self.boundary, self.boundary[1:] + self.boundary[:1], strict=True))
-        self.folds = [(i, j) for i, j in self.edges if (i, j) not in rim and (j, i) not in rim]
+        boundary = set(zip(self.boundary, self.boundary[1:] + self.boundary[:1], strict=True))
+        self.folds = [
+            (i, j) for i, j in self.edges if (i, j) not in boundary and (j, i) not in boundary
+        ]
 
     def _disk(self) -> None:
         follow = {}
@@ -85,7 +87,7 @@ class Sheet:
         self._check_simple(list(zip(cycle, cycle[1:] + cycle[:1], strict=True)))
 
     def _check_simple(self, sides: list[Edge]) -> None:
-        """No two sides meet; compared only where their intervals of x and of y do."""
+        """Raise if two sides meet; two sides are compared only if their x- and y-ranges overlap."""
         boxes = []
         for side in sides:
             (left, right), (low, high) = (sorted(self.points[v][k] for v in side) for k in (0, 1))
@@ -97,7 +99,10 @@ class Sheet:
             near = [other[4] for other in active if other[2] <= box[3] and box[2] <= other[3]]
             above, meetings = above + len(active), meetings + len(near)
             at_most(
-                above, MOST_ABOVE, "the pairs of boundary edges above one another", "MOST_ABOVE"
+                above,
+                MOST_ABOVE,
+                "the pairs of boundary edges whose x-ranges overlap",
+                "MOST_ABOVE",
             )
             at_most(
                 meetings,
@@ -126,7 +131,7 @@ class Sheet:
         return abc * abd <= 0 and cda * cdb <= 0
 
     def star(self, vertex: int) -> list[int]:
-        """Neighbours of an interior vertex, counter-clockwise."""
+        """The neighbours of an interior vertex, counter-clockwise."""
         fan = self.next[vertex]
         cycle = [min(fan)]
         while fan[cycle[-1]] != cycle[0]:
@@ -137,8 +142,9 @@ class Sheet:
         """The curvature form K_v as {(i, j): coefficient}, symmetric, over all pairs of the star.
 
         K_v(h) = sum_j x_j x_{j+1} / c_j - (s_j / 2 c_j) (x_j^2 / L_j^2 + x_{j+1}^2 / L_{j+1}^2)
-        with x_j = h_j - h_v, c_j and s_j the cross and dot product of neighbouring spokes. It is
-        computed once, and is not to be changed.
+        with x_j = h_j - h_v. Here L_j is the length of spoke j, and c_j and s_j are the cross
+        product and the scalar product of the spokes j and j + 1. The form is computed once for each
+        vertex; callers must not change it.
         """
         if vertex not in self._forms:
             self._forms[vertex] = self._curvature(vertex)
@@ -150,7 +156,7 @@ class Sheet:
         form: Form = {}
 
         def add(i: int, j: int, half: Fraction) -> None:
-            """Twice the half of x_i * x_j, with x_i = h_i - h_v: four products of heights."""
+            """Add 2 * half * x_i * x_j, with x_i = h_i - h_v: four products of heights."""
             for a, b, weight in ((i, j, half), (i, vertex, -half), (vertex, j, -half)):
                 form[a, b] = form.get((a, b), 0) + weight
                 form[b, a] = form.get((b, a), 0) + weight
@@ -165,7 +171,10 @@ class Sheet:
         return form
 
     def sign_of_vertex(self, vertex: int) -> dict[int, Fraction]:
-        """Coefficients of h -> K_v(t, h) for a rational t with K_v(t) > 0 that points up."""
+        """The functional h -> K_v(t, h), as coefficients; its sign is the sign of the vertex.
+
+        t is a rational cone that points up, with K_v(t) > 0.
+        """
         form, (x, y) = self.curvature(vertex), self.points[vertex]
         bits = 16
         while True:
@@ -182,27 +191,27 @@ class Sheet:
             bits *= 2
 
     def bend(self, fold: Edge) -> dict[int, Fraction]:
-        """Coefficients of the bend across a fold, positive where the sheet is locally convex."""
+        """The coefficients of the bend of a fold, which is positive at a valley."""
         i, j = fold
         k, m = self.next[i][j], self.next[j][i]
         p, q, r, s = (self.points[v] for v in (i, j, k, m))
         return {i: -turn(q, r, s), j: turn(p, r, s), k: -turn(p, q, s), m: turn(p, q, r)}
 
     def emptied(self, corners: list[int], inside: list[int]) -> Sheet:
-        """The sheet with the vertices inside a 3-cycle removed."""
+        """The sheet without the vertices inside a 3-cycle, whose corners become one face."""
         faces = [self.face(t) for t in self.triangles if not t & set(inside)]
         points = {v: p for v, p in self.points.items() if v not in set(inside)}
         return Sheet(points, [*faces, tuple(corners)])
 
     def face(self, triangle: frozenset[int]) -> tuple[int, int, int]:
-        """The triangle counter-clockwise from its smallest vertex."""
+        """The corners of a triangle, counter-clockwise from the smallest vertex."""
         a = min(triangle)
         b = next(v for v in triangle - {a} if self.next[a].get(v) in triangle)
         return a, b, self.next[a][b]
 
 
 def read_sheet(data: Any) -> tuple[Sheet, str]:
-    """The verified sheet and its SHA-256."""
+    """Read and verify the sheet of a pattern; return the sheet and the SHA-256 of the pattern."""
     keys(data, "vertices triangles", "pattern")
     points: dict[int, Point] = {}
     coordinate = Coordinates()

@@ -1,4 +1,4 @@
-"""Definite stresses: the parts of a sheet that are rigid, and systems with finitely many zeros."""
+"""Definite stresses: they show that parts are rigid, and that a system has finitely many zeros."""
 
 from __future__ import annotations
 
@@ -11,20 +11,21 @@ from .sheet import Form, Sheet, turn
 
 
 def check_lorentzian(sheet: Sheet, vertex: int) -> None:
-    """The curvature form of a flat vertex of degree N has inertia (1, N - 3, 3)."""
-    labels = [*sheet.star(vertex), vertex]  # in this order elimination fills in two columns only
+    """Raise unless the curvature form of a vertex of degree N has inertia (1, N - 3, 3)."""
+    labels = [*sheet.star(vertex), vertex]  # in this order elimination fills only two columns
     expected = (1, len(labels) - 4, 3)
     require(
         inertia(matrix_of(sheet.curvature(vertex), labels)) == expected,
-        f"the curvature form of vertex {vertex} has not inertia {expected}",
+        f"the curvature form of vertex {vertex} does not have the inertia {expected}",
     )
 
 
 def check_definite(sheet: Sheet, inside: list[int], weights: list[Fraction]) -> None:
-    """sum_v weight_v K_v is positive definite on heights that vanish outside `inside`.
+    """Raise unless sum_v weight_v K_v is positive definite on heights that vanish outside `inside`.
 
-    Then the K_v have no common complex zero w = a + i b but 0 there: K_v(a) = K_v(b) and
-    B_v(a, b) = 0, and if b is not 0 some K_v(b) > 0, though K_v has one positive direction only.
+    If it is, the K_v have no common complex zero w = a + i b there but 0. For at a common zero
+    K_v(a) = K_v(b) and B_v(a, b) = 0. If b is not 0, some K_v(b) > 0. Then K_v would be positive in
+    two directions, but it has one positive direction only.
     """
     total: Form = {}
     for v, weight in zip(inside, weights, strict=True):
@@ -36,7 +37,7 @@ def check_definite(sheet: Sheet, inside: list[int], weights: list[Fraction]) -> 
 
 
 def check_triangles(sheet: Sheet, evidence: Any) -> Sheet:
-    """Remove the triangulated triangles, each by a definite stress; the emptied sheet."""
+    """The sheet without the vertices inside listed 3-cycles; a definite stress for each."""
     emptied = sheet
     for entry in items(evidence, "triangles"):
         keys(entry, "corners inside multipliers", "triangle")
@@ -63,11 +64,14 @@ def check_triangles(sheet: Sheet, evidence: Any) -> Sheet:
 
 
 def check_finite(sheet: Sheet, multipliers: Any) -> None:
-    """The branch system has finitely many zeros, so that multiplicities add up to 2^n exactly.
+    """Raise unless a stress shows that the branch system has finitely many zeros.
 
-    A definite stress of the sheet (its notch closed by a triangle if the boundary is not convex)
-    leaves no common zero of the curvature forms on heights that vanish on the outer boundary:
-    these fill a hyperplane (a quadric cone's section) that every curve of zeros would meet.
+    Then the multiplicities of the zeros add up to exactly 2^n. If the boundary is not convex, a
+    triangle closes the notch first. If the stress is definite, the curvature forms of all interior
+    vertices have no common zero but 0 on heights that vanish on the boundary. In projective space
+    these heights are a hyperplane; with a closed notch the form of its corner adds the equation of
+    a quadric instead. A curve of zeros of the branch system would meet the hyperplane, or the
+    quadric.
     """
     corners = sheet.boundary
     for k, v in enumerate(corners):

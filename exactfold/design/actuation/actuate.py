@@ -94,9 +94,9 @@ def actuate(
     if named.root is None:
         raise UndecidedBranchError(f"the branch is not proved: {named.reason}")
     branches = proved_branches(pattern, progress)
-    return Search(pattern, named, branches, size + 1, creases, torques, nodes, progress).found(
-        start
-    )
+    return TorqueSearch(
+        pattern, named, branches, size + 1, creases, torques, nodes, progress
+    ).found(start)
 
 
 def require_few(size: int) -> None:
@@ -139,7 +139,7 @@ def _check(
         raise UsageError("all torques are 0: give at least one fold a torque that is not 0")
 
 
-class Search:
+class TorqueSearch:
     """The work of one call of `actuate`. It refines the roots of `branches` where necessary."""
 
     def __init__(

@@ -14,7 +14,13 @@ import numpy as np
 
 from exactfold._support.progress import Progress
 from exactfold.branches.values.branch import Branch
-from exactfold.design.actuation.actuate import NODES, Search, judged, proved_branches, require_few
+from exactfold.design.actuation.actuate import (
+    NODES,
+    TorqueSearch,
+    judged,
+    proved_branches,
+    require_few,
+)
 from exactfold.design.actuation.directions import Directions
 from exactfold.design.actuation.interior import RayProposal, largest_margins
 from exactfold.design.actuation.orthogonal import Alone, alone_each
@@ -154,5 +160,7 @@ class _Together:
     def _one(self, place: int) -> Actuation:
         """The result of `actuate` for one branch."""
         branches, named = list(self.branches), self.branches[place]
-        search = Search(self.pattern, named, branches, self.size, None, None, NODES, self.progress)
+        search = TorqueSearch(
+            self.pattern, named, branches, self.size, None, None, NODES, self.progress
+        )
         return search.found(time.perf_counter())

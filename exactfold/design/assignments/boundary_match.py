@@ -1,4 +1,4 @@
-"""`match_rim`: whether a sheet with more than four corners can start to fold with given letters."""
+"""`match_boundary`: whether a sheet with more than four corners can fold with given letters."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from exactfold.branches.counting.find import find_branch
 from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.letters import differing
 from exactfold.design.assignments.bend_program import BendProgram
-from exactfold.design.assignments.boundary_result import RimMatch
-from exactfold.design.assignments.boundary_search import RimSearch
+from exactfold.design.assignments.boundary_result import BoundaryMatch
+from exactfold.design.assignments.boundary_search import BoundarySearch
 from exactfold.design.circles.circles import all_assignments
 from exactfold.design.refutations.asked import by_fold
 from exactfold.design.refutations.refutation import Letters
@@ -30,13 +30,13 @@ vertices are listed.
 """
 
 
-def match_rim(
+def match_boundary(
     pattern: PatternLike,
     letters: Mapping[Edge, str] | str,
     *,
     most: int = 16,
     progress: Progress | None = None,
-) -> RimMatch:
+) -> BoundaryMatch:
     """Whether a sheet with more than four corners starts to fold with given letters.
 
     `letters` is a mapping from folds (i, j), i < j, or a text in the order of the folds. "M" is a
@@ -53,10 +53,10 @@ def match_rim(
     has fewer than five boundary vertices or no vertex that can pop.
 
     >>> from exactfold.pattern.families import single_vertex
-    >>> found = match_rim(single_vertex(5), "MMVMV")
+    >>> found = match_boundary(single_vertex(5), "MMVMV")
     >>> found.starts, found.branch.sign_text, found.branch.assignment_text
     (<Verdict.PROVED: 'proved'>, '+', 'MMVMV')
-    >>> match_rim(single_vertex(5), "MMVVV").starts
+    >>> match_boundary(single_vertex(5), "MMVVV").starts
     <Verdict.REFUTED: 'refuted'>
     """
     given = as_pattern(pattern)
@@ -65,7 +65,7 @@ def match_rim(
             "boundary heights are searched for only on sheets with more than four corners; this "
             f"sheet has {given.Ve}"
         )
-    return _Search(given, by_fold(given.folds, letters), most, progress).result()
+    return _BoundaryMatchSearch(given, by_fold(given.folds, letters), most, progress).result()
 
 
 def can_pop(pattern: CreasePattern) -> bool:
@@ -78,7 +78,7 @@ def can_pop(pattern: CreasePattern) -> bool:
     return bool(pattern.without_rigid_parts()[0].interior)
 
 
-class _Search(SignSearch["Branch | None"]):
+class _BoundaryMatchSearch(SignSearch["Branch | None"]):
     """The search whose leaves are branches with the letters, or None where none was found."""
 
     def __init__(
@@ -102,21 +102,21 @@ class _Search(SignSearch["Branch | None"]):
         return BendProgram(self.sheet, self.own)
 
     @cached_property
-    def rims(self) -> RimSearch | None:
+    def boundaries(self) -> BoundarySearch | None:
         """The search for boundary heights; None if no result of it could be proved to have the
         letters.
         """
         if not self.sheet.is_convex or "F" in self.own.values():
             return None
-        return RimSearch(self.sheet, self.own)
+        return BoundarySearch(self.sheet, self.own)
 
-    def result(self) -> RimMatch:
+    def result(self) -> BoundaryMatch:
         self.searched()
         listed = self.branch is None and bool(self.open) and self._is_listed()
         if listed or self.branch is not None:
             self.open = []
         starts = PROVED if self.branch is not None else UNDECIDED if self.open else REFUTED
-        return RimMatch(
+        return BoundaryMatch(
             self.pattern,
             self.letters,
             starts,
@@ -137,23 +137,25 @@ class _Search(SignSearch["Branch | None"]):
         and V keeps them on solutions near it, and so on some arc without flat folds. Where folds
         are flat along whole arcs, the list has only assignments of letters to all folds.
         """
-        if self.rims is None or self.sheet.Ve != 5 or self.sheet.Vi > _MOST_LISTED:
+        if self.boundaries is None or self.sheet.Ve != 5 or self.sheet.Vi > _MOST_LISTED:
             return False
         found = all_assignments(self.pattern, progress=self.progress)
         for circle in found.circles:
             for arc in circle.arcs:
                 letters = dict(zip(self.pattern.folds, arc.letters, strict=True))
                 if not any(differing(self.letters, letters)):
-                    self._take(circle.signs, arc.rim)
+                    self._take(circle.signs, arc.boundary_heights)
         if found.points is not None and "U" in self.own.values():
             return False
         text = "".join(self.letters[fold] for fold in self.pattern.folds)
         occurs = found.points is not None and text in found.assignments
         return found.status is PROVED and self.branch is None and not occurs
 
-    def _take(self, signs: str | Mapping[int, int], rim: Mapping[int, Fraction]) -> None:
+    def _take(
+        self, signs: str | Mapping[int, int], boundary_heights: Mapping[int, Fraction]
+    ) -> None:
         """Keep the branch over these boundary heights if it is proved and has the letters."""
-        branch = find_branch(self.pattern, signs, rim=rim)
+        branch = find_branch(self.pattern, signs, boundary_heights=boundary_heights)
         if branch.status is PROVED and not any(differing(self.letters, branch.assignment)):
             self.branch, self.done = branch, True
 
@@ -162,11 +164,14 @@ class _Search(SignSearch["Branch | None"]):
         if self.progress is not None:
             self.progress("sign vectors", len(self.leaves) + 1, 0)
         bends = self.program.bends.get(frozenset(signs.items()))
-        rim = None
-        if self.rims is not None:
-            rim = self.rims.found(signs, None if bends is None else bends.slopes)
-        if rim is not None:
-            self._take(self.named(signs), {self.labels[v]: height for v, height in rim.items()})
+        boundary_heights = None
+        if self.boundaries is not None:
+            boundary_heights = self.boundaries.found(signs, None if bends is None else bends.slopes)
+        if boundary_heights is not None:
+            self._take(
+                self.named(signs),
+                {self.labels[v]: height for v, height in boundary_heights.items()},
+            )
         if self.branch is None:
             self.open.append(self.named(signs))
         return self.branch

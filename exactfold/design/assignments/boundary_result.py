@@ -22,14 +22,15 @@ from exactfold.pattern.opening import panels
 
 
 @dataclass(frozen=True, repr=False)
-class RimMatch(Certified):
+class BoundaryMatch(Certified):
     """Whether a sheet with more than four corners starts to fold with given letters.
 
-    `starts` is PROVED if `branch` has the letters; its boundary heights are `Branch.rim`. `starts`
-    is REFUTED if no solution has the letters. Then `tree` covers all signs of the vertices by
-    refuted sets of signs: `refutations` are those refuted by vectors, and `reasons` explains those
-    that need no vectors. If `listed` is true, the complete list of `all_assignments` settles some
-    of the signs instead. `starts` is UNDECIDED if neither was shown for the signs in `open_signs`.
+    `starts` is PROVED if `branch` has the letters; its boundary heights are
+    `Branch.boundary_heights`. `starts` is REFUTED if no solution has the letters. Then `tree`
+    covers all signs of the vertices by refuted sets of signs: `refutations` are those refuted by
+    vectors, and `reasons` explains those that need no vectors. If `listed` is true, the complete
+    list of `all_assignments` settles some of the signs instead. `starts` is UNDECIDED if neither
+    was shown for the signs in `open_signs`.
 
     `sheet` is the pattern without the folds and vertices inside triangulated triangles; its vertex
     v is vertex `labels[v]` of the pattern. `leaves` counts the sign vectors for which boundary
@@ -132,9 +133,9 @@ class RimMatch(Certified):
     def to_dict(self, name: str | None = None) -> StartingDocument:
         """The object that `exactfold match --json` prints: `schema("starting")`.
 
-        >>> from exactfold.design.assignments.boundary_match import match_rim
+        >>> from exactfold.design.assignments.boundary_match import match_boundary
         >>> from exactfold.pattern.families import single_vertex
-        >>> data = match_rim(single_vertex(5), "MMVMV").to_dict()
+        >>> data = match_boundary(single_vertex(5), "MMVMV").to_dict()
         >>> data["starts"], data["truly"], data["matches"][0]["vertex_signs"]
         ('proved', 'proved', {'5': 1})
         """
@@ -182,11 +183,13 @@ def _match(branch: Branch) -> StartingBranch:
             for fold, x in sorted(middles.items())
         },
         "vertex_signs": {str(v): sign for v, sign in sorted(branch.vertex_signs.items())},
-        "rim": {str(v): format_rational(h) for v, h in sorted((branch.rim or {}).items())},
+        "rim": {
+            str(v): format_rational(h) for v, h in sorted((branch.boundary_heights or {}).items())
+        },
     }
 
 
 def _heights(branch: Branch) -> str:
-    rim = branch.rim or {}
-    some = [f"{v}: {format_rational(h)}" for v, h in sorted(rim.items()) if h]
-    return ", ".join(some) + (", others 0" if len(some) < len(rim) else "")
+    boundary_heights = branch.boundary_heights or {}
+    some = [f"{v}: {format_rational(h)}" for v, h in sorted(boundary_heights.items()) if h]
+    return ", ".join(some) + (", others 0" if len(some) < len(boundary_heights) else "")

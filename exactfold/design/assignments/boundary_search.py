@@ -17,9 +17,9 @@ from scipy.optimize import linprog
 from exactfold._support.arrays import FloatArray
 from exactfold.design.refutations.refutation import Letters
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.rigidity.equations.boundary_heights import above_plane, default_rim
+from exactfold.rigidity.equations.boundary_heights import above_plane, default_boundary_heights
 from exactfold.rigidity.equations.problem import Problem
-from exactfold.rigidity.equations.sheet import Sheet
+from exactfold.rigidity.equations.sheet import VertexEquations
 from exactfold.solve.numeric.sparse_newton import solve
 from exactfold.solve.numeric.sparse_sheet import FloatSheet
 
@@ -34,7 +34,7 @@ _LEAST_GAIN: Final = 0.1
 _DIGITS: Final = (1, 2, 3, 4, 6, 9, 12)
 
 
-class RimSearch:
+class BoundarySearch:
     """Local search for boundary heights of one convex sheet whose branch has given letters.
 
     Over boundary heights b there is exactly one solution h_e(b) in the closed nappes of the signs
@@ -47,7 +47,9 @@ class RimSearch:
 
     def __init__(self, sheet: CreasePattern, letters: Letters) -> None:
         self.sheet = sheet
-        self._floats = FloatSheet.of(Sheet(Problem.of(sheet, rim=default_rim(sheet))))
+        self._floats = FloatSheet.of(
+            VertexEquations(Problem.of(sheet, boundary_heights=default_boundary_heights(sheet)))
+        )
         value = {"V": 1.0, "M": -1.0}
         self._sides = np.array([value.get(letters[fold], 0.0) for fold in sheet.folds])
         self._angles = self._rows()
@@ -62,7 +64,9 @@ class RimSearch:
         floats, count = self._floats, len(self._floats.lengths)
         values = floats.weights * floats.lengths[:, None]
         places = (np.repeat(np.arange(count), 4), floats.corners.ravel())
-        return sparse.csr_matrix((values.ravel(), places), shape=(count, len(floats.rim)))
+        return sparse.csr_matrix(
+            (values.ravel(), places), shape=(count, len(floats.boundary_heights))
+        )
 
     def found(
         self, signs: Mapping[int, int], slopes: FloatArray | None
@@ -74,7 +78,7 @@ class RimSearch:
         (`Bends`).
         """
         e = np.array([float(signs[v]) for v in self.sheet.interior])
-        over = [self._over(rim, e, None) for rim in self._starts(slopes)]
+        over = [self._over(boundary_heights, e, None) for boundary_heights in self._starts(slopes)]
         first = [h for h in over[: slopes is not None] if h is not None]
         rest = sorted((h for h in over[len(first) :] if h is not None), key=self._margin)
         for h in [*first, *rest[: -_STARTS - 1 : -1]]:
@@ -87,13 +91,13 @@ class RimSearch:
     # --- solutions over rims ---------------------------------------------------------------------
 
     def _over(
-        self, rim: FloatArray, signs: FloatArray, start: FloatArray | None
+        self, boundary_heights: FloatArray, signs: FloatArray, start: FloatArray | None
     ) -> FloatArray | None:
         """Heights of the solution over given boundary heights, scaled to largest fold angle 1.
 
         The shape is (V,). None if Newton's method fails.
         """
-        floats = replace(self._floats, rim=rim)
+        floats = replace(self._floats, boundary_heights=boundary_heights)
         with np.errstate(all="ignore"):
             end = solve(floats, signs, start)
             if end.failure and start is not None:
@@ -111,7 +115,7 @@ class RimSearch:
         return float((self._sides * angles)[held].min() / np.abs(angles).max())
 
     def _starts(self, slopes: FloatArray | None) -> Iterator[FloatArray]:
-        count = len(self._floats.rim)
+        count = len(self._floats.boundary_heights)
         if slopes is not None:
             free = [v for v in range(count) if v not in self._pinned]
             h = np.zeros(count)
@@ -119,12 +123,12 @@ class RimSearch:
             inside = list(self.sheet.interior)
             h[inside] = 0.0
             yield h
-        yield self._floats.rim
-        yield -self._floats.rim
+        yield self._floats.boundary_heights
+        yield -self._floats.boundary_heights
         for _ in range(_SAMPLES):
-            rim = np.zeros(count)
-            rim[self._rim] = self._random.normal(size=len(self._rim))
-            yield rim
+            boundary_heights = np.zeros(count)
+            boundary_heights[self._rim] = self._random.normal(size=len(self._rim))
+            yield boundary_heights
 
     # --- the way up ------------------------------------------------------------------------------
 
@@ -143,7 +147,9 @@ class RimSearch:
             step = self._step(h, radius)
             if step is None:
                 break
-            new = self._over(self._on_rim(h + step), signs, (h + step)[list(self.sheet.interior)])
+            new = self._over(
+                self._on_boundary(h + step), signs, (h + step)[list(self.sheet.interior)]
+            )
             gained = -1.0 if new is None else self._margin(new) - value
             if new is not None and gained > 0:
                 h, value = new, value + gained
@@ -153,10 +159,10 @@ class RimSearch:
             after += value > _POSITIVE
         return h if value > _POSITIVE else None
 
-    def _on_rim(self, h: FloatArray) -> FloatArray:
-        rim = np.zeros_like(h)
-        rim[self._rim] = h[self._rim]
-        return rim
+    def _on_boundary(self, h: FloatArray) -> FloatArray:
+        boundary_heights = np.zeros_like(h)
+        boundary_heights[self._rim] = h[self._rim]
+        return boundary_heights
 
     def _step(self, h: FloatArray, radius: float) -> FloatArray | None:
         """The best step in the tangent space; the unknowns are the heights and the margin."""
@@ -213,15 +219,17 @@ class RimSearch:
         wanted = self._margin(h) / 2
         for digits in _DIGITS:
             unit = 10**digits
-            rim = {v: Fraction(round(unit * x / largest), unit) for v, x in level.items()}
+            boundary_heights = {
+                v: Fraction(round(unit * x / largest), unit) for v, x in level.items()
+            }
             heights = np.zeros_like(h)
-            for v, x in rim.items():
+            for v, x in boundary_heights.items():
                 heights[v] = float(x)
-            if not any(above_plane(self.sheet, rim).values()):
+            if not any(above_plane(self.sheet, boundary_heights).values()):
                 continue
             near = self._over(heights, signs, None)
             if near is not None and self._margin(near) > wanted:
-                return rim
+                return boundary_heights
         return None
 
 

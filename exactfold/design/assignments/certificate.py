@@ -8,8 +8,8 @@ from exactfold._support.verdict import PROVED
 from exactfold.branches.certificates.single import branch_certificate, heights_evidence
 from exactfold.certificates.entries import Document, emptied_evidence, pattern_document
 from exactfold.checker.letters.letters import LETTERS, LettersClaims
-from exactfold.design.assignments.boundary_result import RimMatch
-from exactfold.design.assignments.result import Match, Matched
+from exactfold.design.assignments.boundary_result import BoundaryMatch
+from exactfold.design.assignments.result import Match, MatchedRay
 from exactfold.design.circles.certificate import assignments_certificate
 from exactfold.design.circles.circles import all_assignments
 from exactfold.design.panels.certificate import starting_certificate
@@ -20,7 +20,7 @@ from exactfold.errors import NotApplicableError
 from exactfold.exact.numbers import format_integer
 
 
-def match_certificate(found: Match | RimMatch | PanelMatch) -> Document:
+def match_certificate(found: Match | BoundaryMatch | PanelMatch) -> Document:
     """The proof of a match, as a JSON object (docs/assignment.md, Certificates).
 
     For a sheet with four corners the certificate shows that the match lists all rays with the
@@ -47,7 +47,7 @@ def match_certificate(found: Match | RimMatch | PanelMatch) -> Document:
         )
     if isinstance(found, Match):
         emptied = emptied_evidence(found.pattern)
-        leaves = [[_half(half, emptied) for half in both] for _, both in found.tree.leaves]
+        leaves = [[_ray(ray, emptied) for ray in both] for _, both in found.tree.leaves]
         return _letters(found, found.matches, leaves)
     if found.branch is not None:
         return branch_certificate(found.branch)
@@ -56,7 +56,7 @@ def match_certificate(found: Match | RimMatch | PanelMatch) -> Document:
     return _letters(found, (), [])
 
 
-def _list(found: RimMatch) -> Document:
+def _list(found: BoundaryMatch) -> Document:
     """The certificate of the list of all assignments, none of which has the letters."""
     pattern, labels = found.pattern, found.labels
     moving = [tuple(sorted((labels[i], labels[j]))) for i, j in found.sheet.folds]
@@ -69,14 +69,14 @@ def _list(found: RimMatch) -> Document:
 
 
 def _letters(
-    found: Match | RimMatch, matches: tuple[Matched, ...], leaves: list[list[Document]]
+    found: Match | BoundaryMatch, matches: tuple[MatchedRay, ...], leaves: list[list[Document]]
 ) -> Document:
     pattern = found.pattern
     claims: LettersClaims = {
         "letters": "".join(found.letters[fold] for fold in pattern.folds),
         "halves": [
-            {"vertex_signs": [half.vertex_signs[v] for v in pattern.interior], "side": half.side}
-            for half in matches
+            {"vertex_signs": [ray.vertex_signs[v] for v in pattern.interior], "side": ray.side}
+            for ray in matches
         ],
     }
     return {
@@ -93,7 +93,7 @@ def _letters(
     }
 
 
-def _refuted(found: Match | RimMatch, refuted: Refuted) -> Document:
+def _refuted(found: Match | BoundaryMatch, refuted: Refuted) -> Document:
     """The signs, and as integers the heights of the stars that are not flat."""
     signs = [[found.labels[v], sign] for v, sign in sorted(refuted.signs.items())]
     if refuted.refutation is None:
@@ -109,7 +109,7 @@ def _refuted(found: Match | RimMatch, refuted: Refuted) -> Document:
     return {"signs": signs, "heights": stars}
 
 
-def _step(found: Match | RimMatch, step: Step) -> list[str | int]:
+def _step(found: Match | BoundaryMatch, step: Step) -> list[str | int]:
     """A step of the tree with the pattern's names of the vertices."""
     kind, *at = step
     if kind in ("split", "force"):
@@ -117,6 +117,6 @@ def _step(found: Match | RimMatch, step: Step) -> list[str | int]:
     return [kind, *at]
 
 
-def _half(half: Matched, emptied: list[Document]) -> Document:
-    heights, denominator = heights_evidence(half.branch, emptied)
+def _ray(ray: MatchedRay, emptied: list[Document]) -> Document:
+    heights, denominator = heights_evidence(ray.branch, emptied)
     return {"heights": heights, "denominator": denominator}

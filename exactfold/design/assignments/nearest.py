@@ -19,7 +19,7 @@ from exactfold.design.assignments.conflicts import (
     to_blame,
 )
 from exactfold.design.assignments.descent import Descent
-from exactfold.design.assignments.result import Match, Matched, NearestDocument
+from exactfold.design.assignments.result import Match, MatchedRay, NearestDocument
 from exactfold.design.assignments.search import match
 from exactfold.design.assignments.why import fold_text
 from exactfold.pattern.crease_pattern import Edge
@@ -40,10 +40,10 @@ _LOCAL = 10
 class Nearest:
     """The rays whose letters differ at the fewest folds from those of `match`.
 
-    A ray is one of the two halves of a branch. Each ray of `halves` differs at `distance` folds. If
-    none was found, `distance` is None and `halves` is empty. It is proved that every ray differs at
+    A ray is one of the two halves of a branch. Each ray of `rays` differs at `distance` folds. If
+    none was found, `distance` is None and `rays` is empty. It is proved that every ray differs at
     `at_least` folds or more. So `status` is PROVED if `distance` equals `at_least`; if `status` is
-    UNDECIDED, `halves` are the nearest rays that were found. `complete` is true if no other ray is
+    UNDECIDED, `rays` are the nearest rays that were found. `complete` is true if no other ray is
     as near. `by` is "match" if some ray has the letters, "list" if all branches were listed, and
     "search" otherwise.
     """
@@ -52,13 +52,13 @@ class Nearest:
     status: Verdict
     distance: int | None
     at_least: int
-    halves: tuple[Matched, ...]
+    rays: tuple[MatchedRay, ...]
     complete: bool
     by: str
 
-    def differences(self, half: Matched) -> dict[Edge, tuple[str, str]]:
+    def differences(self, ray: MatchedRay) -> dict[Edge, tuple[str, str]]:
         """For each fold at which a ray differs: the letter wanted, and the letter of the ray."""
-        letters = half.assignment
+        letters = ray.assignment
         wanted = self.match.letters
         return {f: (wanted[f], letters[f]) for f in differing(wanted, letters)[0]}
 
@@ -72,21 +72,19 @@ class Nearest:
             "by": self.by,
             "branches": [
                 {
-                    **half.to_dict(),
+                    **ray.to_dict(),
                     "differences": [
                         {"fold": fold_text(fold), "wanted": wanted, "actual": actual}
-                        for fold, (wanted, actual) in sorted(self.differences(half).items())
+                        for fold, (wanted, actual) in sorted(self.differences(ray).items())
                     ],
                 }
-                for half in self.halves
+                for ray in self.rays
             ],
         }
 
     def __repr__(self) -> str:
         far = "none found" if self.distance is None else f"distance {self.distance}"
-        return (
-            f"<Nearest: {self.status}, {far}, at least {self.at_least}, {len(self.halves)} halves>"
-        )
+        return f"<Nearest: {self.status}, {far}, at least {self.at_least}, {len(self.rays)} halves>"
 
 
 def nearest_branches(
@@ -110,7 +108,7 @@ def nearest_branches(
     >>> near = nearest_branches(none)
     >>> near
     <Nearest: proved, distance 1, at least 1, 1 halves>
-    >>> near.differences(near.halves[0])
+    >>> near.differences(near.rays[0])
     {(0, 4): ('V', 'M')}
     """
     if found.matches:
@@ -120,7 +118,7 @@ def nearest_branches(
         listed = _listed(found, progress)
         if listed is not None:
             return listed
-    return _Search(found, tries, progress).result()
+    return _NearestSearch(found, tries, progress).result()
 
 
 def _listed(found: Match, progress: Progress | None) -> Nearest | None:
@@ -131,16 +129,16 @@ def _listed(found: Match, progress: Progress | None) -> Nearest | None:
     listed = count_branches(found.pattern, progress=progress)
     if listed.status is not PROVED:
         return None
-    halves = [Matched(branch, side) for branch in listed.branches for side in (1, -1)]
-    sets = [differing(found.letters, half.assignment) for half in halves]
+    rays = [MatchedRay(branch, side) for branch in listed.branches for side in (1, -1)]
+    sets = [differing(found.letters, ray.assignment) for ray in rays]
     least = min(len(other) + len(unknown) for other, unknown in sets)
     if any(unknown and len(other) <= least for other, unknown in sets):
         return None
-    near = [h for h, (other, _) in zip(halves, sets, strict=True) if len(other) == least]
+    near = [h for h, (other, _) in zip(rays, sets, strict=True) if len(other) == least]
     return Nearest(found, PROVED, least, least, tuple(near), True, "list")
 
 
-class _Search:
+class _NearestSearch:
     """The search over sets of freed folds; the set with the least bound comes first.
 
     A set F stands for the rays that differ at all folds of F. If no unknown ray has the letters of
@@ -165,14 +163,14 @@ class _Search:
             for i, j in found.sheet.folds
         }
         self.stars = Stars(found.sheet, own, labels)
-        self.known: dict[tuple[str, int], Matched] = {}
+        self.known: dict[tuple[str, int], MatchedRay] = {}
         self.unclear: int | None = None
         self.tried = 0
 
     def result(self) -> Nearest:
         bound = self._bound(frozenset())
-        for _, halves in self.found.compared:
-            self._note(halves)
+        for _, rays in self.found.compared:
+            self._note(rays)
         descent = Descent(self.found.pattern, self.letters, _FINDS * self.tries, self.progress)
         alone: dict[int, set[int]] = {}
         for clause in self.stars.clauses(frozenset()):
@@ -249,8 +247,8 @@ class _Search:
             if self.progress is not None:
                 self.progress("letters freed", self.tried, self.tries)
             found = match(found.pattern, self._letters(freed))
-        for _, halves in found.compared:
-            self._note(halves)
+        for _, rays in found.compared:
+            self._note(rays)
         if found.status is not PROVED:
             return None
         clauses = [clause_of(refutation, found.labels) for refutation in found.refutations]
@@ -260,23 +258,23 @@ class _Search:
 
     # --- the rays that are known -----------------------------------------------------------------
 
-    def _note(self, halves: list[Matched] | tuple[Matched, ...]) -> None:
-        for half in halves:
-            if half.branch.status is not PROVED or half.names in self.known:
+    def _note(self, rays: list[MatchedRay] | tuple[MatchedRay, ...]) -> None:
+        for ray in rays:
+            if ray.branch.status is not PROVED or ray.names in self.known:
                 continue
-            other, unknown = differing(self.found.letters, half.assignment)
+            other, unknown = differing(self.found.letters, ray.assignment)
             if unknown and (self.unclear is None or len(other) < self.unclear):
                 self.unclear = len(other)
-            self.known[half.names] = half
+            self.known[ray.names] = ray
 
-    def _distance(self, half: Matched) -> int | None:
-        other, unknown = differing(self.found.letters, half.assignment)
+    def _distance(self, ray: MatchedRay) -> int | None:
+        other, unknown = differing(self.found.letters, ray.assignment)
         return None if unknown else len(other)
 
     def _best(self) -> int | None:
-        known = (self._distance(half) for half in self.known.values())
+        known = (self._distance(ray) for ray in self.known.values())
         return min((d for d in known if d is not None), default=None)
 
-    def _at(self, distance: int) -> tuple[Matched, ...]:
-        near = (half for half in self.known.values() if self._distance(half) == distance)
-        return tuple(sorted(near, key=lambda half: half.names))
+    def _at(self, distance: int) -> tuple[MatchedRay, ...]:
+        near = (ray for ray in self.known.values() if self._distance(ray) == distance)
+        return tuple(sorted(near, key=lambda ray: ray.names))

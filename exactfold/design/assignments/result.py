@@ -106,7 +106,7 @@ class MatchDocument(TypedDict):
 
 
 @dataclass(frozen=True, repr=False)
-class Matched:
+class MatchedRay:
     """A ray with the letters asked for: one of the two halves of a branch, seen from +z.
 
     If `side` is 1, its heights are those of `branch`. If `side` is -1, its heights, signs and
@@ -150,12 +150,12 @@ class Matched:
         return f"<Matched: {self.sign_text}, side {self.side}>"
 
 
-Compared = tuple[Mapping[int, int], tuple[Matched, Matched]]
+Compared = tuple[Mapping[int, int], tuple[MatchedRay, MatchedRay]]
 """Signs by vertex of the pattern, and the two rays with these signs."""
 
 
 @dataclass(frozen=True, repr=False)
-class Match(Page, Ways[Matched], Certified):
+class Match(Page, Ways[MatchedRay], Certified):
     """Which rays (halves of branches) have given letters.
 
     If `status` is PROVED, `matches` are all such rays. Otherwise there may be more: `open_signs`
@@ -170,7 +170,7 @@ class Match(Page, Ways[Matched], Certified):
     pattern: CreasePattern
     letters: Letters
     status: Verdict
-    matches: tuple[Matched, ...]
+    matches: tuple[MatchedRay, ...]
     sheet: CreasePattern
     labels: tuple[int, ...]
     refutations: tuple[Refutation, ...]
@@ -182,7 +182,7 @@ class Match(Page, Ways[Matched], Certified):
 
     WRITER: ClassVar = "exactfold.design.assignments.certificate:match_certificate"
 
-    def listed(self) -> tuple[Matched, ...]:
+    def listed(self) -> tuple[MatchedRay, ...]:
         """`matches`."""
         return self.matches
 
@@ -223,7 +223,7 @@ class Match(Page, Ways[Matched], Certified):
             "pattern": described(self.pattern, name),
             "status": str(self.status),
             "letters": {fold_text(fold): x for fold, x in sorted(self.letters.items())},
-            "matches": [half.to_dict() for half in self.matches],
+            "matches": [ray.to_dict() for ray in self.matches],
             "conflicts": {str(v): text for v, text in sorted(self.conflicts.items())},
             "reasons": list(self.reasons),
             "refuted": len(self.refutations),

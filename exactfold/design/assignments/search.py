@@ -9,7 +9,7 @@ from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.branches.counting.find import BranchFinder
 from exactfold.branches.values.letters import differing
-from exactfold.design.assignments.result import Compared, Match, Matched
+from exactfold.design.assignments.result import Compared, Match, MatchedRay
 from exactfold.design.refutations.asked import by_fold
 from exactfold.design.refutations.cone_program import ConeProgram
 from exactfold.design.refutations.sign_tree import SignSearch
@@ -47,10 +47,10 @@ def match(
     <Match: proved, 0 halves, 0 sign vectors>
     """
     sheet = as_pattern(pattern)
-    return _Search(sheet, by_fold(sheet.folds, letters), most, progress).result()
+    return _AssignmentSearch(sheet, by_fold(sheet.folds, letters), most, progress).result()
 
 
-class _Search(SignSearch[Compared]):
+class _AssignmentSearch(SignSearch[Compared]):
     """The search whose leaves are the two rays with given signs."""
 
     def __init__(
@@ -60,7 +60,7 @@ class _Search(SignSearch[Compared]):
         self.finder = BranchFinder(pattern)
         problem = self.finder.problem
         super().__init__(problem.sheet, problem.labels, letters, most)
-        self.matches: list[Matched] = []
+        self.matches: list[MatchedRay] = []
 
     @cached_property
     def program(self) -> ConeProgram:
@@ -89,23 +89,23 @@ class _Search(SignSearch[Compared]):
         """Find the two rays with these signs of all vertices, and compare their letters."""
         if self.progress is not None:
             self.progress("sign vectors", len(self.leaves) + 1, 0)
-        up, down = (self._half(signs, side) for side in (1, -1))
+        up, down = (self._ray(signs, side) for side in (1, -1))
         named = self.named(signs)
-        agreed = [self._agrees(half) for half in (up, down)]
+        agreed = [self._agrees(ray) for ray in (up, down)]
         if None in agreed:
             self.open.append(named)
-        for half, agrees in zip((up, down), agreed, strict=True):
-            if agrees and half.names not in {m.names for m in self.matches}:
-                self.matches.append(half)
+        for ray, agrees in zip((up, down), agreed, strict=True):
+            if agrees and ray.names not in {m.names for m in self.matches}:
+                self.matches.append(ray)
         return named, (up, down)
 
-    def _half(self, signs: dict[int, int], side: int) -> Matched:
+    def _ray(self, signs: dict[int, int], side: int) -> MatchedRay:
         branch = self.finder.find({v: side * sign for v, sign in self.named(signs).items()})
-        return Matched(branch, side)
+        return MatchedRay(branch, side)
 
-    def _agrees(self, half: Matched) -> bool | None:
+    def _agrees(self, ray: MatchedRay) -> bool | None:
         """Whether a ray has the letters; None if the ray or one of its letters is not proved."""
-        if half.branch.status is not PROVED:
+        if ray.branch.status is not PROVED:
             return None
-        other, unknown = differing(self.letters, half.assignment)
+        other, unknown = differing(self.letters, ray.assignment)
         return False if other else None if unknown else True

@@ -43,9 +43,9 @@ class Arc:
         return text.translate(UPSIDE_DOWN) if self.mirrored else text
 
     @property
-    def rim(self) -> dict[int, Fraction]:
+    def boundary_heights(self) -> dict[int, Fraction]:
         """The boundary heights of the branch that represents the arc."""
-        heights = self.branch.rim or {}
+        heights = self.branch.boundary_heights or {}
         return {v: -height for v, height in heights.items()} if self.mirrored else heights
 
 
@@ -160,7 +160,8 @@ class AllAssignments(Certified):
                         {
                             "letters": arc.letters,
                             "rim": {
-                                str(v): format_rational(height) for v, height in arc.rim.items()
+                                str(v): format_rational(height)
+                                for v, height in arc.boundary_heights.items()
                             },
                         }
                         for arc in circle.arcs

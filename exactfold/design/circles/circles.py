@@ -75,7 +75,7 @@ def all_assignments(pattern: PatternLike, *, progress: Progress | None = None) -
         )
     found = None
     if sheet.Vi <= _MOST_SOLVED:
-        found = _Search(given, progress).found()
+        found = _CircleSearch(given, progress).found()
         if found.status is PROVED:
             return found
     try:
@@ -108,7 +108,7 @@ class _UndecidedError(Exception):
     """Something could not be decided; the text says what."""
 
 
-class _Search:
+class _CircleSearch:
     def __init__(self, pattern: CreasePattern, progress: Progress | None) -> None:
         self.pattern, self.progress = pattern, progress
         self.sheet, self.labels = pattern.without_rigid_parts()
@@ -232,8 +232,8 @@ class _Search:
         heights = dict.fromkeys(self.sheet.boundary, Fraction(0))
         heights |= dict(zip(self.free, (p * x - q * y, q * x + p * y), strict=True))
         largest = max(map(abs, heights.values()))
-        rim = {self.labels[v]: height / largest for v, height in heights.items()}
-        finder = BranchFinder(self.pattern, rim)
+        boundary_heights = {self.labels[v]: height / largest for v, height in heights.items()}
+        finder = BranchFinder(self.pattern, boundary_heights)
         branch = finder.find(dict(zip(finder.poppable, signs, strict=True)))
         folds = ((self.labels[i], self.labels[j]) for i, j in self.sheet.folds)
         if branch.status is not PROVED or any(branch.assignment[f] not in "MV" for f in folds):

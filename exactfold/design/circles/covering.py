@@ -24,7 +24,7 @@ from exactfold.checker.letters.assignments import (
     ASSIGNMENTS,
     MOST_VERTICES,
     AssignmentsClaims,
-    free_border,
+    free_boundary,
 )
 from exactfold.checker.sheets.sheet import Sheet
 from exactfold.design.circles.nappe_points import NappePoints
@@ -77,7 +77,7 @@ def covering(pattern: CreasePattern, progress: Progress | None = None) -> Coveri
     if sheet.chords:
         sheet, kept = _without_ear(sheet)
         labels = tuple(labels[v] for v in kept)
-    search = _Search(sheet, labels, progress)
+    search = _CoveringSearch(sheet, labels, progress)
     circles = search.circles()
     folds = [(labels[i], labels[j]) for i, j in sheet.folds]
     texts = set()
@@ -127,7 +127,7 @@ def _without_ear(sheet: CreasePattern) -> tuple[CreasePattern, list[int]]:
     return CreasePattern([sheet.vertices[v] for v in kept], faces), kept
 
 
-class _Search:
+class _CoveringSearch:
     """The search for points on one sheet."""
 
     def __init__(
@@ -137,7 +137,7 @@ class _Search:
         places, _ = sheet.integer_vertices
         points = {v: (Fraction(x), Fraction(y)) for v, (x, y) in enumerate(places)}
         seen_by_checker = Sheet(points, sheet.triangles)
-        self.free = tuple(free_border(seen_by_checker))
+        self.free = tuple(free_boundary(seen_by_checker))
         self.arcs = Arcs(seen_by_checker, [*self.free, *sheet.interior])
         self.solvers = [NappePoints(sheet, self.free, depth) for depth in _DEPTHS]
         self.seen: set[Word] = set()
@@ -195,21 +195,21 @@ class _Search:
         """The first points round a circle, or one on each of the two rays if there is only one
         height.
         """
-        rims: list[tuple[float, ...]] = [(1.0,), (-1.0,)]
+        boundaries: list[tuple[float, ...]] = [(1.0,), (-1.0,)]
         if len(self.free) == 2:
             turns = [2 * pi * (k + _OFF) / _START for k in range(_START)]
-            rims = [(cos(t), sin(t)) for t in turns]
-        return [self._at(signs, solver, rim) for rim in rims]
+            boundaries = [(cos(t), sin(t)) for t in turns]
+        return [self._at(signs, solver, boundary_heights) for boundary_heights in boundaries]
 
     def _at(
         self,
         signs: Word,
         solver: NappePoints,
-        rim: Sequence[float],
+        boundary_heights: Sequence[float],
         start: Sequence[int] | None = None,
     ) -> Heights:
-        found = solver.solved(signs, rim, start) if start is not None else None
-        found = found or solver.solved(signs, rim)
+        found = solver.solved(signs, boundary_heights, start) if start is not None else None
+        found = found or solver.solved(signs, boundary_heights)
         if found is None:
             raise NotCoveredError("no solution was found over some heights of the border")
         self._look(found)
@@ -243,8 +243,8 @@ class _Search:
             middle = [x + y for x, y in zip(a, b, strict=True)]
             size = hypot(middle[0] / (1 << solver.bits), middle[1] / (1 << solver.bits))
             near = [round(x / size) for x in middle]
-            rim = [x / (1 << solver.bits) for x in near[:2]]
-            stack.append(self._at(signs, solver, rim, near))
+            boundary_heights = [x / (1 << solver.bits) for x in near[:2]]
+            stack.append(self._at(signs, solver, boundary_heights, near))
 
     def _open(self, a: Heights, b: Heights) -> str:
         letters = zip(self.sheet.folds, self.arcs.letters(a, b), strict=True)

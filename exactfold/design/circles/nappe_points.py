@@ -59,19 +59,22 @@ class NappePoints:
         return found
 
     def solved(
-        self, signs: Sequence[int], rim: Sequence[float], start: Sequence[int] | None = None
+        self,
+        signs: Sequence[int],
+        boundary_heights: Sequence[float],
+        start: Sequence[int] | None = None,
     ) -> tuple[int, ...] | None:
         """Heights over these boundary heights with these vertex signs; None if none are found.
 
         Newton's method begins at `start`. If there is no start, or if it fails there, it solves for
         larger values of K_v first and reduces them step by step.
         """
-        edge = [round(x * (1 << self.bits)) for x in rim]
+        edge = [round(x * (1 << self.bits)) for x in boundary_heights]
         if start is not None:
             found = self._newton(signs, [*edge, *start[len(edge) :]], self.depth)
             if found is not None:
                 return found
-        heights = [*edge, *self._first(signs, rim)]
+        heights = [*edge, *self._first(signs, boundary_heights)]
         for depth in (*range(0, self.depth, _STRIDE), self.depth):
             after = self._newton(signs, heights, depth)
             if after is None:
@@ -116,11 +119,13 @@ class NappePoints:
             heights[k:] = [z - round(float(d) * (1 << self.bits)) for z, d in inner]
         return None
 
-    def _first(self, signs: Sequence[int], rim: Sequence[float]) -> list[int]:
+    def _first(self, signs: Sequence[int], boundary_heights: Sequence[float]) -> list[int]:
         """Heights with l_v = 3 e_v at every interior vertex."""
         k = len(self.free)
         sides = np.array([[x / (1 << self._places) for x in row] for row in self._sides])
-        found = np.linalg.solve(sides[:, k:], 3 * np.array(signs) - sides[:, :k] @ np.array(rim))
+        found = np.linalg.solve(
+            sides[:, k:], 3 * np.array(signs) - sides[:, :k] @ np.array(boundary_heights)
+        )
         return [round(float(x) * (1 << self.bits)) for x in found]
 
 

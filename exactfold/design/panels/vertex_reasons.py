@@ -40,7 +40,8 @@ def vertex_reason(star: Star, letters: Letters) -> VertexReason | None:
     >>> star = Star(4, ((0, 4), (1, 4), (2, 4), (3, 4)), ((2, 1), (-1, 1), (-1, -1), (1, -2)))
     >>> vertex_reason(star, dict(zip(star.folds, "MMMV")))
     >>> vertex_reason(star, dict(zip(star.folds, "MVMV"))).text
-    'the folds of vertex 4 have the letters VVVM, VVMV when they fold, or the opposite, not MVMV'
+    'the folds of vertex 4 have the letters VVVM, VVMV when they fold, or the opposite
+    letters, but not MVMV'
     """
     letter = [letters[fold] for fold in star.folds]
     if not {"M", "V"} & set(letter):

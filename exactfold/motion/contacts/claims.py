@@ -146,10 +146,10 @@ def _tube_path(link: Link) -> Path:
     )
 
 
-def _arc_path(node: Passage) -> Path:
-    arc, far = node.tube, max(-node.entry, node.exit)
+def _arc_path(branch_point: Passage) -> Path:
+    arc, far = branch_point.tube, max(-branch_point.entry, branch_point.exit)
     return Path.of_tube(
-        [list(row) for row in (arc.node.finer(arc.bits).centre, *arc.coefficients)],
+        [list(row) for row in (arc.branch_point.finer(arc.bits).centre, *arc.coefficients)],
         arc.bits,
         Fraction(far, 1 << PARAMETER_BITS),
         list(arc.ball(far).radii),

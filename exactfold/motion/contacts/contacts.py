@@ -17,7 +17,7 @@ from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.branches.values.branch import Branch
 from exactfold.motion.contacts.face_pairs import FacePairs, Open
 from exactfold.motion.contacts.separation import Swept, bends, clear_until, through
-from exactfold.motion.contacts.stretches import on_node_tube
+from exactfold.motion.contacts.stretches import on_branch_point_tube
 from exactfold.motion.curves.crossings import Crossing, Crossings
 from exactfold.motion.curves.events import CONTACT, FLAT_FOLD, Event
 from exactfold.motion.tubes.arclength import in_floats
@@ -114,7 +114,7 @@ class ContactWatch:
         """
         pairs = self._pairs = self._pairs or FacePairs(step.tube.framework)
         if isinstance(step, Passage):
-            return self._at_a_node(step, pairs)
+            return self._at_a_branch_point(step, pairs)
         return self._on_a_tube(step, pairs)
 
     def _on_a_tube(self, link: Link, pairs: FacePairs) -> str | None:
@@ -142,26 +142,35 @@ class ContactWatch:
         self.touching = replace(found, latest=link.time(end)[1])
         return _FIRST
 
-    def _at_a_node(self, node: Passage, pairs: FacePairs) -> str | None:
+    def _at_a_branch_point(self, branch_point: Passage, pairs: FacePairs) -> str | None:
         """Look for a contact on the arc through a branch point.
 
         The tube before is clear up to its exit, and the arc may begin a little later. If the arc
         ends at the branch point, contacts are looked for before that point but not at it, because
         there the contacts of the other arcs begin, too.
         """
-        link = node.before
+        link = branch_point.before
         coefficients, radius = positions_of(link.tube)
-        low, high = (x / (1 << PARAMETER_BITS) for x in (link.exit, max(link.exit, node.met[1])))
+        low, high = (
+            x / (1 << PARAMETER_BITS) for x in (link.exit, max(link.exit, branch_point.met[1]))
+        )
         left = _clear(pairs, coefficients, radius, low, high)[1]
         if left:
             self.open_pairs, self.before_the_arc = left, True
             self.clear, self.parameters = link.left[0], (link.exit, link.exit, link.exit)
             return _NEITHER
-        arc = on_node_tube(node.tube, node.entry, node.exit)
+        arc = on_branch_point_tube(branch_point.tube, branch_point.entry, branch_point.exit)
         at, left = _clear(pairs, arc.coefficients, arc.radius, arc.begin, arc.end)
         # `at` is a float: round it down to a whole number of units.
-        parameter = max(node.entry, math.floor(at * (1 << PARAMETER_BITS))) if left else node.exit
-        self.clear, self.parameters = node.time(parameter)[0], (parameter, parameter, parameter)
+        parameter = (
+            max(branch_point.entry, math.floor(at * (1 << PARAMETER_BITS)))
+            if left
+            else branch_point.exit
+        )
+        self.clear, self.parameters = (
+            branch_point.time(parameter)[0],
+            (parameter, parameter, parameter),
+        )
         if not left:
             return None
         self.open_pairs = left
@@ -171,7 +180,7 @@ class ContactWatch:
             return _NEITHER
         begin, end = (int(s * (1 << PARAMETER_BITS)) for s in (found.begin, found.end))
         self.parameters = parameter, begin, end
-        self.touching = replace(found, latest=node.time(end)[1])
+        self.touching = replace(found, latest=branch_point.time(end)[1])
         return _FIRST
 
     def result(self, track: Track) -> FirstContact:

@@ -11,7 +11,7 @@ import numpy as np
 from exactfold._support.arrays import FloatArray
 from exactfold.motion.contacts.fold_ranges import Stretch
 from exactfold.motion.curves.framework import Framework
-from exactfold.motion.tubes.branch_point_tube import NodeTube
+from exactfold.motion.tubes.branch_point_tube import BranchPointTube
 from exactfold.motion.tubes.piece import PARAMETER_BITS
 from exactfold.motion.tubes.tube import Tube
 from exactfold.motion.tubes.tube_start import ROOT_BITS, StartTube
@@ -44,10 +44,10 @@ def on_tube(tube: Tube, begin: int, end: int) -> Stretch:
     return _stretch(tube.framework, rows, radii, begin, end, PARAMETER_BITS)
 
 
-def on_node_tube(tube: NodeTube, begin: int, end: int) -> Stretch:
+def on_branch_point_tube(tube: BranchPointTube, begin: int, end: int) -> Stretch:
     """The stretch of an arc through a branch point from one parameter to another."""
-    one, node = float(1 << tube.bits), tube.node.finer(tube.bits)
-    rows = [np.array([x / one for x in row]) for row in (node.centre, *tube.coefficients)]
+    one, branch_point = float(1 << tube.bits), tube.branch_point.finer(tube.bits)
+    rows = [np.array([x / one for x in row]) for row in (branch_point.centre, *tube.coefficients)]
     radii = [r / one for r in tube.ball(max(abs(begin), abs(end))).radii]
     return _stretch(tube.framework, rows, radii, begin, end, PARAMETER_BITS)
 

@@ -9,7 +9,7 @@ from math import gcd
 from exactfold.branches.values.branch import Branch
 from exactfold.exact.numbers import format_rational, integer_row
 from exactfold.motion.claims import Claim
-from exactfold.motion.curves.drive import Drive
+from exactfold.motion.curves.drive import PrescribedAngles
 from exactfold.motion.curves.framework import Framework, Tie
 from exactfold.pattern.crease_pattern import CreasePattern, Triangle
 from exactfold.rigidity.equations.problem import Problem, barycentric
@@ -19,13 +19,13 @@ def problem_of(branch: Branch) -> Problem:
     """The problem of the sheet of a branch; with more than four corners, with its
     boundary heights.
     """
-    rim = branch.rim if branch.pattern.Ve > 4 else None
-    return Problem.of(branch.pattern, rim=rim)
+    boundary_heights = branch.boundary_heights if branch.pattern.Ve > 4 else None
+    return Problem.of(branch.pattern, boundary_heights=boundary_heights)
 
 
-def rim_claim(rim: Mapping[int, Fraction]) -> Claim:
+def boundary_claim(boundary_heights: Mapping[int, Fraction]) -> Claim:
     """That the heights of the border stay in the ratio of these (docs/motion.md, 9)."""
-    return Claim({"rim": [format_rational(h) for _, h in sorted(rim.items())]})
+    return Claim({"rim": [format_rational(h) for _, h in sorted(boundary_heights.items())]})
 
 
 def ties_of(problem: Problem) -> tuple[Tie, ...]:
@@ -42,16 +42,16 @@ def ties_of(problem: Problem) -> tuple[Tie, ...]:
     >>> len(ties_of(problem_of(find_branch(single_vertex(7), "+"))))
     3
     """
-    sheet, rim = problem.sheet, problem.gauge.rim
+    sheet, boundary_heights = problem.sheet, problem.gauge.boundary_heights
     if sheet.Ve < 5:
         return ()
-    base, raised = _base(sheet, rim)
+    base, raised = _base(sheet, boundary_heights)
     unit = level(sheet, base, raised)
-    height = _value(unit, rim)
+    height = _value(unit, boundary_heights)
     found = []
     for v in sorted(set(sheet.boundary).difference(base, [raised])):
         own = level(sheet, base, v)
-        slope = _value(own, rim) / height
+        slope = _value(own, boundary_heights) / height
         row = dict(own)
         for w, c in unit.items():
             row[w] = row.get(w, Fraction(0)) - slope * c
@@ -60,7 +60,7 @@ def ties_of(problem: Problem) -> tuple[Tie, ...]:
 
 
 def framework_of(
-    problem: Problem, pinned: Triangle | None = None, drive: Drive | None = None
+    problem: Problem, pinned: Triangle | None = None, drive: PrescribedAngles | None = None
 ) -> Framework:
     """The framework of a problem, with a drive, or else with the ties of the boundary heights."""
     if drive is None:
@@ -70,18 +70,20 @@ def framework_of(
     return Framework.of(problem.sheet, pinned, coupling=coupling)
 
 
-def factor_functional(sheet: CreasePattern, rim: Mapping[int, Fraction]) -> dict[int, Fraction]:
+def factor_functional(
+    sheet: CreasePattern, boundary_heights: Mapping[int, Fraction]
+) -> dict[int, Fraction]:
     """The functional of the boundary heights whose value is l at l b + an affine function.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> sheet = single_vertex(5)
-    >>> rim = {v: Fraction(v * v) for v in sheet.boundary}
-    >>> sum(c * rim[v] for v, c in factor_functional(sheet, rim).items())
+    >>> boundary_heights = {v: Fraction(v * v) for v in sheet.boundary}
+    >>> sum(c * boundary_heights[v] for v, c in factor_functional(sheet, boundary_heights).items())
     Fraction(1, 1)
     """
-    base, raised = _base(sheet, rim)
+    base, raised = _base(sheet, boundary_heights)
     row = level(sheet, base, raised)
-    height = _value(row, rim)
+    height = _value(row, boundary_heights)
     return {v: c / height for v, c in row.items()}
 
 
@@ -91,7 +93,9 @@ def level(sheet: CreasePattern, base: tuple[int, ...], v: int) -> dict[int, Frac
     return row | {v: Fraction(1)}
 
 
-def _base(sheet: CreasePattern, rim: Mapping[int, Fraction]) -> tuple[tuple[int, ...], int]:
+def _base(
+    sheet: CreasePattern, boundary_heights: Mapping[int, Fraction]
+) -> tuple[tuple[int, ...], int]:
     """Three boundary vertices far apart, and the one whose given height above their plane is
     largest.
     """
@@ -109,7 +113,7 @@ def _base(sheet: CreasePattern, rim: Mapping[int, Fraction]) -> tuple[tuple[int,
     b = max(ordered, key=lambda v: apart(v, a))
     base = (a, b, max(ordered, key=area))
     others = [v for v in ordered if v not in base]
-    return base, max(others, key=lambda v: abs(_value(level(sheet, base, v), rim)))
+    return base, max(others, key=lambda v: abs(_value(level(sheet, base, v), boundary_heights)))
 
 
 def _value(row: Mapping[int, Fraction], heights: Mapping[int, Fraction]) -> Fraction:

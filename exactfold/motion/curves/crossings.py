@@ -119,10 +119,10 @@ class Crossings:
         """All pairs of sides pq and rs of the boundary without a common corner, shape
         (pairs, 4).
         """
-        rim = self.framework.sheet.boundary
-        ends = np.array([rim, (*rim[1:], rim[0])], dtype=np.intp).T
-        one, two = np.triu_indices(len(rim), 2)
-        apart = two - one < len(rim) - 1
+        boundary = self.framework.sheet.boundary
+        ends = np.array([boundary, (*boundary[1:], boundary[0])], dtype=np.intp).T
+        one, two = np.triu_indices(len(boundary), 2)
+        apart = two - one < len(boundary) - 1
         return np.hstack([ends[one[apart]], ends[two[apart]]])
 
     def named(self, pair: IndexArray) -> Crossing:

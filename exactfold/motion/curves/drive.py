@@ -31,7 +31,7 @@ Goals: TypeAlias = dict[FoldText, GoalDocument]
 
 
 @dataclass(frozen=True)
-class Drive:
+class PrescribedAngles:
     """Folds that are driven from 0 to given angles, with a fixed ratio of the sines of half angles.
 
     Let a_k be the fold angles. The ratio of the numbers sin(a_k / 2) is constant during the motion
@@ -40,7 +40,7 @@ class Drive:
     / 2)^2 is not rational; then the square is a rational number with a denominator up to 10^12,
     with an error of at most 1e-12. `folds` are folds of a pattern.
 
-    >>> Drive.of({(3, 7): 90, (4, 9): -45})
+    >>> PrescribedAngles.of({(3, 7): 90, (4, 9): -45})
     <Drive: 3-7 to 90, 4-9 to -45 degrees>
     """
 
@@ -48,7 +48,7 @@ class Drive:
     squares: tuple[Fraction, ...]
 
     @classmethod
-    def of(cls, angles: Mapping[Edge, float]) -> Drive:
+    def of(cls, angles: Mapping[Edge, float]) -> PrescribedAngles:
         """A drive from angles in degrees by fold; raises `BadDriveError` for an angle that is no
         goal.
         """
@@ -119,7 +119,7 @@ class Drive:
 
         >>> from exactfold.pattern.families import single_vertex
         >>> star = single_vertex(5)
-        >>> Drive.of({(0, 5): 90, (2, 5): 90}).coupling(star, range(6)).diagonals
+        >>> PrescribedAngles.of({(0, 5): 90, (2, 5): 90}).coupling(star, range(6)).diagonals
         ((4, 1), (1, 3))
         """
         if len(self.folds) < 2:
@@ -162,7 +162,7 @@ class Drive:
         >>> from exactfold.pattern.families import single_vertex
         >>> star = single_vertex(5)
         >>> flat = [(*point, Fraction(0)) for point in star.vertices]
-        >>> Drive.of({(0, 5): 90, (2, 5): 90}).passed(star, range(6), flat, Fraction(0))
+        >>> PrescribedAngles.of({(0, 5): 90, (2, 5): 90}).passed(star, range(6), flat, Fraction(0))
         False
         """
         for (v, w), q in zip(self.folds, self.squares, strict=True):
@@ -235,7 +235,7 @@ def _volume(a: Sequence[Fraction], b: Sequence[Fraction], c: Sequence[Fraction])
 
 
 def square_of(angle: float) -> Fraction:
-    """sin(a / 2)^2 of an angle in degrees, with its sign, rounded as described in `Drive`."""
+    """sin(a / 2)^2 of an angle in degrees, with its sign, rounded as in `PrescribedAngles`."""
     square = Fraction((1 - cos(radians(abs(angle)))) / 2).limit_denominator(_DENOMINATOR)
     return square if angle > 0 else -square
 

@@ -15,7 +15,7 @@ import numpy as np
 from exactfold._support.arrays import FloatArray
 from exactfold._support.plurals import counted
 from exactfold.errors import BadDriveError
-from exactfold.motion.curves.drive import Drive, fold_text
+from exactfold.motion.curves.drive import PrescribedAngles, fold_text
 from exactfold.motion.curves.framework import Framework
 from exactfold.motion.curves.start import blown_up, blown_up_jacobian, heights_above_the_pin
 from exactfold.pattern.crease_pattern import Edge
@@ -150,14 +150,14 @@ class DrivenFolds:
             free = np.linalg.svd(direction[None])[2][1:] @ free
         return found
 
-    def completed(self, y: FloatArray) -> Drive | None:
+    def completed(self, y: FloatArray) -> PrescribedAngles | None:
         """The drive, where folds without an angle get their angle on the branch at y.
 
         None if such a fold is at rest on that branch, or would exceed 180 degrees.
         """
         there = self.rows @ y
         given = {fold: a for fold, a in self.angles.items() if a is not None}
-        own = Drive.of(given)
+        own = PrescribedAngles.of(given)
         wanted = dict(zip(own.folds, own.sines, strict=True))
         if len(given) == len(self.folds):
             return own
@@ -179,7 +179,7 @@ class DrivenFolds:
             if not 0 < square <= 1:
                 return None
             squares.append(square if sine > 0 else -square)
-        return Drive(self.folds, tuple(squares))
+        return PrescribedAngles(self.folds, tuple(squares))
 
     def reached(self, y: FloatArray, wanted: FloatArray) -> FloatArray | None:
         """The solution at which the driven folds have the angles `wanted`, followed from
@@ -241,9 +241,9 @@ class DrivenFolds:
         """The same, from signs given by vertex of the pattern."""
         return tuple(signs[self.problem.labels[v]] > 0 for v in self.problem.sheet.interior)
 
-    def rim_of(self, y: FloatArray) -> dict[int, Fraction]:
+    def boundary_of(self, y: FloatArray) -> dict[int, Fraction]:
         """The boundary heights of a solution, scaled so that the largest is 1, and rounded."""
         heights = self.framework.displacement(y)[:, 2]
-        border = {self.problem.labels[v]: heights[v] for v in self.problem.sheet.boundary}
-        largest = max(abs(h) for h in border.values())
-        return {v: Fraction(round(h / largest * _PLACES), _PLACES) for v, h in border.items()}
+        boundary = {self.problem.labels[v]: heights[v] for v in self.problem.sheet.boundary}
+        largest = max(abs(h) for h in boundary.values())
+        return {v: Fraction(round(h / largest * _PLACES), _PLACES) for v, h in boundary.items()}

@@ -24,7 +24,10 @@ ANGLE, LENGTH = "angle", "length"
 DRIVEN, DEAD_POINT = "driven", "dead-point"
 
 KINDS = CONTACT, FLAT_FOLD, TURNING, NODE, SINGULAR, RETURN, ANGLE, DRIVEN, DEAD_POINT
-"""All kinds of events. A motion that was asked for up to a time ends at `LENGTH`, without one."""
+"""All kinds of events."""
+
+ENDS = (*(kind for kind in KINDS if kind != TURNING), LENGTH)
+"""Where motions end: at an event that is no turning of a crease, or at a time without an event."""
 
 _SAMPLES = 8
 _NEAR_FLAT = 0.3
@@ -36,15 +39,7 @@ _HINGE = np.arange(4)[None]
 class EventDocument(TypedDict):
     """Something that happens between two times of a motion."""
 
-    kind: Annotated[
-        str,
-        Keywords(
-            enum=[
-                *(CONTACT, FLAT_FOLD, TURNING, NODE, SINGULAR, RETURN),
-                *(ANGLE, DRIVEN, DEAD_POINT),
-            ]
-        ),
-    ]
+    kind: Annotated[str, Keywords(enum=[*KINDS])]
     time: Pair[NotNegative]
     """Lower and upper bound, in floating point."""
     faces: list[Face]
@@ -113,7 +108,7 @@ class Watch:
         raw = fold_angles_of(positions, self.framework.hinges)
         angles = np.unwrap(np.vstack([self.angles, raw]), axis=0)[1:]
         found = [
-            *self._node(piece),
+            *self._branch_point(piece),
             *self._angle_events(piece, grid, angles),
             *self._turnings(piece, grid, positions, angles),
             *self._returns(piece, grid, raw),
@@ -129,7 +124,7 @@ class Watch:
         times = piece.time + piece.length_to(low), piece.time + piece.length_to(high)
         return high, Event(kind, times, **more)  # type: ignore[arg-type]
 
-    def _node(self, piece: Piece) -> list[tuple[float, Event]]:
+    def _branch_point(self, piece: Piece) -> list[tuple[float, Event]]:
         """A crossing of curves on the previous piece: its orientation changes, or a star
         is flat.
         """

@@ -19,7 +19,7 @@ from exactfold.exact.numbers import format_rational
 from exactfold.motion.curves.angles import fold_angles_of, hinges_of
 from exactfold.motion.curves.boundary_path import problem_of
 from exactfold.motion.curves.curve import Curve
-from exactfold.motion.curves.drive import Drive
+from exactfold.motion.curves.drive import PrescribedAngles
 from exactfold.motion.curves.events import Event
 from exactfold.motion.curves.in_motion import FrameBounds, SheetInMotion
 from exactfold.motion.curves.motion_document import MotionDocument
@@ -62,7 +62,7 @@ class Motion(SheetInMotion):
     end: str
     seconds: float = field(default=0.0, compare=False)
     bounds: FrameBounds | None = None
-    drive: Drive | None = None
+    drive: PrescribedAngles | None = None
 
     @property
     def status(self) -> Verdict:
@@ -84,14 +84,18 @@ class Motion(SheetInMotion):
         return self.branch.pattern
 
     @property
-    def rim(self) -> Mapping[int, Fraction] | None:
+    def boundary_heights(self) -> Mapping[int, Fraction] | None:
         """With more than four corners the heights in the ratio of which the border stays."""
-        return self.branch.rim if self.curve.framework.ties else None
+        return self.branch.boundary_heights if self.curve.framework.ties else None
 
     @property
-    def _rim_reported(self) -> dict[str, str] | None:
-        rim = self.rim
-        return None if rim is None else {str(v): format_rational(h) for v, h in rim.items()}
+    def _boundary_heights_reported(self) -> dict[str, str] | None:
+        boundary_heights = self.boundary_heights
+        return (
+            None
+            if boundary_heights is None
+            else {str(v): format_rational(h) for v, h in boundary_heights.items()}
+        )
 
     @property
     def name(self) -> str:
@@ -166,7 +170,7 @@ class Motion(SheetInMotion):
             "vertex_signs": {str(v): s for v, s in sorted(branch.vertex_signs.items())},
             "assignment": {f"{i}-{j}": a for (i, j), a in sorted(branch.assignment.items())},
             "side": self.side,
-            "rim": self._rim_reported,
+            "rim": self._boundary_heights_reported,
             "drive": None if self.drive is None else self.drive.to_dict(),
             "modes": None,
             "component": None,
@@ -179,12 +183,12 @@ class Motion(SheetInMotion):
     @property
     def facts(self) -> dict[str, Any]:
         """What files say of the motion, as JSON."""
-        rim = self._rim_reported
+        boundary_heights = self._boundary_heights_reported
         return {
             "vertex_signs": self.branch.sign_text,
             "vertices": list(self.pattern.interior),
             "side": self.side,
-            **({} if rim is None else {"rim": rim}),
+            **({} if boundary_heights is None else {"rim": boundary_heights}),
             **({} if self.drive is None else {"drive": self.drive.to_dict()}),
             **self.facts_of_frames(),
         }

@@ -22,7 +22,7 @@ from exactfold._support.documents import (
     VertexText,
 )
 from exactfold.motion.curves.drive import Goals
-from exactfold.motion.curves.events import EventDocument
+from exactfold.motion.curves.events import ENDS, EventDocument
 from exactfold.pattern.described import PanelsDocument, PatternDocument
 from exactfold.pattern.near_degeneracy import WarningDocument
 
@@ -57,15 +57,7 @@ class FrameKeys(TypedDict):
     largest_angles: dict[FoldText, float]
     """By fold i-j: the largest of these, with its sign."""
     events: list[EventDocument]
-    end: Annotated[
-        str,
-        Keywords(
-            enum=[
-                *("contact", "flat-fold", "node", "singular", "return"),
-                *("angle", "driven", "dead-point", "length"),
-            ]
-        ),
-    ]
+    end: Annotated[str, Keywords(enum=[*ENDS])]
     """The kind of event at which the motion stops, or length."""
     duration: NotNegative
     """The time of the last frame."""

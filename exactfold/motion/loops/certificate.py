@@ -45,13 +45,13 @@ def loop_line(
 
 def claims_line(pattern: CreasePattern, loops: int, matched: int) -> str:
     """The last line, with the claims."""
-    half_branches = 2 << len(pattern.foldable_vertices)
+    rays = 2 << len(pattern.foldable_vertices)
     claims: LoopsClaims = {
         "sha256": pattern.sha256,
         "loops": loops,
         "matched": matched,
-        "half_branches": half_branches,
-        "complete": matched == half_branches,
+        "half_branches": rays,
+        "complete": matched == rays,
     }
     return _text({"claims": claims})
 

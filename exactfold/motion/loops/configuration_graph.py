@@ -19,7 +19,7 @@ from exactfold._support.documents import (
 from exactfold._support.verdict import PROVED, Verdict
 from exactfold.motion.contacts.fold_ranges import angle_in_floats
 from exactfold.motion.curves.motion_document import RayDocument
-from exactfold.motion.loops.rays import HalfBranch
+from exactfold.motion.loops.rays import Ray
 from exactfold.motion.tubes.arclength import Interval, in_floats
 from exactfold.pattern.crease_pattern import Edge
 
@@ -106,33 +106,33 @@ class GraphDocument(TypedDict):
 
 
 @dataclass(frozen=True, order=True)
-class NodeEnd:
+class EndAtBranchPoint:
     """One end of an arc at a branch point: one of the two sides of the line of a curve.
 
     If an arc ends on one side of the line, its straight, that is analytic, continuation begins on
     the other side. `side` is 1 or -1.
     """
 
-    node: int
+    branch_point: int
     line: int
     side: int
 
     @property
-    def mirrored(self) -> NodeEnd:
+    def mirrored(self) -> EndAtBranchPoint:
         """The end in the mirror image. Nodes 2k and 2k + 1 are mirror images of each other."""
-        return NodeEnd(self.node ^ 1, self.line, self.side)
+        return EndAtBranchPoint(self.branch_point ^ 1, self.line, self.side)
 
     @property
-    def opposite(self) -> NodeEnd:
+    def opposite(self) -> EndAtBranchPoint:
         """The end at which the straight continuation begins."""
-        return NodeEnd(self.node, self.line, -self.side)
+        return EndAtBranchPoint(self.branch_point, self.line, -self.side)
 
     def to_dict(self) -> BranchPointEnd:
         """The object of this end in JSON."""
-        return {"node": self.node, "line": self.line, "side": self.side}
+        return {"node": self.branch_point, "line": self.line, "side": self.side}
 
 
-End = HalfBranch | NodeEnd
+End = Ray | EndAtBranchPoint
 """An end of an arc: a ray at the flat state, or an end at a branch point."""
 
 
@@ -238,7 +238,9 @@ class ConfigurationGraph:
 
         found: nx.MultiGraph[int | str] = nx.MultiGraph()
         found.add_node(FLAT)
-        found.add_nodes_from((k, {"node": node}) for k, node in enumerate(self.nodes))
+        found.add_nodes_from(
+            (k, {"node": branch_point}) for k, branch_point in enumerate(self.nodes)
+        )
         for k, arc in enumerate(self.arcs):
             if arc.start is not None and arc.end is not None:
                 found.add_edge(_vertex(arc.start), _vertex(arc.end), key=k, arc=arc)
@@ -270,11 +272,11 @@ class ConfigurationGraph:
             if k in seen:
                 continue
             curve, end = [k], arc.end
-            while isinstance(end, NodeEnd) and end != _opposite(arc.start):
+            while isinstance(end, EndAtBranchPoint) and end != _opposite(arc.start):
                 number, end = after.get(end.opposite, (k, None))
                 curve.append(number)
             seen.update(curve)
-            if isinstance(end, NodeEnd):
+            if isinstance(end, EndAtBranchPoint):
                 found.append(tuple(curve))
         return tuple(found)
 
@@ -283,7 +285,7 @@ class ConfigurationGraph:
         return {
             "status": str(self.status),
             "reason": self.reason,
-            "nodes": [node.to_dict() for node in self.nodes],
+            "nodes": [branch_point.to_dict() for branch_point in self.nodes],
             "arcs": [arc.to_dict() for arc in self.arcs],
             "closed_curves": [list(curve) for curve in self.closed_curves],
             "independent_cycles": self.independent_cycles,
@@ -295,16 +297,18 @@ class ConfigurationGraph:
         )
 
 
-def _opposite(end: End | None) -> NodeEnd | None:
-    return end.opposite if isinstance(end, NodeEnd) else None
+def _opposite(end: End | None) -> EndAtBranchPoint | None:
+    return end.opposite if isinstance(end, EndAtBranchPoint) else None
 
 
 def _vertex(end: End | None) -> int | str:
     """The vertex of the graph at an end of an arc."""
-    return "open" if end is None else end.node if isinstance(end, NodeEnd) else FLAT
+    return (
+        "open" if end is None else end.branch_point if isinstance(end, EndAtBranchPoint) else FLAT
+    )
 
 
 def _named(end: End | None) -> FlatEnd | BranchPointEnd | None:
     if end is None:
         return None
-    return end.to_dict() if isinstance(end, NodeEnd) else {"half_branch": end.to_dict()}
+    return end.to_dict() if isinstance(end, EndAtBranchPoint) else {"half_branch": end.to_dict()}

@@ -14,7 +14,7 @@ from exactfold.motion.contacts.fold_ranges import FoldRange
 from exactfold.motion.curves.framework import Framework
 from exactfold.motion.loops.certificate import OPENING, claims_line, header_line
 from exactfold.motion.loops.proofs import Loop
-from exactfold.motion.loops.rays import HalfBranch
+from exactfold.motion.loops.rays import Ray
 from exactfold.motion.tubes.arclength import Interval
 from exactfold.motion.tubes.length_equations import LengthEquations
 from exactfold.motion.tubes.piece import Ball
@@ -33,7 +33,7 @@ class LoopFile:
     journal: Journal
     problem: Problem
     known: tuple[Loop, ...]
-    matched: set[HalfBranch] = field(default_factory=set)
+    matched: set[Ray] = field(default_factory=set)
 
     @classmethod
     def opened(
@@ -57,7 +57,7 @@ class LoopFile:
         if not resume:
             return cls(Journal(path, header, replace=replace), problem, ())
         known: list[Loop] = []
-        matched: set[HalfBranch] = set()
+        matched: set[Ray] = set()
 
         def refusal(text: str, _: int) -> str | None:
             loop = _loop_of(text, problem, bits)
@@ -98,14 +98,14 @@ def _loop_of(text: str, problem: Problem, bits: int) -> Loop | None:
     """The loop of a line; None if this program did not write the line."""
     try:
         data = json.loads(text)
-        source, target = (_half_branch(data[key], problem) for key in ("from", "to"))
+        source, target = (_ray(data[key], problem) for key in ("from", "to"))
         steps = data["evidence"]["steps"]
         known = data["provenance"]
         nodes = [step for step in steps if "flat" in step]
         through = tuple(tuple(step["flat"]) for step in nodes)
         visits = tuple(
-            _visit(step, node, problem, bits)
-            for step, node in zip(nodes, known["nodes"], strict=True)
+            _visit(step, branch_point, problem, bits)
+            for step, branch_point in zip(nodes, known["nodes"], strict=True)
         )
         folds = tuple(
             FoldRange((i, j), turns, _interval(least), _interval(greatest))
@@ -117,11 +117,13 @@ def _loop_of(text: str, problem: Problem, bits: int) -> Loop | None:
     return Loop(source, target, through, length, PROVED, "", len(steps) + 1, visits, folds)
 
 
-def _visit(step: dict[str, Any], node: dict[str, Any], problem: Problem, bits: int) -> Visit:
+def _visit(
+    step: dict[str, Any], branch_point: dict[str, Any], problem: Problem, bits: int
+) -> Visit:
     flat = tuple(problem.labels.index(v) for v in step["flat"])
-    place = Ball(bits, tuple(step["node"]), tuple(node["radii"]))
-    along = Ball(bits, tuple(step["centre"]), tuple(node["spread"]))
-    return Visit(flat, place, along, _interval(node["time"]))
+    place = Ball(bits, tuple(step["node"]), tuple(branch_point["radii"]))
+    along = Ball(bits, tuple(step["centre"]), tuple(branch_point["spread"]))
+    return Visit(flat, place, along, _interval(branch_point["time"]))
 
 
 def _interval(texts: list[str]) -> Interval:
@@ -129,9 +131,9 @@ def _interval(texts: list[str]) -> Interval:
     return low, high
 
 
-def _half_branch(data: dict[str, Any], problem: Problem) -> HalfBranch:
+def _ray(data: dict[str, Any], problem: Problem) -> Ray:
     signs = dict(zip(problem.pattern.interior, data["vertex_signs"], strict=True))
     side = data["side"]
     if side not in (1, -1) or any(signs[v] not in (1, -1) for v in problem.foldable):
         raise ValueError("a half-branch needs a side 1 or -1 and a sign for every foldable vertex")
-    return HalfBranch(tuple(signs[v] for v in problem.foldable), 1 if side == 1 else -1)
+    return Ray(tuple(signs[v] for v in problem.foldable), 1 if side == 1 else -1)

@@ -18,18 +18,18 @@ from exactfold.motion.curves.framework import Framework
 from exactfold.motion.loops.configuration_graph import (
     ConfigurationGraph,
     End,
+    EndAtBranchPoint,
     GraphArc,
     GraphNode,
-    NodeEnd,
 )
 from exactfold.motion.loops.loops import LoopFinder
 from exactfold.motion.loops.proofs import Arc, Loop
-from exactfold.motion.loops.rays import HalfBranch
+from exactfold.motion.loops.rays import Ray
 from exactfold.motion.tubes.arclength import Interval
-from exactfold.motion.tubes.branch_point_tube import prove_node_tube
+from exactfold.motion.tubes.branch_point_tube import prove_branch_point_tube
 from exactfold.motion.tubes.flat_patches import FlatPatch
 from exactfold.motion.tubes.piece import Ball
-from exactfold.motion.tubes.visits import LocatedNode, Visit
+from exactfold.motion.tubes.visits import LocatedBranchPoint, Visit
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.rigidity.equations.problem import Problem
 
@@ -67,9 +67,9 @@ class _Job:
     approximately.
     """
 
-    end: NodeEnd
+    end: EndAtBranchPoint
     flat: tuple[int, ...]
-    node: Ball
+    branch_point: Ball
     line: Ball
 
 
@@ -89,8 +89,8 @@ class _FollowArc:
         if patch is None:
             return None
         along = job.end.side * job.line.floats[0]
-        tube = prove_node_tube(framework, patch, job.node.floats[0], along)
-        return None if tube is None else finder.follow_from_node(tube).arc
+        tube = prove_branch_point_tube(framework, patch, job.branch_point.floats[0], along)
+        return None if tube is None else finder.follow_from_branch_point(tube).arc
 
 
 @lru_cache(maxsize=4)
@@ -108,7 +108,7 @@ class _Census:
 
     problem: Problem
     framework: Framework
-    nodes: list[LocatedNode] = field(default_factory=list)
+    nodes: list[LocatedBranchPoint] = field(default_factory=list)
     passed: list[set[int]] = field(default_factory=list)
     arcs: list[GraphArc] = field(default_factory=list)
     at: dict[End, int] = field(default_factory=dict)
@@ -125,33 +125,37 @@ class _Census:
         for visit in loop.visits:
             left = self._side(visit)
             if left is not None:
-                for node in (left.node, left.node ^ 1):
-                    self.passed[node].add(number)
+                for branch_point in (left.branch_point, left.branch_point ^ 1):
+                    self.passed[branch_point].add(number)
             reached = None if left is None else left.opposite
             self._add(begin, reached, _between(time, visit.time), "", number)
             begin, time = left, visit.time
         self._add(begin, loop.target, _between(time, loop.length), loop.reason, number)
 
     @property
-    def open_ends(self) -> list[NodeEnd]:
+    def open_ends(self) -> list[EndAtBranchPoint]:
         """Ends at branch points without a known arc, one of each pair of mirror images."""
         return [
             end
-            for k, node in enumerate(self.nodes)
-            if k % 2 == 0 and node.has_all_lines
-            for line in range(len(node.lines))
-            for end in (NodeEnd(k, line, 1), NodeEnd(k, line, -1))
+            for k, branch_point in enumerate(self.nodes)
+            if k % 2 == 0 and branch_point.has_all_lines
+            for line in range(len(branch_point.lines))
+            for end in (EndAtBranchPoint(k, line, 1), EndAtBranchPoint(k, line, -1))
             if self.failed.keys().isdisjoint({end, end.mirrored}) and end not in self.at
         ]
 
-    def jobs(self, pending: Sequence[NodeEnd], progress: Progress | None) -> Iterator[_Job]:
+    def jobs(
+        self, pending: Sequence[EndAtBranchPoint], progress: Progress | None
+    ) -> Iterator[_Job]:
         """Jobs for the pending ends, except those at which an arc has ended in the meantime."""
         for k, end in enumerate(pending):
             if progress is not None:
                 progress("arcs", k, len(pending))
             if end not in self.at:
-                node = self.nodes[end.node]
-                yield _Job(end, node.flat, node.point.ball, node.lines[end.line])
+                branch_point = self.nodes[end.branch_point]
+                yield _Job(
+                    end, branch_point.flat, branch_point.point.ball, branch_point.lines[end.line]
+                )
 
     def add_followed(self, job: _Job, arc: Arc | None) -> None:
         """Add an arc that was followed from an open end, if it is proved to begin there."""
@@ -159,7 +163,7 @@ class _Census:
             self.failed[job.end] = (Fraction(0), Fraction(0)), _NOT_LEFT, None
             return
         end: End | None = None
-        if isinstance(arc.end, HalfBranch):
+        if isinstance(arc.end, Ray):
             end = arc.end
         elif arc.end is not None:
             left = self._side(arc.end)
@@ -173,9 +177,9 @@ class _Census:
         for end, (length, reason, loop) in self.failed.items():
             if end not in self.at:
                 self._append(end, None, length, reason, loop)
-        nodes = tuple(self._node(k) for k in range(len(self.nodes)))
+        nodes = tuple(self._branch_point(k) for k in range(len(self.nodes)))
         reasons = [missing] if missing else []
-        if number := sum(node.status is not PROVED for node in nodes):
+        if number := sum(branch_point.status is not PROVED for branch_point in nodes):
             reasons.append(
                 f"at {counted(number, 'node')} not all curves through the node are proved"
             )
@@ -187,35 +191,35 @@ class _Census:
         status = UNDECIDED if reasons else PROVED
         return ConfigurationGraph(nodes, tuple(self.arcs), status, "; ".join(reasons))
 
-    def _node(self, k: int) -> GraphNode:
-        node, labels = self.nodes[k], self.problem.labels
+    def _branch_point(self, k: int) -> GraphNode:
+        branch_point, labels = self.nodes[k], self.problem.labels
         folds = [
             (min(labels[i], labels[j]), max(labels[i], labels[j]))
             for i, j in self.framework.sheet.folds
         ]
-        angles = box_angles(self.framework, node.point.ball)
+        angles = box_angles(self.framework, branch_point.point.ball)
         return GraphNode(
-            tuple(labels[v] for v in node.flat),
-            len(node.lines),
-            PROVED if node.has_all_lines else UNDECIDED,
+            tuple(labels[v] for v in branch_point.flat),
+            len(branch_point.lines),
+            PROVED if branch_point.has_all_lines else UNDECIDED,
             dict(zip(folds, angles, strict=True)),
             k ^ 1,
             tuple(sorted(self.passed[k])),
         )
 
-    def _side(self, visit: Visit) -> NodeEnd | None:
+    def _side(self, visit: Visit) -> EndAtBranchPoint | None:
         """The end at which a curve leaves the branch point it visits; None if it is not known.
 
         In that case the reason is recorded.
         """
-        met = [node.meets(visit) for node in self.nodes]
+        met = [branch_point.meets(visit) for branch_point in self.nodes]
         if True not in met and None in met:
             self.reasons["it is undecided whether two nodes are the same"] = None
             return None
         if True in met:
             k = met.index(True)
         else:
-            located = LocatedNode.of(self.framework, visit)
+            located = LocatedBranchPoint.of(self.framework, visit)
             if located is None or not located.point.ball.misses(located.mirrored.point.ball):
                 self.reasons["a node on a loop or arc could not be located"] = None
                 return None
@@ -226,7 +230,7 @@ class _Census:
         if side is None:
             self.reasons["it is undecided along which line a curve passes a node"] = None
             return None
-        return NodeEnd(k, *side)
+        return EndAtBranchPoint(k, *side)
 
     def _add(
         self, start: End | None, end: End | None, length: Interval, reason: str, loop: int | None

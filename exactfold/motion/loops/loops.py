@@ -12,11 +12,11 @@ from exactfold.branches.values.branch import Branch
 from exactfold.errors import NotProvedAtTheFlatStateError
 from exactfold.motion.curves.angles import fold_angles_of
 from exactfold.motion.loops.proofs import ArcProof, Landing, LoopProof, named
-from exactfold.motion.loops.rays import HalfBranch
-from exactfold.motion.tubes.branch_point_tube import NodeTube
+from exactfold.motion.loops.rays import Ray
+from exactfold.motion.tubes.branch_point_tube import BranchPointTube
 from exactfold.motion.tubes.chain import Chain, Step
 from exactfold.motion.tubes.links import Link
-from exactfold.motion.tubes.tracks import half_branch
+from exactfold.motion.tubes.tracks import ray
 from exactfold.motion.tubes.tube import Tube
 from exactfold.motion.tubes.tube_start import (
     ROOT_BITS,
@@ -50,7 +50,7 @@ class LoopFinder:
     ) -> LoopProof:
         """The loop that leaves the flat state along a ray of a simple, proved branch.
 
-        `pinned` and `bits` are those of `half_branch`, and its errors are raised. `progress` gets
+        `pinned` and `bits` are those of `ray`, and its errors are raised. `progress` gets
         the number of tubes.
 
         >>> from exactfold.branches.counting.find import find_branch
@@ -58,15 +58,15 @@ class LoopFinder:
         >>> LoopFinder(Problem.of(branch.pattern)).follow(branch).loop
         <Loop: +-, saddle + to +-, saddle -, proved>
         """
-        return self._proof(half_branch(branch, side, pinned, bits=bits).start, progress)
+        return self._proof(ray(branch, side, pinned, bits=bits).start, progress)
 
-    def follow_from(self, branch: Branch, source: HalfBranch) -> LoopProof:
+    def follow_from(self, branch: Branch, source: Ray) -> LoopProof:
         """The loop that leaves the flat state along `source`, one of the two rays of a branch.
 
-        Raises the errors of `half_branch`, and `NotProvedAtTheFlatStateError` if it is neither ray.
+        Raises the errors of `ray`, and `NotProvedAtTheFlatStateError` if it is neither ray.
         """
         for side in (1, -1):
-            start = half_branch(branch, side).start
+            start = ray(branch, side).start
             if named(start) == source:
                 return self._proof(start)
         raise NotProvedAtTheFlatStateError(f"branch {branch.sign_text} has no half-branch {source}")
@@ -76,18 +76,18 @@ class LoopFinder:
         steps, landing, reason = self._followed(chain, progress=progress)
         return LoopProof(self.problem, start, tuple(steps), landing, reason)
 
-    def follow_from_node(self, tube: NodeTube) -> ArcProof:
+    def follow_from_branch_point(self, tube: BranchPointTube) -> ArcProof:
         """The arc that leaves a branch point forwards along a tube, up to the next branch point."""
-        chain = Chain.from_node(tube, self.problem.labels)
-        steps, landing, reason = self._followed(chain, at_node=True)
+        chain = Chain.from_branch_point(tube, self.problem.labels)
+        steps, landing, reason = self._followed(chain, at_branch_point=True)
         return ArcProof(tube, tuple(steps), landing, reason)
 
     def _followed(
-        self, chain: Chain, at_node: bool = False, progress: Progress | None = None
+        self, chain: Chain, at_branch_point: bool = False, progress: Progress | None = None
     ) -> tuple[list[Step], Landing | None, str]:
         """The steps of a chain up to a landing, or up to the place where the proof stopped.
 
-        With `at_node` the last step is the passage of the first branch point.
+        With `at_branch_point` the last step is the passage of the first branch point.
         """
         known: StartTube | None = None
         while len(chain.steps) < MOST_TUBES:
@@ -100,7 +100,7 @@ class LoopFinder:
                 landing, known = self._landing(step, known)
                 if landing is not None:
                     return chain.steps, landing, ""
-            elif at_node:
+            elif at_branch_point:
                 return chain.steps, None, ""
         return chain.steps, None, f"the limit of {MOST_TUBES} tubes was reached"
 

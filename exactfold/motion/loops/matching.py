@@ -34,7 +34,7 @@ from exactfold.motion.loops.file import LoopFile
 from exactfold.motion.loops.graph_building import graph_of
 from exactfold.motion.loops.loops import LoopFinder
 from exactfold.motion.loops.proofs import Loop, LoopDocument
-from exactfold.motion.loops.rays import HalfBranch
+from exactfold.motion.loops.rays import Ray
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import PatternDocument, described
 from exactfold.pattern.loading import PatternLike, as_pattern
@@ -95,12 +95,12 @@ class Loops(Ways[Loop]):
         return self.loops
 
     @cached_property
-    def matching(self) -> Mapping[HalfBranch, HalfBranch]:
+    def matching(self) -> Mapping[Ray, Ray]:
         """For every ray of a proved loop, the ray with which it is matched.
 
         Every loop gives four entries: there and back, and the mirror images of both.
         """
-        found: dict[HalfBranch, HalfBranch] = {}
+        found: dict[Ray, Ray] = {}
         for loop in self.loops:
             if loop.target is not None:
                 for a, b in ((loop.source, loop.target), (loop.target, loop.source)):
@@ -218,7 +218,7 @@ _ALONE = 3
 started.
 """
 
-Job = tuple[HalfBranch, bool]
+Job = tuple[Ray, bool]
 """A ray on which the saddle or the reflex corner is positive; and whether to certify its loop."""
 
 
@@ -268,14 +268,14 @@ def _followed(
     file: LoopFile | None,
 ) -> Iterator[Loop]:
     """The loops. A ray is not followed if a loop, or its mirror image, has ended at it."""
-    ended: set[HalfBranch] = set() if file is None else set(file.matched)
+    ended: set[Ray] = set() if file is None else set(file.matched)
     number = len(problem.foldable)
 
     def left() -> Iterator[Job]:
         for k, signs in enumerate(sorted(product((-1, 1), repeat=number), key=_turn)):
             if progress is not None:
                 progress("half-branches", k, 1 << number)
-            if (named := HalfBranch(signs, 1)) not in ended:
+            if (named := Ray(signs, 1)) not in ended:
                 yield named, file is not None
 
     with closing(pool(_Follow(sheet), left())) as results:
@@ -301,7 +301,7 @@ def _matching(found: Iterable[Loop]) -> list[Loop]:
 
 def _once(found: Iterable[Loop]) -> list[Loop]:
     """The first of several loops that are equal, mirrored, or run through backwards."""
-    seen: set[HalfBranch] = set()
+    seen: set[Ray] = set()
     kept = []
     # Proved loops come first: the source of an unproved loop may be the target of a proved one.
     for loop in sorted(
@@ -322,7 +322,7 @@ def _check(found: Iterable[Loop]) -> None:
     others, because a simple ray has only one curve. Modulo 2, each loop flips one sign more than
     the number of stars that are flat at its branch points (docs/matching.md, Theorem 1a).
     """
-    partner: dict[HalfBranch, HalfBranch] = {}
+    partner: dict[Ray, Ray] = {}
     for loop in found:
         if loop.target is None:
             continue

@@ -16,13 +16,13 @@ from exactfold.errors import NotCountedError
 from exactfold.exact.numbers import format_rational
 from exactfold.motion.claims import Claim
 from exactfold.motion.contacts.fold_ranges import SLACK, FoldRange, FoldRangeDocument, fold_ranges
-from exactfold.motion.contacts.stretches import on_node_tube, on_start_tube, on_tube
-from exactfold.motion.curves.boundary_path import rim_claim
+from exactfold.motion.contacts.stretches import on_branch_point_tube, on_start_tube, on_tube
+from exactfold.motion.curves.boundary_path import boundary_claim
 from exactfold.motion.curves.motion_document import RayDocument
 from exactfold.motion.loops.certificate import claims_line, header_line, loop_line
-from exactfold.motion.loops.rays import HalfBranch
+from exactfold.motion.loops.rays import Ray
 from exactfold.motion.tubes.arclength import Interval, in_floats
-from exactfold.motion.tubes.branch_point_tube import NodeTube
+from exactfold.motion.tubes.branch_point_tube import BranchPointTube
 from exactfold.motion.tubes.certificate import (
     first_document,
     flat_document,
@@ -81,7 +81,7 @@ class Landing:
     mirror image of `start`.
     """
 
-    to: HalfBranch
+    to: Ray
     start: StartTube
     tau: int
 
@@ -106,8 +106,8 @@ class Loop:
     or some range was not proved.
     """
 
-    source: HalfBranch
-    target: HalfBranch | None
+    source: Ray
+    target: Ray | None
     through: tuple[tuple[int, ...], ...]
     length: Interval
     status: Verdict
@@ -117,7 +117,7 @@ class Loop:
     folds: tuple[FoldRange, ...] = ()
 
     @property
-    def ends(self) -> set[HalfBranch]:
+    def ends(self) -> set[Ray]:
         """The rays that the loop and its mirror image match."""
         ends = {self.source, self.source.mirrored}
         return ends if self.target is None else ends | {self.target, self.target.mirrored}
@@ -186,7 +186,7 @@ class LoopProof:
         vague = 0
         for step, after in zip_longest(self.steps, self.steps[1:]):
             if isinstance(step, Passage):
-                chain.append(on_node_tube(step.tube, step.entry, step.exit))
+                chain.append(on_branch_point_tube(step.tube, step.entry, step.exit))
                 continue
             # The stretch ends at the point that lies on the next piece, known up to its box.
             end = step.exit
@@ -241,15 +241,15 @@ class LoopProof:
             )
         )
 
-    def certificate(self, rim: Mapping[int, Fraction]) -> Document:
-        """The proof of a motion there and back along the path of the boundary heights `rim`.
+    def certificate(self, boundary_heights: Mapping[int, Fraction]) -> Document:
+        """The proof of a motion there and back along the path of `boundary_heights`.
 
         See docs/motion.md, 9. This is a single motion, not one of the loops that match all rays of
         a sheet. Raises `NotCountedError` as `line` does.
         """
         if self.landing is None:
             raise NotCountedError(f"the motion is not proved to its end: {self.reason}")
-        claims = [rim_claim(rim), self._return_claim(self.landing)]
+        claims = [boundary_claim(boundary_heights), self._return_claim(self.landing)]
         passed = [step for step in self.steps if isinstance(step, Passage)]
         if passed:
             claims.append(through_claim(passed))
@@ -269,11 +269,11 @@ class LoopProof:
     def _landed(self, landing: Landing) -> Document:
         return {**flat_document(self.problem.labels, landing.start), "tau": landing.tau}
 
-    def _named(self, half_branch: HalfBranch) -> Document:
+    def _named(self, ray: Ray) -> Document:
         """A ray, given by the signs of all interior vertices of the pattern."""
-        signs = dict(zip(self.problem.foldable, half_branch.vertex_signs, strict=True))
+        signs = dict(zip(self.problem.foldable, ray.vertex_signs, strict=True))
         interior = self.problem.pattern.interior
-        return {"vertex_signs": [signs.get(v, 0) for v in interior], "side": half_branch.saddle}
+        return {"vertex_signs": [signs.get(v, 0) for v in interior], "side": ray.saddle}
 
     def __repr__(self) -> str:
         return f"<LoopProof: {len(self.steps)} steps, {self.outline!r}>"
@@ -290,7 +290,7 @@ class Arc:
     """
 
     begin: Visit
-    end: Visit | HalfBranch | None
+    end: Visit | Ray | None
     length: Interval
     reason: str
     tubes: int
@@ -307,7 +307,7 @@ class ArcProof:
     step, or for `reason`.
     """
 
-    begin: NodeTube
+    begin: BranchPointTube
     steps: tuple[Step, ...]
     landing: Landing | None
     reason: str
@@ -317,7 +317,7 @@ class ArcProof:
         """The arc that is proved."""
         unit, last = self.begin.framework.unit, self.steps[-1] if self.steps else None
         begin = Visit.of(self.begin, (Fraction(0), Fraction(0)))
-        end: Visit | HalfBranch | None = None
+        end: Visit | Ray | None = None
         if last is None:
             low, high = self.begin.length(0, self.begin.longest * 3 // 4)
         elif self.landing is not None:
@@ -339,7 +339,7 @@ def provenance_of(loop: Loop) -> Document:
         "length": _texts(loop.length),
         "nodes": [
             {
-                "radii": list(visit.node.radii),
+                "radii": list(visit.branch_point.radii),
                 "spread": list(visit.direction.radii),
                 "time": _texts(visit.time),
             }
@@ -356,9 +356,9 @@ def _texts(interval: Interval) -> list[str]:
     return [format_rational(x) for x in interval]
 
 
-def named(start: StartTube, side: int = 1) -> HalfBranch:
+def named(start: StartTube, side: int = 1) -> Ray:
     """The ray of a start tube; if `side` is negative, that of its mirror image."""
-    named = HalfBranch(start.vertex_signs, start.side)
+    named = Ray(start.vertex_signs, start.side)
     return named if side > 0 else named.mirrored
 
 

@@ -9,7 +9,7 @@ from exactfold.motion.curves.motion_document import RayDocument
 
 
 @dataclass(frozen=True, order=True)
-class HalfBranch:
+class Ray:
     """One of the two rays of a branch, named by what the moving sheet itself shows.
 
     `vertex_signs` are those of the foldable vertices in order: 1 popped up, -1 popped down.
@@ -21,9 +21,9 @@ class HalfBranch:
     saddle: int
 
     @property
-    def mirrored(self) -> HalfBranch:
+    def mirrored(self) -> Ray:
         """The ray of the mirror image."""
-        return HalfBranch(tuple(-s for s in self.vertex_signs), -self.saddle)
+        return Ray(tuple(-s for s in self.vertex_signs), -self.saddle)
 
     @property
     def sign_text(self) -> str:

@@ -53,7 +53,7 @@ class PanelContacts:
     def panel_of(self) -> dict[int, int]:
         """The panel of each triangle, spread from the edges of the panels across the cuts."""
         cut, sides = self.cut, self.pattern.sides
-        found = {cut.sides[half]: panel for half, panel in sides.items()}
+        found = {cut.sides[half_edge]: panel for half_edge, panel in sides.items()}
         inside = [edge for edge in cut.edges if edge not in set(self.pattern.edges)]
         while len(found) < len(cut.faces):
             for i, j in inside:
@@ -125,6 +125,6 @@ class PanelContacts:
         other = self._panels[crossing.face]
         corners = set(self.pattern.faces[other])
         i, j = crossing.edge
-        sides = [self.cut.sides.get(half) for half in ((i, j), (j, i))]
+        sides = [self.cut.sides.get(half_edge) for half_edge in ((i, j), (j, i))]
         near = [self.panel_of[k] for k in sides if k is not None and self.panel_of[k] != other]
         return min(near, key=lambda p: len(corners & set(self.pattern.faces[p]))), other

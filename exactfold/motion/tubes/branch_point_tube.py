@@ -24,11 +24,12 @@ _BITS = 30
 
 
 @dataclass(frozen=True, repr=False)
-class NodeTube(Piece):
+class BranchPointTube(Piece):
     """The curve x* + s y(s) through a branch point x*.
 
-    x* is the only configuration in `node` with this flat patch. Let X_e be the edge vectors of x*,
-    and w_v the wheel stresses of the flat vertices v. The curve y solves three kinds of equations:
+    x* is the only configuration in `branch_point` with this flat patch. Let X_e be the edge vectors
+    of x*, and w_v the wheel stresses of the flat vertices v. The curve y solves three kinds of
+    equations:
 
         X_e . y_e + (s / 2) |y_e|^2 = 0 for all edges e except one for each v,
         sum_e w_v,e |y_e|^2 / 2 = 0 for each v, in place of that edge,
@@ -41,12 +42,12 @@ class NodeTube(Piece):
     """
 
     patch: FlatPatch
-    node: Ball
+    branch_point: Ball
     row: Row
 
     def ball(self, parameter: int) -> Ball:
         """A box of unknowns of the length equations that contains the configuration at s."""
-        return self._along(self.node.finer(self.bits), self.enclosure(parameter), parameter)
+        return self._along(self.branch_point.finer(self.bits), self.enclosure(parameter), parameter)
 
     def ball_velocity(self, parameter: int) -> Ball:
         """A box that contains the derivative of these unknowns with respect to s: y + s y'."""
@@ -83,7 +84,7 @@ class NodeTube(Piece):
         return [tuple((k + 1) * a for a in row) for k, row in enumerate(self.coefficients)]
 
 
-def prove_node_tube(
+def prove_branch_point_tube(
     framework: Framework,
     patch: FlatPatch,
     near: FloatArray,
@@ -92,36 +93,42 @@ def prove_node_tube(
     order: int = 8,
     bits: int = 64,
     thickness: float = 1e-8,
-) -> NodeTube | None:
+) -> BranchPointTube | None:
     """The arc through the branch point near the unknowns `near`, roughly in the direction `along`.
 
     None proves nothing. Floats choose the direction, the series and P. Everything else is verified
     in integers, for every configuration in the box of the branch point in place of x*.
     """
     equations = LengthEquations.of(framework, bits)
-    node = patch.enclosed(near, equations.bits)
-    if node is None:
+    branch_point = patch.enclosed(near, equations.bits)
+    if branch_point is None:
         return None
     stresses = Stresses.of(equations, patch)
-    found = _series(equations, stresses, node, along, order)
+    found = _series(equations, stresses, branch_point, along, order)
     if found is None:
         return None
     curve, row, inverse, weights = found
-    proof = _bounds(equations, stresses, node, curve, row, inverse, weights)
+    proof = _bounds(equations, stresses, branch_point, curve, row, inverse, weights)
     reach = longest(proof, thickness)
     if not reach:
         return None
-    return NodeTube(framework, equations.bits, curve, weights, proof, reach, patch, node, row)
+    return BranchPointTube(
+        framework, equations.bits, curve, weights, proof, reach, patch, branch_point, row
+    )
 
 
 def _series(
-    equations: LengthEquations, stresses: Stresses, node: Ball, along: FloatArray, order: int
+    equations: LengthEquations,
+    stresses: Stresses,
+    branch_point: Ball,
+    along: FloatArray,
+    order: int,
 ) -> tuple[Curve, Row, FloatArray, Row] | None:
     """The series of y in s, the row T, the matrix P, and the weights, all computed in floats."""
     framework, w = equations.framework, stresses.floats
     kept = np.ones(len(framework.edges), dtype=bool)
     kept[list(stresses.replaced)] = False
-    d = node.floats[0]
+    d = branch_point.floats[0]
     x = framework.flat_edges + framework.along(d)
     dense = equations.places.dense
     linear = dense(x)
@@ -172,7 +179,7 @@ def _series(
     curve = tuple(equations.nearest(a) for a in series)
     t = tuple(int(x) for x in whole)
     for _ in range(2):
-        curve = _corrected(equations, stresses, node, curve, t, inverse)
+        curve = _corrected(equations, stresses, branch_point, curve, t, inverse)
     parts = framework.along(series)
     slopes = sum(
         np.abs(inverse @ _derivative(equations, stresses.replaced, w, x, parts, k)) / 2.0**k
@@ -240,11 +247,11 @@ def _taylor(
 
 
 def _residuals(
-    equations: LengthEquations, stresses: Stresses, node: Ball, curve: Curve, row: Row
+    equations: LengthEquations, stresses: Stresses, branch_point: Ball, curve: Curve, row: Row
 ) -> list[BigArray]:
     """The coefficients of twice the equations at the centre, over 2^(2 bits + stresses.bits)."""
     bits, more = equations.bits, stresses.bits
-    x = equations.flat_edges + equations.along([node.finer(bits).centre])[0]
+    x = equations.flat_edges + equations.along([branch_point.finer(bits).centre])[0]
     e = equations.along(curve)
     squares = squared(e)
     found = []
@@ -274,7 +281,7 @@ def _residuals(
 def _corrected(
     equations: LengthEquations,
     stresses: Stresses,
-    node: Ball,
+    branch_point: Ball,
     curve: Curve,
     row: Row,
     inverse: FloatArray,
@@ -283,7 +290,7 @@ def _corrected(
     more = equations.bits + stresses.bits + 1
     p = _whole(inverse)
     found = []
-    for a, g in zip(curve, _residuals(equations, stresses, node, curve, row), strict=False):
+    for a, g in zip(curve, _residuals(equations, stresses, branch_point, curve, row), strict=False):
         step = p @ g
         found.append(
             tuple(int(x) - (int(s) >> (_BITS + more)) for x, s in zip(a, step, strict=True))
@@ -294,18 +301,18 @@ def _corrected(
 def _bounds(
     equations: LengthEquations,
     stresses: Stresses,
-    node: Ball,
+    branch_point: Ball,
     curve: Curve,
     row: Row,
     inverse: FloatArray,
     weights: Row,
 ) -> Contraction:
-    """The contraction of the equations of y for every point of the box `node`, rounded upwards."""
+    """The contraction of the equations of y for points of the box `branch_point`, rounded up."""
     framework, bits, more = equations.framework, equations.bits, stresses.bits
     p, n = _whole(inverse), framework.size
     size = abs(p)
     kept = [e for e in range(len(framework.edges)) if e not in stresses.replaced]
-    box = node.finer(bits)
+    box = branch_point.finer(bits)
     x = equations.flat_edges + equations.along([box.centre])[0]
     parts = equations.along(curve)
     # `spread` bounds the distance of X_e from x_e, shape (edges, 3).
@@ -342,7 +349,7 @@ def _bounds(
             found += norm(size[:, kept] @ off[kept], _BITS + bits + WEIGHT_BITS)
         slope.append(found)
     residual = []
-    for k, g in enumerate(_residuals(equations, stresses, node, curve, row)):
+    for k, g in enumerate(_residuals(equations, stresses, branch_point, curve, row)):
         found = norm(abs(p @ g), _BITS + 2 * bits + more + 1)
         if k < len(parts):
             off = (spread * abs(parts[k])).sum(axis=1)

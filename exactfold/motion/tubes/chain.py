@@ -12,7 +12,7 @@ import numpy as np
 
 from exactfold.certificates.entries import Document
 from exactfold.motion.tubes.arclength import Interval
-from exactfold.motion.tubes.branch_point_tube import NodeTube
+from exactfold.motion.tubes.branch_point_tube import BranchPointTube
 from exactfold.motion.tubes.length_equations import LengthEquations
 from exactfold.motion.tubes.links import Link, onwards
 from exactfold.motion.tubes.passages import Passage, passage_ahead
@@ -46,7 +46,7 @@ class Chain:
         return cls(equations, labels, onwards(equations, point, velocity, time, float(time[0]) / 2))
 
     @classmethod
-    def from_node(cls, tube: NodeTube, labels: Sequence[int]) -> Chain:
+    def from_branch_point(cls, tube: BranchPointTube, labels: Sequence[int]) -> Chain:
         """The chain that leaves a branch point forwards along an arc; its time begins there."""
         equations, at = LengthEquations.of(tube.framework), tube.longest * 3 // 4
         left = tube.length(0, at)
@@ -73,7 +73,7 @@ class Chain:
 
 
 def _after(
-    equations: LengthEquations, tube: NodeTube, at: int, time: Interval, length: Interval
+    equations: LengthEquations, tube: BranchPointTube, at: int, time: Interval, length: Interval
 ) -> Iterator[Link | str]:
     """The links that follow a point of an arc; the first one is about as long as `length`."""
     return onwards(equations, tube.ball(at), tube.ball_velocity(at), time, float(length[0]))

@@ -15,16 +15,16 @@ from exactfold._support.documents import ProvedOrNot, Side
 from exactfold._support.plurals import counted
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
-from exactfold.branches.counting.find import BranchFinder, Rim, Signs, branch_finder
+from exactfold.branches.counting.find import BoundaryHeights, BranchFinder, Signs, branch_finder
 from exactfold.branches.values.branch import Branch, BranchDocument
 from exactfold.errors import BadDriveError, NotFollowedError, NotProvedAtTheFlatStateError
 from exactfold.motion.curves.boundary_path import framework_of, problem_of
-from exactfold.motion.curves.drive import Drive, Goals, fold_text, not_a_fold
+from exactfold.motion.curves.drive import Goals, PrescribedAngles, fold_text, not_a_fold
 from exactfold.motion.curves.driven_folds import DrivenFolds
 from exactfold.motion.tubes.tube_start import prove_start
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.loading import PatternLike, as_pattern
-from exactfold.rigidity.equations.boundary_heights import saddle_rims
+from exactfold.rigidity.equations.boundary_heights import saddle_boundary_heights
 from exactfold.rigidity.equations.problem import Problem
 
 _TRIED = 8
@@ -66,7 +66,7 @@ class Driven:
 
     branch: Branch
     side: int
-    drive: Drive
+    drive: PrescribedAngles
     others: int = 0
 
     @cached_property
@@ -111,7 +111,7 @@ def find_driven(
     angles: Mapping[Edge, float | None],
     signs: Signs | None = None,
     *,
-    rim: Rim | None = None,
+    boundary_heights: BoundaryHeights | None = None,
     side: int | None = None,
     progress: Progress | None = None,
 ) -> Driven:
@@ -119,16 +119,17 @@ def find_driven(
 
     `angles` gives, for each of D = Ve - 3 folds of a sheet with Ve boundary vertices, the angle in
     degrees to which it is driven, positive for a valley. To first order the angles of the folds are
-    in the ratio of the sines of half of these angles (`Drive`). If an angle is None, it is the
-    angle that the fold has, relative to the other folds, on the branch with the boundary heights
-    `rim`, by default those of `find_branch`. `signs` are given as in `find_branch`, for the branch
-    as it is driven; without them, the first branch found is taken.
+    in the ratio of the sines of half of these angles (`PrescribedAngles`). If an angle is None, it
+    is the angle that the fold has, relative to the other folds, on the branch with the boundary
+    heights `boundary_heights`, by default those of `find_branch`. `signs` are given as in
+    `find_branch`, for the branch as it is driven; without them, the first branch found is taken.
 
-    With more than four corners, Newton's method finds the branch from the branch over `rim`. There
-    may be several branches with these signs and this ratio, because a line meets a cone in two
-    points. Without a `rim`, and with up to 200 unknowns, eight starts are used. Among the branches
-    found, the one whose folds together bend least, by the sum of squares, is taken. With four
-    corners a single fold is driven, and `side` may be prescribed as in `follow`.
+    With more than four corners, Newton's method finds the branch from the branch over
+    `boundary_heights`. There may be several branches with these signs and this ratio, because a
+    line meets a cone in two points. Without a `boundary_heights`, and with up to 200 unknowns,
+    eight starts are used. Among the branches found, the one whose folds together bend least, by the
+    sum of squares, is taken. With four corners a single fold is driven, and `side` may be
+    prescribed as in `follow`.
 
     Raises `BadDriveError` for folds or angles that cannot be driven, `NotFollowedError` if no
     branch is found (which does not show that there is none), and the errors of `find_branch`.
@@ -139,9 +140,9 @@ def find_driven(
     (<Driven: branch +, 0-5 to 90, 2-5 to 60 degrees>, <Verdict.PROVED: 'proved'>)
     """
     sheet = as_pattern(pattern)
-    finder = branch_finder(sheet, rim)
+    finder = branch_finder(sheet, boundary_heights)
     asked = None if signs is None else finder.signs(signs, None)
-    search = _Search(finder, angles, side, rim is not None, progress)
+    search = _DrivenSearch(finder, angles, side, boundary_heights is not None, progress)
     search.check()
     for each in [asked] if asked is not None else _all_signs(finder):
         found = search.found(each)
@@ -150,7 +151,7 @@ def find_driven(
     raise search.failure(asked)
 
 
-def off_the_ratio(branch: Branch, side: int, drive: Drive) -> float:
+def off_the_ratio(branch: Branch, side: int, drive: PrescribedAngles) -> float:
     """How far the first-order fold angles of a branch miss the ratio of a drive, over the largest.
 
     The result is 0 if they have the ratio, and 1 or more if some fold goes the other way.
@@ -164,7 +165,7 @@ def off_the_ratio(branch: Branch, side: int, drive: Drive) -> float:
     return float(np.abs(there / factor - wanted).max() / np.abs(wanted).max())
 
 
-def require_driven(branch: Branch, side: int, drive: Drive) -> None:
+def require_driven(branch: Branch, side: int, drive: PrescribedAngles) -> None:
     """Raise `BadDriveError` unless the folds of a drive start in its ratio on a ray."""
     unknown = [fold for fold in drive.folds if fold not in branch.pattern.folds]
     if unknown:
@@ -189,11 +190,11 @@ def _all_signs(finder: BranchFinder) -> Iterator[dict[int, int]]:
 
 
 @dataclass
-class _Search:
+class _DrivenSearch:
     finder: BranchFinder
     angles: Mapping[Edge, float | None]
     side: int | None
-    rim_given: bool
+    boundary_given: bool
     progress: Progress | None
 
     @property
@@ -225,7 +226,7 @@ class _Search:
                     [fold],
                 )
         given = {fold: angle for fold, angle in self.angles.items() if angle is not None}
-        Drive.of(given)
+        PrescribedAngles.of(given)
         freedom = sheet.Ve - 3
         if len(self.folds) > freedom:
             raise BadDriveError(
@@ -239,7 +240,7 @@ class _Search:
         if self.problem.sheet.Ve == 4:
             return self._of_two_sides(signs)
         solutions: list[FloatArray] = []
-        drive: Drive | None = None
+        drive: PrescribedAngles | None = None
         dependent: list[BadDriveError] = []
         for start in self._starts:
             try:
@@ -259,7 +260,9 @@ class _Search:
         if drive is None:
             return None
         best = min(solutions, key=self.on.bending)
-        near = BranchFinder(self.pattern, self.on.rim_of(best)).find(signs, progress=self.progress)
+        near = BranchFinder(self.pattern, self.on.boundary_of(best)).find(
+            signs, progress=self.progress
+        )
         if not near.approx_heights or off_the_ratio(near, 1, drive) > _OFF:
             return None
         return Driven(near, 1, drive, len(solutions) - 1)
@@ -267,15 +270,16 @@ class _Search:
     @cached_property
     def _starts(self) -> list[BranchFinder]:
         """Finders with the given boundary heights; if none are given, with several choices."""
-        if self.rim_given:
+        if self.boundary_given:
             return [self.finder]
         return [self.finder] + [
-            BranchFinder(self.pattern, rim) for rim in saddle_rims(self.pattern)[1:]
+            BranchFinder(self.pattern, boundary_heights)
+            for boundary_heights in saddle_boundary_heights(self.pattern)[1:]
         ]
 
     def _from(
-        self, finder: BranchFinder, signs: Mapping[int, int], drive: Drive | None
-    ) -> tuple[Drive, FloatArray] | None:
+        self, finder: BranchFinder, signs: Mapping[int, int], drive: PrescribedAngles | None
+    ) -> tuple[PrescribedAngles, FloatArray] | None:
         """The drive, and a solution that Newton's method finds from the branch of a finder.
 
         `drive` is completed if it is not known yet.
@@ -327,5 +331,5 @@ class _Search:
                 continue
             way = side if letter == "V" else -side
             if angle is None or way * angle > 0:
-                return Driven(branch, side, Drive.of({fold: angle or 180 * way}))
+                return Driven(branch, side, PrescribedAngles.of({fold: angle or 180 * way}))
         return None

@@ -13,7 +13,11 @@ from exactfold.certificates.entries import Document
 from exactfold.motion.claims import Claim
 from exactfold.motion.curves.crossing_curves import crossing_ahead, flat_vertices
 from exactfold.motion.tubes.arclength import Interval
-from exactfold.motion.tubes.branch_point_tube import ROW_BITS, NodeTube, prove_node_tube
+from exactfold.motion.tubes.branch_point_tube import (
+    ROW_BITS,
+    BranchPointTube,
+    prove_branch_point_tube,
+)
 from exactfold.motion.tubes.flat_patches import FlatPatch
 from exactfold.motion.tubes.length_equations import LengthEquations
 from exactfold.motion.tubes.links import Link
@@ -40,7 +44,7 @@ class Passage:
     branch point, by the numbers of the pattern.
     """
 
-    tube: NodeTube
+    tube: BranchPointTube
     vertices: tuple[int, ...]
     before: Link
     met: tuple[int, int]
@@ -55,7 +59,7 @@ class Passage:
         return self.exit == 0
 
     @property
-    def to_the_node(self) -> Passage:
+    def to_the_branch_point(self) -> Passage:
         """The part of the passage that ends at the branch point."""
         return replace(self, exit=0, left=self.time(0))
 
@@ -77,7 +81,7 @@ class Passage:
         arc = self.tube
         return {
             "flat": sorted(self.vertices),
-            "node": list(arc.node.centre),
+            "node": list(arc.branch_point.centre),
             "centre": list(arc.coefficients[0]),
             "row": list(arc.row),
             "reach": arc.reach,
@@ -117,7 +121,7 @@ def through_claim(passages: Sequence[Passage]) -> Claim:
     return Claim({"through": [sorted(passage.vertices) for passage in passages]})
 
 
-def node_claim(last: Passage, clear: bool) -> Claim:
+def branch_point_claim(last: Passage, clear: bool) -> Claim:
     """That a motion ends at a branch point; `clear`: no two faces touch up to there, nor there."""
     arc = {key: x for key, x in last.document.items() if key not in ("flat", "exit")}
     return Claim({"node": {"flat": sorted(last.vertices), "clear": clear}}, {"node": arc})
@@ -165,19 +169,23 @@ def _passage_at(
     framework, bits = steps[-1].tube.framework, steps[-1].tube.bits
     flat = flat_vertices(framework, point)
     patch = FlatPatch.of(framework, flat)
-    tube = None if patch is None else prove_node_tube(framework, patch, point, tangent, bits=bits)
+    tube = (
+        None
+        if patch is None
+        else prove_branch_point_tube(framework, patch, point, tangent, bits=bits)
+    )
     if tube is None:
         return None
     # Take the first link that reaches into the tube; the short ones after it are dropped.
     first = len(steps)
     while first and isinstance(steps[first - 1], Link):
         first -= 1
-    node, row = tube.node.floats[0], np.array(tube.row) * 2.0**-ROW_BITS
+    branch_point, row = tube.branch_point.floats[0], np.array(tube.row) * 2.0**-ROW_BITS
     for k in range(first, len(steps)):
         link = steps[k]
         if not isinstance(link, Link):
             continue
-        s = float(row @ (link.tube.enclosure(link.exit).floats[0] - node))
+        s = float(row @ (link.tube.enclosure(link.exit).floats[0] - branch_point))
         entry = round(s * (1 << PARAMETER_BITS))
         if not -tube.longest * 7 // 8 <= entry < 0:
             continue
@@ -195,7 +203,7 @@ def _passage_at(
     return None
 
 
-def _refined(arc: NodeTube, at: int, bounds: Interval) -> tuple[Interval, Ball]:
+def _refined(arc: BranchPointTube, at: int, bounds: Interval) -> tuple[Interval, Ball]:
     """A point of a separate tube next to a point of an arc, in a smaller box.
 
     The configuration in the box of the arc lies on the tube between two parameters. The
@@ -205,7 +213,7 @@ def _refined(arc: NodeTube, at: int, bounds: Interval) -> tuple[Interval, Ball]:
     """
     ball, velocity = arc.ball(at), arc.ball_velocity(at)
     equations = LengthEquations.of(arc.framework, arc.bits)
-    step = _PART * float(np.linalg.norm(ball.floats[0] - arc.node.floats[0]))
+    step = _PART * float(np.linalg.norm(ball.floats[0] - arc.branch_point.floats[0]))
     if not step > _LEAST:
         return bounds, ball
     tube = prove_tube(equations, ball.finer(equations.bits).centre, velocity.floats[0], step)

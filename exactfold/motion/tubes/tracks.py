@@ -15,15 +15,15 @@ from exactfold.branches.values.branch import Branch
 from exactfold.certificates.entries import Document
 from exactfold.errors import FlatVertexError, UsageError
 from exactfold.motion.claims import Claim
-from exactfold.motion.curves.boundary_path import framework_of, problem_of, rim_claim
-from exactfold.motion.curves.drive import Drive
+from exactfold.motion.curves.boundary_path import boundary_claim, framework_of, problem_of
+from exactfold.motion.curves.drive import PrescribedAngles
 from exactfold.motion.curves.framework import Framework
 from exactfold.motion.curves.straight_folds import straight_fold
 from exactfold.motion.tubes.arclength import Interval
 from exactfold.motion.tubes.certificate import motion_certificate
 from exactfold.motion.tubes.chain import Chain, Step, point_near
 from exactfold.motion.tubes.links import Link
-from exactfold.motion.tubes.passages import Passage, node_claim, through_claim
+from exactfold.motion.tubes.passages import Passage, branch_point_claim, through_claim
 from exactfold.motion.tubes.piece import Ball
 from exactfold.motion.tubes.tube_start import StartTube, prove_start
 from exactfold.pattern.crease_pattern import CreasePattern, Triangle
@@ -53,16 +53,16 @@ class Track:
     `start` and `steps` contain pieces of one analytic curve of configurations, in the order of the
     curve. The exit of each piece lies on the next, and both go the same way there (docs/motion.md,
     Theorem 4). A step is a tube (`links`) or an arc through a branch point, a configuration in
-    which other curves cross; there the track goes straight on (docs/motions.md, Nodes). If `node`
-    is not None, the track ends at a branch point, and the last step is the part of this passage up
-    to the point.
+    which other curves cross; there the track goes straight on (docs/motions.md, Nodes). If
+    `branch_point` is not None, the track ends at a branch point, and the last step is the part of
+    this passage up to the point.
 
     `vertex_signs` are those on the ray itself, by foldable vertex of `pattern`. `side` is 1 or -1.
     It is the sign of the boundary saddle or, if `corner` is not None, the vertex sign of this
     reflex corner in the sheet with its notch closed. With more than four corners the border stays
-    in the ratio of the boundary heights `rim`, and `side` is the sign of the factor (`rim_path`).
-    If the sheet is driven instead, `side` is 1, and the folds of the `drive` bend the way it
-    prescribes.
+    in the ratio of the boundary heights `boundary_heights`, and `side` is the sign of the factor
+    (`rim_path`). If the sheet is driven instead, `side` is 1, and the folds of the `drive` bend the
+    way it prescribes.
 
     Vertex v of the framework is vertex `labels[v]` of `pattern`. Vertices and folds inside
     triangulated triangles move with these triangles. `status` is PROVED if the track goes as far as
@@ -77,8 +77,8 @@ class Track:
     steps: tuple[Step, ...]
     status: Verdict
     reason: str
-    rim: Mapping[int, Fraction] | None = None
-    drive: Drive | None = None
+    boundary_heights: Mapping[int, Fraction] | None = None
+    drive: PrescribedAngles | None = None
 
     @property
     def framework(self) -> Framework:
@@ -93,11 +93,11 @@ class Track:
     @property
     def through(self) -> tuple[Passage, ...]:
         """The passages of the branch points on the way."""
-        steps = self.steps if self.node is None else self.steps[:-1]
+        steps = self.steps if self.branch_point is None else self.steps[:-1]
         return tuple(step for step in steps if isinstance(step, Passage))
 
     @property
-    def node(self) -> Passage | None:
+    def branch_point(self) -> Passage | None:
         """The way to the branch point at which the track ends; None if it ends elsewhere."""
         last = self.steps[-1] if self.steps else None
         return last if isinstance(last, Passage) and last.exit == 0 else None
@@ -168,13 +168,13 @@ class Track:
         >>> checker.check(track.certificate())["vertex_signs"]
         [1]
         """
-        own = [rim_claim(self.rim)] if self.rim is not None else []
+        own = [boundary_claim(self.boundary_heights)] if self.boundary_heights is not None else []
         if self.drive is not None:
             own.append(self.drive.claim(self.reached))
         if self.through:
             own.append(through_claim(self.through))
-        if self.node is not None:
-            own.append(node_claim(self.node, clear))
+        if self.branch_point is not None:
+            own.append(branch_point_claim(self.branch_point, clear))
         return motion_certificate(
             self.pattern, self.labels, self.start, self.steps, [*own, *claims]
         )
@@ -213,13 +213,13 @@ Stop = Callable[[Step], "str | None"]
 """A function that gets each proved step. It returns why the track ends here, or None to go on."""
 
 
-def half_branch(
+def ray(
     branch: Branch,
     side: int = 1,
     pinned: Triangle | None = None,
     *,
     bits: int = 64,
-    drive: Drive | None = None,
+    drive: PrescribedAngles | None = None,
 ) -> Track:
     """The track of a ray up to the end of its start tube.
 
@@ -263,9 +263,17 @@ def half_branch(
         ways=() if drive is None else drive.ways(problem.labels),
     )
     corner = None if problem.gauge.corner is None else problem.labels[problem.gauge.corner]
-    rim = branch.rim if framework.ties else None
+    boundary_heights = branch.boundary_heights if framework.ties else None
     return Track(
-        branch.pattern, problem.labels, corner, start, (), PROVED, "the start tube", rim, drive
+        branch.pattern,
+        problem.labels,
+        corner,
+        start,
+        (),
+        PROVED,
+        "the start tube",
+        boundary_heights,
+        drive,
     )
 
 
@@ -275,19 +283,19 @@ def follow_proved(
     *,
     until: float | None = None,
     stop: Stop | None = None,
-    through_nodes: bool = False,
+    through_branch_points: bool = False,
     most: int = MOST_TUBES,
     pinned: Triangle | None = None,
     bits: int = 64,
-    drive: Drive | None = None,
+    drive: PrescribedAngles | None = None,
 ) -> Track:
     """The proved motion along a branch, until a time, or until `stop` ends it.
 
     The time is the length of the curve in the unknowns of the framework, in the unit of the sheet.
-    `side`, `pinned` and `drive` are those of `half_branch`, and its errors are raised. Where tubes
-    become shorter than 1e-7 of the sheet, a branch point may be proved ahead. With `through_nodes`
-    the track then goes straight on. Otherwise it ends at the branch point (`Track.node`) and is
-    PROVED if no time was asked for.
+    `side`, `pinned` and `drive` are those of `ray`, and its errors are raised. Where tubes
+    become shorter than 1e-7 of the sheet, a branch point may be proved ahead. With
+    `through_branch_points` the track then goes straight on. Otherwise it ends at the branch point
+    (`Track.branch_point`) and is PROVED if no time was asked for.
 
     The status is UNDECIDED if the track ends before what was asked for: at a branch point, near
     another configuration where several curves meet, or after `most` tubes.
@@ -298,7 +306,7 @@ def follow_proved(
     >>> track.status, track.vertex_signs, track.side
     (<Verdict.PROVED: 'proved'>, {4: 1, 5: -1}, 1)
     """
-    track = half_branch(branch, side, pinned, bits=bits, drive=drive)
+    track = ray(branch, side, pinned, bits=bits, drive=drive)
     goal = None if until is None else Fraction(until) / track.framework.unit
     if goal is not None and track.started[0] >= goal:
         return replace(track, reason=_FAR_ENOUGH)
@@ -309,9 +317,9 @@ def follow_proved(
         if isinstance(step, str):
             reason = step
             break
-        ends = isinstance(step, Passage) and not through_nodes
+        ends = isinstance(step, Passage) and not through_branch_points
         if isinstance(step, Passage) and ends:
-            step = chain.steps[-1] = step.to_the_node
+            step = chain.steps[-1] = step.to_the_branch_point
             reason = f"a node, where {step.what}"
             status = PROVED if goal is None or step.left[0] >= goal else UNDECIDED
         said = None if stop is None else stop(step)

@@ -9,7 +9,7 @@ import numpy as np
 from exactfold.motion.curves.framework import Framework
 from exactfold.motion.tubes.arclength import Interval
 from exactfold.motion.tubes.branch_point_stresses import directions_at
-from exactfold.motion.tubes.branch_point_tube import NodeTube, prove_node_tube
+from exactfold.motion.tubes.branch_point_tube import BranchPointTube, prove_branch_point_tube
 from exactfold.motion.tubes.flat_patches import FlatPatch, FlatPoint
 from exactfold.motion.tubes.piece import Ball
 
@@ -21,32 +21,34 @@ Side = tuple[int, int]
 class Visit:
     """The fact that a curve passes a branch point (node).
 
-    The box `node` contains a configuration at which the stars of `flat`, vertices of the framework,
-    are flat. The curve passes through it in a direction that is a positive multiple of a vector in
-    the box `direction`. `time` bounds when, in the unit of the framework.
+    The box `branch_point` contains a configuration at which the stars of `flat`, vertices of the
+    framework, are flat. The curve passes through it in a direction that is a positive multiple of a
+    vector in the box `direction`. `time` bounds when, in the unit of the framework.
     """
 
     flat: tuple[int, ...]
-    node: Ball
+    branch_point: Ball
     direction: Ball
     time: Interval
 
     @classmethod
-    def of(cls, tube: NodeTube, time: Interval) -> Visit:
+    def of(cls, tube: BranchPointTube, time: Interval) -> Visit:
         """The passage of the middle of an arc."""
-        return cls(tube.patch.flat, tube.node, tube.enclosure(0), time)
+        return cls(tube.patch.flat, tube.branch_point, tube.enclosure(0), time)
 
     @property
     def mirrored(self) -> Visit:
         """The visit of the mirror image of the curve."""
-        return replace(self, node=self.node.mirrored, direction=self.direction.mirrored)
+        return replace(
+            self, branch_point=self.branch_point.mirrored, direction=self.direction.mirrored
+        )
 
     def __repr__(self) -> str:
         return f"<Visit: flat at {self.flat}, time {float(self.time[0]):.4g}>"
 
 
 @dataclass(frozen=True, repr=False)
-class LocatedNode:
+class LocatedBranchPoint:
     """A branch point in its box, and the lines along which curves pass through it.
 
     Each curve has one line. The box of `point` contains exactly one configuration with this flat
@@ -60,19 +62,19 @@ class LocatedNode:
     lines: tuple[Ball, ...]
 
     @classmethod
-    def of(cls, framework: Framework, visit: Visit) -> LocatedNode | None:
+    def of(cls, framework: Framework, visit: Visit) -> LocatedBranchPoint | None:
         """The branch point of a visit; None if the point found is not proved to be that of the
         visit.
         """
         patch = FlatPatch.of(framework, visit.flat)
-        near = visit.node.floats[0]
-        point = None if patch is None else patch.point(near, visit.node.bits)
-        if patch is None or point is None or not point.is_in(visit.node):
+        near = visit.branch_point.floats[0]
+        point = None if patch is None else patch.point(near, visit.branch_point.bits)
+        if patch is None or point is None or not point.is_in(visit.branch_point):
             return None
         lines: list[Ball] = []
         for along in directions_at(framework, patch, near):
-            tube = prove_node_tube(framework, patch, near, along)
-            if tube is None or not point.is_in(tube.node):
+            tube = prove_branch_point_tube(framework, patch, near, along)
+            if tube is None or not point.is_in(tube.branch_point):
                 continue
             line = tube.enclosure(0)
             if all(crosses(line, other) for other in lines):
@@ -90,19 +92,19 @@ class LocatedNode:
         return len(self.lines) == 1 << len(self.flat)
 
     @property
-    def mirrored(self) -> LocatedNode:
+    def mirrored(self) -> LocatedBranchPoint:
         """The mirror image of the branch point."""
         point = self.point
         signs = (1, 1, -1) * (len(point.centre) // 3)
         centre = tuple(s * x for s, x in zip(signs, point.centre, strict=True))
         image = replace(point, ball=point.ball.mirrored, centre=centre)
-        return LocatedNode(image, tuple(line.mirrored for line in self.lines))
+        return LocatedBranchPoint(image, tuple(line.mirrored for line in self.lines))
 
     def meets(self, visit: Visit) -> bool | None:
         """Whether a visit is a visit of this branch point; None if that is undecided."""
-        if self.point.ball.misses(visit.node):
+        if self.point.ball.misses(visit.branch_point):
             return False
-        return True if visit.flat == self.flat and self.point.is_in(visit.node) else None
+        return True if visit.flat == self.flat and self.point.is_in(visit.branch_point) else None
 
     def side(self, visit: Visit) -> Side | None:
         """The line along which a visit leaves this branch point, and the direction on it.

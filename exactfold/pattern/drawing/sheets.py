@@ -140,8 +140,8 @@ def _check_nested(part: _Part, parts: Sequence[_Part], places: FloatArray) -> No
         if not _nested(part, other, places):
             continue
         where = f"near ({places[v][0]:.6g}, {places[v][1]:.6g})"
-        rim = {frozenset(pair) for pair in _sides(part.outline)}
-        if all(line.letter in "BC" for line in part.lines if frozenset(line[:2]) in rim):
+        boundary = {frozenset(pair) for pair in _sides(part.outline)}
+        if all(line.letter in "BC" for line in part.lines if frozenset(line[:2]) in boundary):
             raise NotADiskError(f"the sheet has a hole {where}", vertices=part.outline)
         raise DisconnectedError(
             f"creases {where} lie inside a panel, and no line joins them to the rest",
@@ -154,8 +154,10 @@ def _nested(part: _Part, other: _Part, places: FloatArray) -> bool:
 
 
 def _check_inside(part: _Part, places: FloatArray) -> None:
-    rim = {frozenset(pair) for pair in _sides(part.outline)}
-    inside = [line for line in part.lines if line.letter in "BC" and frozenset(line[:2]) not in rim]
+    boundary = {frozenset(pair) for pair in _sides(part.outline)}
+    inside = [
+        line for line in part.lines if line.letter in "BC" and frozenset(line[:2]) not in boundary
+    ]
     if not inside:
         return
     cut = {frozenset(line[:2]) for line in inside}

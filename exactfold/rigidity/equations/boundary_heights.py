@@ -7,7 +7,7 @@ from fractions import Fraction
 
 from exactfold.errors import (
     BadCurvatureError,
-    BadRimError,
+    BoundaryHeightsError,
     NotApplicableError,
     NumberError,
 )
@@ -15,10 +15,10 @@ from exactfold.exact.numbers import RationalLike, as_rational
 from exactfold.pattern.crease_pattern import CreasePattern
 
 _FORMS = ((1, 1, -1), (1, 0, -1), (0, 1, 0))
-"""Coefficients of x^2, x y and y^2 that `default_rim` tries in this order."""
+"""Coefficients of x^2, x y and y^2 that `default_boundary_heights` tries in this order."""
 
 
-def default_rim(pattern: CreasePattern) -> dict[int, Fraction]:
+def default_boundary_heights(pattern: CreasePattern) -> dict[int, Fraction]:
     """Boundary heights of a saddle, which depend on the pattern alone.
 
     The heights are h = x^2 + x y - y^2 minus the plane through three boundary vertices, where x and
@@ -32,7 +32,7 @@ def default_rim(pattern: CreasePattern) -> dict[int, Fraction]:
     convex.
 
     >>> from exactfold.pattern.families import single_vertex
-    >>> sorted(map(str, default_rim(single_vertex(5)).values()))
+    >>> sorted(map(str, default_boundary_heights(single_vertex(5)).values()))
     ['-1', '0', '0', '0', '11/20']
     """
     _require_convex(pattern)
@@ -49,18 +49,19 @@ def default_rim(pattern: CreasePattern) -> dict[int, Fraction]:
     )
 
 
-def saddle_rims(pattern: CreasePattern) -> list[dict[int, Fraction]]:
-    """Several choices of boundary heights, all from saddles; the first is `default_rim`.
+def saddle_boundary_heights(pattern: CreasePattern) -> list[dict[int, Fraction]]:
+    """Boundary heights of several saddles; the first are the `default_boundary_heights`.
 
     The saddles are x^2 + x y - y^2, its mirror image, x^2 - y^2 and x y, each of them and its
-    negative, with heights made as in `default_rim`. Raises the errors of `default_rim`.
+    negative, with heights made as in `default_boundary_heights`. Raises the errors of
+    `default_boundary_heights`.
 
     >>> from exactfold.pattern.families import single_vertex
-    >>> rims = saddle_rims(single_vertex(5))
-    >>> len(rims), rims[0] == default_rim(single_vertex(5))
+    >>> boundaries = saddle_boundary_heights(single_vertex(5))
+    >>> len(boundaries), boundaries[0] == default_boundary_heights(single_vertex(5))
     (8, True)
     """
-    found = [default_rim(pattern)]
+    found = [default_boundary_heights(pattern)]
     for form in (_FORMS[0], (1, -1, -1), *_FORMS[1:]):
         for sign in (1, -1):
             a, b, c = form
@@ -109,32 +110,35 @@ def above_plane(pattern: CreasePattern, heights: Mapping[int, Fraction]) -> dict
     return {v: height - slope * distance for v, (distance, height) in rows.items()}
 
 
-def given_rim(
-    pattern: CreasePattern, rim: Mapping[int, RationalLike], *, may_be_flat: bool = False
+def given_boundary_heights(
+    pattern: CreasePattern,
+    boundary_heights: Mapping[int, RationalLike],
+    *,
+    may_be_flat: bool = False,
 ) -> dict[int, Fraction]:
     """The given heights of the boundary vertices, checked, in the order of the boundary.
 
-    Raises `BadRimError` if a height is missing, belongs to another vertex or is not a number, or if
-    all heights lie in one plane; its `vertices` are to blame. Raises `NotApplicableError` for a
-    boundary that is not convex.
+    Raises `BoundaryHeightsError` if a height is missing, belongs to another vertex or is not a
+    number, or if all heights lie in one plane; its `vertices` are to blame. Raises
+    `NotApplicableError` for a boundary that is not convex.
     """
     boundary = pattern.boundary
     wanted = f"give a height for each boundary vertex: {', '.join(map(str, boundary))}"
-    for v in rim:
+    for v in boundary_heights:
         if v not in boundary:
-            raise BadRimError(f"{v} is not a boundary vertex; {wanted}", (v,))
-    missing = [v for v in boundary if v not in rim]
+            raise BoundaryHeightsError(f"{v} is not a boundary vertex; {wanted}", (v,))
+    missing = [v for v in boundary if v not in boundary_heights]
     if missing:
-        raise BadRimError(f"boundary vertex {missing[0]} has no height; {wanted}", missing)
+        raise BoundaryHeightsError(f"boundary vertex {missing[0]} has no height; {wanted}", missing)
     _require_convex(pattern)
     heights = {}
     for v in boundary:
         try:
-            heights[v] = as_rational(rim[v])
+            heights[v] = as_rational(boundary_heights[v])
         except NumberError as error:
-            raise BadRimError(f"the height of vertex {v}: {error}", (v,)) from None
+            raise BoundaryHeightsError(f"the height of vertex {v}: {error}", (v,)) from None
     if not may_be_flat and not any(above_plane(pattern, heights).values()):
-        raise BadRimError(
+        raise BoundaryHeightsError(
             f"the boundary is flat: the heights of vertices {', '.join(map(str, boundary))} lie in "
             "one plane, and then the flat sheet is the only solution; change a height",
             boundary,

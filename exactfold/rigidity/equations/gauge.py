@@ -10,7 +10,7 @@ from functools import cached_property
 from exactfold.errors import NotCountedError
 from exactfold.exact.numbers import RationalLike
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.rigidity.equations.boundary_heights import given_deficits, given_rim
+from exactfold.rigidity.equations.boundary_heights import given_boundary_heights, given_deficits
 from exactfold.rigidity.functionals import saddle_functional
 
 SADDLE, CORNER, RIM = "saddle", "corner", "rim"
@@ -38,7 +38,7 @@ class Gauge:
 
     kind: str
     sheet: CreasePattern
-    rim: Mapping[int, Fraction]
+    boundary_heights: Mapping[int, Fraction]
     corner: int | None = None
     curvature: Mapping[int, Fraction] = field(default_factory=dict)
 
@@ -46,26 +46,28 @@ class Gauge:
     def of(
         cls,
         sheet: CreasePattern,
-        rim: Mapping[int, RationalLike] | None = None,
+        boundary_heights: Mapping[int, RationalLike] | None = None,
         curvature: Mapping[int, RationalLike] | None = None,
     ) -> Gauge:
         """The gauge of a sheet with four boundary vertices, or with given heights or deficits.
 
-        Raises `NotCountedError` for another number of boundary vertices without `rim`, and the
-        errors of `given_rim` and `given_deficits`.
+        Raises `NotCountedError` for another number of boundary vertices without `boundary_heights`,
+        and the errors of `given_boundary_heights` and `given_deficits`.
 
         >>> from exactfold.pattern.families import single_vertex
         >>> gauge = Gauge.of(single_vertex(4))
-        >>> gauge.kind, {v: str(height) for v, height in gauge.rim.items()}
+        >>> gauge.kind, {v: str(height) for v, height in gauge.boundary_heights.items()}
         ('saddle', {0: '1', 1: '0', 2: '0', 3: '0'})
         """
         if curvature is not None:
             deficits = given_deficits(sheet, curvature)
-            level = dict.fromkeys(sheet.boundary, 0) if rim is None else rim
-            heights = given_rim(sheet, level, may_be_flat=bool(deficits))
+            level = (
+                dict.fromkeys(sheet.boundary, 0) if boundary_heights is None else boundary_heights
+            )
+            heights = given_boundary_heights(sheet, level, may_be_flat=bool(deficits))
             return cls(RIM, sheet, heights, None, deficits)
-        if rim is not None:
-            return cls(RIM, sheet, given_rim(sheet, rim))
+        if boundary_heights is not None:
+            return cls(RIM, sheet, given_boundary_heights(sheet, boundary_heights))
         if sheet.Ve != 4:
             raise NotCountedError(
                 "the sheet has three boundary vertices: it is rigid and has no branches"
@@ -94,7 +96,7 @@ class Gauge:
 
     def __repr__(self) -> str:
         where = "" if self.corner is None else f" {self.corner}"
-        return f"<Gauge: {self.kind}{where}, {len(self.rim)} boundary vertices>"
+        return f"<Gauge: {self.kind}{where}, {len(self.boundary_heights)} boundary vertices>"
 
     @cached_property
     def corner_curvature(self) -> Fraction:

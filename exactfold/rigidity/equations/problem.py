@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from exactfold.errors import NotCountedError
 from exactfold.exact.numbers import RationalLike
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.rigidity.equations.boundary_heights import given_deficits, given_rim
+from exactfold.rigidity.equations.boundary_heights import given_boundary_heights, given_deficits
 from exactfold.rigidity.equations.branch_system import BranchSystem, Chart, chamber_chart
 from exactfold.rigidity.equations.gauge import Gauge
 
@@ -44,7 +44,7 @@ class Problem:
         cls,
         pattern: CreasePattern,
         *,
-        rim: Mapping[int, RationalLike] | None = None,
+        boundary_heights: Mapping[int, RationalLike] | None = None,
         curvature: Mapping[int, RationalLike] | None = None,
     ) -> Problem:
         """The problem of a pattern with four boundary vertices, or with given boundary heights.
@@ -54,11 +54,19 @@ class Problem:
         `Gauge.of`.
         """
         deficits = None if curvature is None else given_deficits(pattern, curvature)
-        if rim is not None:  # checked here, so that messages name vertices of the pattern
-            rim = given_rim(pattern, rim, may_be_flat=bool(deficits))
+        if (
+            boundary_heights is not None
+        ):  # checked here, so that messages name vertices of the pattern
+            boundary_heights = given_boundary_heights(
+                pattern, boundary_heights, may_be_flat=bool(deficits)
+            )
         sheet, labels = pattern.without_rigid_parts(deficits or ())
         place = {v: k for k, v in enumerate(labels)}
-        heights = None if rim is None else {place[v]: height for v, height in rim.items()}
+        heights = (
+            None
+            if boundary_heights is None
+            else {place[v]: height for v, height in boundary_heights.items()}
+        )
         curved = None if deficits is None else {place[v]: k for v, k in deficits.items()}
         return cls(pattern, sheet, labels, Gauge.of(sheet, heights, curved))
 

@@ -20,12 +20,12 @@ from exactfold.rigidity.equations.problem import Problem
 
 
 @dataclass(frozen=True)
-class Sheet:
+class VertexEquations:
     """A problem in integers, fold by fold, for the sparse solver and the enclosure.
 
     `pattern` is the sheet of the equations; for a reflex quadrilateral its notch is closed. Lengths
     are integers, as the coordinates are `pattern.integer_vertices`. Boundary heights are integers
-    over `rim_denominator`, in multiples of `height_unit`, a power of two.
+    over `boundary_denominator`, in multiples of `height_unit`, a power of two.
     """
 
     problem: Problem
@@ -76,7 +76,7 @@ class Sheet:
         It is 1 if all boundary heights and deficits are 0.
         """
         gauge = self.problem.gauge
-        largest = max(map(abs, gauge.rim.values()))
+        largest = max(map(abs, gauge.boundary_heights.values()))
         if gauge.curvature:  # a deficit k lifts its vertex by about size * sqrt(k)
             square = max(gauge.curvature.values()) * pattern_size(gauge.sheet) ** 2
             largest = max(largest, _root_of_power(power_of_two(square)))
@@ -84,17 +84,19 @@ class Sheet:
 
     @cached_property
     def _scaled(self) -> tuple[dict[int, int], int]:
-        rim = self.problem.gauge.rim
-        integers, denominator = over_common_denominator(h / self.height_unit for h in rim.values())
-        return dict(zip(rim, integers, strict=True)), denominator
+        boundary_heights = self.problem.gauge.boundary_heights
+        integers, denominator = over_common_denominator(
+            h / self.height_unit for h in boundary_heights.values()
+        )
+        return dict(zip(boundary_heights, integers, strict=True)), denominator
 
     @property
-    def rim(self) -> Mapping[int, int]:
-        """The boundary heights, times `rim_denominator` / `height_unit`."""
+    def boundary_heights(self) -> Mapping[int, int]:
+        """The boundary heights, times `boundary_denominator` / `height_unit`."""
         return self._scaled[0]
 
     @property
-    def rim_denominator(self) -> int:
+    def boundary_denominator(self) -> int:
         """The common denominator of the boundary heights, in `height_unit`."""
         return self._scaled[1]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from exactfold._support.arrays import FloatArray
 from exactfold._support.progress import Progress
-from exactfold.rigidity.equations.sheet import Sheet
+from exactfold.rigidity.equations.sheet import VertexEquations
 from exactfold.solve.certify.enclosed_flat import deduced, rational
 from exactfold.solve.certify.enclosure import Enclosure, enclose
 from exactfold.solve.certify.refinement import exact, refine
@@ -15,7 +15,7 @@ _LEVELS = (80, 160, 320)
 
 
 def enclosed(
-    sheet: Sheet,
+    sheet: VertexEquations,
     floats: FloatSheet,
     signs: FloatArray,
     x: FloatArray,

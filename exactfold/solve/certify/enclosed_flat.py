@@ -13,7 +13,7 @@ from fractions import Fraction
 import numpy as np
 
 from exactfold._support.arrays import BigArray
-from exactfold.rigidity.equations.sheet import Sheet
+from exactfold.rigidity.equations.sheet import VertexEquations
 from exactfold.solve.certify.enclosure import Enclosure, check_hypotheses, nappes
 
 _MOST_BITS = 64
@@ -23,7 +23,7 @@ The denominator of the boundary heights does not count.
 """
 
 
-def deduced(sheet: Sheet, proof: Enclosure) -> Enclosure:
+def deduced(sheet: VertexEquations, proof: Enclosure) -> Enclosure:
     """The enclosure with the folds that must be flat because K_v = 0 at their ends (`flat_folds`).
 
     At the corner of a closed notch K is not 0; but it is a boundary vertex of the unclosed sheet.
@@ -40,7 +40,9 @@ def deduced(sheet: Sheet, proof: Enclosure) -> Enclosure:
     return _with_flat(sheet, proof, flat)
 
 
-def rational(sheet: Sheet, proof: Enclosure, wanted: Mapping[int, int]) -> Enclosure | None:
+def rational(
+    sheet: VertexEquations, proof: Enclosure, wanted: Mapping[int, int]
+) -> Enclosure | None:
     """The branch itself, if it has heights with a small common denominator near those of `proof`.
 
     By Theorem 5 (a), heights with K_v = k_v for all v in the closed nappes `wanted` are the only
@@ -75,7 +77,7 @@ def rational(sheet: Sheet, proof: Enclosure, wanted: Mapping[int, int]) -> Enclo
     return _with_flat(sheet, exact, frozenset(np.flatnonzero(bends == 0).tolist()))
 
 
-def _with_flat(sheet: Sheet, proof: Enclosure, flat: frozenset[int]) -> Enclosure:
+def _with_flat(sheet: VertexEquations, proof: Enclosure, flat: frozenset[int]) -> Enclosure:
     """The enclosure with these flat folds, and with flat and loose vertices.
 
     `loose` are the vertices at which no fold is known to bend, but some may; k_v = 0 at all of
@@ -90,7 +92,7 @@ def _with_flat(sheet: Sheet, proof: Enclosure, flat: frozenset[int]) -> Enclosur
     return replace(proof, loose=loose, flat_folds=flat, flat_vertices=still)
 
 
-def _guess(sheet: Sheet, proof: Enclosure) -> tuple[BigArray, int] | None:
+def _guess(sheet: VertexEquations, proof: Enclosure) -> tuple[BigArray, int] | None:
     """The nearest integer heights over the least denominator that seems to fit; None if none."""
     if not proof.squared_distance:
         return None
@@ -100,11 +102,11 @@ def _guess(sheet: Sheet, proof: Enclosure) -> tuple[BigArray, int] | None:
     most = min(_MOST_BITS, places // 3)
     multiple = 1
     for height in proof.heights[list(sheet.unknowns)].tolist():
-        exact = Fraction(multiple * sheet.rim_denominator * height, proof.denominator)
+        exact = Fraction(multiple * sheet.boundary_denominator * height, proof.denominator)
         multiple *= exact.limit_denominator(1 << max(0, most)).denominator
         if multiple.bit_length() > most:
             return None
-    denominator = multiple * sheet.rim_denominator
+    denominator = multiple * sheet.boundary_denominator
     rounded = [
         (2 * height * denominator + proof.denominator) // (2 * proof.denominator)
         for height in proof.heights.tolist()

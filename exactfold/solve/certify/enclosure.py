@@ -10,7 +10,7 @@ from math import isqrt
 import numpy as np
 
 from exactfold._support.arrays import BigArray, FloatArray, IndexArray
-from exactfold.rigidity.equations.sheet import Sheet
+from exactfold.rigidity.equations.sheet import VertexEquations
 
 _LENGTH_BITS = 64
 _LEAST_COST = 2.0**-500
@@ -57,7 +57,7 @@ class Curvatures:
     high: BigArray
 
 
-def curvatures(sheet: Sheet, heights: BigArray, bits: int) -> Curvatures:
+def curvatures(sheet: VertexEquations, heights: BigArray, bits: int) -> Curvatures:
     """Bounds of all K_v: 2 K_v = sum_w omega_vw (h_w - h_v), with each term rounded down."""
     folds = sheet.folds
     i, j = folds.corners[:, 0], folds.corners[:, 1]
@@ -74,7 +74,7 @@ def curvatures(sheet: Sheet, heights: BigArray, bits: int) -> Curvatures:
 
 
 def enclose(
-    sheet: Sheet, heights: BigArray, denominator: int, bits: int
+    sheet: VertexEquations, heights: BigArray, denominator: int, bits: int
 ) -> Enclosure | tuple[int, ...]:
     """The branch near rational heights, or the vertices at which the test fails.
 
@@ -110,18 +110,18 @@ def enclose(
     return Enclosure(heights, denominator, signs, distance, letters, loose)
 
 
-def check_hypotheses(sheet: Sheet, heights: BigArray, denominator: int) -> None:
+def check_hypotheses(sheet: VertexEquations, heights: BigArray, denominator: int) -> None:
     """Raises `ValueError` unless the boundary is convex and has the given heights."""
     if not sheet.pattern.is_convex:
         raise ValueError("the theorem needs a convex boundary")
-    if set(sheet.rim) != set(sheet.pattern.boundary) or any(
-        heights[v] * sheet.rim_denominator != height * denominator
-        for v, height in sheet.rim.items()
+    if set(sheet.boundary_heights) != set(sheet.pattern.boundary) or any(
+        heights[v] * sheet.boundary_denominator != height * denominator
+        for v, height in sheet.boundary_heights.items()
     ):
         raise ValueError("the heights of the boundary vertices are not those of the sheet")
 
 
-def nappes(sheet: Sheet, bends: BigArray) -> dict[int, int]:
+def nappes(sheet: VertexEquations, bends: BigArray) -> dict[int, int]:
     """The nappe at each vertex, the sign of -sum_j L_j omega_vj; 0 if it is not proved.
 
     This sum is 2 K_v(t, h) for the round cone t, t_j - t_v = -L_j, which is timelike and points up.
@@ -146,7 +146,7 @@ def nappes(sheet: Sheet, bends: BigArray) -> dict[int, int]:
     }
 
 
-def _squared_distance(sheet: Sheet, found: Curvatures, denominator: int) -> Fraction:
+def _squared_distance(sheet: VertexEquations, found: Curvatures, denominator: int) -> Fraction:
     """An upper bound of sum_v m_v (sqrt K_v - sqrt k_v)^2; `off_target` is used where k_v > 0."""
     points = sheet.pattern.integer_vertices[0]
     x, y = (min(p[a] for p in points) + max(p[a] for p in points) for a in (0, 1))
@@ -174,7 +174,7 @@ def off_target(bounds: Iterable[Fraction], target: Fraction) -> Fraction:
     return min(off, off**2 / target)
 
 
-def _letters(sheet: Sheet, bends: BigArray, squared: Fraction) -> tuple[int, ...]:
+def _letters(sheet: VertexEquations, bends: BigArray, squared: Fraction) -> tuple[int, ...]:
     """The signs of the bends that no change w with int |grad w|^2 <= squared can undo, else 0.
 
     Let g and g' be the gradients of w on the two faces of the fold e. As
@@ -189,7 +189,7 @@ def _letters(sheet: Sheet, bends: BigArray, squared: Fraction) -> tuple[int, ...
     return tuple((f > 0) - (f < 0) if ok else 0 for f, ok in zip(bends, safe, strict=True))
 
 
-def height_radius(sheet: Sheet, squared: Fraction) -> Fraction:
+def height_radius(sheet: VertexEquations, squared: Fraction) -> Fraction:
     """A short rational bound of |w| if w is 0 on the boundary and int |grad w|^2 <= squared.
 
     Along a side of length L of a face of area c/2, w changes by at most L |grad w| <=

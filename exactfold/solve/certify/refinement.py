@@ -12,7 +12,7 @@ from math import ceil, log2
 import numpy as np
 
 from exactfold._support.arrays import BigArray, FloatArray
-from exactfold.rigidity.equations.sheet import Sheet
+from exactfold.rigidity.equations.sheet import VertexEquations
 from exactfold.solve.certify.enclosure import curvatures
 from exactfold.solve.numeric.sparse_newton import Point, equations
 from exactfold.solve.numeric.sparse_sheet import FloatSheet, SingularError, ratio
@@ -33,15 +33,15 @@ class Heights:
     bits: int = 0
 
 
-def exact(sheet: Sheet, floats: FloatSheet, x: FloatArray, places: int = 64) -> Heights:
+def exact(sheet: VertexEquations, floats: FloatSheet, x: FloatArray, places: int = 64) -> Heights:
     """The float heights of the unknowns, and the boundary heights, as integers over 2^places."""
-    result = _with_rim(sheet, places)
-    result.values[floats.unknowns] = _integers(x, places) * sheet.rim_denominator
+    result = _with_boundary_heights(sheet, places)
+    result.values[floats.unknowns] = _integers(x, places) * sheet.boundary_denominator
     return result
 
 
 def refine(
-    sheet: Sheet, floats: FloatSheet, signs: FloatArray, start: Heights, level: int
+    sheet: VertexEquations, floats: FloatSheet, signs: FloatArray, start: Heights, level: int
 ) -> Heights | None:
     """Newton's method on the nappes towards K_v = k_v + 2^-level, in units of the sheet's size.
 
@@ -54,7 +54,7 @@ def refine(
     omega = ratio(sheet.folds.bends(start.values) * square, areas * start.denominator)
     # Rounding by 2^-places changes each K_v by at most a sixteenth of 2^-level.
     places = level + 5 + max(0, ceil(log2(max(floats.row_sums(omega).max(), 1.0))))
-    at = _with_rim(sheet, places)
+    at = _with_boundary_heights(sheet, places)
     q = at.denominator
     at.values[inner] = start.values[inner] * q // start.denominator
     # The unit of `curvatures` is at most 2^-level-_SPARE.
@@ -81,15 +81,15 @@ def refine(
             return None
         if not np.isfinite(step).all():
             return None
-        at.values[inner] -= _integers(step, places) * sheet.rim_denominator
+        at.values[inner] -= _integers(step, places) * sheet.boundary_denominator
     return None
 
 
-def _with_rim(sheet: Sheet, places: int) -> Heights:
+def _with_boundary_heights(sheet: VertexEquations, places: int) -> Heights:
     values = np.array([0] * len(sheet.pattern.vertices), dtype=object)
-    for v, height in sheet.rim.items():
+    for v, height in sheet.boundary_heights.items():
         values[v] = height << places
-    return Heights(values, sheet.rim_denominator << places)
+    return Heights(values, sheet.boundary_denominator << places)
 
 
 def _integers(x: FloatArray, places: int) -> BigArray:

@@ -47,7 +47,7 @@ _CHUNK = 256
 
 
 @dataclass(frozen=True)
-class Ends:
+class SweptPoints:
     """Approximate zeros, one row for each sign vector: `points` in the chart.
 
     `converged` says which rows converged. `steps` counts the Newton steps of all rows together.
@@ -145,9 +145,11 @@ class NappeSystem:
         """
         gauge = self.gauge
         size = len(gauge.unknowns) + 1
-        heights, unit = over_common_denominator(gauge.rim.values())
+        heights, unit = over_common_denominator(gauge.boundary_heights.values())
         lift = {v: (k, unit) for k, v in enumerate(gauge.unknowns)}
-        lift |= {v: (size - 1, h) for v, h in zip(gauge.rim, heights, strict=True) if h}
+        lift |= {
+            v: (size - 1, h) for v, h in zip(gauge.boundary_heights, heights, strict=True) if h
+        }
         found = []
         for v in gauge.unknowns:
             form, cone = curvature_form(gauge.sheet, v), round_cone(gauge.sheet, v)
@@ -195,7 +197,7 @@ class NappeSystem:
         missing = len(self.gauge.unknowns) - signs.shape[1]
         return np.hstack([signs, np.ones((len(signs), missing))])
 
-    def ends(self, signs: FloatArray) -> Ends:
+    def ends(self, signs: FloatArray) -> SweptPoints:
         """The zero of g for every row of `signs` (in the order of the interior vertices).
 
         Damped Newton steps start from the solution of the linear system l_v = e_v c. For a row that
@@ -211,7 +213,7 @@ class NappeSystem:
         """
         return self._ends(*self.unknowns(self.full_signs(signs)))
 
-    def ends_of_block(self, first: int, count: int) -> Ends:
+    def ends_of_block(self, first: int, count: int) -> SweptPoints:
         """The zeros for the sign vectors number `first` to `first + count - 1`, in fewer steps.
 
         `count` is a power of two and divides `first`. The zeros of the first few sign vectors are
@@ -237,10 +239,10 @@ class NappeSystem:
             bit *= 2
         return self._ends(x, converged, steps)
 
-    def _ends(self, x: FloatArray, converged: BoolArray, steps: int) -> Ends:
+    def _ends(self, x: FloatArray, converged: BoolArray, steps: int) -> SweptPoints:
         with np.errstate(all="ignore"):
             points = self.in_chart(x)
-        return Ends(points, converged & np.isfinite(points).all(axis=1), steps)
+        return SweptPoints(points, converged & np.isfinite(points).all(axis=1), steps)
 
     def flat_at_end(self, signs: Sequence[int]) -> tuple[int, ...]:
         """The places in `signs` of the vertices whose stars look flat, in doubles, at the zero."""

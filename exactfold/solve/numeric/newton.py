@@ -11,7 +11,7 @@ from exactfold._support.progress import Steps
 from exactfold.rigidity.equations.branch_system import Chart, chamber_chart
 from exactfold.rigidity.equations.chart_change import between
 from exactfold.solve.numeric.candidates import Candidates
-from exactfold.solve.numeric.dense_newton import Ends, NappeSystem, sign_vectors
+from exactfold.solve.numeric.dense_newton import NappeSystem, SweptPoints, sign_vectors
 
 _BLOCK = 1024
 
@@ -46,7 +46,7 @@ def newton(chart: Chart, *, progress: Steps | None = None) -> Candidates:
     return replace(candidates, points=points.astype(np.complex128))
 
 
-def candidates_of(blocks: Sequence[Ends], size: int) -> Candidates:
+def candidates_of(blocks: Sequence[SweptPoints], size: int) -> Candidates:
     """Blocks of zeros, in the order of their sign vectors, as candidates."""
     lost, first = [], 0
     for ends in blocks:

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from exactfold._support.arrays import BigArray, FloatArray, IndexArray, IntArray
-from exactfold.rigidity.equations.sheet import Sheet
+from exactfold.rigidity.equations.sheet import VertexEquations
 
 _DENSE = 150
 
@@ -33,11 +33,11 @@ class FloatSheet:
     lengths: FloatArray
     scale: FloatArray
     line_factor: FloatArray
-    rim: FloatArray
+    boundary_heights: FloatArray
     target: FloatArray
 
     @classmethod
-    def of(cls, sheet: Sheet) -> FloatSheet:
+    def of(cls, sheet: VertexEquations) -> FloatSheet:
         """The exact data as floats; each float is rounded from exact integers."""
         folds, size = sheet.folds, sheet.size
         areas = folds.left * folds.right
@@ -57,13 +57,15 @@ class FloatSheet:
             / 2
         )
         cone = _cone_curvature(sheet)[unknowns]
-        rim = np.zeros(count)
-        for v, height in sheet.rim.items():
-            rim[v] = height / sheet.rim_denominator
+        boundary_heights = np.zeros(count)
+        for v, height in sheet.boundary_heights.items():
+            boundary_heights[v] = height / sheet.boundary_denominator
         scale = cone / hub**2
         aims = sheet.targets
         target = np.array([float(aims.get(v, 0) * size**2) for v in sheet.unknowns]) * scale
-        return cls(unknowns, folds.corners, weights, lengths, scale, -0.5 / hub, rim, target)
+        return cls(
+            unknowns, folds.corners, weights, lengths, scale, -0.5 / hub, boundary_heights, target
+        )
 
     @property
     def n(self) -> int:
@@ -72,9 +74,13 @@ class FloatSheet:
 
     # --- heights, bends, forms -------------------------------------------------------------------
 
-    def heights(self, x: FloatArray, *, rim: bool = True) -> FloatArray:
+    def heights(self, x: FloatArray, *, boundary_heights: bool = True) -> FloatArray:
         """The heights of all vertices, from the unknowns; the boundary is as given or flat."""
-        h = self.rim.copy() if rim else np.zeros_like(self.rim)
+        h = (
+            self.boundary_heights.copy()
+            if boundary_heights
+            else np.zeros_like(self.boundary_heights)
+        )
         h[self.unknowns] = x
         return h
 
@@ -94,21 +100,21 @@ class FloatSheet:
 
     def forms(self, products: FloatArray) -> FloatArray:
         """The scaled polar forms K_v(a, b), from omega_e(a) (b_j - b_i), shape (E,)."""
-        count = len(self.rim)
+        count = len(self.boundary_heights)
         total = np.bincount(self.corners[:, 0], products, count)
         total -= np.bincount(self.corners[:, 1], products, count)
         return np.asarray(0.5 * self.scale * total[self.unknowns])
 
     def lines(self, omega: FloatArray) -> FloatArray:
         """The values l_v, from the values omega_e."""
-        weighted, count = self.lengths * omega, len(self.rim)
+        weighted, count = self.lengths * omega, len(self.boundary_heights)
         total = np.bincount(self.corners[:, 0], weighted, count)
         total += np.bincount(self.corners[:, 1], weighted, count)
         return np.asarray(self.line_factor * total[self.unknowns])
 
     def row_sums(self, omega: FloatArray) -> FloatArray:
         """The sums over w of |omega_vw|, at each unknown."""
-        count = len(self.rim)
+        count = len(self.boundary_heights)
         total = np.bincount(self.corners[:, 0], abs(omega), count)
         total += np.bincount(self.corners[:, 1], abs(omega), count)
         return np.asarray(total[self.unknowns])
@@ -175,7 +181,7 @@ class FloatSheet:
         data = np.zeros(len(p.rows))
         data[p.upper] = omega[p.inner]
         data[p.lower] = omega[p.inner]
-        count = len(self.rim)
+        count = len(self.boundary_heights)
         total = np.bincount(self.corners[:, 0], omega, count)
         total += np.bincount(self.corners[:, 1], omega, count)
         data[p.diagonal] = -total[self.unknowns]
@@ -183,7 +189,7 @@ class FloatSheet:
         return np.asarray(data + of_lines[p.rows] * self._line_data)
 
 
-def _cone_curvature(sheet: Sheet) -> FloatArray:
+def _cone_curvature(sheet: VertexEquations) -> FloatArray:
     """K_v of each round cone: the sum of tan(a_j / 2) over its angles a_j, from exact areas."""
     points = np.array(sheet.pattern.integer_vertices[0], dtype=object)
     triangles = np.array(sheet.pattern.triangles, dtype=np.intp)
@@ -215,7 +221,7 @@ class _Pattern:
     @classmethod
     def of(cls, sheet: FloatSheet) -> _Pattern:
         n = sheet.n
-        position = np.full(len(sheet.rim), -1, dtype=np.intp)
+        position = np.full(len(sheet.boundary_heights), -1, dtype=np.intp)
         position[sheet.unknowns] = np.arange(n)
         i, j = position[sheet.corners[:, 0]], position[sheet.corners[:, 1]]
         inner = np.flatnonzero((i >= 0) & (j >= 0))

@@ -61,7 +61,7 @@ def pair_angles(lines: Lines) -> PairAngles:
     count = len(directions)
     if count < 2:
         return PairAngles((0,) * BINS, 0, 0.0)
-    tally = _Tally(lines)
+    tally = _PairTally(lines)
     for tile in _tiles(directions):
         tally.add(tile)
     bins, unclear = tally.closed()
@@ -110,7 +110,7 @@ def _tiles(directions: FloatArray) -> Iterator[_Tile]:
                 yield _Tile((top, left), width, flat, None)
 
 
-class _Tally:
+class _PairTally:
     """The numbers of pairs by cell and by bin, and the pairs that sharper roots must decide."""
 
     def __init__(self, lines: Lines) -> None:

@@ -15,7 +15,7 @@ from exactfold import checker, delaunay
 from exactfold.app.schemas import schema
 from exactfold.branches import fold_angles
 from exactfold.pattern import families, write_fold
-from exactfold.rigidity.equations.boundary_heights import default_rim
+from exactfold.rigidity.equations.boundary_heights import default_boundary_heights
 
 RIM = '{"0": 1, "1": "-1/2", "2": 0.25, "3": 0, "4": 1e-1}'
 
@@ -61,23 +61,38 @@ def test_a_shape_with_deficits(here: Path) -> None:
 @pytest.mark.parametrize(
     ("option", "text", "name", "said"),
     [
-        ("--rim", '{"0": 1}', "BadRimError", "boundary vertex 1 has no height"),
-        ("--rim", RIM.replace("0.25", '"x"'), "BadRimError", "the height of vertex 2: 'x'"),
-        ("--rim", RIM.replace("0.25", "NaN"), "BadRimError", "the height of vertex 2: 'NaN'"),
-        ("--rim", RIM.replace('"3"', '"0"'), "BadRimError", "vertex 0 is given twice"),
-        ("--rim", RIM.replace('"3"', '"0-5"'), "BadRimError", "0-5 is not a boundary vertex"),
+        ("--rim", '{"0": 1}', "BoundaryHeightsError", "boundary vertex 1 has no height"),
+        (
+            "--rim",
+            RIM.replace("0.25", '"x"'),
+            "BoundaryHeightsError",
+            "the height of vertex 2: 'x'",
+        ),
+        (
+            "--rim",
+            RIM.replace("0.25", "NaN"),
+            "BoundaryHeightsError",
+            "the height of vertex 2: 'NaN'",
+        ),
+        ("--rim", RIM.replace('"3"', '"0"'), "BoundaryHeightsError", "vertex 0 is given twice"),
+        (
+            "--rim",
+            RIM.replace('"3"', '"0-5"'),
+            "BoundaryHeightsError",
+            "0-5 is not a boundary vertex",
+        ),
         (
             "--rim",
             RIM.replace("}", ', "00": 2}'),
-            "BadRimError",
+            "BoundaryHeightsError",
             "00 is not a boundary vertex",
         ),
-        ("--rim", "[1, 2]", "BadRimError", "does not hold numbers by vertex"),
-        ("--rim", "{", "BadRimError", "is not JSON"),
+        ("--rim", "[1, 2]", "BoundaryHeightsError", "does not hold numbers by vertex"),
+        ("--rim", "{", "BoundaryHeightsError", "is not JSON"),
         (
             "--rim",
             '{"0": 0, "1": 10, "2": 16, "3": 9, "4": -2}',
-            "BadRimError",
+            "BoundaryHeightsError",
             "lie in one plane",
         ),
         ("--curvature", '{"5": -1}', "BadCurvatureError", "deficit of vertex 5 is negative"),
@@ -218,7 +233,7 @@ def test_such_a_branch_is_followed_and_proved(here: Path) -> None:
     found = json.loads(run("fold", "six.fold", "--until", "1deg", "--json").stdout)
     jsonschema.validate(found, schema("motion"))
     assert found["theory"] == "branches"
-    rim = default_rim(families.single_vertex(6))
+    rim = default_boundary_heights(families.single_vertex(6))
     assert found["rim"] == {str(v): str(h) for v, h in rim.items()}
 
 

@@ -65,7 +65,9 @@ def test_lines_are_the_angles_on_the_axes():
 
 
 def test_events_are_named_lines():
-    motion = follow(find_branch(random_square(8, seed=1), "+-++--+-"), frames=3, through_nodes=True)
+    motion = follow(
+        find_branch(random_square(8, seed=1), "+-++--+-"), frames=3, through_branch_points=True
+    )
     root, _, _ = drawn(motion)
     names = " ".join(name for name in texts(root) if name)
     assert "4 folds turn back" in names

@@ -81,7 +81,9 @@ def test_a_drawing_says_what_was_done_with_it():
 
 
 def test_what_is_no_sheet_is_named():
-    with pytest.raises(UnreadableFileError, match="'crane' is neither a file nor an example"):
+    with pytest.raises(
+        UnreadableFileError, match="'crane' is neither a file nor the name of an example"
+    ):
         exactfold.count("crane")
     with pytest.raises(UsageError, match="3 is not a pattern"):
         exactfold.read(3)
@@ -152,7 +154,10 @@ def test_a_branch_is_named_in_four_ways(lettered):
     [
         ({}, "name the branch by one of signs, up, letters and way$"),
         ({"signs": "+-", "way": 3}, "and way, not way and signs$"),
-        ({"way": 3, "rim": {0: 1}}, "rim and curvature go with signs or up, not with way"),
+        (
+            {"way": 3, "boundary_heights": {0: 1}},
+            "boundary_heights and curvature go with signs or up",
+        ),
         ({"way": 0}, "there is no way 0: `count` lists 1 to 4"),
         ({"way": 5}, "there is no way 5: `count` lists 1 to 4"),
         ({"letters": "UUUUUUU"}, r'8 rays of branches have these letters: .* signs, "'),
@@ -194,4 +199,6 @@ def test_a_sheet_of_panels_has_modes_instead():
 def test_a_rim_is_taken_along():
     sheet = families.single_vertex(5)
     rim = {0: 1, 1: 0, 2: 0, 3: 0, 4: "1/2"}
-    assert exactfold.branch(sheet, "+", rim=rim) == find_branch(sheet, "+", rim=rim)
+    assert exactfold.branch(sheet, "+", boundary_heights=rim) == find_branch(
+        sheet, "+", boundary_heights=rim
+    )

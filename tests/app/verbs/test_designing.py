@@ -8,7 +8,7 @@ import pytest
 
 import exactfold
 from exactfold import PROVED, REFUTED
-from exactfold.design import Match, PanelMatch, RimMatch
+from exactfold.design import BoundaryMatch, Match, PanelMatch
 from exactfold.errors import (
     NotCountedError,
     UsageError,
@@ -21,7 +21,7 @@ def test_the_result_of_a_match_fits_the_sheet():
     assert isinstance(four, Match)
     assert [half.sign_text for half in four.matches] == ["+-"]
     five = exactfold.match(families.single_vertex(5), "MMVMV")
-    assert isinstance(five, RimMatch)
+    assert isinstance(five, BoundaryMatch)
     assert five.starts is PROVED
     panels = exactfold.match("zigzags")
     assert isinstance(panels, PanelMatch)

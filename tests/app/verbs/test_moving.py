@@ -111,7 +111,7 @@ def test_folds_are_driven():
 
 def test_with_more_corners_a_branch_is_named_and_else_the_panels_move():
     sheet = families.single_vertex(5)
-    assert exactfold.follow(sheet, signs="+", **SHORT).rim is not None
+    assert exactfold.follow(sheet, signs="+", **SHORT).boundary_heights is not None
     assert exactfold.follow("waterbomb", signs="+", **SHORT).branch.sign_text == "+"
 
 
@@ -120,8 +120,8 @@ def test_with_more_corners_a_branch_is_named_and_else_the_panels_move():
     [
         ("zigzags", {"signs": "+"}, "signs is for branches, .* choose one by way or letters"),
         ("zigzags", {"drive": {(0, 1): 3}}, "drive is for branches"),
-        ("zigzags", {"through_nodes": True}, "through_nodes is for branches"),
-        ("zigzags", {"way": 9}, "there is no mode 9: they are 1 to 5"),
+        ("zigzags", {"through_branch_points": True}, "through_branch_points is for"),
+        ("zigzags", {"way": 9}, "there is no mode 9: give numbers from 1 to 5"),
         ("two-vertex", {"way": [1, 2]}, "two branches cannot be followed together"),
         ("two-vertex", {"way": 9}, "there is no way 9: `count` lists 1 to 4"),
     ],

@@ -56,7 +56,7 @@ def test_a_count_writes_what_a_stream_writes(tmp_path: Path, name: str) -> None:
     assert counted.read_bytes() == streamed.read_bytes()
     assert json.loads(made[0])["version"] == CHAMBERS
     assert check_compact(counted) == checker.check(made)
-    assert check(made) == check(counted)
+    assert check(made).claims == check(counted).claims
     assert checker.check(made)["distinct"] == result.distinct
 
 

@@ -14,7 +14,7 @@ from shapes import FOUR_CIRCLES, NEVER_FLAT, joined_by_shapes
 from sheets import DENTED, HEXAGON, scrambled, wheel, with_point
 
 from exactfold import PROVED, REFUTED, UNDECIDED, CreasePattern, checker
-from exactfold.branches import Joint, Pieces, count_branches, find_pieces
+from exactfold.branches import ConnectedComponents, Joint, count_branches, find_connected_components
 from exactfold.branches.connected_components import flat_stars, joining
 from exactfold.branches.connected_components.cubes import components
 from exactfold.branches.connected_components.no_zero import have_no_common_zero
@@ -41,10 +41,14 @@ def pentagon(seed: int, inside: int) -> CreasePattern:
 
 def test_four_circles():
     """Degree 4 and D = 2 do not make a flat star: the other vertex has no fold left to bend."""
-    pieces = find_pieces(FOUR_CIRCLES)
+    connected_components = find_connected_components(FOUR_CIRCLES)
     assert FOUR_CIRCLES.degree(3) == 4
-    assert (pieces.number, pieces.graphs, pieces.joints) == (4, 4, ())
-    assert set(pieces.never_flat) == {3, 4}
+    assert (
+        connected_components.number,
+        connected_components.graphs,
+        connected_components.joints,
+    ) == (4, 4, ())
+    assert set(connected_components.never_flat) == {3, 4}
     assert joined_by_shapes(FOUR_CIRCLES) == 4
 
 
@@ -53,9 +57,11 @@ def test_a_convex_star_that_is_never_flat():
     around = [edge_of(9, u) for u in NEVER_FLAT.star(9)]
     assert set(NEVER_FLAT.star(9)) == {5, 6, 7, 8}
     assert set(stars(panels(NEVER_FLAT), around)) == {5, 6, 7, 8}
-    pieces = find_pieces(NEVER_FLAT)
-    assert (pieces.number, pieces.joints) == (32, ())
-    assert pieces.never_flat[9] == ("with its star held flat, the only solution is the flat state")
+    connected_components = find_connected_components(NEVER_FLAT)
+    assert (connected_components.number, connected_components.joints) == (32, ())
+    assert connected_components.never_flat[9] == (
+        "with its star held flat, the only solution is the flat state"
+    )
 
 
 @pytest.mark.parametrize(
@@ -64,38 +70,49 @@ def test_a_convex_star_that_is_never_flat():
     ids=["two", "three"],
 )
 def test_shapes_over_many_rims_are_joined_alike(pattern, number):
-    assert find_pieces(pattern).number == joined_by_shapes(pattern) == number
+    assert find_connected_components(pattern).number == joined_by_shapes(pattern) == number
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("seed", "inside"), [(1, 2), (0, 3), (3, 3), (0, 4), (2, 4)])
 def test_shapes_over_many_rims_are_joined_alike_in_more_sheets(seed, inside):
     pattern = pentagon(seed, inside)
-    assert find_pieces(pattern).number == joined_by_shapes(pattern)
+    assert find_connected_components(pattern).number == joined_by_shapes(pattern)
 
 
 @pytest.mark.parametrize("degree", [5, 8])
 def test_a_single_vertex_pops_up_or_down(degree):
     pattern = single_vertex(degree)
     result = count_branches(pattern)
-    assert result.pieces == find_pieces(pattern)
-    assert (result.pieces.number, result.pieces.graphs, result.distinct) == (2, 2, 1)
+    assert result.connected_components == find_connected_components(pattern)
+    assert (
+        result.connected_components.number,
+        result.connected_components.graphs,
+        result.distinct,
+    ) == (2, 2, 1)
 
 
 def test_a_fold_from_border_to_border_joins_everything():
     inner = wheel([(0, 0), (4, 0), (4, 4), (0, 4)], (1, 2))
     flap = CreasePattern([*inner.vertices, (7, 2)], [*inner.triangles, (1, 5, 2)])
-    pieces = find_pieces(flap)
-    assert (pieces.chord, pieces.number, pieces.graphs) == ((1, 2), 1, 2)
+    connected_components = find_connected_components(flap)
+    assert (
+        connected_components.chord,
+        connected_components.number,
+        connected_components.graphs,
+    ) == ((1, 2), 1, 2)
     fan = CreasePattern(HEXAGON[:5], [(0, 1, 2), (0, 2, 3), (0, 3, 4)])
     rigid = with_point(fan, 1, (1, 1, 1))  # a triangulated triangle, so that nothing pops
-    assert (find_pieces(rigid).graphs, find_pieces(rigid).number) == (1, 1)
+    assert (find_connected_components(rigid).graphs, find_connected_components(rigid).number) == (
+        1,
+        1,
+    )
 
 
 def test_labels_are_those_of_the_pattern():
     """With a vertex inside a face nothing changes but its place in the list."""
     pattern = pentagon(1, 3)
-    pieces = find_pieces(pattern)
+    connected_components = find_connected_components(pattern)
     more = with_point(pattern, 2, (1, 2, 3))
     moved = CreasePattern(
         [*more.vertices[:5], more.vertices[-1], *more.vertices[5:-1]],
@@ -104,32 +121,34 @@ def test_labels_are_those_of_the_pattern():
             for triangle in more.triangles
         ],
     )
-    found = find_pieces(moved)
+    found = find_connected_components(moved)
     assert moved.Vt == 1
-    assert found.number == pieces.number
-    assert found.vertices == tuple(v + 1 for v in pieces.vertices)
+    assert found.number == connected_components.number
+    assert found.vertices == tuple(v + 1 for v in connected_components.vertices)
     assert {joint.sign_text for joint in found.joints} == {
-        joint.sign_text for joint in pieces.joints
+        joint.sign_text for joint in connected_components.joints
     }
-    assert set(found.never_flat) == {v + 1 for v in pieces.never_flat}
+    assert set(found.never_flat) == {v + 1 for v in connected_components.never_flat}
     assert all(max(edge) <= 8 for joint in found.joints for edge in joint.densities)
 
 
 def test_two_ways_to_solve_a_sheet_with_a_flat_star(monkeypatch):
     """All complex solutions in boxes, and linear spaces over fields with roots."""
     pattern = pentagon(2, 3)
-    boxed = find_pieces(pattern)
+    boxed = find_connected_components(pattern)
     assert {joint.by for joint in boxed.joints} == {"isolated"}
     monkeypatch.setattr(flat_stars, "_MOST_FINITE", 0)
-    split = find_pieces(pattern)
+    split = find_connected_components(pattern)
     assert {joint.by for joint in split.joints} == {"space"}
     assert split.number == boxed.number == 4
     assert _cubes(split) == _cubes(boxed)
 
 
-def _cubes(pieces: Pieces) -> set[frozenset[str]]:
+def _cubes(connected_components: ConnectedComponents) -> set[frozenset[str]]:
     mirror = str.maketrans("+-", "-+")
-    return {frozenset({j.sign_text, j.sign_text.translate(mirror)}) for j in pieces.joints}
+    return {
+        frozenset({j.sign_text, j.sign_text.translate(mirror)}) for j in connected_components.joints
+    }
 
 
 # --- what a joint shows --------------------------------------------------------------------------
@@ -137,9 +156,9 @@ def _cubes(pieces: Pieces) -> set[frozenset[str]]:
 
 @pytest.mark.parametrize("pattern", [pentagon(0, 2), scrambled(2, HEXAGON, 2, loose=True)])
 def test_a_joint_is_a_solution_with_these_signs(pattern):
-    pieces = find_pieces(pattern)
-    assert pieces.joints
-    for joint in pieces.joints:
+    connected_components = find_connected_components(pattern)
+    assert connected_components.joints
+    for joint in connected_components.joints:
         bounds = joint.densities
         for v in pattern.interior:
             w = [bounds.get(edge_of(v, u), (Fraction(0),) * 2) for u in pattern.star(v)]
@@ -165,27 +184,32 @@ def test_a_joint_is_a_solution_with_these_signs(pattern):
 
 def test_joints_of_a_family_and_true_pieces():
     """D = 3: solutions with a flat star form families, of which single points are proved."""
-    pieces = find_pieces(scrambled(2, HEXAGON, 2, loose=True))
-    (joint,) = pieces.joints
-    assert (joint.by, joint.folds, pieces.number, pieces.true_high) == ("regular", True, 2, 2)
-    assert pieces.complete == (7,)
+    connected_components = find_connected_components(scrambled(2, HEXAGON, 2, loose=True))
+    (joint,) = connected_components.joints
+    assert (joint.by, joint.folds, connected_components.number, connected_components.true_high) == (
+        "regular",
+        True,
+        2,
+        2,
+    )
+    assert connected_components.complete == (7,)
     assert joint.to_dict()["flat"] == [7]
 
 
 def test_what_is_not_decided_gives_bounds_and_is_named(monkeypatch):
     pattern = pentagon(0, 3)
-    whole = find_pieces(pattern)
+    whole = find_connected_components(pattern)
     assert (whole.number, whole.open) == (2, {})
     monkeypatch.setattr(flat_stars, "_MOST_DIMENSION", 1)
-    pieces = find_pieces(pattern)
-    assert (pieces.status, pieces.number) == (UNDECIDED, None)
-    assert (pieces.low, pieces.high) == (2, 8)
-    assert set(pieces.open) == set(whole.complete) == {6, 7}
-    assert "have dimension" in pieces.open[6]
+    connected_components = find_connected_components(pattern)
+    assert (connected_components.status, connected_components.number) == (UNDECIDED, None)
+    assert (connected_components.low, connected_components.high) == (2, 8)
+    assert set(connected_components.open) == set(whole.complete) == {6, 7}
+    assert "have dimension" in connected_components.open[6]
     result = count_branches(pattern)
     assert (result.status, len(result.open_questions)) == (PROVED, 2)
     monkeypatch.setattr(joining, "_MOST_WHOLE", 2)
-    assert "only if at most 2 can pop" in find_pieces(pattern).open[6]
+    assert "only if at most 2 can pop" in find_connected_components(pattern).open[6]
 
 
 # --- the count of components ---------------------------------------------------------------------
@@ -348,21 +372,25 @@ def test_shapes_over_a_rim_need_not_be_real():
 
 def test_pieces_are_for_convex_borders_with_more_than_four_corners():
     with pytest.raises(NotApplicableError, match="reflex corner, vertex 3"):
-        find_pieces(scrambled(1, DENTED, 2, loose=True))
+        find_connected_components(scrambled(1, DENTED, 2, loose=True))
     with pytest.raises(NotApplicableError, match="its solutions are branches"):
-        find_pieces(flat_vertex_square())
+        find_connected_components(flat_vertex_square())
 
 
 def test_patterns_are_given_by_name_or_path(tmp_path):
-    expected = find_pieces(waterbomb())
+    expected = find_connected_components(waterbomb())
     write_fold(waterbomb(), tmp_path / "p.fold")
-    assert find_pieces("waterbomb") == find_pieces(tmp_path / "p.fold") == expected
+    assert (
+        find_connected_components("waterbomb")
+        == find_connected_components(tmp_path / "p.fold")
+        == expected
+    )
 
 
 def test_values_show_themselves():
-    pieces = find_pieces(pentagon(0, 2))
-    assert repr(pieces) == "<Pieces: proved, 2 of 4 graphs>"
-    (joint,) = pieces.joints
+    connected_components = find_connected_components(pentagon(0, 2))
+    assert repr(connected_components) == "<Pieces: proved, 2 of 4 graphs>"
+    (joint,) = connected_components.joints
     assert isinstance(joint, Joint)
     assert repr(joint) == "<Joint: 0-, isolated>"
     assert joint.flat == (5,)

@@ -30,7 +30,7 @@ def test_a_true_shape_for_each_sign_vector_and_small_rim(signs):
     """It differs from the solution of second order by the third power of the rim, nearly."""
     pattern = FOUR_CIRCLES
     rim = dict(zip(pattern.boundary, (0, 0, 0, 2, -1), strict=True))
-    branch = find_branch(pattern, signs, rim=rim)
+    branch = find_branch(pattern, signs, boundary_heights=rim)
     errors = []
     for t in (mpf(1) / 40, mpf(1) / 80):
         start = {v: t * number(low + high) / 2 for v, (low, high) in branch.heights.items()}

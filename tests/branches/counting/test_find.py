@@ -28,12 +28,12 @@ from sheets import (
 from exactfold import PROVED, UNDECIDED, random_square
 from exactfold.branches import count_branches
 from exactfold.branches.counting.find import BranchFinder, find_branch, find_branches, neighbours
-from exactfold.errors import BadRimError, NotApplicableError, UsageError
+from exactfold.errors import BoundaryHeightsError, NotApplicableError, UsageError
 from exactfold.pattern import degenerate, families
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.rigidity.equations.branch_system import BranchSystem
 from exactfold.rigidity.equations.problem import Problem
-from exactfold.rigidity.equations.sheet import Sheet
+from exactfold.rigidity.equations.sheet import VertexEquations
 from exactfold.solve.certify.box import IsolatingBox
 from exactfold.solve.certify.exact_krawczyk import krawczyk
 from exactfold.solve.numeric.sparse_sheet import FloatSheet
@@ -101,7 +101,7 @@ def test_krawczyk_isolates_the_same_solution() -> None:
 
 def test_inertia_of_the_jacobian_counts_the_vertices_up_and_down() -> None:
     pattern = big_square(60, seed=8)
-    sheet = Sheet(Problem.of(pattern))
+    sheet = VertexEquations(Problem.of(pattern))
     floats = FloatSheet.of(sheet)
     for seed in range(4):
         signs = signs_of(pattern, seed)
@@ -182,7 +182,7 @@ def test_exact_heights_have_no_error() -> None:
 def test_errors_below_the_range_of_floats_are_still_told() -> None:
     pattern = random_square(3, seed=0)
     rim = {v: Fraction(v * v + 1, 10**400) for v in pattern.boundary}
-    found = find_branch(pattern, "+-+", rim=rim)
+    found = find_branch(pattern, "+-+", boundary_heights=rim)
     assert found.status is PROVED
     assert found.squared_distance
     shown = found.reason.split("within ")[1].split()[0]
@@ -274,7 +274,7 @@ def test_a_rim_of_four_is_the_same_branch_up_to_scale_and_a_plane() -> None:
         v: 3 * Fraction(v == raised) + 2 * pattern.vertices[v][0] - pattern.vertices[v][1]
         for v in pattern.boundary
     }
-    found = find_branch(pattern, "+-+-+", rim=rim)
+    found = find_branch(pattern, "+-+-+", boundary_heights=rim)
     assert found.assignment == plain.assignment
     assert found.saddle == 1
     for v, (x, y) in enumerate(pattern.vertices):
@@ -290,7 +290,7 @@ def test_six_boundary_vertices_with_a_given_rim(scale: Fraction) -> None:
     rim = {v: scale * source.randint(-9, 9) for v in pattern.boundary}
     letters = set()
     for signs in product((1, -1), repeat=3):
-        found = find_branch(pattern, signs, rim=rim)
+        found = find_branch(pattern, signs, boundary_heights=rim)
         assert found.status is PROVED
         assert all(found.centres[v] == height for v, height in rim.items())
         for v in pattern.interior:
@@ -303,13 +303,13 @@ def test_a_rim_that_does_not_fit_is_refused() -> None:
     pattern = scrambled(5, HEXAGON, 3)
     with pytest.raises(NotApplicableError, match="four boundary vertices"):
         BranchFinder(pattern).problem.require_foldable()
-    with pytest.raises(BadRimError, match="each boundary vertex"):
-        find_branch(pattern, "+++", rim={0: 1})
+    with pytest.raises(BoundaryHeightsError, match="each boundary vertex"):
+        find_branch(pattern, "+++", boundary_heights={0: 1})
     flat = {v: 2 * pattern.vertices[v][0] + 7 for v in pattern.boundary}
-    with pytest.raises(BadRimError, match="boundary is flat"):
-        find_branch(pattern, "+++", rim=flat)
+    with pytest.raises(BoundaryHeightsError, match="boundary is flat"):
+        find_branch(pattern, "+++", boundary_heights=flat)
     with pytest.raises(NotApplicableError, match="convex"):
-        find_branch(dart(), "+", rim=dict.fromkeys(dart().boundary, 1))
+        find_branch(dart(), "+", boundary_heights=dict.fromkeys(dart().boundary, 1))
 
 
 # --- how signs are given -------------------------------------------------------------------------

@@ -30,14 +30,14 @@ def test_two_vertices_with_more_degrees_of_freedom_are_graphs(corners):
     result = count_branches(pattern)
     assert (result.status, result.by) == (PROVED, "theorem")
     assert f"2^2 graphs over the rim heights, of dimension {corners - 3}" in result.reason
-    assert result.pieces.number == {5: 2, 6: 1}[corners]
+    assert result.connected_components.number == {5: 2, 6: 1}[corners]
     assert counts(result) == (None,) * 4
     assert result.proof is None
 
 
 def test_a_reflex_corner_of_a_sheet_with_more_degrees_of_freedom_is_undecided():
     result = count_branches(scrambled(1, DENTED, 2, loose=True))
-    assert (result.status, result.pieces) == (UNDECIDED, None)
+    assert (result.status, result.connected_components) == (UNDECIDED, None)
     assert "6 boundary vertices, so it has 3 degrees of freedom, and a reflex" in result.reason
     assert "the shapes over a rim need not be real" in result.reason
 
@@ -48,8 +48,12 @@ def test_chord_of_a_sheet_with_more_degrees_of_freedom_joins_everything():
     flap = CreasePattern([*inner.vertices, (7, 2)], [*inner.triangles, (1, 5, 2)])
     assert (flap.Ve, flap.chords) == (5, ((1, 2),))
     result = count_branches(flap)
-    assert (result.status, result.pieces.graphs, result.pieces.number) == (PROVED, 2, 1)
-    assert result.pieces.chord == (1, 2)
+    assert (
+        result.status,
+        result.connected_components.graphs,
+        result.connected_components.number,
+    ) == (PROVED, 2, 1)
+    assert result.connected_components.chord == (1, 2)
 
 
 def test_dimension_and_degree_of_sheets_with_more_freedom():

@@ -19,7 +19,7 @@ from exactfold.branches.certificates.single import branch_certificate
 from exactfold.branches.values.branch import Branch
 from exactfold.errors import (
     BadCurvatureError,
-    BadRimError,
+    BoundaryHeightsError,
     NotApplicableError,
     NotFollowedError,
 )
@@ -27,7 +27,7 @@ from exactfold.motion import follow
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.rigidity.equations.boundary_heights import (
     above_plane,
-    default_rim,
+    default_boundary_heights,
 )
 
 PENTAGON = [(0, 0), (10, -3), (16, 5), (9, 14), (-2, 9)]
@@ -51,18 +51,18 @@ def with_straight_corner(square: CreasePattern) -> tuple[CreasePattern, int]:
 
 def test_without_heights_the_border_is_that_of_a_saddle() -> None:
     found = find_branch(TWO, "+-")
-    rim = default_rim(TWO)
+    rim = default_boundary_heights(TWO)
     assert found.status is PROVED
-    assert found.rim == dict(sorted(rim.items()))
+    assert found.boundary_heights == dict(sorted(rim.items()))
     assert list(rim.values()).count(Fraction(0)) >= 3
     assert max(map(abs, rim.values())) == 1
     assert all(height.denominator in (1, 2, 4, 5, 10, 20, 25, 50, 100) for height in rim.values())
-    assert found == find_branch(TWO, "+-", rim=rim)
+    assert found == find_branch(TWO, "+-", boundary_heights=rim)
     assert checker.check(branch_certificate(found))["gauge"] == "rim"
     with pytest.raises(NotApplicableError, match="vertex 1 is reflex"):
-        default_rim(dart())
+        default_boundary_heights(dart())
     with pytest.raises(NotApplicableError, match="three boundary vertices"):
-        default_rim(wheel([(0, 0), (3, 0), (0, 3)], (1, 1)))
+        default_boundary_heights(wheel([(0, 0), (3, 0), (0, 3)], (1, 1)))
 
 
 def test_the_second_saddle_is_taken_where_the_first_is_flat_on_the_border() -> None:
@@ -72,7 +72,7 @@ def test_the_second_saddle_is_taken_where_the_first_is_flat_on_the_border() -> N
     first = {v: x * x + x * y - y * y for v, (x, y) in corners.items()}
     assert set(above_plane(pattern, first).values()) == {0}
     second = above_plane(pattern, {v: x * x - y * y for v, (x, y) in corners.items()})
-    assert default_rim(pattern) == {
+    assert default_boundary_heights(pattern) == {
         v: h / max(map(abs, second.values())) for v, h in second.items()
     }
 
@@ -82,7 +82,7 @@ def test_one_vertex_is_the_root_of_a_quadratic(sign: int) -> None:
     hub = 5
     rim = {v: Fraction(h, 7) for v, h in enumerate((3, -1, 0, 2, 5))}
     for deficit in (Fraction(0), Fraction(2, 3)):
-        found = find_branch(WHEEL, {hub: sign}, rim=rim, curvature={hub: deficit})
+        found = find_branch(WHEEL, {hub: sign}, boundary_heights=rim, curvature={hub: deficit})
         heights = {v: {**rim, hub: Fraction(v)} for v in (-1, 0, 1)}
         low, middle, high = (curvature(WHEEL, heights[v], hub) - deficit for v in (-1, 0, 1))
         a, b = float(high + low - 2 * middle) / 2, float(high - low) / 2
@@ -122,7 +122,7 @@ def test_all_solutions_that_newton_finds_are_the_proved_ones(
 ) -> None:
     rim = {v: Fraction((v * v) % 5, 2) for v in TWO.boundary}
     proved = [
-        find_branch(TWO, signs, rim=rim, curvature=deficits or None)
+        find_branch(TWO, signs, boundary_heights=rim, curvature=deficits or None)
         for signs in product((1, -1), repeat=2)
     ]
     floats = by_newton(TWO, rim, deficits)
@@ -145,42 +145,44 @@ def test_a_corner_on_a_straight_side_changes_nothing_if_it_stays_on_it() -> None
         plain = find_branch(square, signs)
         rim = {v: plain.centres[v] for v in square.boundary}
         on_line = rim | {new: (2 * rim[a] + rim[b]) / 3}
-        found = find_branch(pattern, signs, rim=on_line)
-        assert found.straight_border == (new,)
+        found = find_branch(pattern, signs, boundary_heights=on_line)
+        assert found.straight_boundary == (new,)
         for v in square.interior:
             assert abs(found.centres[v] - plain.centres[v]) <= plain.radius + found.radius
         for fold, letter in plain.assignment.items():
             assert found.assignment[fold] == letter
-        bent = find_branch(pattern, signs, rim=on_line | {new: on_line[new] + 1})
+        bent = find_branch(pattern, signs, boundary_heights=on_line | {new: on_line[new] + 1})
         [fold] = [fold for fold in pattern.folds if new in fold]
         assert bent.assignment[fold] == "M"  # the side bends like a mountain there
 
 
 def test_errors_of_heights_name_the_vertex() -> None:
     rim = dict.fromkeys(TWO.boundary, 0) | {0: 1}
-    with pytest.raises(BadRimError, match="boundary vertex 3 has no height") as missing:
-        find_branch(TWO, "++", rim={v: h for v, h in rim.items() if v != 3})
+    with pytest.raises(BoundaryHeightsError, match="boundary vertex 3 has no height") as missing:
+        find_branch(TWO, "++", boundary_heights={v: h for v, h in rim.items() if v != 3})
     assert missing.value.vertices == (3,)
-    with pytest.raises(BadRimError, match=r"^6 is not a boundary vertex") as inner:
-        find_branch(TWO, "++", rim=rim | {6: 0})
+    with pytest.raises(BoundaryHeightsError, match=r"^6 is not a boundary vertex") as inner:
+        find_branch(TWO, "++", boundary_heights=rim | {6: 0})
     assert inner.value.vertices == (6,)
-    with pytest.raises(BadRimError, match=r"height of vertex 2: the float 0\.5") as number:
-        find_branch(TWO, "++", rim=rim | {2: 0.5})
+    with pytest.raises(BoundaryHeightsError, match=r"height of vertex 2: the float 0\.5") as number:
+        find_branch(TWO, "++", boundary_heights=rim | {2: 0.5})
     assert number.value.vertices == (2,)
     level = {v: 3 * TWO.vertices[v][0] - TWO.vertices[v][1] for v in TWO.boundary}
-    with pytest.raises(BadRimError, match="the boundary is flat") as flat:
-        find_branch(TWO, "++", rim=level)
+    with pytest.raises(BoundaryHeightsError, match="the boundary is flat") as flat:
+        find_branch(TWO, "++", boundary_heights=level)
     assert flat.value.vertices == TWO.boundary
 
 
 def test_rims_are_followed_and_deficits_are_not() -> None:
-    assert follow(find_branch(TWO, "+-"), frames=2).rim == default_rim(TWO)
+    assert follow(find_branch(TWO, "+-"), frames=2).boundary_heights == default_boundary_heights(
+        TWO
+    )
     curved = find_branch("two-vertex", "+-", curvature={4: 1})
     with pytest.raises(NotFollowedError, match="angle deficits"):
         follow(curved)
     square = random_square(2, seed=1)
     rim = {v: Fraction(k in (0, 2)) for k, v in enumerate(square.boundary)}
-    assert follow(find_branch(square, "+-", rim=rim), frames=2).end == "flat-fold"
+    assert follow(find_branch(square, "+-", boundary_heights=rim), frames=2).end == "flat-fold"
 
 
 def test_pictures_show_it() -> None:
@@ -278,7 +280,7 @@ def test_errors_of_deficits_name_the_vertex() -> None:
         find_branch(TWO, "++", curvature={0: 1})
     with pytest.raises(BadCurvatureError, match="deficit of vertex 7: 'x'"):
         find_branch(TWO, "++", curvature={7: "x"})
-    with pytest.raises(BadRimError, match="the boundary is flat"):
+    with pytest.raises(BoundaryHeightsError, match="the boundary is flat"):
         find_branch(TWO, "++", curvature={})
     with pytest.raises(NotApplicableError, match="reflex"):
         find_branch(dart(), "+", curvature={4: 1})

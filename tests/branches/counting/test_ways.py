@@ -48,7 +48,7 @@ def test_convex_sheets_with_more_freedom_are_also_decomposed() -> None:
     assert found.families == decompose(panels(PENTAGON))
     assert dict(found.families.second_order) == {2: 2}
     assert found.to_dict()["components"]["second_order"] == {"2": 2}
-    assert (found.pieces.graphs, found.pieces.number) == (4, 2)
+    assert (found.connected_components.graphs, found.connected_components.number) == (4, 2)
 
 
 def test_sheets_with_more_freedom_and_a_reflex_corner_are_decomposed() -> None:

@@ -2,6 +2,7 @@
 
 import json
 from collections import Counter
+from dataclasses import replace
 from fractions import Fraction
 
 import pytest
@@ -137,6 +138,13 @@ def test_keys_of_the_json_are_fixed():
     }
     keys = {"vertex_signs", "assignment", "multiplicity", "representative", "heights"}
     assert set(data["branches"][0]) == keys
+
+
+@pytest.mark.parametrize("key", ["distinct", "with_multiplicity", "real", "nonreal"])
+def test_a_proved_count_without_its_numbers_is_a_defect(key):
+    found = count_branches(two_vertex())
+    with pytest.raises(ArithmeticError, match="numbers are missing"):
+        replace(found, **{key: None}).to_dict()
 
 
 def test_sign_vectors_take_opposite_ones_together():

@@ -9,7 +9,7 @@ from sheets import dart
 from exactfold import CreasePattern, random_square
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.branches import count_branches, find_branch
-from exactfold.design import Matched, match, nearest_branches, vertex_conflicts
+from exactfold.design import MatchedRay, match, nearest_branches, vertex_conflicts
 from exactfold.design.assignments import nearest
 from exactfold.design.assignments.conflicts import Clause, Stars, to_blame
 from exactfold.pattern import load
@@ -152,7 +152,7 @@ def test_letters_that_are_not_known_prove_nothing():
     assert nearest_branches(found).status is PROVED
     (signs, pair), *others = found.compared
     unknown = replace(pair[0].branch, assignment=dict.fromkeys(pattern.folds, "U"))
-    doubtful = (signs, (Matched(unknown, 1), pair[1]))
+    doubtful = (signs, (MatchedRay(unknown, 1), pair[1]))
     near = nearest_branches(replace(found, compared=(doubtful, *others)))
     assert (near.status, near.at_least, near.complete) == (UNDECIDED, 0, False)
     assert near.distance == 1

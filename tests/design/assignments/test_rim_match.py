@@ -12,7 +12,7 @@ from exactfold import CreasePattern, checker, delaunay
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED
 from exactfold.app.schemas import schema
 from exactfold.branches import find_branch
-from exactfold.design import all_assignments, match_certificate, match_panels, match_rim
+from exactfold.design import all_assignments, match_boundary, match_certificate, match_panels
 from exactfold.design.assignments.bend_program import BendProgram
 from exactfold.design.refutations.cone_program import ConeProgram
 from exactfold.design.refutations.refutation import Refutation
@@ -41,7 +41,7 @@ def checked(found):
 
 def compared(pattern, letters, occurs):
     """The answer, once it is that of the list, and its certificate is verified."""
-    found = match_rim(pattern, letters)
+    found = match_boundary(pattern, letters)
     assert found.starts is (PROVED if occurs else REFUTED)
     if occurs:
         assert found.branch.assignment_text == letters
@@ -83,7 +83,7 @@ def test_the_answers_are_those_of_longer_lists(seed):
 def test_what_no_cone_program_refutes_is_looked_up_in_the_list():
     pattern, letters = delaunay([*CORNERS, (2, 3), (7, 2), (8, 8)]), "VVMVVVVVMVM"
     assert letters not in all_assignments(pattern).assignments
-    found = match_rim(pattern, letters)
+    found = match_boundary(pattern, letters)
     assert (found.starts, found.listed, found.leaves, found.open_signs) == (REFUTED, True, 1, ())
     claims = checker.check(match_certificate(found))
     assert letters not in claims["assignments"]
@@ -94,17 +94,19 @@ def test_what_no_cone_program_refutes_is_looked_up_in_the_list():
 def test_letters_of_a_branch_and_what_differs_at_one_fold():
     rng = random.Random(2)
     signs = {v: rng.choice((1, -1)) for v in SEVEN.interior}
-    branch = find_branch(SEVEN, signs, rim={v: rng.randint(-9, 9) for v in SEVEN.boundary})
+    branch = find_branch(
+        SEVEN, signs, boundary_heights={v: rng.randint(-9, 9) for v in SEVEN.boundary}
+    )
     assert SEVEN.D == 4
     own = dict(branch.assignment)
     found = compared(SEVEN, branch.assignment_text, True)
-    assert set(found.branch.rim) == set(SEVEN.boundary)
+    assert set(found.branch.boundary_heights) == set(SEVEN.boundary)
     for fold in rng.sample(SEVEN.folds, 6):
-        flipped = match_rim(SEVEN, {**own, fold: TURNED[own[fold]]})
+        flipped = match_boundary(SEVEN, {**own, fold: TURNED[own[fold]]})
         if flipped.status is PROVED:
             checked(flipped)
     free = {fold: x for fold, x in own.items() if rng.random() < 0.6}
-    assert match_rim(SEVEN, free).starts is PROVED
+    assert match_boundary(SEVEN, free).starts is PROVED
 
 
 def test_letters_of_a_fold_from_border_to_border():
@@ -134,7 +136,7 @@ def test_programs_in_bends_refute_what_is_possible_elsewhere():
 
 
 def test_a_border_that_is_not_convex_is_refuted_or_open():
-    answers = {letters: match_rim(DENTED, letters) for letters in ("MMMMM", "MMMVV", "MMVMM")}
+    answers = {letters: match_boundary(DENTED, letters) for letters in ("MMMMM", "MMMVV", "MMVMM")}
     assert [found.starts for found in answers.values()] == [REFUTED, REFUTED, UNDECIDED]
     for found in answers.values():
         assert found.branch is None
@@ -149,25 +151,25 @@ def test_a_border_that_is_not_convex_is_refuted_or_open():
 def test_folds_that_stay_flat():
     """No rim is looked for: over rational rims folds are flat by chance only."""
     sheet = single_vertex(5)
-    assert match_rim(sheet, "FMMVM").starts is UNDECIDED
-    assert checked(match_rim(sheet, "FFFMV"))["letters"] == "FFFMV"
+    assert match_boundary(sheet, "FMMVM").starts is UNDECIDED
+    assert checked(match_boundary(sheet, "FFFMV"))["letters"] == "FFFMV"
 
 
 def test_how_many_sign_vectors_are_tried():
     letters = {SEVEN.folds[0]: "F", SEVEN.folds[1]: "M"}
     for most in (1, 3):
-        found = match_rim(SEVEN, letters, most=most)
+        found = match_boundary(SEVEN, letters, most=most)
         assert found.starts is UNDECIDED
         assert found.leaves <= most < len(found.open_signs) + 2
 
 
 def test_what_is_refused():
     with pytest.raises(NotCountedError, match="this sheet has 4"):
-        match_rim(random_square(2, seed=1), {})
+        match_boundary(random_square(2, seed=1), {})
     with pytest.raises(UsageError, match="1 letters for 5 folds"):
-        match_rim(single_vertex(5), "M")
+        match_boundary(single_vertex(5), "M")
     with pytest.raises(NotCountedError, match="no vertex of this sheet can pop"):
-        match_rim(CreasePattern(CORNERS, [(0, 1, 2), (0, 2, 3), (0, 3, 4)]), {})
+        match_boundary(CreasePattern(CORNERS, [(0, 1, 2), (0, 2, 3), (0, 3, 4)]), {})
 
 
 def test_the_command(tmp_path, monkeypatch):
@@ -185,7 +187,9 @@ def test_the_command(tmp_path, monkeypatch):
     )
     (match,) = data["matches"]
     signs = "".join("-0+"[s + 1] for s in match["vertex_signs"].values())
-    branch = find_branch(PENTAGON, signs, rim={int(v): h for v, h in match["rim"].items()})
+    branch = find_branch(
+        PENTAGON, signs, boundary_heights={int(v): h for v, h in match["rim"].items()}
+    )
     assert branch.assignment_text == occurring[0] == "".join(match["assignment"].values())
     assert run("check", "c.json").exit_code == 0
     no = run("match", "p.fold", "--letters", "M" * 8, "--json", "--certificate", "d.json")

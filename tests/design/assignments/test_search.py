@@ -310,7 +310,7 @@ def test_letters_of_a_rim_are_not_refuted(corners):
     for sign in (1, -1):
         for _ in range(8):
             rim = {v: Fraction(rng.randint(-50, 50)) for v in pattern.boundary}
-            branch = find_branch(pattern, {hub: sign}, rim=rim)
+            branch = find_branch(pattern, {hub: sign}, boundary_heights=rim)
             assert branch.status is PROVED
             letters = dict(branch.assignment)
             program = ConeProgram(pattern, letters)

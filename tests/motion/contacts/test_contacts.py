@@ -106,7 +106,7 @@ def test_the_event_in_floats_lies_in_the_enclosure(name):
     assert low <= float(contact.clear) < high < low * (1 + 1e-2)
     motion = follow(branch, side=1, frames=3)
     if motion.end == "node":
-        motion = follow(branch, through_nodes=True, frames=3)
+        motion = follow(branch, through_branch_points=True, frames=3)
     other = motion.events[-1]
     # The time of `follow` is the length with the same triangle held, of all coordinates.
     assert low * (1 - 1e-6) <= other.time[1]

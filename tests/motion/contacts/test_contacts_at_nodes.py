@@ -43,9 +43,9 @@ def test_the_contact_on_the_arc_is_that_on_tubes():
         "flat-fold",
         ((5, 8),),
     )
-    assert track.node.entry < contact.parameters[0] < contact.parameters[2] < 0
+    assert track.branch_point.entry < contact.parameters[0] < contact.parameters[2] < 0
     other, same = first_contact(find_branch(track.pattern, SIGNS))
-    assert other.node is None
+    assert other.branch_point is None
     assert same.event.folds == contact.event.folds
     low, high = contact.event.time
     first, last = same.event.time

@@ -36,12 +36,12 @@ RIM = {0: Fraction(1), 1: Fraction(-1, 2), 2: Fraction(1, 4), 3: Fraction(0), 4:
 
 @cache
 def pentagon(signs: str = "+-") -> Branch:
-    return find_branch(PENTAGON, signs, rim=RIM)
+    return find_branch(PENTAGON, signs, boundary_heights=RIM)
 
 
 def off_the_ratio(motion: Motion) -> float:
     """How far the heights of the border of any frame are from the span of rim, x, y and 1."""
-    pattern, rim = motion.pattern, motion.branch.rim
+    pattern, rim = motion.pattern, motion.branch.boundary_heights
     assert rim is not None
     columns = [[float(rim[v]), *map(float, pattern.vertices[v]), 1.0] for v in pattern.boundary]
     heights = motion.coords[:, list(pattern.boundary), 2].T
@@ -67,10 +67,10 @@ def test_lengths_are_kept_and_the_border_keeps_its_ratio(branch: Branch) -> None
 def test_only_the_direction_of_the_rim_matters() -> None:
     motion = follow(pentagon(), until="20deg", frames=3)
     tilted = {v: 3 * h + 2 * x - y + 5 for (v, h), (x, y) in zip(RIM.items(), CORNERS, strict=True)}
-    same = follow(find_branch(PENTAGON, "+-", rim=tilted), until="20deg", frames=3)
+    same = follow(find_branch(PENTAGON, "+-", boundary_heights=tilted), until="20deg", frames=3)
     assert np.abs(motion.coords - same.coords).max() < 1e-11
     # The opposite rim has the opposite branch: the motion is the mirror image of the other.
-    opposite = find_branch(PENTAGON, "-+", rim={v: -h for v, h in RIM.items()})
+    opposite = find_branch(PENTAGON, "-+", boundary_heights={v: -h for v, h in RIM.items()})
     turned = follow(opposite, until="20deg", frames=3)
     assert np.abs(motion.coords * (1, 1, -1) - turned.coords).max() < 1e-11
     back = follow(opposite, side=-1, until="20deg", frames=3)
@@ -82,7 +82,7 @@ def test_a_mirror_sheet_has_the_mirror_motion() -> None:
         [(-x, y) for x, y in PENTAGON.vertices], [(b, a, c) for a, b, c in PENTAGON.triangles]
     )
     one = follow(pentagon(), until="40deg", frames=3)
-    two = follow(find_branch(mirror, "+-", rim=RIM), until="40deg", frames=3)
+    two = follow(find_branch(mirror, "+-", boundary_heights=RIM), until="40deg", frames=3)
     assert set(one.pinned) == set(two.pinned)
     assert np.abs(one.coords * (-1, 1, 1) - two.coords).max() < 1e-11
 
@@ -91,9 +91,9 @@ def test_with_four_corners_a_rim_changes_nothing() -> None:
     pattern = families.two_vertex()
     plain = follow(find_branch(pattern, "+-"), until="40deg", frames=3)
     rim = {v: Fraction(7 * (v == 0)) for v in pattern.boundary}
-    given = follow(find_branch(pattern, "+-", rim=rim), until="40deg", frames=3)
+    given = follow(find_branch(pattern, "+-", boundary_heights=rim), until="40deg", frames=3)
     assert plain.curve.framework == given.curve.framework
-    assert given.rim is None
+    assert given.boundary_heights is None
     assert plain.end == given.end
     assert np.abs(plain.coords - given.coords).max() < 1e-11
 
@@ -101,7 +101,7 @@ def test_with_four_corners_a_rim_changes_nothing() -> None:
 @pytest.mark.parametrize("branch", [pentagon(), find_branch(OCTAGON, "-")])
 def test_ties_hold_for_the_rim_and_planes_only(branch: Branch) -> None:
     problem = problem_of(branch)
-    sheet, rim = problem.sheet, problem.gauge.rim
+    sheet, rim = problem.sheet, problem.gauge.boundary_heights
     ties = ties_of(problem)
     rows = [[Fraction(dict(tie).get(v, 0)) for v in sheet.boundary] for tie in ties]
     assert len(ties) == rank(rows) == sheet.Ve - 4
@@ -121,7 +121,7 @@ def test_near_the_flat_state_each_sign_vector_has_one_configuration() -> None:
     """Theorem 7 (c): random starts with a small factor end in 2^n configurations."""
     problem = problem_of(pentagon())
     framework = Framework.of(problem.sheet, None, ties_of(problem))
-    functional = factor_functional(problem.sheet, problem.gauge.rim)
+    functional = factor_functional(problem.sheet, problem.gauge.boundary_heights)
     row, size = np.zeros(framework.size), 0.02
     for k, v in enumerate(framework.free.tolist()):
         row[3 * k + 2] = functional.get(v, 0)
@@ -179,10 +179,12 @@ def test_a_node_is_proved() -> None:
     assert motion.end == "node"
     proof = prove(motion)
     assert proof.status is PROVED
-    assert proof.node is not None
+    assert proof.branch_point is not None
     assert proof.track.framework.ties
-    assert check(proof.certificate())["node"]["flat"] == list(proof.node.vertices)
-    assert_holds_the_node(proof.node.tube.patch, proof.node.tube.node, branch.rim)
+    assert check(proof.certificate())["node"]["flat"] == list(proof.branch_point.vertices)
+    assert_holds_the_node(
+        proof.branch_point.tube.patch, proof.branch_point.tube.branch_point, branch.boundary_heights
+    )
 
 
 @pytest.mark.slow
@@ -200,7 +202,7 @@ def test_a_return_is_proved() -> None:
     heights = motion.at(motion.duration * 0.999)[:, 2]
     row = vertex_sign_functional(branch.pattern, 5)
     assert proof.loop.target.vertex_signs[0] * sum(c * heights[v] for v, c in row.items()) > 0
-    lift = factor_functional(branch.pattern, branch.rim)
+    lift = factor_functional(branch.pattern, branch.boundary_heights)
     assert proof.loop.target.saddle * sum(float(c) * heights[v] for v, c in lift.items()) > 0
     certificate = proof.certificate()
     assert certificate is not None
@@ -228,6 +230,6 @@ def test_a_base_is_far_apart() -> None:
     squares = delaunay([(0, 0), (2, 0), (4, 0), (4, 4), (2, 4), (0, 4), (1, 2), (3, 1)])
     branch = find_branch(squares, "+-")
     problem = problem_of(branch)
-    base, raised = rim_path._base(problem.sheet, problem.gauge.rim)
+    base, raised = rim_path._base(problem.sheet, problem.gauge.boundary_heights)
     assert raised not in base
     assert off_the_ratio(follow(branch, until="30deg", frames=3)) < 1e-13

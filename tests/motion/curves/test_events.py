@@ -92,7 +92,7 @@ def test_a_fold_that_closes_has_180_degrees():
 @pytest.mark.parametrize("seed", range(2))
 def test_where_a_crease_turns_back_its_angle_is_extreme(seed):
     branch = find_branch(random_square(5, seed=seed), drawn_signs(5, seed))
-    motion = follow(branch, until="return", through_nodes=True, frames=5)
+    motion = follow(branch, until="return", through_branch_points=True, frames=5)
     turning = [event for event in motion.events if event.kind == "turning"]
     assert turning
     times, angles = motion.sampled(2000)
@@ -148,7 +148,7 @@ def test_nodes_stop_a_motion_unless_they_are_passed():
     star = [k for k, fold in enumerate(branch.pattern.folds) if vertex in fold]
     assert np.max(np.abs(motion.angles[-1, star])) < 1e-3
     assert np.max(np.abs(motion.angles[1, star])) > 1e-2
-    through = follow(branch, frames=3, through_nodes=True)
+    through = follow(branch, frames=3, through_branch_points=True)
     assert through.duration > motion.duration
     assert "node" in [event.kind for event in through.events]
 

@@ -20,7 +20,7 @@ from exactfold.errors import ForeignJournalError, NotCountedError, UsageError
 from exactfold.motion import find_loops
 from exactfold.motion.loops.file import LoopFile
 from exactfold.motion.loops.loops import LoopFinder
-from exactfold.motion.loops.rays import HalfBranch
+from exactfold.motion.loops.rays import Ray
 from exactfold.pattern import load, write_fold
 from exactfold.pattern.data import example_path
 from exactfold.rigidity.equations.problem import Problem
@@ -44,10 +44,10 @@ def loops_in(path):
     return [json.loads(body) for body in bodies if body.startswith('{"from"')]
 
 
-def half_branch(entry, pattern):
+def ray(entry, pattern):
     signs = dict(zip(pattern.interior, entry["vertex_signs"], strict=True))
     assert all((signs[v] == 0) == (v in pattern.rigid_vertices) for v in pattern.interior)
-    return HalfBranch(tuple(signs[v] for v in pattern.foldable_vertices), entry["side"])
+    return Ray(tuple(signs[v] for v in pattern.foldable_vertices), entry["side"])
 
 
 @pytest.mark.parametrize(
@@ -75,8 +75,8 @@ def test_what_is_written_verifies(pattern, tmp_path):
     written = loops_in(file)
     assert len(written) == len(found.loops)
     for entry, loop in zip(written, found.loops, strict=True):
-        assert half_branch(entry["from"], pattern) == loop.source
-        assert half_branch(entry["to"], pattern) == loop.target
+        assert ray(entry["from"], pattern) == loop.source
+        assert ray(entry["to"], pattern) == loop.target
         low, high = loop.length
         assert low * Fraction(97, 100) < Fraction(entry["length"]) <= high
     assert find_loops(pattern).loops == found.loops

@@ -21,20 +21,24 @@ from exactfold.motion.contacts.fold_ranges import SLACK, Stretch, angles_in, box
 from exactfold.motion.curves.framework import Framework
 from exactfold.motion.following import follow
 from exactfold.motion.loops import graph_building
-from exactfold.motion.loops.configuration_graph import ConfigurationGraph, GraphArc, NodeEnd
+from exactfold.motion.loops.configuration_graph import (
+    ConfigurationGraph,
+    EndAtBranchPoint,
+    GraphArc,
+)
 from exactfold.motion.loops.graph_building import graph_of
 from exactfold.motion.loops.loops import LoopFinder
 from exactfold.motion.loops.proofs import Loop
-from exactfold.motion.loops.rays import HalfBranch
+from exactfold.motion.loops.rays import Ray
 from exactfold.motion.tubes import visits
 from exactfold.motion.tubes.piece import Ball
-from exactfold.motion.tubes.visits import LocatedNode, crosses
+from exactfold.motion.tubes.visits import LocatedBranchPoint, crosses
 from exactfold.rigidity.equations.problem import Problem
 
 SHEET, SIGNS = random_square(4, seed=75), "++++"
 PROBLEM = Problem.of(SHEET)
 FRAMEWORK = Framework.of(PROBLEM.sheet)
-SOURCE, TARGET = HalfBranch((1,), 1), HalfBranch((1,), -1)
+SOURCE, TARGET = Ray((1,), 1), Ray((1,), -1)
 ONCE = Fraction(1), Fraction(1)
 
 
@@ -48,8 +52,8 @@ def loop() -> Loop:
 
 
 @cache
-def node() -> LocatedNode:
-    found = LocatedNode.of(FRAMEWORK, loop().visits[0])
+def node() -> LocatedBranchPoint:
+    found = LocatedBranchPoint.of(FRAMEWORK, loop().visits[0])
     assert found is not None
     return found
 
@@ -84,9 +88,12 @@ def test_a_loop_passes_one_node_on_both_of_its_lines():
 
 def test_what_is_not_certain_of_a_node_is_not_said():
     visit = loop().visits[0]
-    wide = replace(visit.node, radii=tuple(1 << visit.node.bits - 4 for _ in visit.node.radii))
-    assert node().meets(replace(visit, node=wide)) is None
-    assert LocatedNode.of(FRAMEWORK, replace(visit, node=wide)) is None
+    wide = replace(
+        visit.branch_point,
+        radii=tuple(1 << visit.branch_point.bits - 4 for _ in visit.branch_point.radii),
+    )
+    assert node().meets(replace(visit, branch_point=wide)) is None
+    assert LocatedBranchPoint.of(FRAMEWORK, replace(visit, branch_point=wide)) is None
     # The same place, with another star said to be flat.
     assert node().meets(replace(visit, flat=(visit.flat[0] + 1,))) is None
     vague = Ball(
@@ -95,7 +102,7 @@ def test_what_is_not_certain_of_a_node_is_not_said():
         tuple(1 << visit.direction.bits for _ in visit.direction.radii),
     )
     assert node().side(replace(visit, direction=vague)) is None
-    one_line = LocatedNode(node().point, node().lines[:1])
+    one_line = LocatedBranchPoint(node().point, node().lines[:1])
     assert not one_line.has_all_lines
     assert one_line.side(visit) is None
 
@@ -189,7 +196,7 @@ def test_lines_that_are_missing_and_nodes_that_are_not_located_are_said(monkeypa
     assert "not all curves" in found.reason
     assert [node.curves for node in found.nodes] == [1, 1]
     assert all(arc.status is UNDECIDED and arc.reason for arc in found.arcs)
-    monkeypatch.setattr(graph_building.LocatedNode, "of", lambda *_: None)
+    monkeypatch.setattr(graph_building.LocatedBranchPoint, "of", lambda *_: None)
     found = graph_of(PROBLEM, [loop()], "", process_pool(1))
     assert found.nodes == ()
     assert "could not be located" in found.reason
@@ -232,15 +239,15 @@ def arc(start, end):
 def test_closed_curves_go_straight_on():
     """An eight through the flat state, and a ring through both of its nodes."""
     arcs = (
-        arc(SOURCE, NodeEnd(0, 0, 1)),
-        arc(NodeEnd(0, 0, -1), TARGET),
-        arc(NodeEnd(0, 1, 1), NodeEnd(1, 0, -1)),
-        arc(NodeEnd(0, 1, -1), NodeEnd(1, 0, 1)),
-        arc(NodeEnd(1, 1, 1), NodeEnd(1, 1, -1)),
+        arc(SOURCE, EndAtBranchPoint(0, 0, 1)),
+        arc(EndAtBranchPoint(0, 0, -1), TARGET),
+        arc(EndAtBranchPoint(0, 1, 1), EndAtBranchPoint(1, 0, -1)),
+        arc(EndAtBranchPoint(0, 1, -1), EndAtBranchPoint(1, 0, 1)),
+        arc(EndAtBranchPoint(1, 1, 1), EndAtBranchPoint(1, 1, -1)),
     )
     graph = ConfigurationGraph((), arcs, PROVED, "")
     assert graph.closed_curves == ((2, 3), (4,))
-    cut = ConfigurationGraph((), (*arcs[:3], arc(NodeEnd(0, 1, -1), None)), PROVED, "")
+    cut = ConfigurationGraph((), (*arcs[:3], arc(EndAtBranchPoint(0, 1, -1), None)), PROVED, "")
     assert cut.closed_curves == ()
 
 

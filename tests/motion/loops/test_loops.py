@@ -17,8 +17,8 @@ from exactfold.motion.curves.framework import Framework
 from exactfold.motion.following import follow
 from exactfold.motion.loops.loops import LoopFinder
 from exactfold.motion.loops.matching import _matching
-from exactfold.motion.loops.rays import HalfBranch
-from exactfold.motion.tubes.branch_point_tube import prove_node_tube
+from exactfold.motion.loops.rays import Ray
+from exactfold.motion.tubes.branch_point_tube import prove_branch_point_tube
 from exactfold.motion.tubes.flat_patches import FlatPatch
 from exactfold.motion.tubes.passages import Passage
 from exactfold.motion.tubes.piece import PARAMETER_BITS
@@ -94,7 +94,7 @@ def test_the_loop_in_floats_ends_at_the_proved_half_branch():
     pattern = random_square(3, seed=1)
     branch = find_branch(pattern, "+--")
     loop = LoopFinder(Problem.of(pattern)).follow(branch).loop
-    motion = follow(branch, until="return", through_nodes=True)
+    motion = follow(branch, until="return", through_branch_points=True)
     low, high = loop.length
     assert low <= Fraction(motion.duration) <= high
     near = motion.at(motion.duration * 0.999)
@@ -126,7 +126,7 @@ def passage():
 
 
 def test_a_node_holds_the_configuration_with_60_digits(passage):
-    assert_holds_the_node(passage.tube.patch, passage.tube.node)
+    assert_holds_the_node(passage.tube.patch, passage.tube.branch_point)
 
 
 def test_an_arc_through_a_node_keeps_all_lengths(passage):
@@ -145,7 +145,7 @@ def test_an_arc_through_a_node_keeps_all_lengths(passage):
 def test_the_law_of_parity_needs_nothing_more_at_a_proved_node(passage):
     """Theorem 1a of docs/matching.md in floats: corank f, and the star's form is not 0 there."""
     tube = passage.tube
-    framework, x = tube.framework, tube.node.floats[0]
+    framework, x = tube.framework, tube.branch_point.floats[0]
     _, sizes, right = np.linalg.svd(framework.jacobian(x).toarray())
     assert (sizes < 1e-9).tolist() == [False] * (len(sizes) - 1) + [True]
     kernel = right[len(sizes) - 1 :]
@@ -166,7 +166,7 @@ def test_a_loop_against_the_law_of_parity_is_a_defect():
     loop = find_loops(random_square(1, seed=0)).loops[0]
     assert _matching([loop]) == [loop]
     signs, saddle = loop.target.vertex_signs, loop.target.saddle
-    turned = HalfBranch(tuple(-s for s in signs), saddle)
+    turned = Ray(tuple(-s for s in signs), saddle)
     for lie in (replace(loop, target=turned), replace(loop, through=((4,),))):
         with pytest.raises(ArithmeticError, match="contradicts the law of parity"):
             _matching([lie])
@@ -177,7 +177,7 @@ def test_the_other_arc_through_a_node_has_another_direction(passage):
     """The kernel of the Jacobian at the node is a plane; two lines of it are tangent to arcs."""
     tube = passage.tube
     framework = tube.framework
-    node = tube.node.floats[0]
+    node = tube.branch_point.floats[0]
     jacobian = framework.jacobian(node).toarray()
     _, sizes, rows = np.linalg.svd(jacobian)
     assert sizes[-1] < 1e-12 < 1e-4 < sizes[-2]
@@ -187,7 +187,7 @@ def test_the_other_arc_through_a_node_has_another_direction(passage):
     found = []
     for angle in np.linspace(0, np.pi, 40, endpoint=False):
         along = np.cos(angle) * plane[0] + np.sin(angle) * plane[1]
-        arc = prove_node_tube(framework, tube.patch, node, along)
+        arc = prove_branch_point_tube(framework, tube.patch, node, along)
         if arc is not None:
             found.append(arc.ball_velocity(0).floats[0])
     lines = [v / np.linalg.norm(v) for v in found]
@@ -217,7 +217,7 @@ def test_nodes_are_found_from_a_distance(passage):
     )
     assert crossing is not None
     assert flat_vertices(framework, crossing[0]) == (9,)
-    assert np.abs(crossing[0] - passage.tube.node.floats[0]).max() < 1e-6
+    assert np.abs(crossing[0] - passage.tube.branch_point.floats[0]).max() < 1e-6
 
 
 def test_a_reflex_corner_hides_no_half_branch():

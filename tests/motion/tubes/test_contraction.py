@@ -21,7 +21,7 @@ from exactfold.motion.tubes.contraction import (
     polynomial,
 )
 from exactfold.motion.tubes.length_equations import LengthEquations, squared
-from exactfold.motion.tubes.tracks import follow_proved, half_branch
+from exactfold.motion.tubes.tracks import follow_proved, ray
 from exactfold.motion.tubes.tube import _bounds, _residuals
 from exactfold.pattern.random_squares import random_square
 
@@ -233,7 +233,7 @@ def test_the_scale_leaves_room() -> None:
 def test_integers_on_both_sides_of_a_machine_word() -> None:
     """Bounds of the start of these half-branches are below and above 2^63 in one array."""
     for signs in ("-+-+", "----"):
-        start = half_branch(find_branch(random_square(4, seed=0), signs)).start
+        start = ray(find_branch(random_square(4, seed=0), signs)).start
         assert all(type(x) is int for x in start.contraction.slope)
 
 

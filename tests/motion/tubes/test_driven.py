@@ -18,7 +18,7 @@ from exactfold.branches import find_branch
 from exactfold.checker import check, summary
 from exactfold.errors import BadDriveError, NotFollowedError
 from exactfold.motion import Motion, find_driven, follow, prove
-from exactfold.motion.curves.drive import Drive
+from exactfold.motion.curves.drive import PrescribedAngles
 from exactfold.motion.tubes.driven import Driven, off_the_ratio
 from exactfold.motion.tubes.tracks import follow_proved
 from exactfold.pattern import families
@@ -129,9 +129,11 @@ def test_a_fold_without_an_angle_goes_along_as_on_the_branch() -> None:
         3: Fraction(0),
         4: Fraction(1, 10),
     }
-    branch = find_branch(PENTAGON, "+-", rim=rim)
+    branch = find_branch(PENTAGON, "+-", boundary_heights=rim)
     angles = branch.fold_angles.degrees(1.0)
-    driven = find_driven(PENTAGON, {(1, 6): None, (2, 6): 50 * angles[2, 6]}, "+-", rim=rim)
+    driven = find_driven(
+        PENTAGON, {(1, 6): None, (2, 6): 50 * angles[2, 6]}, "+-", boundary_heights=rim
+    )
     first, second = driven.drive.sines
     assert first / second == pytest.approx(angles[1, 6] / angles[2, 6], rel=1e-4)
     free = find_driven(PENTAGON, {(1, 6): None, (2, 6): None}, signs)
@@ -186,9 +188,9 @@ def test_a_ratio_that_is_not_met() -> None:
         find_driven(PENTAGON, {(1, 5): 90, (2, 6): -45}, "+-")
     assert caught.value.folds == ((1, 5), (2, 6))
     with pytest.raises(BadDriveError, match="have to start in the ratio"):
-        follow(find_branch(PENTAGON, "+-"), drive=Drive.of(ANGLES))
+        follow(find_branch(PENTAGON, "+-"), drive=PrescribedAngles.of(ANGLES))
     with pytest.raises(BadDriveError, match="there is no fold 0-6"):
-        follow(find_branch(PENTAGON, "+-"), drive=Drive.of({(0, 6): 3, (2, 6): 3}))
+        follow(find_branch(PENTAGON, "+-"), drive=PrescribedAngles.of({(0, 6): 3, (2, 6): 3}))
 
 
 def test_at_a_dead_point_the_drive_ends() -> None:
@@ -233,7 +235,7 @@ def test_folds_pass_their_goals_only_if_that_is_certain() -> None:
         points[wing][2] = Fraction(float(np.linalg.norm(across) * np.sin(turn)))
 
     def passed(factor: float, radius: Fraction = Fraction(0), up: bool = False) -> bool:
-        drive = Drive.of({f: (abs(a) if up else a) * factor for f, a in goals.items()})
+        drive = PrescribedAngles.of({f: (abs(a) if up else a) * factor for f, a in goals.items()})
         return drive.passed(PENTAGON, range(len(points)), points, radius)
 
     assert passed(1)
@@ -253,7 +255,7 @@ def test_folds_pass_their_goals_only_if_that_is_certain() -> None:
 )
 def test_an_angle_that_is_no_goal(angle: float, why: str) -> None:
     with pytest.raises(BadDriveError) as caught:
-        Drive.of({(1, 5): angle})
+        PrescribedAngles.of({(1, 5): angle})
     assert str(caught.value) == f"fold 1-5 cannot be driven to {angle:g} degrees: {why}"
 
 
@@ -285,7 +287,7 @@ def test_at_one_vertex_the_solutions_are_those_of_a_quadratic_equation(seed: int
     hub, folds = star.interior[0], star.folds
     chosen = sorted(random.choice(len(folds), len(folds) - 3, replace=False).tolist())
     angles = {folds[k]: float(random.choice([-1, 1]) * random.integers(20, 150)) for k in chosen}
-    drive = Drive.of(angles)
+    drive = PrescribedAngles.of(angles)
     spokes = np.array([[float(c) for c in star.vertices[v]] for v in star.star(hub)])
     rows = np.zeros((len(spokes), len(spokes)))  # first-order angles, the hub at height 0
     for k in range(len(spokes)):

@@ -64,7 +64,7 @@ def test_a_motion_to_a_node_is_proved_and_clear_up_to_it(motion, proof):
 
 
 def test_the_last_frame_is_the_node(motion, proof):
-    bounds, node = proof.motion.bounds, proof.track.node
+    bounds, node = proof.motion.bounds, proof.track.branch_point
     assert max(bounds.radii) < 1e-15
     assert bounds.times[-1][0] <= motion.duration <= bounds.times[-1][1]
     last = proof.track.frame(float_bounds(proof.length[1])[0])
@@ -79,7 +79,7 @@ def test_the_last_frame_is_the_node(motion, proof):
 
 def test_frames_on_the_arc(proof):
     track = proof.track
-    node, unit = track.node, track.framework.unit
+    node, unit = track.branch_point, track.framework.unit
     times = np.linspace(float(node.entered[1] * unit), float(node.left[0] * unit), 7)
     frames = track.frames(list(times))
     for frame, time in zip(frames, times, strict=True):
@@ -93,33 +93,33 @@ def test_frames_on_the_arc(proof):
 
 def test_the_mirror_image_ends_at_the_mirrored_node(proof):
     other = follow_proved(find_branch(SHEET, SIGNS), -1)
-    node, image = proof.track.node, other.node
+    node, image = proof.track.branch_point, other.branch_point
     assert image.vertices == node.vertices == (FLAT,)
     assert other.status is PROVED
-    mirrored = node.tube.node.mirrored
-    assert not image.tube.node.misses(mirrored)
-    assert image.tube.node.misses(node.tube.node)
+    mirrored = node.tube.branch_point.mirrored
+    assert not image.tube.branch_point.misses(mirrored)
+    assert image.tube.branch_point.misses(node.tube.branch_point)
     point = node.tube.patch.point(mirrored.floats[0], mirrored.bits)
     assert point.is_in(mirrored)
-    assert point.is_in(image.tube.node)
+    assert point.is_in(image.tube.branch_point)
 
 
 @pytest.mark.slow
 def test_a_track_to_a_time_ends_there_or_at_the_node(proof):
     branch = find_branch(SHEET, SIGNS)
     before = follow_proved(branch, until=0.4)
-    assert (before.status, before.node) == (PROVED, None)
+    assert (before.status, before.branch_point) == (PROVED, None)
     track = follow_proved(branch, until=0.51)
-    assert (track.status, track.node.vertices) == (UNDECIDED, (FLAT,))
+    assert (track.status, track.branch_point.vertices) == (UNDECIDED, (FLAT,))
     assert track.reason == "a node, where vertex 6 is flat and another curve crosses"
     assert track.length == proof.length
 
 
 @pytest.mark.slow
 def test_a_motion_that_passes_a_node_is_proved_beyond_it(proof):
-    motion = follow(find_branch(SHEET, SIGNS), until=0.6, through_nodes=True, frames=7)
+    motion = follow(find_branch(SHEET, SIGNS), until=0.6, through_branch_points=True, frames=7)
     passing = prove(motion)
-    assert (passing.status, passing.node, passing.end_text) == (PROVED, None, "")
+    assert (passing.status, passing.branch_point, passing.end_text) == (PROVED, None, "")
     [node] = passing.through
     assert node.vertices == (FLAT,)
     assert passing.clear_to_the_end
@@ -128,7 +128,7 @@ def test_a_motion_that_passes_a_node_is_proved_beyond_it(proof):
     assert passing.to_dict()["through"] == [{"flat": [FLAT], "time": [time, time]}]
     told = f"one curve without a gap, 5 tubes, {passing.through_text}; no two faces touch on it"
     assert told in shown(passing)
-    whole = {**passing.motion.report(), "proof": passing.to_dict()}
+    whole = {**passing.motion.to_dict(), "proof": passing.to_dict()}
     jsonschema.validate(whole, schema("motion"))
     claims = checker.check(passing.certificate())
     assert claims["through"] == [[FLAT]]
@@ -171,7 +171,9 @@ def test_faces_that_are_not_parted_on_the_arc_are_named(motion, proof, monkeypat
         f"proved {proof.end_text}, but faces {names} are not proved to stay apart"
     )
     assert not undecided.clear_to_the_end
-    assert proof.track.node.entered[0] < undecided.contact.clear / 2 < proof.contact.clear / 2
+    assert (
+        proof.track.branch_point.entered[0] < undecided.contact.clear / 2 < proof.contact.clear / 2
+    )
     claims = checker.check(undecided.certificate())
     assert claims["node"] == {"flat": [FLAT], "clear": False}
     # Nor where the last tube is not clear up to the arc.
@@ -197,7 +199,7 @@ def test_a_node_that_is_not_found_is_not_claimed(motion, monkeypatch):
         "the lengths of edges between vertices 2, 3, 4, 5 and 6 come to "
     )
     assert proof.reason.endswith("; floats see a node at the time 0.500686, which is not proved")
-    assert proof.node is None
+    assert proof.branch_point is None
     assert proof.may_succeed_otherwise
     monkeypatch.setattr(proving, "_FARTHER", -1 / 2)
     assert prove(motion).reason == "no node was met where floats see one"
@@ -220,7 +222,7 @@ def test_what_is_said_of_a_node(proof, monkeypatch):
     monkeypatch.setattr(ways, "prove", lambda motion: passed)
     assert "touch" not in ways._proof(proof.motion).said
     for one in (proof, passed):
-        jsonschema.validate({**one.motion.report(), "proof": one.to_dict()}, schema("motion"))
+        jsonschema.validate({**one.motion.to_dict(), "proof": one.to_dict()}, schema("motion"))
 
 
 @pytest.mark.slow
@@ -229,13 +231,13 @@ def test_a_node_with_two_flat_vertices_after_a_contact():
     assert motion.end == "node"
     proof = prove(motion)
     assert proof.status is PROVED
-    assert proof.node.vertices == (5, 7)
+    assert proof.branch_point.vertices == (5, 7)
     assert proof.passed
     assert proof.end_text.endswith("where the vertices 5 and 7 are flat and other curves may cross")
     assert proof.contact.event.time[1] < float(proof.length[0])
     assert proof.to_dict()["node"]["clear"] is False
     assert_holds_the_node(
-        proof.node.tube.patch, proof.track.frame(float_bounds(proof.length[1])[0]).ball
+        proof.branch_point.tube.patch, proof.track.frame(float_bounds(proof.length[1])[0]).ball
     )
 
 
@@ -248,6 +250,6 @@ def test_all_branches_of_a_square_that_end_at_a_node():
             proof = prove(motion)
             assert proof.status is PROVED, proof.reason
             assert checker.check(proof.certificate())["node"]["clear"] is True
-            found.append(proof.node.vertices)
+            found.append(proof.branch_point.vertices)
     assert len(found) == 26
     assert set(found) == {(9,), (11,)}

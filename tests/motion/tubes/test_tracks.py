@@ -22,7 +22,7 @@ from exactfold.branches.counting.find import find_branch
 from exactfold.errors import FlatVertexError, UsageError
 from exactfold.motion.curves.angles import fold_angles_of
 from exactfold.motion.tubes.piece import PARAMETER_BITS, Ball
-from exactfold.motion.tubes.tracks import Track, follow_proved, half_branch
+from exactfold.motion.tubes.tracks import Track, follow_proved, ray
 from exactfold.motion.tubes.tube import prove_tube, sharpened
 from exactfold.motion.tubes.tube_start import ROOT_BITS
 from exactfold.pattern.crease_pattern import CreasePattern
@@ -36,7 +36,7 @@ def signs(n: int, seed: int) -> str:
 
 def goal(pattern: CreasePattern, text: str, times: float = 1.6) -> float:
     """A length some times that of the start tube."""
-    half = half_branch(find_branch(pattern, text))
+    half = ray(find_branch(pattern, text))
     return float(half.length[0]) * times
 
 
@@ -202,12 +202,12 @@ def test_where_there_is_no_curve_there_is_no_tube(track: Track) -> None:
 def test_a_track_is_that_of_its_branch(name: str) -> None:
     pattern, text = SHEETS[name]
     branch = find_branch(pattern, text)
-    track = half_branch(branch)
+    track = ray(branch)
     assert track.vertex_signs == {
         v: s for v, s in branch.vertex_signs.items() if v not in pattern.rigid_vertices
     }
     assert track.side == 1
-    other = half_branch(branch, -1)
+    other = ray(branch, -1)
     assert other.vertex_signs == {v: -s for v, s in track.vertex_signs.items()}
     assert other.side == -1
     assert (track.corner is None) == pattern.is_convex
@@ -328,7 +328,7 @@ def test_at_the_flat_state_a_track_is_undecided() -> None:
     end = track.links[-1].tube.enclosure(track.links[-1].exit).floats[0]
     assert np.abs(end).max() < 0.05
     # It is no node, although all stars are flat there.
-    on = follow_proved(find_branch(random_square(2, seed=1), "++"), through_nodes=True)
+    on = follow_proved(find_branch(random_square(2, seed=1), "++"), through_branch_points=True)
     assert (on.status, on.reason, on.through) == (UNDECIDED, track.reason, ())
 
 
@@ -343,7 +343,7 @@ def test_the_return_to_the_flat_state_is_proved() -> None:
     """A point of exactly one other half-branch lies in a tube of the track, which comes back."""
     pattern = random_square(2, seed=1)
     branches = [find_branch(pattern, text) for text in ("++", "+-", "-+", "--")]
-    halves = [half_branch(branch, side) for branch in branches for side in (1, -1)]
+    halves = [ray(branch, side) for branch in branches for side in (1, -1)]
     ends = []
     for half in halves:
         # Nearer to the flat state than the tubes of the track reach at first.
@@ -366,12 +366,12 @@ def test_flat_vertices_and_unproved_branches_are_refused() -> None:
     branches = [find_branch(pattern, text) for text in ("++", "+-", "-+", "--")]
     flat = next(b for b in branches if 0 in b.vertex_signs.values())
     with pytest.raises(FlatVertexError, match="stays flat on this branch"):
-        half_branch(flat)
+        ray(flat)
     branch = find_branch(single_vertex(4), "+")
     with pytest.raises(UsageError, match="the side is 0"):
-        half_branch(branch, 0)
+        ray(branch, 0)
     with pytest.raises(UsageError, match="proved from a proved branch"):
-        half_branch(replace(branch, status=UNDECIDED))
+        ray(replace(branch, status=UNDECIDED))
 
 
 def test_times_that_are_not_reached_are_refused() -> None:
@@ -404,6 +404,6 @@ def test_tracks_pickle_and_copy(track: Track) -> None:
 
 
 def test_the_start_tube_is_left_within_its_reach() -> None:
-    start = half_branch(find_branch(random_square(1, seed=0), "+")).start
+    start = ray(find_branch(random_square(1, seed=0), "+")).start
     assert start.last**2 <= start.longest
     assert start.last % (1 << ROOT_BITS - 8) == 0

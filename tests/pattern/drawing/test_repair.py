@@ -318,7 +318,7 @@ def test_a_bird_base_of_whole_creases_is_exact():
     assert made.coordinates.radicand == 2
     assert made.coordinates.kept == ()
     assert area(sheet) == 1
-    assert set(found.border_edges) == {
+    assert set(found.boundary_edges) == {
         tuple(sorted(line[:2])) for line in sheet.lines if line.letter == "B"
     }
     # The creases from opposite corners meet on the diagonal x + y = 1, in x = 1/(1 + t).

@@ -15,7 +15,7 @@ from exactfold.branches.counting.find import BranchFinder
 from exactfold.pattern.random_squares import random_square
 from exactfold.rigidity.equations.gauge import Gauge
 from exactfold.rigidity.equations.problem import Problem
-from exactfold.rigidity.equations.sheet import Sheet
+from exactfold.rigidity.equations.sheet import VertexEquations
 from exactfold.rigidity.functionals import fold_functional, vertex_sign_functional
 from exactfold.solve.certify.enclosure import (
     Enclosure,
@@ -37,7 +37,7 @@ SHEETS = {
 }
 
 
-def proposal(sheet: Sheet, signs: str, level: int) -> Heights:
+def proposal(sheet: VertexEquations, signs: str, level: int) -> Heights:
     floats = FloatSheet.of(sheet)
     e = np.array([1.0 if s == "+" else -1.0 for s in signs])
     end = solve(floats, e)
@@ -53,7 +53,7 @@ def fractions(found: Heights) -> dict[int, Fraction]:
 
 @pytest.mark.parametrize("name", SHEETS)
 def test_folds_give_the_curvature_forms(name: str) -> None:
-    sheet = Sheet(Problem.of(SHEETS[name]))
+    sheet = VertexEquations(Problem.of(SHEETS[name]))
     pattern, folds = sheet.pattern, sheet.folds
     source = random.Random(5)
     values = [source.randint(-99, 99) for _ in pattern.vertices]
@@ -74,7 +74,7 @@ def test_folds_give_the_curvature_forms(name: str) -> None:
 
 @pytest.mark.parametrize("name", SHEETS)
 def test_a_proof_holds_by_the_definitions(name: str) -> None:
-    sheet = Sheet(Problem.of(SHEETS[name]))
+    sheet = VertexEquations(Problem.of(SHEETS[name]))
     signs = "".join("+-"[k % 2] for k in range(len(sheet.poppable)))
     if sheet.corner is not None:
         signs = "".join(
@@ -96,7 +96,7 @@ def test_a_proof_holds_by_the_definitions(name: str) -> None:
 @pytest.mark.parametrize("name", SHEETS)
 @pytest.mark.parametrize("level", [6, 12, 24])
 def test_the_distance_is_bounded_and_not_much_too_large(name: str, level: int) -> None:
-    sheet = Sheet(Problem.of(SHEETS[name]))
+    sheet = VertexEquations(Problem.of(SHEETS[name]))
     signs = "+" * len(sheet.unknowns)
     rough, fine = proposal(sheet, signs, level), proposal(sheet, signs, 200)
     proof = enclose(sheet, rough.values, rough.denominator, rough.bits)
@@ -115,7 +115,7 @@ def test_the_distance_is_bounded_and_not_much_too_large(name: str, level: int) -
 
 
 def test_a_rough_bound_leaves_letters_open() -> None:
-    sheet = Sheet(Problem.of(SHEETS["random"]))
+    sheet = VertexEquations(Problem.of(SHEETS["random"]))
     found = proposal(sheet, "+-+-+-", 3)
     proof = enclose(sheet, found.values, found.denominator, found.bits)
     assert isinstance(proof, Enclosure)
@@ -124,7 +124,7 @@ def test_a_rough_bound_leaves_letters_open() -> None:
 
 def test_the_inequality_for_any_two_sheets_in_the_same_nappes() -> None:
     # Theorem 5 (a) with targets other than zero, in exact arithmetic.
-    sheet = Sheet(Problem.of(SHEETS["thin"]))
+    sheet = VertexEquations(Problem.of(SHEETS["thin"]))
     pattern = sheet.pattern
     points, denominator = pattern.integer_vertices
     radius = 2 * max(x * x + y * y for x, y in points)
@@ -143,7 +143,7 @@ def test_the_inequality_for_any_two_sheets_in_the_same_nappes() -> None:
 
 
 def test_a_vertex_of_negative_curvature_is_named() -> None:
-    sheet = Sheet(Problem.of(SHEETS["random"]))
+    sheet = VertexEquations(Problem.of(SHEETS["random"]))
     found = proposal(sheet, "+-+-+-", 80)
     v = sheet.unknowns[2]
     values = found.values.copy()
@@ -158,15 +158,15 @@ def test_a_vertex_of_negative_curvature_is_named() -> None:
 
 def test_curvature_zero_does_not_pass() -> None:
     # A sheet that is flat but for one corner has K = 0 at almost every vertex.
-    sheet = Sheet(Problem.of(SHEETS["random"]))
+    sheet = VertexEquations(Problem.of(SHEETS["random"]))
     flat = np.array([0] * len(sheet.pattern.vertices), dtype=object)
-    for v, height in sheet.rim.items():
+    for v, height in sheet.boundary_heights.items():
         flat[v] = height
-    assert isinstance(enclose(sheet, flat, sheet.rim_denominator, 8), tuple)
+    assert isinstance(enclose(sheet, flat, sheet.boundary_denominator, 8), tuple)
 
 
 def test_another_rim_is_refused() -> None:
-    sheet = Sheet(Problem.of(SHEETS["random"]))
+    sheet = VertexEquations(Problem.of(SHEETS["random"]))
     found = proposal(sheet, "+-+-+-", 80)
     for v in sheet.pattern.boundary:
         values = found.values.copy()
@@ -178,7 +178,7 @@ def test_another_rim_is_refused() -> None:
 def test_a_boundary_that_is_not_convex_is_refused() -> None:
     pattern = dart()
     flat = Gauge("rim", pattern, dict.fromkeys(pattern.boundary, Fraction(0)))
-    sheet = Sheet(Problem(pattern, pattern, tuple(range(5)), flat))
+    sheet = VertexEquations(Problem(pattern, pattern, tuple(range(5)), flat))
     with pytest.raises(ValueError, match="convex"):
         enclose(sheet, np.array([0] * 5, dtype=object), 1, 8)
 
@@ -207,7 +207,7 @@ def test_a_large_sheet_by_the_definitions() -> None:
 @pytest.mark.parametrize("name", SHEETS)
 def test_the_radius_is_the_longest_shortest_path_from_the_rim(name: str) -> None:
     """Against NetworkX, on costs from exact squared lengths and areas."""
-    sheet = Sheet(Problem.of(SHEETS[name]))
+    sheet = VertexEquations(Problem.of(SHEETS[name]))
     points = sheet.pattern.integer_vertices[0]
     graph = nx.Graph()
     for (i, j), left, right in zip(

@@ -126,7 +126,7 @@ def test_the_square_of_the_line_less_the_squares_is_the_curvature(name: str) -> 
     system = NappeSystem(chamber_chart(PATTERNS[name]))
     sheet, gauge = system.gauge.sheet, system.gauge
     x = [Fraction(k * k + 1, k + 2) for k in range(len(gauge.unknowns))]
-    heights = {**gauge.rim, **dict(zip(gauge.unknowns, x, strict=True))}
+    heights = {**gauge.boundary_heights, **dict(zip(gauge.unknowns, x, strict=True))}
     for v, nappe in zip(gauge.unknowns, system.nappes, strict=True):
         cone, form = round_cone(sheet, v), curvature_form(sheet, v)
         star = {u: heights[u] for u in form.labels}

@@ -11,7 +11,7 @@ from fractions import Fraction
 from ...core.reading import items, keys, natural, parse_rational, require, rounded
 from ..claims import Document
 from ..lengths import GRID
-from .drive import Drive
+from .drive import DrivenModes
 from .folding import Folding, PanelClaim, from_least
 from .places import Piece
 from .times import Clock, time_of
@@ -132,7 +132,7 @@ def _check_crossing(folding: Folding, end: Fraction, claim: Document) -> None:
     require(through, "no side runs through the other panel")
 
 
-def _check_closing(drive: Drive, clock: Clock, claim: Document) -> None:
+def _check_closing(drive: DrivenModes, clock: Clock, claim: Document) -> None:
     """The folds named are closed when the drivers are; some fold is by then, in any motion."""
     require(claim["faces"] == [], "folds that close have no faces")
     folds = [

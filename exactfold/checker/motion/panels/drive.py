@@ -48,7 +48,7 @@ class Mode:
         return {self.driver} | {pair(v, u) for v, around in self.near.items() for u in around}
 
 
-class Drive:
+class DrivenModes:
     """The modes that fold, verified; all their fold angles follow from those of the drivers."""
 
     def __init__(self, sheet: PanelSheet, letters: Any, drivers: Any, vertices: Any) -> None:

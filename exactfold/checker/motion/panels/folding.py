@@ -11,7 +11,7 @@ from ...sheets.panels import PanelSheet
 from ..claims import Claim, Document
 from ..faces import FacePairs
 from .cut import Triangle, cut
-from .drive import Drive
+from .drive import DrivenModes
 from .places import Places, shrunk
 from .times import Clock, OneRate, Rates
 
@@ -28,7 +28,9 @@ class Folding:
 
     def __init__(self, sheet: PanelSheet, claims: Document, evidence: Document) -> None:
         shrunk(sheet)
-        self.drive = Drive(sheet, claims["assignment"], claims["drivers"], evidence["vertices"])
+        self.drive = DrivenModes(
+            sheet, claims["assignment"], claims["drivers"], evidence["vertices"]
+        )
         rated = "rates" in claims
         self.clock: Clock = Rates(claims["drivers"], claims["rates"]) if rated else OneRate()
         self.places = Places(self.drive, self.clock)
@@ -47,7 +49,7 @@ class Panels(FacePairs):
     Folds need no test: before the time pi none is closed.
     """
 
-    def __init__(self, drive: Drive, places: Places) -> None:
+    def __init__(self, drive: DrivenModes, places: Places) -> None:
         sheet = drive.sheet
         faces: list[Triangle] = []
         names: list[tuple[int, ...]] = []
@@ -81,7 +83,7 @@ class Driven(PanelClaim):
     """From the flat sheet on the panels fold with the mountains and valleys of `assignment`.
 
     No other fold moves. Until a fold is closed the folds `drivers` have the angle t at the time t,
-    or t times their rate. `Drive` verifies it.
+    or t times their rate. `DrivenModes` verifies it.
     """
 
     names = ("assignment", "drivers")

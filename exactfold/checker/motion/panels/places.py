@@ -17,7 +17,7 @@ from ...core.intervals import Interval
 from ...core.reading import require
 from ...sheets.panels import Edge, PanelSheet, pair
 from ..lengths import GRID
-from .drive import Drive, length
+from .drive import DrivenModes, length
 from .series import BITS, DEGREE, ONE, Polynomial, Series, polynomial, scaled, thin, times
 from .times import Clock
 
@@ -70,7 +70,7 @@ class Places:
     So errors grow over half the sheet only, and what folds onto that panel is not turned with it.
     """
 
-    def __init__(self, drive: Drive, clock: Clock) -> None:
+    def __init__(self, drive: DrivenModes, clock: Clock) -> None:
         self.drive, self.clock, sheet = drive, clock, drive.sheet
         ends = [[thin(c) for c in point] for point in sheet.points]
         self._flat = [[(c.low + c.high) >> 1 for c in point] for point in ends]

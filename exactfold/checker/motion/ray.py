@@ -1,0 +1,114 @@
+"""Which half-branch a motion follows, by signs of the heights at the flat state, and how far."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from typing import TypedDict
+
+from ..core.reading import items, parse_rational, require, shown
+from ..sheets.sheet import Sheet
+from .chain import Chain
+from .claims import BranchClaim, Document
+from .tubes import Start
+
+_SIGNS = 60  # in a summary
+
+
+class NamedHalf(TypedDict):
+    """A half of a branch, by the signs of the interior vertices and its side of the flat state."""
+
+    vertex_signs: list[int]
+    side: int
+
+
+class Ray(BranchClaim):
+    """The half-branch with these vertex signs and this side, 1 or -1, is that of one simple branch.
+
+    From the flat state on it is followed by one analytic curve of configurations. `side` is the
+    sign of the boundary saddle or, with a reflex corner, of this corner in the sheet with its notch
+    closed; with more than four corners it is what the claim about these says.
+    """
+
+    names = ("vertex_signs", "side")
+    always = True
+
+    def begin(self, chain: Chain) -> None:
+        """The first piece has these signs."""
+        check_half_branch(chain, chain.start, self.claims)
+
+    @staticmethod
+    def said(claims: Document) -> str:
+        """That the curve begins along it."""
+        name = text_of(claims)
+        return f"the motion along the half-branch {name}, is one curve without a gap"
+
+
+class Length(BranchClaim):
+    """The curve is at least so long in the space of the vertices, with one triangle held.
+
+    In the unit of the sheet. Chords between configurations on the way show it.
+    """
+
+    names = ("length",)
+    always = True
+
+    def check(self, chain: Chain) -> None:
+        """The chords are as long."""
+        claimed, unit = parse_rational(self.claims["length"]), chain.equations.unit
+        require(claimed <= chain.path.length * unit, "the motion is shorter than claimed")
+
+    @staticmethod
+    def said(claims: Document) -> str:
+        """The length, rounded down."""
+        return f" of length {shown(claims['length'])} or more"
+
+
+def check_half_branch(chain: Chain, start: Start, claim: Document, way: int = 1) -> None:
+    """Refuse unless the heights of a start tube have the vertex signs and the side of a claim.
+
+    For a `way` of -1 those of the mirror image.
+    """
+    given = chain.given
+    signs, side = names(given, chain.removed, start)
+    values = items(claim["vertex_signs"], "vertex_signs", len(given.interior))
+    for v, value, expected in zip(given.interior, values, signs, strict=True):
+        require(type(value) is int and value == way * expected, f"vertex {v} has another sign")
+    right = type(claim["side"]) is int and claim["side"] == way * side
+    require(right, "the side is another")
+
+
+def names(given: Sheet, removed: set[int], start: Start) -> tuple[list[int], int]:
+    """The vertex signs, 0 for vertices that were removed, and the side of a half-branch.
+
+    They are those of the heights at the flat state.
+    """
+    box, place = start.enclosure(Fraction(0)), start.equations.place
+
+    def sign(functional: Mapping[int, Fraction]) -> int:
+        """The sign of a functional of the heights, 0 if it is not certain."""
+        terms = [(c, place[v] + 2) for v, c in functional.items() if v in place]
+        middle = sum((c * box.centre[k] for c, k in terms), Fraction(0))
+        spread = sum((abs(c) * box.radii[k] for c, k in terms), Fraction(0))
+        return 0 if abs(middle) <= spread else 1 if middle > 0 else -1
+
+    sheet = start.equations.sheet
+    signs = [0 if v in removed else sign(sheet.sign_of_vertex(v)) for v in given.interior]
+    for v, found in zip(given.interior, signs, strict=True):
+        require(found or v in removed, f"vertex {v} may be flat")
+    side = start.equations.restriction.side(sign)
+    require(side, "the side of the branch is not certain")
+    return signs, side
+
+
+def text_of(claim: Document, count: bool = True) -> str:
+    """The signs and the side of a half-branch, and with `count` how many signs there are."""
+    signs = "".join("-0+"[s + 1] for s in claim["vertex_signs"])
+    number = f" ({len(signs)})" if count else ""
+    side = "+" if claim["side"] > 0 else "-"
+    return f"{shortened(signs)}{number}, side {side}"
+
+
+def shortened(signs: str) -> str:
+    """Signs, cut where there are many."""
+    return signs if len(signs) <= _SIGNS else signs[:_SIGNS] + "..."

@@ -1,0 +1,65 @@
+"""Claims of motions as objects: the tables, their types, and a claim that is added."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import get_type_hints
+
+import pytest
+from forge import given, refused, verified
+
+from exactfold.checker.core.reading import parse_rational, require
+from exactfold.checker.motion import certificate as motion
+from exactfold.checker.motion.chain import Chain
+from exactfold.checker.motion.claims import BranchClaim, Document
+from exactfold.checker.motion.panels import certificate as panel_motion
+
+TABLES = {
+    "branch": (motion.CLAIMS, motion.VerifiedMotion, {"sha256", "tubes", "pinned"}),
+    "panels": (panel_motion.CLAIMS, panel_motion.VerifiedPanelMotion, {"sha256"}),
+}
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_the_type_of_what_is_verified_has_the_keys_of_the_table(name: str) -> None:
+    table, verified_type, facts = TABLES[name]
+    keys = [key for kind in table for key in kind.names]
+    assert len(set(keys)) == len(keys)
+    assert facts.isdisjoint(keys)
+    assert set(get_type_hints(verified_type)) == {*keys, *facts}
+
+
+class ConnectedComponents(BranchClaim):
+    """The motion has at most so many pieces, and the evidence says why."""
+
+    names = ("pieces",)
+    needs = ("why",)
+
+    def check(self, chain: Chain) -> None:
+        """Count them."""
+        most = parse_rational(self.claims["pieces"])
+        require(1 + len(chain.steps) <= most, f"there are more: {self.evidence['why']}")
+
+    @staticmethod
+    def said(claims: Document) -> str:
+        """How many."""
+        return f", in {claims['pieces']} pieces or fewer"
+
+
+def test_a_class_in_the_table_is_a_claim(monkeypatch: pytest.MonkeyPatch) -> None:
+    document = given("motion-convex")
+    pieces = 1 + len(document["evidence"]["tubes"])
+    document["claims"]["pieces"] = str(pieces)
+    unknown = "claims: expected an object with the keys vertex_signs side length"
+    refused(document, unknown)
+    monkeypatch.setattr(motion, "CLAIMS", (*motion.CLAIMS, ConnectedComponents))
+    names = "emptied pinned bits start tubes"
+    refused(document, f"evidence: expected an object with the keys {names} why")
+    document["evidence"]["why"] = "they were counted"
+    claims = verified(document)
+    assert claims["pieces"] == str(pieces)
+    assert f" or more, in {pieces} pieces or fewer; " in motion.summary(claims.claims)
+    document["claims"]["pieces"] = str(pieces - Fraction(1, 2))
+    refused(document, "there are more: they were counted")
+    del document["claims"]["pieces"]
+    refused(document, f"evidence: expected an object with the keys {names}")

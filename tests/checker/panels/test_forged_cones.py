@@ -1,0 +1,112 @@
+"""Cones of several forms: what the checker shows of them, and what it refuses."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from forge import beyond, refused, verified
+from forge_panels import Document, stopped
+from panel_sheets import crossed_stars, ring_of_fives, row_of_stars, two_stars
+from test_forged_spaces import certified, leaves_of, spaces_of
+
+from exactfold.checker.core.intervals import Interval
+from exactfold.checker.core.reading import LimitError
+from exactfold.checker.panels import cones as panel_cones
+from exactfold.checker.panels.cones import Place, cone_motion
+from exactfold.checker.panels.leaves import complete
+from exactfold.checker.panels.reduction import BITS, enclosed, reduced, rest_of
+from exactfold.checker.panels.spaces import Leaf, Spaces
+from exactfold.panels.certificate import panels_document
+from exactfold.pattern.panel_pattern import PanelPattern
+
+
+def spaces(pattern: PanelPattern) -> Spaces:
+    [found] = spaces_of(panels_document(pattern))
+    return found
+
+
+def total(weights: Place, motion: Place) -> Interval:
+    """The sum of products of what stands at the same fold."""
+    terms = (weights[e] * motion[e] for e in weights.keys() & motion.keys())
+    return sum(terms, start=Interval(0, 0, BITS))
+
+
+@pytest.mark.parametrize("pattern", [two_stars(), row_of_stars()])
+def test_the_motion_is_a_regular_zero_of_all_forms(pattern: PanelPattern) -> None:
+    found = spaces(pattern)
+    place = cone_motion(found, found.first_order, list(found.near))
+    assert place is not None
+    derivatives = []
+    for v in found.near:
+        slopes = found.gradient(v, place, BITS)
+        value = total(slopes, place)
+        assert value.low <= 0 <= value.high
+        assert value.high - value.low < 1 << 60  # of 2^256
+        basis = map(enclosed, found.first_order)
+        derivatives.append({(0, k): total(slopes, motion) for k, motion in enumerate(basis)})
+    assert len(reduced(derivatives)) == len(found.near)
+    space = reduced(map(enclosed, found.first_order))
+    assert not any(x.sign() for x in rest_of(place, space).values())
+
+
+def test_a_ring_is_not_decided() -> None:
+    """In every order the last discriminant is a sum of squares at all real zeros."""
+    found = spaces(ring_of_fives())
+    for cones in ([0, 1, 2], [2, 1, 0]):
+        assert cone_motion(found, found.first_order, cones) is None
+    assert cone_motion(found, found.first_order, [0, 1]) is not None
+
+
+def test_both_signs_of_the_discriminant_are_needed(monkeypatch: pytest.MonkeyPatch) -> None:
+    sides = panel_cones._sides
+    monkeypatch.setattr(panel_cones, "_sides", lambda *args: (sides(*args)[0], False))
+    made = certified("joined stars")
+    refused(made, "the zeros of the forms of vertices 0, 1 may be several components")
+    verified(certified("star"))  # one form has rank 3, and needs no sign
+
+
+def test_a_form_of_rank_two_is_no_cone() -> None:
+    """It is a product of two linear forms, although it has both signs."""
+    found = spaces(two_stars())
+    squares = found.squares(0, found.first_order)
+    plane = found.vanishing(found.first_order, [values for _, values in squares[2:]])
+    assert len(found.squares(0, plane)) == 2
+    assert cone_motion(found, plane, [0]) is None
+
+
+def test_number_of_forms(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(panel_cones, "MOST_FORMS", 2)
+    verified(certified("joined stars"))
+    message = beyond("the vertices whose forms one space has", 3, 2, "CONE_FORMS")
+    stopped(certified("row of stars"), message)
+
+
+def test_the_forms_that_are_left_are_compared() -> None:
+    made = certified("row of stars")
+    for other in ([0, 1], [0, 2, 1], []):
+        [leaf] = leaves_of(made)
+        leaf["cones"] = other
+        refused(made, "the part of vertex 0 has other leaves than those listed")
+    made = certified("row of stars")
+    leaves_of(made)[0]["dimension"] = 6
+    refused(made, "the part of vertex 0 has other leaves than those listed")
+
+
+def test_one_family_is_all_first_order_motions_with_all_forms() -> None:
+    found = spaces(two_stars())
+    [leaf] = found.leaves()
+    assert complete(found, [leaf])
+    assert not complete(found, [Leaf(leaf.basis, (0,))])
+    assert not complete(found, [Leaf(leaf.basis[1:], (0, 1))])
+    made: Document = json.loads(json.dumps(certified("crossed stars")))
+    made["claims"]["spaces"][0]["complete"] = True
+    stopped(made, "the part of vertex 0 may have other true motions")
+
+
+def test_too_much_work_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    found = spaces(crossed_stars())
+    [first, _] = found.leaves()
+    monkeypatch.setattr("exactfold.checker.panels.spaces.MOST_STEPS", found.work.steps)
+    with pytest.raises(LimitError, match="the steps to the spaces of motions, "):
+        cone_motion(found, first.basis, first.cones)
