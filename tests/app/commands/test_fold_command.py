@@ -237,7 +237,7 @@ def test_the_picture_of_a_branch(tmp_path):
         (["--signs", "++", "--plot", "a.jpg"], "a.jpg: a picture is written as .svg, .png, .pdf"),
         (["--signs", "++", "--picture", "a"], "a: a picture is written as .svg, .png, .pdf"),
         (["--until", "400deg"], "until '400deg'"),
-        (["--signs", "++", "-o", "-"], "an output has a name of its own"),
+        (["--signs", "++", "-o", "-"], "give the output file a name"),
         (["--signs", "++", "-o", "a.fold", "--plot", "a.fold"], "name another file"),
     ],
 )

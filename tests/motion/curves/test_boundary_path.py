@@ -197,7 +197,7 @@ def test_a_return_is_proved() -> None:
     assert proof.status is PROVED
     assert proof.loop is not None
     assert proof.loop.target is not None
-    assert proof.back_text == "-, with the border as given"
+    assert proof.back_text == "-, with the boundary as given"
     assert max(proof.motion.bounds.radii) < 1e-13
     heights = motion.at(motion.duration * 0.999)[:, 2]
     row = vertex_sign_functional(branch.pattern, 5)
