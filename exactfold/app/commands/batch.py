@@ -108,7 +108,9 @@ class Batch(CountOptions):
         from exactfold.app import report
 
         if STDIN in self.patterns:
-            raise UsageError("a pattern from standard input is counted by itself")
+            raise UsageError(
+                "a pattern from standard input is counted alone: leave out other patterns and --jsonl"
+            )
         if self.jobs is not None and self.dask not in (None, LOCAL):
             raise UsageError("the cluster has its workers: --jobs goes with --dask local")
         apart(self.jsonl, *self.patterns)

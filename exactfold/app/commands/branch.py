@@ -109,7 +109,7 @@ class Asked(BranchOptions):
             return
         chosen = None if self.pops == "all" else _indices("--neighbours", self.pops)
         if chosen == []:
-            raise UsageError("--neighbours names no vertex")
+            raise UsageError("--neighbours names no vertex: give vertices such as 5,7, or all")
         for v, result in finder.each_neighbour(given, chosen, progress=bar):
             yield f"pop {v}", result
 

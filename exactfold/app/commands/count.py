@@ -140,18 +140,18 @@ class Asked(CountOptions):
 
     @property
     def _components(self) -> Path | None:
-        """The path for the certificate of irreducible components, beside that of the pieces."""
+        """The path for the certificate of irreducible components, beside `certificate`."""
         file = self.certificate
         return None if file is None else file.with_suffix(f".components{file.suffix}")
 
     def _certified_components(self, result: BranchCount, file: Path) -> str | None:
-        """Write the certificate of the pieces and, beside it, that of the components."""
+        """Write the certificate of the connected components, and that of the irreducible ones."""
         written = None
         try:
             write_certificate(certificate_of(result), file)
             written = str(file)
         except NotApplicableError as error:
-            say(f"no certificate of the pieces was written: {error}")
+            say(f"no certificate of the connected components was written: {error}")
         if result.families is not None and result.families.status is PROVED:
             more = file if written is None else self._components or file
             found = self._certified_panels(result.families, more)

@@ -170,7 +170,7 @@ class Wanted(DrawOptions):
         """The picture of a mode of panels, and the verdict on whether the mode provably folds."""
         if self.side is not None:
             raise UsageError(
-                "--side is for branches, and this sheet folds along modes: leave it out"
+                "--side is for branches, and this sheet folds along modes: leave out --side"
             )
         if self._place is None:
             raise UsageError(

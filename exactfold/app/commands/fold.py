@@ -188,7 +188,7 @@ class Wanted(FoldOptions):
         }
         _refuse(
             given,
-            "branches of triangulated sheets with four corners, or with more and a rim, and this "
+            "branches of triangulated sheets with four corners, or with more and --rim, and this "
             "sheet folds along modes of rigid panels: name them by --component or --modes",
         )
         ways = decompose_opened(opened, progress=bar)

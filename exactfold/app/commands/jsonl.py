@@ -88,4 +88,6 @@ class Lines:
         return begin.startswith(line[: len(begin)])
 
     def _foreign(self, number: int) -> ForeignJournalError:
-        return ForeignJournalError(f"{self.path}, line {number}: this is not a line of results")
+        return ForeignJournalError(
+            f"{self.path}, line {number}: this is not a line of results: name another file"
+        )

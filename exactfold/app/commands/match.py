@@ -178,7 +178,7 @@ def _by_name(pattern: CreasePattern | PanelPattern, text: str) -> dict[Edge, str
         fold = names[name]
         _check(fold, letter)
         if found.setdefault(fold, letter) != letter:
-            raise UsageError(f"fold {fold[0]}-{fold[1]} has two letters")
+            raise UsageError(f"fold {fold[0]}-{fold[1]} has two letters: give one")
     return found
 
 

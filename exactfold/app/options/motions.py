@@ -123,7 +123,7 @@ class FoldOptions:
             option = "--drive" if self.boundary_heights is None else "--rim"
             raise UsageError(f"{option} goes with --signs or --up")
         if self.component is not None and self.modes is not None:
-            raise UsageError("give one of --component and --modes")
+            raise UsageError("give either --component or --modes, not both")
         apart(
             self.output, self.file, self.boundary_heights, self.plot, self.picture, self.certificate
         )

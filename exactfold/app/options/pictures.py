@@ -143,6 +143,8 @@ class ViewOptions:
     def __post_init__(self) -> None:
         if self.serve:
             if self.output is not None or self.workers is not None:
-                raise UsageError("--serve writes no file and follows one branch at a time")
+                raise UsageError(
+                    "--serve writes no file and follows one branch at a time: leave out -o and --workers"
+                )
         elif self.port is not None:
             raise UsageError("--port goes with --serve")

@@ -1,4 +1,4 @@
-"""All branches of a pattern in memory: from a problem to a proven count."""
+"""`count_branches`: finds, proves and counts all branches of a pattern, in memory."""
 
 from __future__ import annotations
 
@@ -89,8 +89,8 @@ def check_countable(pattern: CreasePattern) -> None:
     """Raise `NotCountedError` if the pattern has no interior vertex."""
     if not pattern.interior:
         raise NotCountedError(
-            "the pattern has no interior vertex, so there is nothing to count: every fold bends by "
-            "itself"
+            "the pattern has no interior vertex, so there is nothing to count: each fold bends "
+            "independently"
         )
 
 
@@ -149,7 +149,7 @@ def _higher(
         "for all boundary heights there is exactly one solution with each sign vector: "
         f"2^{len(connected_components.vertices)} graphs over the boundary heights, of dimension "
         f"{pattern.D} modulo planes",
-        why="the border is convex, with more than four vertices",
+        why="the boundary is convex and has more than four vertices",
         true_branches=PROVED,
         open_questions=tuple(
             f"whether the star of vertex {v} is flat in other solutions: {reason}"
@@ -169,9 +169,9 @@ def not_convex(pattern: CreasePattern) -> str:
     chords = "".join(f", and the fold {i}-{j} splits it" for i, j in pattern.chords[:1])
     return (
         f"the sheet has {pattern.Ve} boundary vertices, so it has {pattern.degrees_of_freedom} "
-        f"degrees of freedom, and a reflex corner, vertex {pattern.reflex_corner}{chords}: with "
-        "more than four corners the shapes over a rim need not be real then, so that nothing "
-        "general is known of their number (docs/any_border.md, A border that is not convex)"
+        f"degrees of freedom, and a reflex corner, vertex {pattern.reflex_corner}{chords}: for such a "
+        "sheet, shapes with given boundary heights need not be real, and no theorem gives their "
+        "number (docs/any_border.md, A border that is not convex)"
     )
 
 

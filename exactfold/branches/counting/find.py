@@ -329,5 +329,5 @@ def _value(sign: object) -> int:
     """The integer for a sign that is given as a character or as a number."""
     value = sign_value(sign)
     if value is None:
-        raise UsageError(f"{sign!r} is not a vertex sign: + or 1, - or -1, 0 where it is flat")
+        raise UsageError(f"{sign!r} is not a vertex sign: use + or 1, - or -1, or 0 for flat")
     return value

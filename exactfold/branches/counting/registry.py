@@ -71,7 +71,7 @@ def register_solver(name: str, solver: Solver, *, description: str) -> None:
     if not isinstance(name, str) or not _NAME.match(name):
         raise UsageError(f"{name!r} cannot name a solver: use small letters, digits, - and _")
     if name in (*METHODS, *ALIASES):
-        raise UsageError(f"there is a method {name!r} already")
+        raise UsageError(f"there is a method {name!r} already: choose another name")
     if not callable(solver):
         raise UsageError(f"the solver {name!r} cannot be called: it is a {type(solver).__name__}")
     _registered[name] = RegisteredSolver(name, solver, description)
@@ -233,7 +233,9 @@ def _checked(name: str, found: Any, size: int) -> Candidates:
         isinstance(key, str) and isinstance(value, int | str)
         for key, value in found.settings.items()
     ):
-        raise SolverError(f"`settings` of the solver {name!r} are not numbers and texts by name")
+        raise SolverError(
+            f"`settings` of the solver {name!r} do not map names to integers or texts"
+        )
     return replace(found, method=name, points=points, lost=tuple(found.lost))
 
 

@@ -283,7 +283,7 @@ class Tally:
         """Why sign vectors are open, in words; `foldable` names the vertices of their signs."""
         zeros = {k for root in self.open_roots for k, s in enumerate(root.limit) if s == "0"}
         if not zeros:
-            return "for each other the reason is below"
+            return "the reasons for the others are below"
         flat = ", ".join(str(foldable[k]) for k in sorted(zeros))
         noun, verb = agreeing(len(zeros), "vertex"), agreeing(len(zeros), "looks")
         return f"on the others {noun} {flat} {verb} flat"

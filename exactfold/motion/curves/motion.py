@@ -111,7 +111,7 @@ class Motion(SheetInMotion):
 
     @property
     def assignment(self) -> Mapping[Edge, str]:
-        """The letters of the branch on the side that is followed: "M", "V", "F" or "U" by fold."""
+        """The letter of each fold on the side that is followed: "M", "V", "F" or "U"."""
         letters = self.branch.assignment
         if self.side > 0:
             return letters
@@ -119,7 +119,7 @@ class Motion(SheetInMotion):
 
     @property
     def leading_angles(self) -> Mapping[Edge, float]:
-        """The first-order fold angles of the branch in degrees, the largest 30 (docs/export.md)."""
+        """The first-order fold angles, scaled so that the largest is 30 degrees (docs/export.md)."""
         letters = self.assignment
         return {
             fold: self.side * angle if letters[fold] in "MV" else 0.0

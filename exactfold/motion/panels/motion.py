@@ -135,7 +135,7 @@ class PanelMotion(SheetInMotion):
 
     @property
     def leading_angles(self) -> Mapping[Edge, float]:
-        """The fold angles in degrees at the time 30 degrees, or at the end if that is earlier."""
+        """The fold angles in degrees when the drivers have 30 degrees, or at an earlier end."""
         [angles] = self.angles_at(np.array([min(radians(_LEADING), self.duration)]))
         return dict(zip(self.pattern.folds, np.degrees(angles).tolist(), strict=True))
 

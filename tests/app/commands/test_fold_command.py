@@ -230,7 +230,7 @@ def test_the_picture_of_a_branch(tmp_path):
         (["--signs", "++", "--by", "0-1"], "0-1 is an edge of the border, not a fold to make"),
         (["--component", "1"], "--component is for motions of rigid panels"),
         (["--modes", "1"], "--modes is for motions of rigid panels"),
-        (["--component", "1", "--modes", "1"], "one of --component and --modes"),
+        (["--component", "1", "--modes", "1"], "give either --component or --modes"),
         (["--modes", "1,x"], "'x' is not a whole number"),
         (["--signs", "++", "--plot", "a.svg", "--picture", "a.svg"], "name another file"),
         (["--signs", "++", "-o", "m.stl"], "a motion is written as .fold"),
