@@ -109,7 +109,8 @@ class Batch(CountOptions):
 
         if STDIN in self.patterns:
             raise UsageError(
-                "a pattern from standard input is counted alone: leave out other patterns and --jsonl"
+                "a pattern from standard input is counted alone: leave out other patterns and "
+                "--jsonl"
             )
         if self.jobs is not None and self.dask not in (None, LOCAL):
             raise UsageError("the cluster has its workers: --jobs goes with --dask local")

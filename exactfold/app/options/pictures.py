@@ -144,7 +144,8 @@ class ViewOptions:
         if self.serve:
             if self.output is not None or self.workers is not None:
                 raise UsageError(
-                    "--serve writes no file and follows one branch at a time: leave out -o and --workers"
+                    "--serve writes no file and follows one branch at a time: leave out -o and "
+                    "--workers"
                 )
         elif self.port is not None:
             raise UsageError("--port goes with --serve")

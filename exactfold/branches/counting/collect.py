@@ -169,9 +169,9 @@ def not_convex(pattern: CreasePattern) -> str:
     chords = "".join(f", and the fold {i}-{j} splits it" for i, j in pattern.chords[:1])
     return (
         f"the sheet has {pattern.Ve} boundary vertices, so it has {pattern.degrees_of_freedom} "
-        f"degrees of freedom, and a reflex corner, vertex {pattern.reflex_corner}{chords}: for such a "
-        "sheet, shapes with given boundary heights need not be real, and no theorem gives their "
-        "number (docs/any_border.md, A border that is not convex)"
+        f"degrees of freedom, and a reflex corner, vertex {pattern.reflex_corner}{chords}: for "
+        "such a sheet, shapes with given boundary heights need not be real, and no theorem gives "
+        "their number (docs/any_border.md, A border that is not convex)"
     )
 
 

@@ -119,7 +119,7 @@ class Motion(SheetInMotion):
 
     @property
     def leading_angles(self) -> Mapping[Edge, float]:
-        """The first-order fold angles, scaled so that the largest is 30 degrees (docs/export.md)."""
+        """The first-order fold angles, scaled to a largest angle of 30 degrees (docs/export.md)."""
         letters = self.assignment
         return {
             fold: self.side * angle if letters[fold] in "MV" else 0.0
