@@ -37,6 +37,6 @@ class HeightSigns:
         return rows
 
     def of(self, heights: FloatArray) -> Ray:
-        """The half-branch whose tangent has these heights of all vertices, shape (V,)."""
+        """The ray whose tangent has these heights of all vertices, shape (V,)."""
         *signs, saddle = (int(s) for s in np.sign(self._rows @ heights))
         return Ray(tuple(signs), saddle)

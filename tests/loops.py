@@ -34,7 +34,7 @@ class LostError(Exception):
 
 @dataclass(frozen=True)
 class Loop:
-    """From one half-branch of the flat state to another.
+    """From one ray of the flat state to another.
 
     `start` and `end`: the n vertex signs and the last sign, as the moving sheet shows them.
     `crossings`: for each change of sign of det [J; T], the vertices whose star is flat there.
@@ -58,7 +58,7 @@ class Loop:
 
 
 class Tracker:
-    """Follows half-branches of one sheet with four boundary vertices."""
+    """Follows rays of one sheet with four boundary vertices."""
 
     def __init__(self, sheet: CreasePattern) -> None:
         self.sheet = sheet
@@ -86,7 +86,7 @@ class Tracker:
         return rows
 
     def signs(self, heights: FloatArray) -> Signs:
-        """The n + 1 signs of a half-branch with these heights of all vertices."""
+        """The n + 1 signs of a ray with these heights of all vertices."""
         return tuple(int(s) for s in np.sign(self.rows @ heights))
 
     def jacobian(self, x: FloatArray) -> FloatArray:
@@ -132,7 +132,7 @@ class Tracker:
         return piece
 
     def _landing(self, x: FloatArray) -> tuple[Signs, float] | None:
-        """The signs of the half-branch on which x lies, if its series reaches x; and its length."""
+        """The signs of the ray on which x lies, if its series reaches x; and its length."""
         heights = self.framework.displacement(x)[:, 2]
         try:
             start = Start.of(self.framework, heights)

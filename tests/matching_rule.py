@@ -98,7 +98,7 @@ class FourBar:
         return not self.a * self.c * self.q
 
     def signs(self, mode: int) -> tuple[int, ...]:
-        """The two signs of the half-branch x > 0 of a mode, +-1 for the two roots v."""
+        """The two signs of the ray x > 0 of a mode, +-1 for the two roots v."""
         (hub,) = self.sheet.interior
         ring, d = spokes(self.sheet, hub)
         found = []

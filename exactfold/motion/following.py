@@ -77,9 +77,9 @@ def follow(
     depend on it.
 
     With more than four corners the branch has boundary heights. On the motion the heights of the
-    border above the held face keep the ratio of these boundary heights, up to an affine function of
-    the flat sheet. So here the motion depends on `pinned`, too. With a `drive`, the angles of the
-    driven folds keep their ratio instead (`find_driven` finds the branch). The motion then ends
+    boundary above the held face keep the ratio of these boundary heights, up to an affine function
+    of the flat sheet. So here the motion depends on `pinned`, too. With a `drive`, the angles of
+    the driven folds keep their ratio instead (`find_driven` finds the branch). The motion then ends
     where they have the angles of the drive, unless something ends it earlier; it does not depend on
     `pinned`.
 
@@ -189,7 +189,7 @@ def _check_followable(branch: Branch) -> None:
     if branch.pattern.Ve > 4 and branch.boundary_heights is None:
         raise NotFollowedError(
             f"a sheet with {branch.pattern.Ve} boundary vertices can only be followed along a "
-            "branch with given heights of the border (`find_branch` with rim=)"
+            "branch with given boundary heights (`find_branch` with rim=)"
         )
 
 

@@ -198,10 +198,11 @@ def components(supports: Sequence[Support], free_folds: int) -> dict[int, int]:
 
     Let every vertex have at most four folds. Then the motions are a union of linear spaces. Each is
     spanned by elementary modes without a common vertex, and by the folds whose two ends lie on the
-    border (docs/panels.md, Structure theorem). The components are the maximal spaces. The dimension
-    of a component is its number of modes plus the number of free folds. Maximal sets of supports
-    are the maximal cliques of the graph of disjoint supports; each set stands for the product of
-    its counts. A sheet that cannot move has one component, the flat state, of dimension 0.
+    boundary (docs/panels.md, Structure theorem). The components are the maximal spaces. The
+    dimension of a component is its number of modes plus the number of free folds. Maximal sets of
+    supports are the maximal cliques of the graph of disjoint supports; each set stands for the
+    product of its counts. A sheet that cannot move has one component, the flat state, of dimension
+    0.
 
     Raises `TooManyModesError` if there are more than a million maximal sets of supports.
 

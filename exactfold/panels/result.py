@@ -72,7 +72,7 @@ class MotionKeys(TypedDict):
     still_folds: list[FoldText]
     """Flat in every motion to second order, beside flat_folds."""
     free_folds: list[FoldText]
-    """Folds from border to border."""
+    """Folds from boundary to boundary."""
     near_misses: list[NearMissDocument]
 
 
@@ -167,7 +167,7 @@ class Decomposition(Page, Ways[Mode], Certified):
     otherwise.
 
     `flat` are the folds that stay flat in every real motion. `still` are further folds that are
-    flat in every motion to second order. `free` are the folds whose two ends lie on the border.
+    flat in every motion to second order. `free` are the folds whose two ends lie on the boundary.
     `held` are the folds that the caller held flat.
 
     If `second_order` is None, `found` is {dimension: number} of the components that were found and

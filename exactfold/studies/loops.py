@@ -223,8 +223,9 @@ def _rules(tallies: dict[int, _LoopTally]) -> StudyTable:
         (
             "Theorems of docs/matching.md: parity, the number of signs that flip plus the number "
             "of flat stars on the way is odd (Theorem 1a); fans, the one sign of Theorem 2 flips; "
-            "H1, one sign flips and there are no nodes (Theorem 3).",
-            "No theorems: plain, one sign flips on a loop without nodes; saddle, if one sign "
+            "H1, one sign flips and there are no branch points (Theorem 3).",
+            "No theorems: plain, one sign flips on a loop without branch points; saddle, "
+            "if one sign "
             "flips, it is that of the saddle; two wind, if one vertex sign and no other flips, "
             "two folds at this vertex wind; all alike, the same signs flip on all loops of a "
             "square.",
@@ -247,7 +248,7 @@ def _spans(tallies: dict[int, _LoopTally]) -> StudyTable:
         tuple((n, *span(t.lengths), *span(t.times)) for n, t in tallies.items()),
         (
             "In the space of all vertices, in sides of the square, rounded. A first contact is a "
-            "fold that closes or two faces that touch, before a node.",
+            "fold that closes or two faces that touch, before a branch point.",
         ),
     )
 
@@ -273,7 +274,8 @@ def _ends(tallies: dict[int, _LoopTally]) -> StudyTable:
         lines,
         (
             "Faces are without thickness. one corner, apart: two faces touch that share one "
-            "corner, or none; node: the motion comes to a node before anything touches.",
+            "corner, or none; branch point: the motion comes to a branch point before "
+            "anything touches.",
         ),
     )
 
@@ -308,7 +310,8 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
             "contacts",
             "First contacts",
             "The figure shows how far branches of random squares fold until a fold closes or two "
-            "faces touch: the share that has come to a contact, of those that meet no node before.",
+            "faces touch: the share that has come to a contact, of those that meet no "
+            "branch point before.",
             contacts,
         ),
     ]

@@ -1,4 +1,4 @@
-"""Which half-branches true motions join, on random squares: one line of a table for each size.
+"""Which rays true motions join, on random squares: one line of a table for each size.
 
     python tests/benchmarks/matching_census.py --sizes 1 2 3 4 --sheets 300 250 200 100
 

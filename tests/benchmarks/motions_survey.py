@@ -42,7 +42,7 @@ def surveyed(n: int, seed: int, folder: Path) -> Counter[str]:
     else:
         total |= Counter({"valid": 1, "complete": int(claims["complete"])})
         if claims["matched"] != len(found.matching):
-            raise ArithmeticError("the certificate matches other half-branches")
+            raise ArithmeticError("the certificate matches other rays")
     total["proved"] += found.status is PROVED
     total["graphs"] += found.graph.status is PROVED
     total["open"] += sum(loop.target is None for loop in found.loops)

@@ -25,7 +25,7 @@ Change = Callable[[Document, Document], None]
 
 
 def strip(widths: list[int]) -> PanelPattern:
-    """Panels side by side, with a fold from border to border between neighbours."""
+    """Panels side by side, with a fold from boundary to boundary between neighbours."""
     xs = [sum(widths[:k]) for k in range(len(widths) + 1)]
     return grid(len(widths), 1, lambda i, j: (Fraction(xs[i]), Fraction(2 * j)))
 

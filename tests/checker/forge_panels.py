@@ -63,7 +63,7 @@ def split() -> PanelPattern:
 
 
 def square() -> PanelPattern:
-    """A fold from border to border."""
+    """A fold from boundary to boundary."""
     return PanelPattern(
         [(0, 0), (3, 0), (3, 3), (0, 3), (1, 0), (1, 3)],
         [(0, 4), (4, 1), (1, 2), (2, 5), (5, 3), (3, 0), (4, 5)],

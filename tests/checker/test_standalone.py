@@ -26,7 +26,7 @@ KINDS = {
     "single-vertex-nine-folds.json": "VALID: 1 branch (1 with multiplicity, 1 real) of the sheet",
     "compact-blocks-of-4.txt": "VALID: 16 branches (16 with multiplicity, 16 real) of the sheet",
     "panels-bent.json": "VALID: the motions of the sheet of 12 folds and 4 interior vertices have",
-    "loops-one-vertex.txt": "VALID: 1 loop of true motions, which match all 4 half-branches",
+    "loops-one-vertex.txt": "VALID: 1 loop of true motions, which match all 4 rays",
     "branch-reflex.json": "VALID: exactly one branch has the vertex signs +0- (3); 10 of 10",
     "assignments-pentagon.json": "VALID: exactly 32 mountain-valley assignments occur with no fold",
     "letters-random.json": "VALID: exactly 2 halves of branches have the 7 letters asked for on 16",

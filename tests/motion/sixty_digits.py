@@ -1,4 +1,4 @@
-"""Configurations of tubes, and nodes, with 60 digits, by Newton's method."""
+"""Configurations of tubes, and branch points, with 60 digits, by Newton's method."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def newton(
 ) -> list[Fraction]:
     """x(s) with 60 digits, from the middle of the tube; at 240 bits of precision or more.
 
-    With a rim there are four more unknowns: the heights of the border are (l, a, b, c) times
+    With a rim there are four more unknowns: the boundary heights are (l, a, b, c) times
     (rim, x, y, 1).
     """
     place = {int(v): 3 * k for k, v in enumerate(framework.free)}
@@ -120,7 +120,7 @@ def assert_holds_the_node(
 ) -> None:
     """The framework with a rigid patch, written down anew and solved by mpmath.
 
-    With a rim the heights of five vertices of the border are always dependent on (rim, x, y, 1).
+    With a rim the heights of five vertices of the boundary are always dependent on (rim, x, y, 1).
     """
     framework = patch.framework
     with mpmath.workdps(60):

@@ -135,7 +135,7 @@ def test_a_loop_is_as_long_as_the_way_through_its_frames(returned):
 
 
 def test_the_way_back_may_be_described_by_the_mirror_image(returned):
-    """A start tube stands for the half-branch and, at negative tau, for its mirror image."""
+    """A start tube stands for the ray and, at negative tau, for its mirror image."""
     looped, duration = returned.looped, returned.motion.duration
     landing, time = looped.landing, returned.motion.duration * 0.999
     start = landing.start
@@ -230,7 +230,7 @@ def test_frames_on_an_arc_through_a_node():
         for frame, time in zip(frames, times, strict=True):
             assert float(frame.time[0]) - 1e-5 < time < float(frame.time[1]) + 1e-5
             assert looped.start.framework.length_error(frame.ball.floats[0]) < 1e-12
-            assert max(frame.ball.floats[1]) < 1e-13  # not the width of the box of the node
+            assert max(frame.ball.floats[1]) < 1e-13  # not the width of the box of the branch point
         near = frame_of(
             looped, float((passage.entered[0] + passage.tube.length(passage.entry, 0)[0]) * unit)
         )

@@ -155,7 +155,7 @@ def test_a_motion_through_a_node_is_proved_with_its_first_contact():
     claims = checker.check(proof.certificate())
     assert claims["vertex_signs"] == [-1] * 6 + [1, 1]
     assert (claims["through"], claims["contact"]["kind"]) == ([[9]], "flat-fold")
-    # At the mirror image of the node, after the same time, the mirror image of the motion.
+    # At the mirror image of the branch point, after the same time, the mirror image of the motion.
     image = prove(follow(branch, side=-1, through_branch_points=True, frames=2))
     assert image.status is PROVED
     assert image.through[0].tube.branch_point.misses(proof.through[0].tube.branch_point)

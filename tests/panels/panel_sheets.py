@@ -65,7 +65,7 @@ def shifted_columns(shift: int) -> PanelPattern:
 
 
 def outlined(points: Sequence[Point], folds: Sequence[Edge], inner: int) -> PanelPattern:
-    """A sheet whose border joins the points from number `inner` on, in the order given."""
+    """A sheet whose boundary joins the points from number `inner` on, in the order given."""
     rim = list(range(inner, len(points)))
     return PanelPattern(points, [*folds, *pairwise([*rim, rim[0]])])
 

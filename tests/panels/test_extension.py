@@ -27,7 +27,7 @@ def bent() -> PanelPattern:
 
 
 def renumbered(pattern: PanelPattern, first: int) -> PanelPattern:
-    """The same sheet with new vertices on one border edge before all others."""
+    """The same sheet with new vertices on one boundary edge before all others."""
     (a, b), *_ = pattern.boundary_edges
     (ax, ay), (bx, by) = pattern.vertices[a], pattern.vertices[b]
     steps = [Fraction(k + 1, first + 1) for k in range(first)]

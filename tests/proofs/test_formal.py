@@ -230,7 +230,7 @@ def test_the_page_names_the_shipped_patterns_that_it_is_about() -> None:
 def test_an_exported_sheet_has_no_hypothesis_that_may_be_false_of_it() -> None:
     """On `flat-vertex` and `flat-octahedron` some star is flat: "exactly 2^n if none is" is empty.
 
-    What is assumed is what can be chosen freely: heights of the rim, curvatures above 0.
+    What is assumed is what can be chosen freely: boundary heights, curvatures above 0.
     """
     for name, pattern in in_scope().items():
         text = without_comments(to_coq(pattern))

@@ -1,4 +1,4 @@
-"""What `exactfold count` prints of a sheet with a convex border and more than four corners."""
+"""What `exactfold count` prints of a sheet with a convex boundary and more than four corners."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def graphs(connected_components: ConnectedComponents) -> str:
     >>> from exactfold.pattern.families import single_vertex
     >>> from exactfold.branches import find_connected_components
     >>> graphs(find_connected_components(single_vertex(6)))
-    'for all heights of the border there is exactly one shape for each of 2 choices of the vertices
+    'for all boundary heights there is exactly one shape for each of 2 choices of the vertices
     that pop up; these 2 graphs of dimension 3 form 2 connected components'
     """
     number = _power(len(connected_components.vertices))
@@ -28,7 +28,7 @@ def graphs(connected_components: ConnectedComponents) -> str:
     choices = "1 choice" if one else f"{number} choices"
     kinds = "this graph" if one else f"these {number} graphs"
     return (
-        f"for all heights of the border there is exactly one shape for each of {choices} of the "
+        f"for all boundary heights there is exactly one shape for each of {choices} of the "
         f"vertices that pop up; {kinds} of dimension {connected_components.dimension} "
         f"{'forms' if one else 'form'} "
         f"{_range(connected_components.low, connected_components.high)}"
@@ -43,7 +43,7 @@ def piece_notes(result: BranchCount) -> list[str]:
     notes = []
     if connected_components.chord is not None:
         i, j = connected_components.chord
-        notes.append(f"the fold {i}-{j} from border to border joins all graphs")
+        notes.append(f"the fold {i}-{j} from boundary to boundary joins all graphs")
     if connected_components.joints:
         shown = ", ".join(joint.sign_text for joint in connected_components.joints[:_SHOWN])
         more = len(connected_components.joints) - _SHOWN

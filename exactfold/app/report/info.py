@@ -96,7 +96,7 @@ def _motion_rows(facts: PanelFacts) -> list[tuple[str, str]]:
     parts = [f"{counted(len(part), 'vertex')} with {part[0]}" for part in facts.parts]
     return [
         ("folds that stay flat", _listed([f"{i}-{j}" for i, j in facts.flat], ", ")),
-        ("folds from border to border", _listed([f"{i}-{j}" for i, j in facts.free], ", ")),
+        ("folds from boundary to border", _listed([f"{i}-{j}" for i, j in facts.free], ", ")),
         ("parts that move independently", _listed(parts)),
     ]
 
@@ -126,7 +126,8 @@ def expectation(facts: PatternFacts, motions: PanelFacts | None = None) -> str:
         if not (pattern.is_convex and pattern.interior):
             return motions.expected
         return (
-            f"2^{free} graphs over the rim heights, of dimension {pattern.degrees_of_freedom}, and "
+            f"2^{free} graphs over the boundary heights, of dimension "
+            f"{pattern.degrees_of_freedom}, and "
             f"how they are joined; as panels: {motions.expected}"
         )
     if pattern.degrees_of_freedom == 0:

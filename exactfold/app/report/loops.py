@@ -25,7 +25,7 @@ _REASONS = 10
 def motions_report(found: Loops) -> Group:
     """The matching of the rays, loop by loop."""
     rays = 2 ** (len(found.pattern.foldable_vertices) + 1)
-    matched = f"{len(found.matching)} of {counted(rays, 'half-branch')}"
+    matched = f"{len(found.matching)} of {counted(rays, 'ray')}"
     rows: list[tuple[str, RenderableType]] = [
         ("matched", Text.assemble(matched, ", ", status_text(found.status))),
     ]

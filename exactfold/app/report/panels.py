@@ -126,7 +126,7 @@ def _notes(result: Decomposition, everything: bool) -> list[str]:
     if result.still and result.rigid is not PROVED:
         notes.append(_flat(result.still, "in every motion to second order", everything))
     if result.free:
-        notes.append(f"{counted(len(result.free), 'fold')} from border to border, each free")
+        notes.append(f"{counted(len(result.free), 'fold')} from boundary to boundary, each free")
     if result.second_order is None and result.modes:
         notes.append("each mode listed below truly folds, and there may be others")
     if result.second_order is None and result.rigid is not PROVED:

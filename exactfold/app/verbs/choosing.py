@@ -75,7 +75,7 @@ def listed(result: BranchCount, way: int) -> Branch:
     if corners > 4:
         raise NotCountedError(
             f"`count` lists no single branch of a sheet with {corners} corners, where branches "
-            "depend on the heights of the boundary: name one by its vertex signs"
+            "depend on the boundary heights: name one by its vertex signs"
         )
     raise NotCountedError(f"`count` lists no branch of this sheet: {result.reason}")
 

@@ -1,1 +1,1 @@
-"""The connected components of the solutions of a convex sheet with any border, and their joints."""
+"""The connected components of the solutions of a convex sheet of any boundary, and their joints."""

@@ -35,7 +35,7 @@ def find_connected_components(
     7). For each vertex, the sheet with its star held flat is solved exactly. What is not decided
     there is named in `open`, and the number of components is only bounded.
 
-    Raises `NotApplicableError` for a border with a reflex corner, and for D < 2.
+    Raises `NotApplicableError` for a boundary with a reflex corner, and for D < 2.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> find_connected_components(single_vertex(6))
@@ -52,7 +52,7 @@ def find_connected_components(
 
 
 def require_convex(pattern: CreasePattern) -> None:
-    """Raise `NotApplicableError` unless the border is convex and has at least five vertices."""
+    """Raise `NotApplicableError` unless the boundary is convex and has at least five vertices."""
     if pattern.D < 2:
         raise NotApplicableError(
             f"the sheet has {pattern.Ve} boundary vertices, so its solutions are branches; "
@@ -60,7 +60,8 @@ def require_convex(pattern: CreasePattern) -> None:
         )
     if not pattern.is_convex:
         raise NotApplicableError(
-            f"the border has a reflex corner, vertex {pattern.reflex_corner}; with more than four "
+            f"the boundary has a reflex corner, vertex {pattern.reflex_corner}; with more "
+            "than four "
             "corners the shapes of such a sheet need not be real"
         )
 
@@ -177,7 +178,7 @@ class _JointSearch:
                 yield group
 
     def _straight(self) -> list[frozenset[int]]:
-        """The interior vertices of straight creases that run from border to border."""
+        """The interior vertices of straight creases that run from boundary to boundary."""
         inside = self.sheet.interior_set
         found = []
         for b in self.sheet.boundary:

@@ -147,7 +147,7 @@ class ConnectedComponents:
     only the one that joins more is kept. `never_flat` gives, for a vertex, the reason why its star
     is flat only in the flat state. At the vertices of `complete` all joints are known. `open`
     gives, for each other vertex, the reason why its joints are UNDECIDED. `chord` is a fold from
-    border to border, which connects everything. `proofs` are written to the certificate.
+    boundary to boundary, which connects everything. `proofs` are written to the certificate.
     """
 
     vertices: tuple[int, ...]

@@ -91,7 +91,7 @@ class PanelFacts:
             if not self.free:
                 return "rigid: no fold can fold while the panels stay rigid"
             each = "folds" if len(self.free) == 1 else "each folds"
-            return f"{counted(len(self.free), 'fold')} from border to border, {each} freely"
+            return f"{counted(len(self.free), 'fold')} from boundary to boundary, {each} freely"
         large = sum(any(self.moving[v] > 4 for v in part) for part in self.parts)
         whole = f"{counted(len(self.parts), 'part')} with vertices that may fold"
         if not large:

@@ -72,7 +72,7 @@ class BranchDocument(TypedDict):
     curvature: dict[VertexText, NotNegativeRational]
     """Angle deficits that are not 0, by interior vertex."""
     straight_border: list[Natural]
-    """With the gauge "rim": border vertices on a straight side."""
+    """With the gauge "rim": boundary vertices on a straight side."""
     saddle: Sign
     centres: dict[VertexText, Rational]
     radius: Rational | None

@@ -63,7 +63,7 @@ class EnumeratedBranches(BranchCountKeys):
     real: Natural
     nonreal: Natural
     pieces: PiecesDocument | None
-    """For a convex border with more than four vertices."""
+    """For a convex boundary with more than four vertices."""
 
 
 class BranchesByTheorem(BranchCountKeys):

@@ -89,8 +89,8 @@ class BranchCount(Page, Ways[Branch], Certified):
     (docs/mathematics.md, Single vertex), and None otherwise.
 
     `branches` contains every branch that is decided. These are all branches if the status is PROVED
-    and D = 1. For D > 1 a branch is not a line, and none is listed. There, for a convex border, the
-    solutions are 2^n graphs over the boundary heights, and `connected_components` says how many
+    and D = 1. For D > 1 a branch is not a line, and none is listed. There, for a convex boundary,
+    the solutions are 2^n graphs over the boundary heights, and `connected_components` says how many
     connected components they have. `families` are their irreducible components, if `count_ways`
     computed them. The counts are then None, except for a single vertex.
 

@@ -202,9 +202,9 @@ def summary(claims: VerifiedBranch) -> str:
     signs = "".join("-0+"[s + 1] for s in claims["vertex_signs"])
     shown = signs if len(signs) <= 60 else signs[:60] + "..."
     decided = len(claims["assignment"]) - claims["assignment"].count("U")
-    what = "solution over the border in the file" if claims["gauge"] == "rim" else "branch"
+    what = "solution over the boundary in the file" if claims["gauge"] == "rim" else "branch"
     if "curvature" in claims:
-        what = "shape over the border in the file, with these angle deficits,"
+        what = "shape over the boundary in the file, with these angle deficits,"
     return (
         f"VALID: exactly one {what} has the vertex signs {shown} ({len(signs)}); "
         f"{decided} of {len(claims['assignment'])} letters decided; sha256 {claims['sha256']}"

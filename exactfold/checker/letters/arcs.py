@@ -1,7 +1,7 @@
-"""Solutions with given vertex signs over all directions of the border, and their letters.
+"""Solutions with given vertex signs over all directions of the boundary, and their letters.
 
 Heights g with K_v(g) > 0 at every interior vertex lie in the nappes of one sign vector, and so does
-every sum of two of them with positive weights. Over the border of g these nappes hold exactly one
+every sum of two of them with positive weights. Over the boundary of g these nappes hold exactly one
 solution h, with int |grad(h - g)|^2 <= D(g) = sum_v m_v K_v(g) (docs/branch.md, Theorem 5). A fold
 that bends more than that in g bends to the same side in h. For g = (1 - t) a + t b the bend is
 linear in t and D is a quadratic form, so that three products decide a fold for all t at once.
@@ -105,7 +105,7 @@ class Arcs:
             require(side * sign > 0, f"{what}: vertex {v} has another sign")
 
     def letters(self, a: Heights, b: Heights) -> Word:
-        """The letters of all solutions over the borders of (1 - t) a + t b, 0 where they are open.
+        """The letters of all solutions over the boundaries of (1 - t) a + t b, 0 where open.
 
         Both have to be inside the nappes of the same signs.
         """

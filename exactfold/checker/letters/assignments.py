@@ -1,12 +1,12 @@
 """Certificates of all mountain-valley assignments of a sheet with five corners (docs/circles.md).
 
-Why it is a proof: for each sign vector the solutions are a circle over the directions of the border
-(Theorem 1 there). Evidence goes round it by points, heights inside the nappes of these signs. From
-each point to the next the letters of all solutions are known but for some folds (`arcs`), and those
-of the points themselves are shown to occur. If all letters that are possible between two points are
-shown somewhere, no other assignment occurs. Signs that begin with a minus are reflections. A fold
-from border to border bends by itself, so that the sheet without the corner behind it is looked at:
-a point for either side of its border is enough.
+Why it is a proof: for each sign vector the solutions are a circle over the directions of the
+boundary (Theorem 1 there). Evidence goes round it by points, heights inside the nappes of these
+signs. From each point to the next the letters of all solutions are known but for some folds
+(`arcs`), and those of the points themselves are shown to occur. If all letters that are possible
+between two points are shown somewhere, no other assignment occurs. Signs that begin with a minus
+are reflections. A fold from boundary to boundary bends by itself, so that the sheet without the
+corner behind it is looked at: a point for either side of its boundary is enough.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ def _shown(given: Sheet, evidence: dict[str, Any]) -> list[str]:
 
 
 def free_boundary(sheet: Sheet) -> list[int]:
-    """The border vertices but three that are not on a line, which modulo planes have height 0."""
+    """The boundary vertices but three that are not on a line, which modulo planes have height 0."""
     first, second, *others = sheet.boundary
     p, q = sheet.points[first], sheet.points[second]
     third = next(v for v in others if turn(p, q, sheet.points[v]))
@@ -114,7 +114,7 @@ class _Circles:
         return found
 
     def _points(self, entry: Any, signs: Word, name: str) -> list[list[int]]:
-        """The points of a circle: inside the nappes, and all round the border."""
+        """The points of a circle: inside the nappes, and all round the boundary."""
         points = []
         for heights in items(entry, name):
             point = items(heights, "heights", self.free + len(self.sheet.interior))
@@ -126,7 +126,7 @@ class _Circles:
         else:
             for j, (a, b) in enumerate(self._steps(points)):
                 ahead = a[0] * b[1] - a[1] * b[0] > 0
-                require(ahead, f"{name}: the border does not go round behind point {j}")
+                require(ahead, f"{name}: the boundary does not go round behind point {j}")
             require(points, f"{name} has no points")
         return points
 
@@ -136,7 +136,7 @@ class _Circles:
         return list(zip(points, after, strict=True))
 
     def texts(self, word: Word, folds: list[Edge], chords: list[Edge]) -> list[str]:
-        """The letters of all folds of the given sheet; a fold from border to border has either."""
+        """The letters of all folds of the given sheet; a chord has either letter."""
         own = {fold: "MV"[x > 0] for fold, x in zip(self.sheet.folds, word, strict=True)}
         either = [own.get(fold, "MV" if fold in chords else "F") for fold in folds]
         return ["".join(letters) for letters in product(*either)]

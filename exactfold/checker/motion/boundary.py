@@ -1,4 +1,4 @@
-"""Given heights of the border, in the ratio of which it stays: the rim path (docs/motion.md, 9).
+"""Given boundary heights, in the ratio of which it stays: the rim path (docs/motion.md, 9).
 
 The heights z of the boundary vertices v are in the ratio of b iff z_v = l b_v + an affine function
 of the flat vertex for some number l, the factor: Ve - 4 linear equations.
@@ -20,14 +20,14 @@ from .restriction import Restriction, Sign, Tie
 
 Row = dict[int, Fraction]
 
-_MOST_HEIGHTS = 8  # of a border in a summary or a message
+_MOST_HEIGHTS = 8  # of a boundary in a summary or a message
 
 
 class BoundaryClaim(BranchClaim):
-    """The heights of the boundary vertices of a convex border stay in the ratio of those given.
+    """The boundary heights vertices of a convex boundary stay in the ratio of those given.
 
     They are given in the order of the vertices, and taken above the face `pinned` that is held,
-    which is returned. The side of the half-branch is the sign of the factor near the flat state.
+    which is returned. The side of the ray is the sign of the factor near the flat state.
     """
 
     names = ("rim",)
@@ -44,7 +44,7 @@ class BoundaryClaim(BranchClaim):
     def said(claims: Document) -> str:
         """The heights, and the face."""
         face = "-".join(map(str, claims["pinned"]))
-        return f", with the border in the ratio of {_shown(claims['rim'])} above the face {face}"
+        return f", with the boundary in the ratio of {_shown(claims['rim'])} above the face {face}"
 
 
 class BoundaryHeights(Restriction):

@@ -1,4 +1,4 @@
-"""Arcs through nodes: configurations with a flat patch, where curves cross (docs/motions.md).
+"""Arcs through branch points: there a patch is flat, and curves cross (docs/motions.md).
 
 Why it is a proof: let x* be a configuration whose patch is flat, X_e its edge vectors, and w_v the
 wheel stresses of the flat vertices. They are in equilibrium in x*, as they are in the flat sheet.
@@ -69,7 +69,7 @@ def independent(rows: list[dict[int, int]]) -> list[int]:
 
 
 class BranchPointTube(Piece):
-    """Configurations x* + s y(s), T . y(s) = 1, of an arc through the node x* in a box.
+    """Configurations x* + s y(s), T . y(s) = 1, of an arc through the branch point x* in a box.
 
     T = row / 2^ROW_BITS. The pieces of `Piece` are those of y.
     """

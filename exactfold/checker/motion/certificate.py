@@ -67,7 +67,7 @@ def check(data: dict[str, Any]) -> VerifiedMotion:
 
     What is claimed is that of the classes in `CLAIMS`. Returns the claims, the SHA-256 of the
     pattern, and how many `tubes` there are between the first piece and the end, arcs through branch
-    points not counted; with heights of the border also the face `pinned` above which they are.
+    points not counted; with boundary heights also the face `pinned` above which they are.
     """
     given, digest = read_sheet(data["pattern"])
     evidence = data["evidence"]
@@ -102,4 +102,4 @@ MOTION = DocumentKind(
     check=check,
     summary=summary,
 )
-"""The motion along a half-branch, as a chain of tubes (docs/motion.md)."""
+"""The motion along a ray, as a chain of tubes (docs/motion.md)."""

@@ -90,7 +90,7 @@ def equations_of(
     four = len(sheet.boundary) == 4
     require(four or restrictions, "there are not four boundary vertices")
     one = len(restrictions) < 2
-    require(one, "a motion keeps the ratio of its border or that of driven folds, not both")
+    require(one, "a motion keeps the ratio of its boundary or that of driven folds, not both")
     require(sheet.interior, "nothing can fold")
     bits = natural(bits, "bits")
     at_most(bits, MOTION_BITS, "the bits", "MOTION_BITS")

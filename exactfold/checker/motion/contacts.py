@@ -60,7 +60,10 @@ class Contacts(BranchClaim):
         text = f"; no two faces touch before {shown(claims['clear'])}"
         if "node" in claims and claims["node"]["clear"]:
             clear = shown(claims["clear"])
-            text = f"; no two faces touch before the node, which is at {clear} or later, nor at it"
+            text = (
+                f"; no two faces touch before the branch point, which is at {clear} or "
+                "later, nor at it"
+            )
         if "contact" not in claims:
             return text
         contact = claims["contact"]
@@ -128,7 +131,7 @@ def check_contacts(
 
     `given`: the step, by its number from 1 on, in which what is clear ends at the parameter
     `clear`, and in which a contact is proved at `to`, or a fold closes between `from` and `to`. The
-    arc to a node at the end comes after the last tube.
+    arc to a branch point at the end comes after the last tube.
     """
     keys(given, "tube clear from to" if "contact" in claims else "tube clear", "contacts")
     number = natural(given["tube"], "tube")

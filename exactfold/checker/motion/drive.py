@@ -35,7 +35,7 @@ class DriveClaim(BranchClaim):
 
     They are valleys or mountains by the signs of the `squares` q, and all along sin(a / 2)^2 of
     their angles a is in the ratio of |q|. If they are `reached`, these are |q| or more at the end.
-    The side of the half-branch is 1.
+    The side of the ray is 1.
     """
 
     names = ("drive",)

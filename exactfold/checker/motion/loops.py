@@ -1,10 +1,10 @@
 """Certificates of loops, line by line: motions from the flat state back to it (docs/motions.md).
 
 Why it is a proof: a loop leaves the flat state as the motions of `motion` do. It passes from tube
-to tube, and through nodes on arcs that are analytic there (`branch_points`). On its last tube lies
-a point of the start tube of another half-branch, which passes it in the opposite direction: so it
-ends in the flat state along this one. Every half-branch is the beginning of one curve only, which
-makes loops that are given a matching, complete if all 2^(n + 1) names occur in it.
+to tube, and through branch points on arcs that are analytic there (`branch_points`). On its last
+tube lies a point of the start tube of another ray, which passes it in the opposite direction: so it
+ends in the flat state along this one. Every ray is the beginning of one curve only, which makes
+loops that are given a matching, complete if all 2^(n + 1) names occur in it.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ class LoopSheet:
         return 2 << len(self.equations.sheet.interior)
 
     def ray(self, entry: Any) -> Ray:
-        """A half-branch of its keys."""
+        """A ray of its keys."""
         keys(entry, "vertex_signs side", "half-branch")
         signs = items(entry["vertex_signs"], "vertex_signs", len(self.given.interior))
         return tuple(map(integer, signs)), integer(entry["side"])
@@ -63,9 +63,9 @@ class LoopSheet:
     def check_loop(self, entry: dict[str, Any]) -> None:
         """Raise unless a loop, which has the keys of one, is proved by its evidence.
 
-        The claims are: from the flat state on, the half-branch `from` is followed by one analytic
-        curve of configurations that ends in the flat state along the half-branch `to`. All of them
-        are regular but the nodes it passes. It is at least `length` long, as in `motion`.
+        The claims are: from the flat state on, the ray `from` is followed by one analytic
+        curve of configurations that ends in the flat state along the ray `to`. All of them
+        are regular but the branch points it passes. It is at least `length` long, as in `motion`.
         """
         evidence = entry["evidence"]
         keys(evidence, "start steps landing", "evidence")
@@ -106,24 +106,24 @@ class LoopVerifier:
 
 
 class Matching:
-    """Which half-branches are matched: there and back, and in the mirror image."""
+    """Which rays are matched: there and back, and in the mirror image."""
 
     def __init__(self) -> None:
         self.loops, self.matched = 0, set[Ray]()
 
     def add(self, source: Ray, target: Ray) -> None:
-        """A loop; raises if one of its half-branches is matched already, or with itself."""
-        require(source != target, f"loop {self.loops}: a half-branch is matched with itself")
+        """A loop; raises if one of its rays is matched already, or with itself."""
+        require(source != target, f"loop {self.loops}: a ray is matched with itself")
         ends = {source, target}
         ends |= {(tuple(-s for s in signs), -side) for signs, side in ends}
         new = self.matched.isdisjoint(ends)
-        require(new, f"loop {self.loops}: a half-branch is matched twice")
+        require(new, f"loop {self.loops}: a ray is matched twice")
         self.loops += 1
         self.matched |= ends
 
 
 class LoopsClaims(TypedDict):
-    """How many loops there are, and how many of the half-branches they match."""
+    """How many loops there are, and how many of the rays they match."""
 
     sha256: str
     loops: int
@@ -140,7 +140,7 @@ def check_lines(found: Iterator[str], workers: int = 1, engine: Engine = BY_TUBE
     """Verify every claim, given the lines of a file; returns the claims.
 
     With several workers, loops are checked in that many processes. The claims are: so many loops,
-    as `LoopSheet.check_loop` says, which match so many of the half-branches, none twice, none with
+    as `LoopSheet.check_loop` says, which match so many of the rays, none twice, none with
     itself; and whether these are all.
     """
     first = next(found, None)
@@ -201,7 +201,7 @@ def summary(claims: LoopsClaims) -> str:
     matched, all_of_them = claims["matched"], claims["half_branches"]
     how = f"all {all_of_them}" if claims["complete"] else f"{matched} of {all_of_them}"
     digest = claims["sha256"]
-    return f"VALID: {loops} of true motions, which match {how} half-branches; sha256 {digest}"
+    return f"VALID: {loops} of true motions, which match {how} rays; sha256 {digest}"
 
 
 LOOPS = LineKind(

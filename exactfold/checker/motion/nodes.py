@@ -39,17 +39,20 @@ class Through(BranchClaim):
 
     def check(self, chain: Chain) -> None:
         """The branch points that are passed are those claimed."""
-        claimed, message = "through" in self.claims, "a motion passes nodes that it does not claim"
+        claimed, message = (
+            "through" in self.claims,
+            "a motion passes branch points that it does not claim",
+        )
         require(claimed == bool(chain.passed), f"{message}, or none")
         lists = items(self.claims["through"], "through") if claimed else []
         listed = [[natural(v, "flat vertex") for v in items(flat, "flat")] for flat in lists]
-        require(listed == chain.passed, "the nodes that are passed are others")
+        require(listed == chain.passed, "the branch points that are passed are others")
 
     @staticmethod
     def said(claims: Document) -> str:
         """Each of them."""
         return "".join(
-            f", through a node where {_flat(flat)}" for flat in claims.get("through", [])
+            f", through a branch point where {_flat(flat)}" for flat in claims.get("through", [])
         )
 
 
@@ -76,7 +79,8 @@ class Node(BranchClaim):
         arc = arc_of(chain.equations, self.claims["node"]["flat"], entry)
         begin, end = parameter_of(entry["entry"]), Fraction(0)
         path.meet(*arc.configuration(begin))
-        # Only after another node or with a rim can it be otherwise: docs/motion.md, Theorem 6.
+        # Only after another branch point or with a rim can it be otherwise: docs/motion.md, Theorem
+        # 6.
         require(begin < end, "an arc does not lead to its node")
         path.go(*arc.configuration(end))
         chain.steps.append(Arc(arc, begin, end))
@@ -92,7 +96,7 @@ class Node(BranchClaim):
     @staticmethod
     def said(claims: Document) -> str:
         """Where it is."""
-        return f", to a node where {_flat(claims['node']['flat'])}"
+        return f", to a branch point where {_flat(claims['node']['flat'])}"
 
 
 def _flat(flat: list[int]) -> str:

@@ -30,7 +30,7 @@ class Patch:
     def __init__(self, equations: LengthEquations, flat: list[int]) -> None:
         sheet, pinned = equations.sheet, equations.pinned
         inner = bool(flat) and flat == sorted(set(flat)) and set(flat) <= set(sheet.interior)
-        require(inner, "a node has no vertices that are flat, or none that fold")
+        require(inner, "a branch point has no vertices that are flat, or none that fold")
         self.equations, self.flat = equations, flat
         self.vertices = set[int]().union(*(t for t in sheet.triangles if not t.isdisjoint(flat)))
         self.base = _base(sheet, [v for v in pinned if v in self.vertices], self.vertices)

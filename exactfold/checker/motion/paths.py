@@ -65,7 +65,7 @@ class Path:
 
     def _tube(self) -> Tube:
         if self.tube is None:
-            raise CertificateError("a motion meets a node, or lands, on no tube")
+            raise CertificateError("a motion meets a branch point, or lands, on no tube")
         return self.tube
 
 

@@ -29,7 +29,7 @@ def tube_of(equations: LengthEquations, entry: Any) -> Tube:
 
 
 def arc_of(equations: LengthEquations, flat: Any, entry: Any) -> BranchPointTube:
-    """An arc through a node at which some vertices are flat, of its keys."""
+    """An arc through a branch point at which some vertices are flat, of its keys."""
     size, bits = equations.size, equations.bits
     require(not equations.mixed, "a driven motion has a node")
     patch = Patch(equations, [natural(v, "flat vertex") for v in items(flat, "flat")])

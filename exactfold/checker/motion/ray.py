@@ -1,4 +1,4 @@
-"""Which half-branch a motion follows, by signs of the heights at the flat state, and how far."""
+"""Which ray a motion follows, by signs of the heights at the flat state, and how far."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class NamedHalf(TypedDict):
 
 
 class Ray(BranchClaim):
-    """The half-branch with these vertex signs and this side, 1 or -1, is that of one simple branch.
+    """The ray with these vertex signs and this side, 1 or -1, is that of one simple branch.
 
     From the flat state on it is followed by one analytic curve of configurations. `side` is the
     sign of the boundary saddle or, with a reflex corner, of this corner in the sheet with its notch
@@ -41,7 +41,7 @@ class Ray(BranchClaim):
     def said(claims: Document) -> str:
         """That the curve begins along it."""
         name = text_of(claims)
-        return f"the motion along the half-branch {name}, is one curve without a gap"
+        return f"the motion along the ray {name}, is one curve without a gap"
 
 
 class Length(BranchClaim):
@@ -79,7 +79,7 @@ def check_half_branch(chain: Chain, start: Start, claim: Document, way: int = 1)
 
 
 def names(given: Sheet, removed: set[int], start: Start) -> tuple[list[int], int]:
-    """The vertex signs, 0 for vertices that were removed, and the side of a half-branch.
+    """The vertex signs, 0 for vertices that were removed, and the side of a ray.
 
     They are those of the heights at the flat state.
     """
@@ -102,7 +102,7 @@ def names(given: Sheet, removed: set[int], start: Start) -> tuple[list[int], int
 
 
 def text_of(claim: Document, count: bool = True) -> str:
-    """The signs and the side of a half-branch, and with `count` how many signs there are."""
+    """The signs and the side of a ray, and with `count` how many signs there are."""
     signs = "".join("-0+"[s + 1] for s in claim["vertex_signs"])
     number = f" ({len(signs)})" if count else ""
     side = "+" if claim["side"] > 0 else "-"

@@ -1,6 +1,6 @@
-"""Motions that come back to the flat state, along another half-branch (docs/motions.md).
+"""Motions that come back to the flat state, along another ray (docs/motions.md).
 
-On the last tube lies a point of the start tube of the other half-branch, or of its mirror image,
+On the last tube lies a point of the start tube of the other ray, or of its mirror image,
 which passes it in the opposite direction: so the motion ends in the flat state along this one.
 """
 
@@ -18,7 +18,7 @@ from .tubes import Ball, Start
 
 
 class Return(BranchClaim):
-    """The motion ends in the flat state, along the half-branch with these vertex signs and side."""
+    """The motion ends in the flat state, along the ray with these vertex signs and side."""
 
     names = ("return",)
     needs = ("landing",)
@@ -27,11 +27,11 @@ class Return(BranchClaim):
     def __init__(self, claims: Document, evidence: Document) -> None:
         super().__init__(claims, evidence)
         apart = claims.keys().isdisjoint(("node", "clear", "contact"))
-        require(apart, "a motion that returns claims a node, or contacts")
+        require(apart, "a motion that returns claims a branch point, or contacts")
         keys(claims["return"], "vertex_signs side", "return")
 
     def go_on(self, chain: Chain) -> None:
-        """Where it lands, along which half-branch, and how long it is in all."""
+        """Where it lands, along which ray, and how long it is in all."""
         end, way = land(chain, self.evidence["landing"])
         check_half_branch(chain, end, self.claims["return"], way)
 

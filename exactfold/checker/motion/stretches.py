@@ -1,4 +1,4 @@
-"""The parts of tubes, and of arcs through nodes, that a motion passes."""
+"""The parts of tubes, and of arcs through branch points, that a motion passes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .tubes import Ball, Start, Tube
 class Link(NamedTuple):
     """A tube, the box in which the motion enters it, and the parameter at which it leaves it.
 
-    None if it goes over to an arc through a node.
+    None if it goes over to an arc through a branch point.
     """
 
     tube: Tube
@@ -23,9 +23,9 @@ class Link(NamedTuple):
 
 
 class Arc(NamedTuple):
-    """An arc through a node, and the parameters at which the motion comes to it, and leaves it.
+    """An arc through a branch point, and the parameters at which the motion enters and leaves it.
 
-    The second is after the node or, where the motion ends there, at it.
+    The second is after the branch point or, where the motion ends there, at it.
     """
 
     tube: BranchPointTube

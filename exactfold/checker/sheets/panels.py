@@ -64,7 +64,7 @@ class PanelSheet:
                 require(i > j or (j, i) not in sides, f"edge {i}-{j} has one face on both sides")
         boundary = outer[0]
         self.boundary_set = set(boundary)
-        require(len(self.boundary_set) == len(boundary), "the border passes a vertex twice")
+        require(len(self.boundary_set) == len(boundary), "the boundary passes a vertex twice")
         sides = {pair(i, j) for i, j in zip(boundary, (*boundary[1:], boundary[0]), strict=True)}
         self.folds = [edge for edge in edges if edge not in sides]
         self.interior = [v for v in range(len(points)) if v not in self.boundary_set]

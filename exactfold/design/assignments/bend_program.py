@@ -53,9 +53,9 @@ class BendProgram:
 
     If the maximum is 0, the dual solution names folds and vertices that refute the letters, and
     `ConeProgram` looks for heights on these alone. The other folds and vertices may have solutions
-    of their own, for example on the other side of a fold that runs from border to border; these do
-    not hinder the refutation. If the maximum is positive, the bends have the letters, and only the
-    equations K_v = 0 may fail.
+    of their own, for example on the other side of a fold that runs from boundary to boundary; these
+    do not hinder the refutation. If the maximum is positive, the bends have the letters, and only
+    the equations K_v = 0 may fail.
     """
 
     sheet: CreasePattern

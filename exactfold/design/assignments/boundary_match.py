@@ -48,9 +48,9 @@ def match_boundary(
     the search. At most `most` sign vectors are tried. If some are still open then, and the sheet
     has five corners and few vertices, `all_assignments` decides.
 
-    Boundary heights are searched for only if the border is convex and no fold that can move has the
-    letter "F". Raises `UsageError` for letters that do not fit, and `NotCountedError` if the sheet
-    has fewer than five boundary vertices or no vertex that can pop.
+    Boundary heights are searched for only if the boundary is convex and no fold that can move has
+    the letter "F". Raises `UsageError` for letters that do not fit, and `NotCountedError` if the
+    sheet has fewer than five boundary vertices or no vertex that can pop.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> found = match_boundary(single_vertex(5), "MMVMV")

@@ -104,7 +104,7 @@ class BoundaryMatch(Certified):
             number = len(self.open_signs)
             lines.append(
                 f"{counted(number, 'choice')} of signs {agreeing(number, 'is')} open: no heights "
-                "of the border were found "
+                "of the boundary were found "
                 f"{'' if self.sheet.is_convex else 'as it is not convex '}with which the sheet has "
                 "these letters"
             )

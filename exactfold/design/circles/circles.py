@@ -48,8 +48,8 @@ def all_assignments(pattern: PatternLike, *, progress: Progress | None = None) -
     Where folds are flat along whole arcs, or more than five vertices can pop, the circles are
     covered by points instead, and the stand-alone checker verifies that the points show all
     assignments (Theorem 2). If neither method succeeds, the status is UNDECIDED. Raises
-    `NotCountedError` unless the border is convex and has five vertices (D = 2), and from one to six
-    vertices can pop.
+    `NotCountedError` unless the boundary is convex and has five vertices (D = 2), and from one to
+    six vertices can pop.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> found = all_assignments(single_vertex(5))
@@ -59,7 +59,7 @@ def all_assignments(pattern: PatternLike, *, progress: Progress | None = None) -
     given = as_pattern(pattern)
     if given.Ve != 5 or not given.is_convex:
         raise NotCountedError(
-            "all assignments are listed only if the border is convex and has five vertices; this "
+            "all assignments are listed only if the boundary is convex and has five vertices; this "
             f"border has {given.Ve}"
             + ("" if given.is_convex else f", and vertex {given.reflex_corner} is reflex")
         )

@@ -44,10 +44,10 @@ Heights = tuple[int, ...]
 class Covering:
     """Points on the circle of each sign vector that begins with a plus; heights are integers.
 
-    A point has the heights of two border vertices, followed by those of the vertices that can pop;
-    all other heights are 0. If a fold runs from border to border, the corner behind it is left out,
-    and only one border vertex has a height. `assignments` are the assignments of letters to all
-    folds of the pattern that occur.
+    A point has the heights of two boundary vertices, followed by those of the vertices that can
+    pop; all other heights are 0. If a fold runs from boundary to boundary, the corner behind it is
+    left out, and only one boundary vertex has a height. `assignments` are the assignments of
+    letters to all folds of the pattern that occur.
     """
 
     circles: tuple[tuple[Heights, ...], ...]
@@ -65,8 +65,8 @@ def covering(pattern: CreasePattern, progress: Progress | None = None) -> Coveri
     """Points that go round all circles of a convex sheet with five corners.
 
     Between neighbouring points, the unknown letters have only completions that some points have. If
-    a fold runs from border to border, two points are enough. Raises `NotCoveredError` if no such
-    points are found; nothing about the sheet follows from that.
+    a fold runs from boundary to boundary, two points are enough. Raises `NotCoveredError` if no
+    such points are found; nothing about the sheet follows from that.
     """
     sheet, labels = pattern.without_rigid_parts()
     if not 0 < sheet.Vi <= MOST_VERTICES:

@@ -21,8 +21,8 @@ _STRIDE: Final = 3
 class NappePoints:
     """Approximate solutions of K_v = 4^-depth on one convex sheet, scaled to size 1.
 
-    Heights are integers over 2^bits. The heights of the border vertices `free` come first, then
-    those of the interior vertices; all other border vertices have height 0.
+    Heights are integers over 2^bits. The boundary heights vertices `free` come first, then
+    those of the interior vertices; all other boundary vertices have height 0.
     """
 
     def __init__(self, sheet: CreasePattern, free: Sequence[int], depth: int) -> None:

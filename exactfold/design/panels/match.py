@@ -51,7 +51,7 @@ class StartingBranch(StartingMotion):
 
     vertex_signs: VertexSigns
     rim: dict[VertexText, Rational]
-    """Heights of the border of the branch, by vertex."""
+    """Heights of the boundary of the branch, by vertex."""
 
 
 class StartingDocument(TypedDict):
@@ -235,7 +235,8 @@ def _first_order(
 ) -> Together | None:
     """What can move together to first order, completed by the folds outside all moving stars.
 
-    Folds that the flat closure keeps flat never move, and folds from border to border always can.
+    Folds that the flat closure keeps flat never move, and folds from boundary to boundary always
+    can.
     """
     found = going_together(moving, asked)
     if found is None:

@@ -28,8 +28,8 @@ class Together:
     `motion` is one of them in which all folds of `together` bend their way. In all of them the
     folds of `never` stay flat, as `steps` show one after the other (`FlatByLetters`). `undecided`
     are the folds of which neither is proved. `motion` holds densities of the folds that the flat
-    closure leaves. Other folds with letters are among `never`, except folds from border to border,
-    which are among `together`.
+    closure leaves. Other folds with letters are among `never`, except folds from boundary to
+    boundary, which are among `together`.
     """
 
     together: tuple[Edge, ...]

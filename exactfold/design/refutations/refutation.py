@@ -41,7 +41,7 @@ class Refutation:
     def holds(self, sheet: CreasePattern, letters: Letters) -> bool:
         """Whether this refutes the letters, decided in rational arithmetic.
 
-        `sheet` is triangulated and may have any border. `letters` has a letter for each of its
+        `sheet` is triangulated and may have any boundary. `letters` has a letter for each of its
         folds. Heights that are not rational numbers refute nothing.
         """
         inside = sheet.interior_set

@@ -1,4 +1,4 @@
-"""The path of boundary heights: linear equations that keep the border in a given ratio."""
+"""The path of boundary heights: linear equations that keep the boundary in a given ratio."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def problem_of(branch: Branch) -> Problem:
 
 
 def boundary_claim(boundary_heights: Mapping[int, Fraction]) -> Claim:
-    """That the heights of the border stay in the ratio of these (docs/motion.md, 9)."""
+    """That the boundary heights stay in the ratio of these (docs/motion.md, 9)."""
     return Claim({"rim": [format_rational(h) for _, h in sorted(boundary_heights.items())]})
 
 

@@ -246,13 +246,13 @@ def fold_text(fold: Edge) -> str:
 
 
 def not_a_fold(edges: Container[Edge], pair: Edge, purpose: str) -> str:
-    """Why two vertices are not a fold: they form an edge of the border, or no edge.
+    """Why two vertices are not a fold: they form an edge of the boundary, or no edge.
 
     >>> not_a_fold([(0, 1), (0, 4)], (0, 1), "to drive")
-    '0-1 is an edge of the border, not a fold to drive'
+    '0-1 is an edge of the boundary, not a fold to drive'
     >>> not_a_fold([(0, 1), (0, 4)], (1, 4), "to drive")
     'there is no fold 1-4 to drive'
     """
     if pair in edges:
-        return f"{fold_text(pair)} is an edge of the border, not a fold {purpose}"
+        return f"{fold_text(pair)} is an edge of the boundary, not a fold {purpose}"
     return f"there is no fold {fold_text(pair)} {purpose}"

@@ -151,8 +151,8 @@ class MotionDocument(FrameKeys):
     side: Side
     """1: as the branch was named; -1: the mirror image, all signs and letters reversed."""
     rim: dict[VertexText, Rational] | None
-    """Of a sheet with more than four corners: heights by border vertex, in the ratio of which the
-    border stays; null otherwise."""
+    """Of a sheet with more than four corners: heights by boundary vertex, in the ratio of which the
+    boundary stays; null otherwise."""
     drive: Goals | None
     """By driven fold i-j the angle to which it is driven; null without --drive."""
     modes: None

@@ -9,10 +9,10 @@ from exactfold.pattern.validate import orientation
 def straight_fold(branch: Branch) -> tuple[int, ...]:
     """The vertices of the line along which a branch folds its sheet; empty if there is none.
 
-    The folds that are not proved flat have to form a straight path from border to border. Then all
-    faces on either side of the path stay in one plane. Turning one side about the line moves all
-    faces rigidly, so there is exactly a motion for every angle (docs/motions.md). Coordinates are
-    compared exactly.
+    The folds that are not proved flat have to form a straight path from boundary to boundary. Then
+    all faces on either side of the path stay in one plane. Turning one side about the line moves
+    all faces rigidly, so there is exactly a motion for every angle (docs/motions.md). Coordinates
+    are compared exactly.
 
     >>> from exactfold.branches.counting.find import find_branch
     >>> [straight_fold(find_branch("flat-vertex", signs)) for signs in ("+0", "-+")]

@@ -153,7 +153,7 @@ class GraphNode:
     loops: tuple[int, ...]
 
     def to_dict(self) -> BranchPointDocument:
-        """The object of this node in the output of `exactfold motions --json`."""
+        """The object of this branch point in the output of `exactfold motions --json`."""
         return {
             "flat": list(self.flat),
             "curves": self.curves,
@@ -208,11 +208,11 @@ class ConfigurationGraph:
     """The true configurations that can be reached from the flat state when contact is ignored.
 
     `nodes` are different branch points; mirror images are neighbours in the list. The ends of
-    `arcs` at a node are the sides of the lines of the curves through it. Nothing is said about
-    curves that cannot be reached. `status` is PROVED if the graph is the whole connected component
-    of the flat state. This means that all rays are matched, no other curve passes through a node,
-    and every arc is followed from end to end. Otherwise `reason` says what is missing; each arc and
-    each node is still proved.
+    `arcs` at a branch point are the sides of the lines of the curves through it. Nothing is said
+    about curves that cannot be reached. `status` is PROVED if the graph is the whole connected
+    component of the flat state. This means that all rays are matched, no other curve passes through
+    a branch point, and every arc is followed from end to end. Otherwise `reason` says what is
+    missing; each arc and each branch point is still proved.
     """
 
     nodes: tuple[GraphNode, ...]
@@ -223,14 +223,14 @@ class ConfigurationGraph:
     def to_networkx(self) -> nx.MultiGraph[int | str]:
         """The graph as a frozen networkx graph.
 
-        Its vertices are "flat" and the numbers of the nodes. Its edges are the arcs with two known
-        ends. The key of an edge is the number of the arc, and its attribute `arc` is the
+        Its vertices are "flat" and the numbers of the branch points. Its edges are the arcs with
+        two known ends. The key of an edge is the number of the arc, and its attribute `arc` is the
         `GraphArc`.
 
         >>> from exactfold.motion.loops.matching import find_loops
         >>> graph = find_loops("two-vertex").graph
         >>> graph
-        <ConfigurationGraph: proved, 0 nodes, 4 arcs>
+        <ConfigurationGraph: proved, 0 branch points, 4 arcs>
         >>> graph.to_networkx().degree("flat")
         8
         """
@@ -293,7 +293,8 @@ class ConfigurationGraph:
 
     def __repr__(self) -> str:
         return (
-            f"<ConfigurationGraph: {self.status}, {len(self.nodes)} nodes, {len(self.arcs)} arcs>"
+            f"<ConfigurationGraph: {self.status}, {len(self.nodes)} branch points, "
+            f"{len(self.arcs)} arcs>"
         )
 
 

@@ -135,5 +135,5 @@ def _ray(data: dict[str, Any], problem: Problem) -> Ray:
     signs = dict(zip(problem.pattern.interior, data["vertex_signs"], strict=True))
     side = data["side"]
     if side not in (1, -1) or any(signs[v] not in (1, -1) for v in problem.foldable):
-        raise ValueError("a half-branch needs a side 1 or -1 and a sign for every foldable vertex")
+        raise ValueError("a ray needs a side 1 or -1 and a sign for every foldable vertex")
     return Ray(tuple(signs[v] for v in problem.foldable), 1 if side == 1 else -1)

@@ -33,7 +33,7 @@ from exactfold.motion.tubes.visits import LocatedBranchPoint, Visit
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.rigidity.equations.problem import Problem
 
-_NOT_LEFT = "the arc that leaves the node along this line could not be enclosed"
+_NOT_LEFT = "the arc that leaves the branch point along this line could not be enclosed"
 
 
 def graph_of(
@@ -181,7 +181,7 @@ class _Census:
         reasons = [missing] if missing else []
         if number := sum(branch_point.status is not PROVED for branch_point in nodes):
             reasons.append(
-                f"at {counted(number, 'node')} not all curves through the node are proved"
+                f"at {counted(number, 'node')} not all curves through the branch point are proved"
             )
         if number := sum(arc.status is not PROVED for arc in self.arcs):
             reasons.append(
@@ -214,14 +214,14 @@ class _Census:
         """
         met = [branch_point.meets(visit) for branch_point in self.nodes]
         if True not in met and None in met:
-            self.reasons["it is undecided whether two nodes are the same"] = None
+            self.reasons["it is undecided whether two branch points are the same"] = None
             return None
         if True in met:
             k = met.index(True)
         else:
             located = LocatedBranchPoint.of(self.framework, visit)
             if located is None or not located.point.ball.misses(located.mirrored.point.ball):
-                self.reasons["a node on a loop or arc could not be located"] = None
+                self.reasons["a branch point on a loop or arc could not be located"] = None
                 return None
             k = len(self.nodes)
             self.nodes += [located, located.mirrored]
@@ -242,7 +242,7 @@ class _Census:
         if start is None or end is None:
             for known in (start, end):
                 if known is not None:
-                    why = reason or "the node at the other end could not be identified"
+                    why = reason or "the branch point at the other end could not be identified"
                     self.failed[known] = length, why, loop
             return
         if before := {self.at[e] for e in (start, end) if e in self.at}:

@@ -69,7 +69,7 @@ class LoopFinder:
             start = ray(branch, side).start
             if named(start) == source:
                 return self._proof(start)
-        raise NotProvedAtTheFlatStateError(f"branch {branch.sign_text} has no half-branch {source}")
+        raise NotProvedAtTheFlatStateError(f"branch {branch.sign_text} has no ray {source}")
 
     def _proof(self, start: StartTube, progress: Progress | None = None) -> LoopProof:
         chain = Chain.from_flat(start, self.problem.labels)

@@ -197,7 +197,7 @@ def find_loops(
         time.perf_counter() - begun,
     )
     if not reasons and len(loops.matching) != 2 ** (len(problem.foldable) + 1):
-        raise ArithmeticError("half-branches are missing from a matching that should be complete")
+        raise ArithmeticError("rays are missing from a matching that should be complete")
     return loops
 
 
@@ -332,4 +332,4 @@ def _check(found: Iterable[Loop]) -> None:
             raise ArithmeticError(f"the loop from {loop.source} contradicts the law of parity")
         for a, b in ((loop.source, loop.target), (loop.source.mirrored, loop.target.mirrored)):
             if a == b or partner.setdefault(a, b) != b or partner.setdefault(b, a) != a:
-                raise ArithmeticError(f"two proofs contradict each other at the half-branch {a}")
+                raise ArithmeticError(f"two proofs contradict each other at the ray {a}")

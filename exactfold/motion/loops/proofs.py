@@ -263,7 +263,7 @@ class LoopProof:
         )
 
     def _return_claim(self, landing: Landing) -> Claim:
-        """That the motion ends in the flat state, and along which half-branch."""
+        """That the motion ends in the flat state, and along which ray."""
         return Claim({"return": self._named(landing.to)}, {"landing": self._landed(landing)})
 
     def _landed(self, landing: Landing) -> Document:

@@ -49,10 +49,10 @@ def follow_panels(
     """The motion of a sheet of rigid panels along a component, from the flat sheet until an event.
 
     A component is a set of elementary modes that truly fold and share no vertex, together with the
-    folds that go from border to border (docs/panels.md, Which modes truly fold). If all vertices of
-    a mode are linear in the half-angle tangents, all its folds stay in proportion, and this is
-    proved (`PanelMotion.closes`). Other modes are followed in floats by the transmissions of their
-    vertices, until the first fold reaches 180 degrees (docs/panel_motion.md).
+    folds that go from boundary to boundary (docs/panels.md, Which modes truly fold). If all
+    vertices of a mode are linear in the half-angle tangents, all its folds stay in proportion, and
+    this is proved (`PanelMotion.closes`). Other modes are followed in floats by the transmissions
+    of their vertices, until the first fold reaches 180 degrees (docs/panel_motion.md).
 
     `sheet` is a decomposition, or a pattern to decompose. `component` is its number in
     `panel_components`, beginning with 1; by default it is the first, which has the most active
@@ -201,7 +201,7 @@ def _rates(
             )
         if not isinstance(key, int) and key not in result.free:
             raise UsageError(
-                f"an amount is given for {key}, which is not a fold from border to border"
+                f"an amount is given for {key}, which is not a fold from boundary to border"
             )
         if not isfinite(value):
             raise UsageError(f"the amount of {key} is {value}: give a finite number")

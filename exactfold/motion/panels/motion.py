@@ -151,7 +151,7 @@ class PanelMotion(SheetInMotion):
             return (
                 "all vertices close exactly at all fold angles"
                 if self.curves
-                else "folds from border to border are free"
+                else "folds from boundary to boundary are free"
             )
         if self.exists is PROVED:
             return (

@@ -26,7 +26,7 @@ def motion_certificate(
 ) -> Document:
     """The proof of a motion as a JSON object (docs/motion.md, The certificate).
 
-    It claims the half-branch of `start` and a length a little smaller than that of the motion, as
+    It claims the ray of `start` and a length a little smaller than that of the motion, as
     far as straight chords show it; and `claims`, in this order. `labels[v]` is the vertex of the
     pattern that vertex v of the framework is. A last step that ends at a branch point is the
     evidence of a claim of its own. With `landing` the motion goes on inside the last tube, to the

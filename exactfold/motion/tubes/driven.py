@@ -231,7 +231,7 @@ class _DrivenSearch:
         if len(self.folds) > freedom:
             raise BadDriveError(
                 f"{counted(len(self.folds), 'fold')} cannot be driven at once: this sheet has "
-                f"{sheet.Ve} border vertices, so give at most {counted(freedom, 'fold')}",
+                f"{sheet.Ve} boundary vertices, so give at most {counted(freedom, 'fold')}",
                 self.folds[freedom:],
             )
 

@@ -108,7 +108,7 @@ def _dependent(framework: Framework, labels: Sequence[int], unknowns: FloatArray
     if framework.coupling.rows and stressed[len(framework.edges) :].any():
         return "the angles of the driven folds come to depend on the lengths of edges"
     if stressed[len(framework.edges) :].any():
-        return "the heights of the border come to depend on the lengths of edges"
+        return "the boundary heights come to depend on the lengths of edges"
     vertices = sorted({int(v) for edge in edges for v in edge})
     names = _listed("vertex", [str(labels[v]) for v in vertices])
     turned = ""

@@ -59,7 +59,7 @@ class Track:
 
     `vertex_signs` are those on the ray itself, by foldable vertex of `pattern`. `side` is 1 or -1.
     It is the sign of the boundary saddle or, if `corner` is not None, the vertex sign of this
-    reflex corner in the sheet with its notch closed. With more than four corners the border stays
+    reflex corner in the sheet with its notch closed. With more than four corners the boundary stays
     in the ratio of the boundary heights `boundary_heights`, and `side` is the sign of the factor
     (`rim_path`). If the sheet is driven instead, `side` is 1, and the folds of the `drive` bend the
     way it prescribes.
@@ -157,7 +157,7 @@ class Track:
         """The proof as a JSON object for `exactfold.checker` (docs/motion.md, The certificate).
 
         It claims a length that is slightly smaller than `length`, namely what straight chords show,
-        and what the track itself proves: the border or the drive, and branch points. `claims` are
+        and what the track itself proves: the boundary or the drive, and branch points. `claims` are
         further claims about the track. `clear` says that no two faces touch up to the branch point
         at which the track ends; one of the `claims` has to show it.
 
@@ -320,7 +320,7 @@ def follow_proved(
         ends = isinstance(step, Passage) and not through_branch_points
         if isinstance(step, Passage) and ends:
             step = chain.steps[-1] = step.to_the_branch_point
-            reason = f"a node, where {step.what}"
+            reason = f"a branch point, where {step.what}"
             status = PROVED if goal is None or step.left[0] >= goal else UNDECIDED
         said = None if stop is None else stop(step)
         if ends:

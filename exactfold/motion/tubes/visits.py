@@ -19,7 +19,7 @@ Side = tuple[int, int]
 
 @dataclass(frozen=True, repr=False)
 class Visit:
-    """The fact that a curve passes a branch point (node).
+    """The fact that a curve passes a branch point (branch point).
 
     The box `branch_point` contains a configuration at which the stars of `flat`, vertices of the
     framework, are flat. The curve passes through it in a direction that is a positive multiple of a

@@ -172,7 +172,7 @@ def without_duplicates(drawing: Drawing) -> tuple[Drawing, list[Repair]]:
     sentence = f"{counted(count, 'repeated line')} dropped"
     if unlike:
         sentence += (
-            f"; {len(unlike)} with different letters, of which the border wins over creases, "
+            f"; {len(unlike)} with different letters, of which the boundary wins over creases, "
             "and creases over flat lines"
         )
     repairs += repair("duplicates", count, (a for a, _ in again), drawing.points, sentence)

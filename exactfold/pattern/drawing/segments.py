@@ -65,7 +65,7 @@ def summary(drawing: Drawing) -> str:
 
     >>> zero, one = Fraction(0), Fraction(1)
     >>> summary(Drawing(((zero, zero), (one, one)), (Line(0, 1, "M"), Line(0, 1, "B")), ""))
-    '2 lines (1 mountain, 1 border)'
+    '2 lines (1 mountain, 1 boundary)'
     """
     numbers = Counter(line.letter for line in drawing.lines)
     kinds = ", ".join(f"{numbers[letter]} {_WORDS[letter]}" for letter in _WORDS if numbers[letter])

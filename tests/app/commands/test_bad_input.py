@@ -105,7 +105,7 @@ MENDED = {
     "clockwise mixed": ({**SQUARE_FOLD, "faces_vertices": [*FACES[:3], [0, 3, 4]]}, "8 lines", 0),
     "four sides": (
         {"vertices_coords": CORNERS[:4], "faces_vertices": [[0, 1, 2, 3]]},
-        "4 lines (4 border)",
+        "4 lines (4 boundary)",
         4,
     ),
 }

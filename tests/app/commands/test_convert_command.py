@@ -37,7 +37,7 @@ def test_one_line_of_what_was_read_the_coordinates_each_repair_and_what_was_writ
     result = run("convert", path, out)
     assert (result.exit_code, result.stderr) == (PROVED, "")
     assert result.stdout.splitlines() == [
-        f"read {path}: CP, 6 lines (1 mountain, 1 valley, 4 border)",
+        f"read {path}: CP, 6 lines (1 mountain, 1 valley, 4 boundary)",
         "coordinates in Q(sqrt 2), whole numbers; largest move 5e-17 of the size, tolerance 1e-09",
         "1 vertex inside of lines: 1 line cut there: at 4 (0.414214, 1)",
         "1 crossing of lines is a vertex: at 5 (0.630602, 0.630602)",

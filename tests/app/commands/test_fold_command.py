@@ -227,7 +227,7 @@ def test_the_picture_of_a_branch(tmp_path):
         (["--signs", "++", "--until", "9_0deg"], "until '9_0deg'"),
         (["--signs", "++", "--frames", "1"], "1 is less than 2"),
         (["--signs", "++", "--by", "4"], "'4' is not a fold such as 4-7"),
-        (["--signs", "++", "--by", "0-1"], "0-1 is an edge of the border, not a fold to make"),
+        (["--signs", "++", "--by", "0-1"], "0-1 is an edge of the boundary, not a fold to make"),
         (["--component", "1"], "--component is for motions of rigid panels"),
         (["--modes", "1"], "--modes is for motions of rigid panels"),
         (["--component", "1", "--modes", "1"], "give either --component or --modes"),
@@ -348,7 +348,7 @@ def test_a_certificate_proves_the_motion_and_its_contact(tmp_path):
     assert low <= found["duration"] <= high < low * 1.0001
     assert found["written"] == [str(path)]
     assert found["status"] == "proved"
-    assert run("check", str(path)).stdout.startswith("VALID: the motion along the half-branch +-")
+    assert run("check", str(path)).stdout.startswith("VALID: the motion along the ray +-")
 
 
 def test_a_certificate_of_panels_proves_their_first_contact(tmp_path):

@@ -16,7 +16,7 @@ OK = 0
 def test_the_table_lists_each_loop_once():
     table = run("motions", "two-vertex", "--workers", "1")
     assert table.exit_code == OK
-    assert "matched  8 of 8 half-branches, PROVED" in table.stdout
+    assert "matched  8 of 8 rays, PROVED" in table.stdout
     loops = [line for line in table.stdout.splitlines() if "saddle +" in line]
     assert len(loops) == 2
     assert all(line.split()[6] == "saddle" for line in loops)

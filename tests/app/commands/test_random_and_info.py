@@ -60,7 +60,7 @@ def test_info_agrees_with_count(name):
 @pytest.mark.parametrize(
     ("pattern", "expected"),
     [
-        (CreasePattern(SQUARE, [(0, 1, 2), (0, 2, 3)]), "1 fold from border to border"),
+        (CreasePattern(SQUARE, [(0, 1, 2), (0, 2, 3)]), "1 fold from boundary to border"),
         (scrambled(1, TRIANGLE, 2), "rigid: 0 ways to start folding"),
         (
             nested_triangles(),
@@ -73,7 +73,8 @@ def test_info_agrees_with_count(name):
         ),
         (
             scrambled(1, HEXAGON, 2, loose=True),
-            "2^2 graphs over the rim heights, of dimension 3, and how they are joined; as panels: "
+            "2^2 graphs over the boundary heights, of dimension 3, and how they are "
+            "joined; as panels: "
             "1 part with vertices that may fold, 1 of them with vertices of more than four folds",
         ),
     ],

@@ -173,7 +173,7 @@ def test_folds_drive_a_sheet(here: Path) -> None:
         ("1-5=1_0", 2, "fold 1-5: '1_0' is not an angle such as 90deg"),
         ("1_0-5=3", 2, "'1_0-5' is not a fold such as 4-7"),
         ("0-6=3,2-6=4", 3, "there is no fold 0-6 to drive"),
-        ("0-1=3,2-6=4", 3, "0-1 is an edge of the border, not a fold to drive"),
+        ("0-1=3,2-6=4", 3, "0-1 is an edge of the boundary, not a fold to drive"),
         ("1-5=3", 3, "1 fold to drive: this sheet has 2 degrees of freedom"),
         ('{"1-5": 3, "2-6": "y"}', 3, "drive.json: fold 2-6: 'y' is not an angle"),
         ('{"1-5": 3, "2-6": true}', 3, "drive.json: the angle of fold 2-6 is not a number"),

@@ -101,7 +101,9 @@ def test_sheets_of_panels(tmp_path: Path) -> None:
         *("modes", "proved"),
         [[0, 1, 2, 4], [0, 4, 2, 3]],
     )
-    assert data["read"]["lines"][0] == f"read {path}: CP, 6 lines (1 mountain, 1 valley, 4 border)"
+    assert (
+        data["read"]["lines"][0] == f"read {path}: CP, 6 lines (1 mountain, 1 valley, 4 boundary)"
+    )
     known = printed("info", "info", path)
     assert (known["triangles"], known["panels"], known["field"]) == (None, 2, "Q")
     converted = printed("convert", "convert", path, out, "--triangulate")

@@ -276,7 +276,7 @@ def test_panes_stack_on_a_phone(browser, pages):
     browser.open(pages["h1-4"], width=360, height=740)
     assert browser.run("document.documentElement.scrollWidth") <= 360
     boxes = browser.run(
-        "Array.from(document.querySelectorAll('main > .pane, .side > .pane'), (node) => {"
+        "Array.from(document.querySelectorAll('main > .pane, .side > .pane'), (branch point) => {"
         " const b = node.getBoundingClientRect(); return [b.left, b.top, b.right, b.bottom] })"
     )
     assert len(boxes) == 4
@@ -286,7 +286,7 @@ def test_panes_stack_on_a_phone(browser, pages):
         assert top >= bottom
     small = browser.run(
         "Array.from(document.querySelectorAll('#play, #mirror, #home, #download'),"
-        " (node) => node.getBoundingClientRect().height)"
+        " (branch point) => node.getBoundingClientRect().height)"
     )
     assert min(small) >= 32
 

@@ -270,7 +270,7 @@ def test_a_double_line_that_is_one_true_curve():
 def test_a_branch_without_a_saddle_is_the_start_of_a_true_one():
     """With a reflex corner the saddle may be 0: true branches are not counted by its sign.
 
-    The border is (-1, 0), (3, -3), (-5, 6), (-5, 1) about (0, 0), with the reflex corner 0.
+    The boundary is (-1, 0), (3, -3), (-5, 6), (-5, 1) about (0, 0), with the reflex corner 0.
     """
     corners = [(-1, 0), (3, -3), (-5, 6), (-5, 1), (0, 0)]
     dart = CreasePattern(corners, [(k, (k + 1) % 4, 4) for k in range(4)])
@@ -349,7 +349,8 @@ def test_the_answer_in_plain_words(tmp_path):
     assert data["components"]["second_order"] == {"2": 2}
 
 
-# --- a border that is not convex -----------------------------------------------------------------
+# --- a boundary that is not convex
+# -----------------------------------------------------------------
 
 NOTCHED = wheel([(4, -4), ("1/10", 0), (4, 4), (-4, 4), (-4, -4)], (0, 0))
 

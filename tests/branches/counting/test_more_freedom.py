@@ -29,7 +29,7 @@ def test_two_vertices_with_more_degrees_of_freedom_are_graphs(corners):
     assert pattern.degrees_of_freedom == corners - 3
     result = count_branches(pattern)
     assert (result.status, result.by) == (PROVED, "theorem")
-    assert f"2^2 graphs over the rim heights, of dimension {corners - 3}" in result.reason
+    assert f"2^2 graphs over the boundary heights, of dimension {corners - 3}" in result.reason
     assert result.connected_components.number == {5: 2, 6: 1}[corners]
     assert counts(result) == (None,) * 4
     assert result.proof is None

@@ -1,4 +1,4 @@
-"""Single branches of sheets with given heights of the border, and shapes with angle deficits."""
+"""Single branches of sheets with given boundary heights, and shapes with angle deficits."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ TWO = scrambled(5, HEXAGON, 2)
 
 
 def with_straight_corner(square: CreasePattern) -> tuple[CreasePattern, int]:
-    """The sheet with a new border vertex, the last, on the side of the first border edge."""
+    """The sheet with a new boundary vertex, the last, on the side of the first boundary edge."""
     a, b = square.boundary[:2]
     c = square.left(a, b)
     (ax, ay), (bx, by) = square.vertices[a], square.vertices[b]
@@ -46,7 +46,7 @@ def with_straight_corner(square: CreasePattern) -> tuple[CreasePattern, int]:
     return CreasePattern([*square.vertices, point], [*faces, (a, new, c), (new, b, c)]), new
 
 
-# --- heights of the border -----------------------------------------------------------------------
+# --- boundary heights -----------------------------------------------------------------------
 
 
 def test_without_heights_the_border_is_that_of_a_saddle() -> None:
@@ -259,8 +259,9 @@ def test_a_scale_changes_nothing() -> None:
 
 
 def test_flat_where_a_vertex_has_no_deficit() -> None:
-    # A fold from border to border: nothing bends the vertices on its other side. With this deficit
-    # the height of vertex 6 is 1, so that all heights are rational and flat folds are known.
+    # A fold from boundary to boundary: nothing bends the vertices on its other side. With this
+    # deficit the height of vertex 6 is 1, so that all heights are rational and flat folds are
+    # known.
     pattern = CreasePattern(
         [(0, 0), (4, 0), (4, 4), (0, 4), (-3, 2), (2, 1), (-1, 2), (2, 3)],
         [*fan(5, 0, 1, 2, 7), *fan(7, 2, 3, 0)[:2], *fan(6, 0, 3, 4)],

@@ -30,8 +30,8 @@ def test_positive_deficits_leave_nothing_to_find() -> None:
 
 
 def test_flat_stars_are_counted_once() -> None:
-    # Vertices 5 and 7 lie behind a fold from border to border; nothing bends them. The deficit is
-    # one with rational heights, so that they are proved flat.
+    # Vertices 5 and 7 lie behind a fold from boundary to boundary; nothing bends them. The deficit
+    # is one with rational heights, so that they are proved flat.
     deficit = curvature(THREE, {v: Fraction(v == 6) for v in range(8)}, 6)
     found = count_shapes(THREE, {6: deficit})
     assert (found.status, found.distinct, found.with_multiplicity) == (PROVED, 2, 8)

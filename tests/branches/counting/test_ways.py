@@ -78,7 +78,7 @@ def test_panels_drawings_and_files_are_one_sheet(tmp_path: Path) -> None:
         found = count_ways(given)
         assert len(found.pattern.folds) == len(expected.pattern.folds) == 2
         assert found.second_order == expected.second_order
-        assert "6 lines (1 mountain, 1 valley, 4 border)" in found.read["lines"][0]
+        assert "6 lines (1 mountain, 1 valley, 4 boundary)" in found.read["lines"][0]
 
 
 def test_rounding_is_never_silent(tmp_path: Path) -> None:
@@ -119,7 +119,7 @@ def test_what_is_no_sheet_is_refused(tmp_path: Path) -> None:
         ),
         (
             PanelPattern(CORNERS, [*BORDER, (0, 2)]),
-            *({}, (), ((0, 2),), (), "1 fold from border to border, folds freely"),
+            *({}, (), ((0, 2),), (), "1 fold from boundary to boundary, folds freely"),
         ),
         (panels(PENTAGON), {5: 4, 6: 4}, (), (), ((5, 6),), ""),
     ],

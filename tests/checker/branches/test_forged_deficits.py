@@ -26,7 +26,7 @@ def test_shapes_are_accepted() -> None:
     for name in (SHAPE, TRIANGLES):
         claims = verified(given(name))
         assert claims["gauge"] == "rim"
-        what = "shape over the border in the file, with these angle deficits,"
+        what = "shape over the boundary in the file, with these angle deficits,"
         assert checker.summary(claims).startswith(f"VALID: exactly one {what} has the vertex ")
 
 
@@ -40,7 +40,7 @@ def test_a_deficit_at_a_vertex_that_stays_flat() -> None:
     forged = given(TRIANGLES)
     [entry] = forged["evidence"]["emptied"]
     vertex = entry["inside"][0]
-    forged["claims"]["curvature"][vertex - 4] = "1"  # the border has four vertices, the first
+    forged["claims"]["curvature"][vertex - 4] = "1"  # the boundary has four vertices, the first
     stopped(forged, f"vertex {vertex} has an angle deficit, so that it is not flat in a triangle")
 
 

@@ -102,7 +102,7 @@ def test_the_list_is_the_one_shown() -> None:
 
 
 def test_six_corners_have_more_than_circles() -> None:
-    """A circle of directions of the border is not all of a sphere."""
+    """A circle of directions of the boundary is not all of a sphere."""
     hexagon = wheel([(0, 0), (7, -2), (11, 3), (9, 8), (2, 9), (-2, 5)], (4, 3))
     document = round_a_circle(hexagon, [[*rim, 0.3] for rim in turns(300)])
     stopped(document, "there are not five boundary vertices")
@@ -148,7 +148,7 @@ def test_points_go_all_round_the_border() -> None:
     circle = document["evidence"]["circles"][0]
     near = next(k for k in range(1, len(circle)) if _is_known(document, circle[k - 1 : k + 1]))
     document["evidence"]["circles"][0] = circle[near - 1 : near + 1]
-    stopped(document, "circle 0: the border does not go round behind point 1")
+    stopped(document, "circle 0: the boundary does not go round behind point 1")
     assert len(document["claims"]["assignments"]) < 12
     document = listed()
     document["evidence"]["circles"][1] = []
@@ -160,7 +160,7 @@ def _is_known(document: Document, two: list[list[str]]) -> bool:
     """Whether a point has all the letters that are possible up to the next."""
     document["evidence"]["circles"][0] = two
     sheet, _ = read_sheet(document["pattern"])
-    with without("circle 0: the border does not go round behind point 1"):
+    with without("circle 0: the boundary does not go round behind point 1"):
         try:
             assignments._shown(sheet, document["evidence"])
         except checker.CertificateError:

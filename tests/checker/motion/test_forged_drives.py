@@ -156,7 +156,7 @@ def test_with_four_corners_nothing_is_driven() -> None:
 def test_with_a_rim_and_a_drive() -> None:
     document = given()
     document["claims"]["rim"] = ["0", "0", "1", "0", "1"]
-    message = "a motion keeps the ratio of its border or that of driven folds, not both"
+    message = "a motion keeps the ratio of its boundary or that of driven folds, not both"
     with without(message):
         verified(document)
     refused(document, message)
@@ -240,7 +240,7 @@ def test_driven_folds_that_come_back_are_flat_at_the_end() -> None:
 
 
 def test_a_driven_motion_has_no_node() -> None:
-    """The patch of a node knows nothing of the equations of a drive."""
+    """The patch of a branch point knows nothing of the equations of a drive."""
     document = given()
     sheet = read_sheet(document["pattern"])[0]
     drive = Drive(sheet, document["claims"]["drive"])
@@ -318,7 +318,7 @@ def test_a_motion_that_comes_back_claims_no_contact() -> None:
     document = back()
     document["claims"]["clear"] = "1/1000"
     document["evidence"]["contacts"] = {"tube": 1, "clear": 0}
-    refused(document, "a motion that returns claims a node, or contacts")
+    refused(document, "a motion that returns claims a branch point, or contacts")
 
 
 def test_a_motion_that_comes_back_is_shorter_than_claimed() -> None:

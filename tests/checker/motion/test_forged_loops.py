@@ -1,4 +1,4 @@
-"""Forged certificates of loops: other ends, nodes that are none, links that are left out."""
+"""Forged certificates of loops: other ends, false branch points, links that are left out."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def test_the_loops_that_are_forged_here_verify() -> None:
         matched, whole = claims["matched"], claims["half_branches"]
         how = f"all {whole}" if matched == whole else f"{matched} of {whole}"
         assert motion_loops.summary(claims) == (
-            f"VALID: 1 loop of true motions, which match {how} half-branches; "
+            f"VALID: 1 loop of true motions, which match {how} rays; "
             f"sha256 {read_sheet(forged[0]['pattern'])[1]}"
         )
     nodes = [step for step in steps_of(given_lines(NODE)) if "flat" in step]
@@ -159,19 +159,19 @@ def test_what_is_not_complete_is_not_claimed_complete() -> None:
 def test_no_half_branch_is_matched_twice() -> None:
     header, loop, claims = given_lines(ONE)
     claims["claims"]["loops"] = 2
-    refused([header, loop, loop, claims], "loop 1: a half-branch is matched twice")
+    refused([header, loop, loop, claims], "loop 1: a ray is matched twice")
     back = loop | {"from": loop["to"], "to": loop["from"]}
-    refused([header, loop, back, claims], "loop 1: a half-branch is matched twice")
+    refused([header, loop, back, claims], "loop 1: a ray is matched twice")
     matching = Matching()
     up = ((1, -1, 0), 1)
-    with pytest.raises(CertificateError, match=r"^loop 0: a half-branch is matched with itself$"):
+    with pytest.raises(CertificateError, match=r"^loop 0: a ray is matched with itself$"):
         matching.add(up, up)
     matching.add(up, ((-1, 1, 0), -1))  # its own mirror image
     assert (matching.loops, len(matching.matched)) == (1, 2)
     matching.add(((1, 1, 0), 1), ((1, 1, 0), -1))
     assert (matching.loops, len(matching.matched)) == (2, 6)
     for other in (up, ((-1, -1, 0), 1), ((-1, -1, 0), -1)):
-        with pytest.raises(CertificateError, match=r"^loop 2: a half-branch is matched twice$"):
+        with pytest.raises(CertificateError, match=r"^loop 2: a ray is matched twice$"):
             matching.add(((1, -1, 0), -1), other)
 
 
@@ -195,8 +195,8 @@ def test_several_processes_say_the_same() -> None:
 def test_keys() -> None:
     for place, message in (
         ((), "loop: expected an object with the keys from to length evidence provenance"),
-        (("from",), "half-branch: expected an object with the keys vertex_signs side"),
-        (("to",), "half-branch: expected an object with the keys vertex_signs side"),
+        (("from",), "ray: expected an object with the keys vertex_signs side"),
+        (("to",), "ray: expected an object with the keys vertex_signs side"),
         (("evidence",), "evidence: expected an object with the keys start steps landing"),
         (
             ("evidence", "start"),
@@ -270,7 +270,7 @@ def test_other_names_are_refused() -> None:
                 change = {"vertex_signs": [-s for s in entry["vertex_signs"]]}
             entry |= change
             if forged[1]["from"] == forged[1]["to"]:
-                refused(forged, "loop 0: a half-branch is matched with itself")
+                refused(forged, "loop 0: a ray is matched with itself")
             else:
                 refused(forged, f"loop 0: {message}")
         for sign in (True, "1", None, 1.0):
@@ -323,7 +323,9 @@ def test_a_loop_lands_after_it_has_entered_the_last_tube() -> None:
         (tube.enclosure(s), tube.velocity(s)) for s in (Fraction(-1, 1000), Fraction(1, 1000))
     )
     path = Path(later, sheet.equations.bits)
-    with pytest.raises(CertificateError, match=r"^a motion meets a node, or lands, on no tube$"):
+    with pytest.raises(
+        CertificateError, match=r"^a motion meets a branch point, or lands, on no tube$"
+    ):
         path.meet(*later)
     path.enter(tube)
     with pytest.raises(CertificateError, match=r"^a motion meets another piece before it enters"):
@@ -332,7 +334,7 @@ def test_a_loop_lands_after_it_has_entered_the_last_tube() -> None:
         path.leave(Fraction(-1, 1000))
     forged = given_lines(ONE)
     forged[1]["evidence"]["steps"] = []
-    refused(forged, "loop 0: a motion meets a node, or lands, on no tube")
+    refused(forged, "loop 0: a motion meets a branch point, or lands, on no tube")
     forged = given_lines(ONE)
     steps_of(forged)[1]["exit"] = -steps_of(forged)[1]["exit"]
     refused(forged, "loop 0: a motion leaves a tube before it enters")
@@ -372,12 +374,13 @@ def test_the_length_of_a_path_is_that_of_its_chords() -> None:
     assert 0 <= 5 + 12 + 5 + 10 + 10 - path.length < Fraction(1, 10**4)
 
 
-# --- nodes ---------------------------------------------------------------------------------------
+# --- branch points
+# ---------------------------------------------------------------------------------------
 
 
 @cache
 def _node() -> tuple[LoopSheet, str, str]:
-    """The sheet, the first node that its loop passes, and the tube before it."""
+    """The sheet, the first branch point that its loop passes, and the tube before it."""
     header, loop, _ = given_lines(NODE)
     steps = loop["evidence"]["steps"]
     k = next(k for k, step in enumerate(steps) if "flat" in step)
@@ -390,7 +393,7 @@ def node() -> Document:
 
 
 def passed(entry: Any, backwards: bool = False) -> Path:
-    """The path that enters the tube before the node at its centre, and passes the node."""
+    """The path that enters the tube before the branch point at its centre, and passes it."""
     sheet, _, before = _node()
     tube = tube_of(sheet.equations, json.loads(before))
     if backwards:
@@ -438,7 +441,7 @@ def test_keys_of_a_node() -> None:
 def test_vertices_that_are_not_flat_are_refused() -> None:
     sheet = _node()[0]
     interior, flat = sheet.given.interior, node()["flat"]
-    inner = "a node has no vertices that are flat, or none that fold"
+    inner = "a branch point has no vertices that are flat, or none that fold"
     for other in ([], [*flat, *flat], [sheet.given.boundary[0]], [99], [*reversed(interior)]):
         not_passed(node() | {"flat": other}, inner)
     square = "a flat patch leaves no unknowns, or not as many equations"
@@ -495,7 +498,7 @@ def test_a_node_must_be_passed_in_the_direction_of_the_loop() -> None:
     begin, end = entry["entry"], entry["exit"]
     entry["entry"], entry["exit"] = -begin, end
     not_passed(entry, "an arc does not go through its node")
-    # The same arc run through the other way: its point on the tube is now after the node.
+    # The same arc run through the other way: its point on the tube is now after the branch point.
     sheet, _, before = _node()
     tube = tube_of(sheet.equations, json.loads(before))
     arc = _arc(sheet, entry)
@@ -530,11 +533,11 @@ def test_nodes_follow_tubes() -> None:
     steps = loop["evidence"]["steps"]
     k = next(k for k, step in enumerate(steps) if "flat" in step)
     loop["evidence"]["steps"] = steps[k : k + 1]
-    refused([header, loop, claims], "loop 0: a motion meets a node, or lands, on no tube")
+    refused([header, loop, claims], "loop 0: a motion meets a branch point, or lands, on no tube")
 
 
 def test_an_arc_holds_configurations() -> None:
-    """All edges keep their lengths, as far as the boxes tell, and at the node the patch is flat."""
+    """No box refutes the lengths of the edges, and the patch is flat at the branch point."""
     sheet = _node()[0]
     equations, arc = sheet.equations, _arc(sheet, node())
     one = Fraction(1 << equations.bits)
@@ -736,7 +739,7 @@ def test_what_the_box_of_a_node_does_to_an_arc_is_counted() -> None:
 
 
 def test_the_bars_of_a_panel_bend_as_much_as_is_counted() -> None:
-    """The second derivative of the equations of a node, with exact numbers."""
+    """The second derivative of the equations of a branch point, with exact numbers."""
     sheet, entry = _node()[0], node()
     patch = Patch(sheet.equations, entry["flat"])
     kept: list[Any] = []

@@ -57,7 +57,7 @@ def test_claims_come_with_the_pattern(name: str) -> None:
     assert claims == {**document["claims"], "tubes": tubes, "sha256": digest}
     signs = "".join("-0+"[s + 1] for s in claims["vertex_signs"])
     assert checker.summary(claims) == (
-        f"VALID: the motion along the half-branch {signs} ({len(signs)}), side +, is one curve "
+        f"VALID: the motion along the ray {signs} ({len(signs)}), side +, is one curve "
         f"without a gap of length {shown(claims['length'])} or more; {tubes} tubes; sha256 {digest}"
     )
 
@@ -65,7 +65,7 @@ def test_claims_come_with_the_pattern(name: str) -> None:
 def test_summaries() -> None:
     claims = {"vertex_signs": [1] * 61, "side": -1, "length": "1", "tubes": 1, "sha256": "x"}
     assert motion.summary(claims) == (
-        f"VALID: the motion along the half-branch {'+' * 60}... (61), side -, is one curve "
+        f"VALID: the motion along the ray {'+' * 60}... (61), side -, is one curve "
         "without a gap of length 1 or more; 1 tube; sha256 x"
     )
     assert f"{'+' * 60} (60)" in motion.summary({**claims, "vertex_signs": [1] * 60})

@@ -1,4 +1,4 @@
-"""Forged certificates of motions that end at a node: another node, or contacts before it."""
+"""Forged certificates of motions to a branch point: another one, or contacts before it."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def _text() -> str:
 
 
 def given() -> Document:
-    """A fresh copy of the certificate of a motion that is clear up to its node."""
+    """A fresh copy of the certificate of a motion that is clear up to its branch point."""
     document: Document = json.loads(_text())
     return document
 
@@ -64,10 +64,10 @@ def test_what_is_claimed_is_proved() -> None:
     claims = verified(given())
     assert claims["node"] == {"flat": [FLAT], "clear": True}
     line = checker.summary(claims)
-    assert f" or more, to a node where vertex {FLAT} is flat; " in line
+    assert f" or more, to a branch point where vertex {FLAT} is flat; " in line
     when = f"which is at {shown(claims['clear'])} or later"
-    assert f"; no two faces touch before the node, {when}, nor at it; " in line
-    assert "to a node where vertices 5 and 7 are flat;" in motion.summary(
+    assert f"; no two faces touch before the branch point, {when}, nor at it; " in line
+    assert "to a branch point where vertices 5 and 7 are flat;" in motion.summary(
         {**claims, "node": {"flat": [5, 7], "clear": False}}
     )
 
@@ -92,11 +92,12 @@ def test_keys() -> None:
     for place, message in (
         (
             ("claims",),
-            "claims: expected an object with the keys vertex_signs side length node clear",
+            "claims: expected an object with the keys vertex_signs side length branch point clear",
         ),
         (
             ("evidence",),
-            "evidence: expected an object with the keys emptied pinned bits start tubes node "
+            "evidence: expected an object with the keys emptied pinned bits start tubes "
+            "branch point "
             "contacts",
         ),
         (("claims", "node"), "node: expected an object with the keys flat clear"),
@@ -117,7 +118,7 @@ def test_a_node_is_claimed_with_its_evidence() -> None:
     refused(forged, f"{names} contacts")
     forged = given()
     del forged["evidence"]["node"]
-    refused(forged, f"{names} node contacts")
+    refused(forged, f"{names} branch point contacts")
 
 
 @pytest.mark.slow
@@ -140,11 +141,12 @@ def test_numbers() -> None:
     refused(forged, beyond("the tubes", 4106, 4096, "MOST_TUBES"))
 
 
-# --- the node ------------------------------------------------------------------------------------
+# --- the branch point
+# ------------------------------------------------------------------------------------
 
 
 def test_other_vertices_are_not_flat() -> None:
-    inner = "a node has no vertices that are flat, or none that fold"
+    inner = "a branch point has no vertices that are flat, or none that fold"
     flat: Any
     for flat, message in (
         ([], inner),
@@ -181,13 +183,13 @@ def test_another_node_is_refused() -> None:
 
 @pytest.mark.slow
 def test_an_arc_that_leaves_its_node() -> None:
-    """The arc the other way round: its point on the tube comes after the node (Theorem 6)."""
+    """The arc reversed: its point on the tube comes after the branch point (Theorem 6)."""
     forged = given()
     at = forged["evidence"]["node"]
     at["centre"], at["row"] = ([-x for x in at[key]] for key in ("centre", "row"))
     at["entry"] *= -1
     refused(forged, "a motion may enter a tube backwards")
-    for entry in (0, 1, 1 << 20):  # at the node and beyond it
+    for entry in (0, 1, 1 << 20):  # at the branch point and beyond it
         forged = given()
         forged["evidence"]["node"]["entry"] = entry
         refused(forged, "a motion enters a tube beyond its reach")
@@ -201,9 +203,9 @@ def test_the_arc_begins_on_the_last_tube() -> None:
     with pytest.raises(CertificateError, match=r"^a motion (enters|does not enter)"):
         verified(forged)
     forged["evidence"]["tubes"] = []
-    refused(forged, "a motion meets a node, or lands, on no tube")
+    refused(forged, "a motion meets a branch point, or lands, on no tube")
     forged = given()
-    forged["evidence"]["node"]["entry"] += 1 << 36  # nearer to the node, beyond the tube
+    forged["evidence"]["node"]["entry"] += 1 << 36  # nearer to the branch point, beyond the tube
     with pytest.raises(CertificateError, match=r"^a motion (enters|does not enter)"):
         verified(forged)
 
@@ -279,7 +281,7 @@ def pieces() -> tuple[Any, ...]:
 
 
 def test_faces_that_may_touch_on_the_arc() -> None:
-    """A node that may be anywhere: only the arc is not clear then."""
+    """A branch point that may be anywhere: only the arc is not clear then."""
     start, tau, steps, claims, contacts = pieces()
     check_contacts(start, tau, steps, claims, contacts)
     arc, begin, end = steps[-1]
@@ -345,4 +347,4 @@ def test_a_motion_through_the_paper_is_not_clear_up_to_its_node() -> None:
     with pytest.raises(CertificateError, match=MAY_TOUCH):
         verified(document)
     document["claims"]["node"]["flat"] = [7, 5]
-    refused(document, "a node has no vertices that are flat, or none that fold")
+    refused(document, "a branch point has no vertices that are flat, or none that fold")

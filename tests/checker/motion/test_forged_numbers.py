@@ -153,7 +153,7 @@ def test_empty_lists_prove_nothing() -> None:
     )
     forged = given_lines(ONE)
     forged[1]["evidence"]["steps"] = []
-    refused_loops(forged, "loop 0: a motion meets a node, or lands, on no tube")
+    refused_loops(forged, "loop 0: a motion meets a branch point, or lands, on no tube")
 
 
 def test_a_direction_of_zero_is_refused() -> None:

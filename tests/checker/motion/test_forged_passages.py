@@ -1,4 +1,4 @@
-"""Forged certificates of motions that go through a node: another one, or none, or contacts."""
+"""Forged certificates of motions through a branch point: another one, none, or contacts."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def _pieces_once() -> Iterator[None]:
 
 
 def given() -> Document:
-    """A fresh copy of the certificate of a motion that is clear through its node and beyond."""
+    """A fresh copy of the certificate of a motion that is clear beyond its branch point."""
     document: Document = json.loads(_text())
     return document
 
@@ -67,18 +67,20 @@ def test_what_is_claimed_is_proved() -> None:
     assert claims["through"] == [[FLAT]]
     assert Fraction(claims["clear"]) > Fraction("0.65")
     said = checker.summary(claims)
-    assert f" or more, through a node where vertex {FLAT} is flat; no two faces touch" in said
+    assert (
+        f" or more, through a branch point where vertex {FLAT} is flat; no two faces touch" in said
+    )
     steps = given()["evidence"]["tubes"]
-    assert f"; {len(steps) - 1} tubes; sha256" in said  # the arc through the node is none
+    assert f"; {len(steps) - 1} tubes; sha256" in said  # the arc through the branch point is none
 
 
 @pytest.mark.slow
 def test_the_nodes_that_are_passed_are_claimed() -> None:
     for through, message in (
-        (None, "a motion passes nodes that it does not claim, or none"),
-        ([], "the nodes that are passed are others"),
-        ([[5]], "the nodes that are passed are others"),
-        ([[FLAT], [FLAT]], "the nodes that are passed are others"),
+        (None, "a motion passes branch points that it does not claim, or none"),
+        ([], "the branch points that are passed are others"),
+        ([[5]], "the branch points that are passed are others"),
+        ([[FLAT], [FLAT]], "the branch points that are passed are others"),
         ([[str(FLAT)]], "flat vertex is not a natural number"),
     ):
         forged = given()
@@ -97,12 +99,12 @@ def test_the_nodes_that_are_passed_are_claimed() -> None:
     forged["claims"]["length"] = "0"
     for through in ([], [[FLAT]]):
         forged["claims"]["through"] = through
-        refused(forged, "a motion passes nodes that it does not claim, or none")
+        refused(forged, "a motion passes branch points that it does not claim, or none")
 
 
 @pytest.mark.slow
 def test_an_arc_goes_through_its_node() -> None:
-    """Else the motion might turn back before the node, or not reach it."""
+    """Else the motion might turn back before the branch point, or not reach it."""
     message = "an arc does not go through its node"
     forged = given()
     arc = next(step for step in forged["evidence"]["tubes"] if "flat" in step)
@@ -120,7 +122,7 @@ def test_an_arc_goes_through_its_node() -> None:
 
 @pytest.mark.slow
 def test_a_motion_does_not_end_at_a_node_that_it_has_passed() -> None:
-    """Its arc, met after the node, leads away from it (docs/motion.md, Theorem 6)."""
+    """Its arc, met after the branch point, leads away from it (docs/motion.md, Theorem 6)."""
     message = "an arc does not lead to its node"
     forged = given()
     steps = forged["evidence"]["tubes"]

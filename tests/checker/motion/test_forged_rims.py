@@ -1,4 +1,4 @@
-"""Forged certificates of motions along a rim path: another border, and a node that is none."""
+"""Forged certificates of motions along a rim path: other heights, and a false branch point."""
 
 from __future__ import annotations
 
@@ -167,8 +167,8 @@ def test_a_border_that_is_not_convex() -> None:
 def test_the_flat_state_is_no_node_to_come_to() -> None:
     """The ear leaves one height beside the flat star, which the tie fixes.
 
-    So the flat state is a regular zero of the equations of a node, and the motion leaves it along
-    an arc: it does not come to it.
+    So the flat state is a regular zero of the equations of a branch point, and the motion leaves it
+    along an arc: it does not come to it.
     """
     track = _track()
     framework, start = track.framework, track.start

@@ -23,7 +23,7 @@ SQUARE = [(0, 0), (4, 0), (4, 4), (0, 4)]
             [(0, 4), (1, 4), (1, 2), (2, 3), (0, 3)],
             "edges 0-4 and 2-3 meet",
         ),
-        (  # two panels with a bend between them that reaches beyond the border
+        (  # two panels with a bend between them that reaches beyond the boundary
             [(2, 0), (2, 4), (5, 2)],
             [(0, 4), (1, 4), (1, 2), (2, 5), (3, 5), (0, 3), (4, 6), (5, 6)],
             "edges 4-6 and 1-2 meet",

@@ -41,7 +41,7 @@ Points = list[tuple[int, int]]
 
 
 def sheet(points: Points, folds: Points, inner: int) -> PanelPattern:
-    """A sheet whose border joins the points from number `inner` on."""
+    """A sheet whose boundary joins the points from number `inner` on."""
     return outlined([(Fraction(x), Fraction(y)) for x, y in points], folds, inner)
 
 
@@ -62,7 +62,7 @@ def cone() -> PanelPattern:
 
 
 def stars(shared: bool) -> PanelPattern:
-    """Two vertices with five folds each to the border, and one that they share, or none."""
+    """Two vertices with five folds each to the boundary, and one that they share, or none."""
     points = [(0, 0), (9, 0), (3, -5), (6, -5), (12, -4), (14, 0), (12, 4), (6, 5), (3, 5)]
     points += [(-3, 4), (-5, 0), (-3, -4)]
     folds = [(0, 2), (0, 8), (0, 9), (0, 10), (0, 11), (1, 3), (1, 4), (1, 5), (1, 6), (1, 7)]

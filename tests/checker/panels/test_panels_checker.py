@@ -113,7 +113,7 @@ SIDES = [(0, 1), (1, 2), (2, 3), (0, 3)]
             "the drawing has 2 outer faces, not one",
         ),
         ([(1, 1)], [(0, 4)], "edge 0-4 has one face on both sides"),
-        ([(5, 4), (4, 5)], [(2, 4), (4, 5), (2, 5)], "the border passes a vertex twice"),
+        ([(5, 4), (4, 5)], [(2, 4), (4, 5), (2, 5)], "the boundary passes a vertex twice"),
     ],
 )
 def test_drawings_that_are_no_sheet(
@@ -136,7 +136,7 @@ def test_edges_that_touch(points: list[tuple[int, int]], edges: list[tuple[int, 
 
 
 def test_a_strip_that_turns_until_it_overlaps(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Each panel is in order, and only the border meets itself, in several places."""
+    """Each panel is in order, and only the boundary meets itself, in several places."""
     along = [(1, 0), (0, 1), (-1, 0), (0, -1), (1, 1)]
     points = [(r * x, r * y) for x, y in along for r in (1, 3)]
     edges = [(2 * k, 2 * k + 1) for k in range(5)]

@@ -46,7 +46,7 @@ def rigid() -> PanelPattern:
 
 
 def half_crossed() -> PanelPattern:
-    """Two straight creases that cross; one ends in a vertex with six folds, one at the border."""
+    """Two straight creases that cross; one ends in a vertex with six folds, one at the boundary."""
     points = [(0, 0), (6, 0), (2, -5), (6, -5), (12, 0), (6, 5), (2, 5), (-3, 4), (-5, 0), (-3, -4)]
     folds = [(0, 1), (1, 4), (1, 3), (1, 5), (0, 2), (0, 6), (0, 7), (0, 8), (0, 9)]
     return sheet(points, folds, 2)

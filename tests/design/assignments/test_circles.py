@@ -193,9 +193,9 @@ def test_a_triangulated_triangle_stays_flat() -> None:
 
 
 def test_what_is_not_listed() -> None:
-    with pytest.raises(NotCountedError, match="this border has 4, and vertex 1 is reflex"):
+    with pytest.raises(NotCountedError, match="this boundary has 4, and vertex 1 is reflex"):
         all_assignments(dart())
-    with pytest.raises(NotCountedError, match="this border has 6"):
+    with pytest.raises(NotCountedError, match="this boundary has 6"):
         all_assignments(families.single_vertex(6))
     with pytest.raises(NotCountedError, match="no vertex of this sheet can pop"):
         all_assignments(CreasePattern(CORNERS, [(0, 1, 2), (0, 2, 3), (0, 3, 4)]))

@@ -29,7 +29,7 @@ SEVEN = delaunay(
 )
 SQUARE = wheel([(0, 0), (4, 0), (4, 4), (0, 4)], (1, 2))
 FLAP = CreasePattern([*SQUARE.vertices, (7, 2)], [*SQUARE.triangles, (1, 5, 2)])
-"""A vertex, and a fold from border to border, 1-2, with a triangle behind it."""
+"""A vertex, and a fold from boundary to boundary, 1-2, with a triangle behind it."""
 RIM = [(4, -4), ("1/10", 0), (4, 4), (-4, 4), (-4, -4)]
 DENTED = CreasePattern([*RIM, (0, 0)], [(k, (k + 1) % 5, 5) for k in range(5)])
 

@@ -299,7 +299,7 @@ def test_flat_folds_alone_refute_nothing():
     assert not TRUE.holds(SHEET, dict.fromkeys(SHEET.folds, "F"))
 
 
-# --- any border: solutions with given rims are never refuted ------------------------------------
+# --- any boundary: solutions with given rims are never refuted ------------------------------------
 
 
 @pytest.mark.parametrize("corners", [5, 6, 7])

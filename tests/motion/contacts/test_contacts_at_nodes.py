@@ -1,4 +1,4 @@
-"""A fold that closes on the arc to a node: proved, verified, and forged."""
+"""A fold that closes on the arc to a branch point: proved, verified, and forged."""
 
 import json
 from fractions import Fraction
@@ -21,7 +21,7 @@ FACES = "014 043 127 154 175 236 267 348 386 458 568 576"
 
 @cache
 def late():
-    """The track to a node right before which a fold closes, and the certificate of this."""
+    """The track to a branch point right before which a fold closes, and the certificate of this."""
     sheet = CreasePattern(
         [(0, 0), (1, 0), (1, 1), (0, 1), *(tuple(map(Fraction, row.split())) for row in INNER)],
         [tuple(map(int, face)) for face in FACES.split()],

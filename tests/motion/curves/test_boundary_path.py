@@ -1,4 +1,4 @@
-"""Rim paths: sheets with more than four corners, whose border keeps the ratio of its heights."""
+"""Rim paths: sheets with more than four corners, whose boundary keeps the ratio of its heights."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def pentagon(signs: str = "+-") -> Branch:
 
 
 def off_the_ratio(motion: Motion) -> float:
-    """How far the heights of the border of any frame are from the span of rim, x, y and 1."""
+    """How far the boundary heights of any frame are from the span of rim, x, y and 1."""
     pattern, rim = motion.pattern, motion.branch.boundary_heights
     assert rim is not None
     columns = [[float(rim[v]), *map(float, pattern.vertices[v]), 1.0] for v in pattern.boundary]
@@ -189,7 +189,7 @@ def test_a_node_is_proved() -> None:
 
 @pytest.mark.slow
 def test_a_return_is_proved() -> None:
-    """The motion ends in the flat sheet along the half-branch that floats see there."""
+    """The motion ends in the flat sheet along the ray that floats see there."""
     branch = find_branch(families.single_vertex(5), "+")
     motion = follow(branch, until="return", frames=3)
     assert motion.end == "return"
@@ -226,7 +226,7 @@ def test_what_is_not_followed() -> None:
 
 
 def test_a_base_is_far_apart() -> None:
-    """Ties of a border with straight sides have no corner that is on a line with the others."""
+    """Ties of a boundary with straight sides have no corner that is on a line with the others."""
     squares = delaunay([(0, 0), (2, 0), (4, 0), (4, 4), (2, 4), (0, 4), (1, 2), (3, 1)])
     branch = find_branch(squares, "+-")
     problem = problem_of(branch)

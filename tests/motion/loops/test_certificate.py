@@ -224,7 +224,7 @@ def test_the_command_line(tmp_path):
     checked = run("check", file, "--workers", 1)
     assert checked.exit_code == 0
     assert checked.stdout.startswith(
-        "VALID: 2 loops of true motions, which match all 8 half-branches; sha256 "
+        "VALID: 2 loops of true motions, which match all 8 rays; sha256 "
     )
     claims = json.loads(run("check", file, "--json").stdout)["claims"]
     assert claims["complete"] is True

@@ -1,4 +1,4 @@
-"""The graph of configurations: nodes recognised, arcs on no loop, angles and whole turns."""
+"""The graph of configurations: branch points, arcs on no loop, angles and whole turns."""
 
 from dataclasses import replace
 from fractions import Fraction
@@ -44,7 +44,7 @@ ONCE = Fraction(1), Fraction(1)
 
 @cache
 def loop() -> Loop:
-    """A loop that passes a node and, later, the same or another one with the same star flat."""
+    """A loop that passes a branch point and, later, one with the same star flat."""
     found = LoopFinder(PROBLEM).follow(find_branch(SHEET, SIGNS)).loop
     assert found.status is PROVED
     assert found.through == ((6,), (6,))
@@ -58,7 +58,8 @@ def node() -> LocatedBranchPoint:
     return found
 
 
-# --- nodes ---------------------------------------------------------------------------------------
+# --- branch points
+# ---------------------------------------------------------------------------------------
 
 
 def test_a_node_has_two_lines_and_a_mirror_image():
@@ -128,13 +129,13 @@ def test_the_angles_at_a_node_are_flat_where_the_star_is():
 
 @pytest.fixture(scope="module")
 def graph() -> ConfigurationGraph:
-    """From one loop alone: what leaves its nodes elsewhere has to be followed."""
-    return graph_of(PROBLEM, [loop()], "the other half-branches were not tried", process_pool(1))
+    """From one loop alone: what leaves its branch points elsewhere has to be followed."""
+    return graph_of(PROBLEM, [loop()], "the other rays were not tried", process_pool(1))
 
 
 def test_arcs_go_from_node_to_node_and_to_the_flat_state(graph):
     assert graph.status is UNDECIDED
-    assert graph.reason == "the other half-branches were not tried"
+    assert graph.reason == "the other rays were not tried"
     assert all(arc.status is PROVED for arc in graph.arcs)
     assert all(node.status is PROVED and node.curves == 2 for node in graph.nodes)
     assert graph.independent_cycles is None
@@ -174,7 +175,7 @@ def test_the_arcs_of_a_loop_are_as_long_as_the_loop(graph):
     ],
 )
 def test_the_whole_component_of_the_flat_state(number, seed):
-    """Arcs followed from nodes are those of the loops; each node of f stars has 2^(f + 1) sides."""
+    """Arcs from branch points are those of the loops; one of f stars has 2^(f + 1) sides."""
     found = find_loops(random_square(number, seed=seed))
     graph = found.graph
     assert graph.status is PROVED
@@ -237,7 +238,7 @@ def arc(start, end):
 
 
 def test_closed_curves_go_straight_on():
-    """An eight through the flat state, and a ring through both of its nodes."""
+    """An eight through the flat state, and a ring through both of its branch points."""
     arcs = (
         arc(SOURCE, EndAtBranchPoint(0, 0, 1)),
         arc(EndAtBranchPoint(0, 0, -1), TARGET),

@@ -1,4 +1,4 @@
-"""Loops: the matching of half-branches, by symmetries, by known rules, and at nodes."""
+"""Loops: the matching of rays, by symmetries, by known rules, and at branch points."""
 
 from dataclasses import replace
 from fractions import Fraction
@@ -118,7 +118,7 @@ def test_a_branch_with_a_flat_vertex_is_skipped():
 
 @pytest.fixture(scope="module")
 def passage():
-    """The first passage of a node of a loop that has two."""
+    """The first passage of a branch point of a loop that has two."""
     proof = LoopFinder(Problem.of(NODE_SHEET)).follow(find_branch(NODE_SHEET, NODE_SIGNS))
     assert proof.loop.through == ((9,), (9,))
     assert proof.loop.status is PROVED
@@ -137,7 +137,7 @@ def test_an_arc_through_a_node_keeps_all_lengths(passage):
         centre, radii = ball.floats
         assert np.abs(framework.stretch(centre)).max() <= 4 * radii.max() + 1e-15
         assert radii.max() < 1e-7
-    # Both velocities at the node are along one line: the arc goes straight on.
+    # Both velocities at the branch point are along one line: the arc goes straight on.
     before, after = (tube.ball_velocity(s << (PARAMETER_BITS - 20)).floats[0] for s in (-1, 1))
     assert np.abs(before - after).max() < 1e-5
 
@@ -162,7 +162,7 @@ def test_the_law_of_parity_needs_nothing_more_at_a_proved_node(passage):
 
 
 def test_a_loop_against_the_law_of_parity_is_a_defect():
-    """One sign flips; two, or one through a single node, contradict it."""
+    """One sign flips; two, or one through a single branch point, contradict it."""
     loop = find_loops(random_square(1, seed=0)).loops[0]
     assert _matching([loop]) == [loop]
     signs, saddle = loop.target.vertex_signs, loop.target.saddle
@@ -174,7 +174,7 @@ def test_a_loop_against_the_law_of_parity_is_a_defect():
 
 
 def test_the_other_arc_through_a_node_has_another_direction(passage):
-    """The kernel of the Jacobian at the node is a plane; two lines of it are tangent to arcs."""
+    """The kernel of the Jacobian at a branch point is a plane with two tangents of arcs."""
     tube = passage.tube
     framework = tube.framework
     node = tube.branch_point.floats[0]

@@ -16,7 +16,7 @@ def one_vertex(*tips):
 
 
 def strip(widths, height=2):
-    """Panels side by side, with a fold from border to border between neighbours."""
+    """Panels side by side, with a fold from boundary to boundary between neighbours."""
     xs = [sum(widths[:k]) for k in range(len(widths) + 1)]
     return grid(len(widths), 1, lambda i, j: (xs[i], height * j))
 

@@ -25,7 +25,7 @@ from exactfold.motion.panels.pieces import PanelPieces
 
 
 def strip(widths):
-    """Panels side by side, with a fold from border to border between neighbours."""
+    """Panels side by side, with a fold from boundary to boundary between neighbours."""
     xs = [sum(widths[:k]) for k in range(len(widths) + 1)]
     return grid(len(widths), 1, lambda i, j: (Fraction(xs[i]), Fraction(2 * j)))
 

@@ -241,12 +241,12 @@ def test_a_mode_that_does_not_fold_is_not_followed():
         ({"modes": [7]}, "no mode 7: give numbers from 1 to"),
         ({"modes": [1, 4]}, "cannot fold together: both use vertex"),
         ({"amounts": {17: 1}}, "an amount is given for mode 17"),
-        ({"amounts": {(0, 1): 1}}, "not a fold from border to border"),
+        ({"amounts": {(0, 1): 1}}, "not a fold from boundary to border"),
         ({"amounts": {}}, "so nothing folds"),
         ({"amounts": {4: float("nan")}}, "give a finite number"),
         ({"held": 9}, "no panel 9 to hold: give a number from 0 to 8"),
         ({"by": (0, 15)}, "no fold 0-15"),
-        ({"by": (0, 1)}, "0-1 is an edge of the border, not a fold to make equal steps of"),
+        ({"by": (0, 1)}, "0-1 is an edge of the boundary, not a fold to make equal steps of"),
     ],
 )
 def test_what_does_not_fit_is_said(options, message):

@@ -231,7 +231,7 @@ def test_the_scale_leaves_room() -> None:
 
 
 def test_integers_on_both_sides_of_a_machine_word() -> None:
-    """Bounds of the start of these half-branches are below and above 2^63 in one array."""
+    """Bounds of the start of these rays are below and above 2^63 in one array."""
     for signs in ("-+-+", "----"):
         start = ray(find_branch(random_square(4, seed=0), signs)).start
         assert all(type(x) is int for x in start.contraction.slope)

@@ -147,7 +147,7 @@ def test_what_cannot_be_driven() -> None:
         assert caught.value.folds
 
     refused({(0, 6): 90, (1, 5): 90}, "there is no fold 0-6 to drive")
-    refused({(0, 1): 90, (1, 5): 90}, "0-1 is an edge of the border, not a fold to drive")
+    refused({(0, 1): 90, (1, 5): 90}, "0-1 is an edge of the boundary, not a fold to drive")
     refused({(1, 5): 0, (2, 6): 90}, "fold 1-5 cannot be driven to 0 degrees: at 0 it stays")
     refused({(1, 5): 181, (2, 6): 90}, "fold 1-5 cannot be driven to 181 degrees: the limit is")
     refused(

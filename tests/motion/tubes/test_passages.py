@@ -1,4 +1,4 @@
-"""Motions that end at a node, where other curves cross: proved up to it."""
+"""Motions that end at a branch point, where other curves cross: proved up to it."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def test_a_motion_to_a_node_is_proved_and_clear_up_to_it(motion, proof):
         "until a branch point at the time 0.500686, where vertex 6 is flat and another curve "
         "crosses"
     )
-    assert proof.track.reason == "a node, where vertex 6 is flat and another curve crosses"
+    assert proof.track.reason == "a branch point, where vertex 6 is flat and another curve crosses"
     claims = checker.check(proof.certificate())
     assert claims["node"] == {"flat": [FLAT], "clear": True}
     assert claims["tubes"] + 2 == proof.tubes == proof.track.tubes
@@ -112,7 +112,7 @@ def test_a_track_to_a_time_ends_there_or_at_the_node(proof):
     assert (before.status, before.branch_point) == (PROVED, None)
     track = follow_proved(branch, until=0.51)
     assert (track.status, track.branch_point.vertices) == (UNDECIDED, (FLAT,))
-    assert track.reason == "a node, where vertex 6 is flat and another curve crosses"
+    assert track.reason == "a branch point, where vertex 6 is flat and another curve crosses"
     assert track.length == proof.length
 
 
@@ -135,8 +135,8 @@ def test_a_motion_that_passes_a_node_is_proved_beyond_it(proof):
     assert claims["through"] == [[FLAT]]
     assert "node" not in claims
     assert Fraction(claims["clear"]) > 0.6
-    # At the node all angles of its star change their signs.
-    assert max(passing.motion.bounds.radii) < 1e-14  # though one frame is close to the node
+    # At the branch point all angles of its star change their signs.
+    assert max(passing.motion.bounds.radii) < 1e-14  # though one frame is close to the branch point
     at = (np.array(SHEET.folds) == FLAT).any(axis=1)
     before, after = (np.sign(passing.motion.angles[k, at]) for k in (3, -1))
     assert (before * after == -1).all()

@@ -246,7 +246,7 @@ def test_relabelled_and_reflected_sheets_move_alike() -> None:
     values = dict(zip(pattern.interior, text, strict=True))
     moved = {order.index(v): 1 if s == "+" else -1 for v, s in values.items()}
     pinned = tuple(order.index(v) for v in track.framework.pinned)
-    # Two half-branches have these vertex signs; their saddles differ.
+    # Two rays have these vertex signs; their saddles differ.
     others = [
         follow_proved(
             find_branch(other_pattern, {v: side * x for v, x in moved.items()}),
@@ -320,14 +320,14 @@ def test_a_track_ends_where_it_is_told() -> None:
 
 
 def test_at_the_flat_state_a_track_is_undecided() -> None:
-    """The half-branches of two vertices return to the flat state, where tubes become short."""
+    """The rays of two vertices return to the flat state, where tubes become short."""
     track = follow_proved(find_branch(random_square(2, seed=1), "++"))
     assert track.status is UNDECIDED
     assert track.reason.startswith("all faces come to lie in one plane, flat")
     assert 20 < len(track.links) < 100
     end = track.links[-1].tube.enclosure(track.links[-1].exit).floats[0]
     assert np.abs(end).max() < 0.05
-    # It is no node, although all stars are flat there.
+    # It is no branch point, although all stars are flat there.
     on = follow_proved(find_branch(random_square(2, seed=1), "++"), through_branch_points=True)
     assert (on.status, on.reason, on.through) == (UNDECIDED, track.reason, ())
 
@@ -340,7 +340,7 @@ def test_most_tubes_hold_the_curve_on_both_sides_of_their_centres() -> None:
 
 
 def test_the_return_to_the_flat_state_is_proved() -> None:
-    """A point of exactly one other half-branch lies in a tube of the track, which comes back."""
+    """A point of exactly one other ray lies in a tube of the track, which comes back."""
     pattern = random_square(2, seed=1)
     branches = [find_branch(pattern, text) for text in ("++", "+-", "-+", "--")]
     halves = [ray(branch, side) for branch in branches for side in (1, -1)]

@@ -33,7 +33,7 @@ def sentences(made):
 
 
 def missing_the_border_by(*gaps):
-    """Vertical creases that end below the upper border."""
+    """Vertical creases that end below the upper boundary."""
     points, lines = [], []
     for k, gap in enumerate(gaps):
         x = 1 + Fraction(8 * k, len(gaps)).limit_denominator(10**6)

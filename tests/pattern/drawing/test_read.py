@@ -38,7 +38,7 @@ def test_a_square_is_the_same_in_every_format_whatever_the_name(ending, tmp_path
     assert len(drawing.points) == 5
     assert drawing.remarks == ()
     assert drawing.source == (
-        f"read square.txt: {ending.upper()}, 6 lines (1 mountain, 1 valley, 4 border)"
+        f"read square.txt: {ending.upper()}, 6 lines (1 mountain, 1 valley, 4 boundary)"
     )
 
 

@@ -141,7 +141,7 @@ def test_a_vertex_on_two_lines_is_their_crossing():
 
 
 def test_chains_of_vertices_that_lie_on_each_other_s_lines_are_all_exact():
-    """Vertex 6 lies on the crease 4-5, whose end 5 lies on the border."""
+    """Vertex 6 lies on the crease 4-5, whose end 5 lies on the boundary."""
     points = [*CORNERS, (0, 1), (4 - TINY, 2), (2, Fraction(3, 2) + TINY), (2, 4)]
     found, _ = after(points, [*RIM, (4, 5, "M"), (6, 7, "V")], "split")
     (x4, y4), (x5, y5), (x6, y6) = found.points[4:7]
@@ -331,7 +331,7 @@ def test_a_bird_base_of_whole_creases_is_exact():
 
 @pytest.mark.parametrize("seed", range(8))
 def test_random_grid_creases_in_pixels_make_a_pattern_without_loss(seed):
-    """Whole creases between border points on sevenths, 5 decimals, 900 pixels wide."""
+    """Whole creases between boundary points on sevenths, 5 decimals, 900 pixels wide."""
     random_ = random.Random(seed)
     points, lines = [(0, 0), (7, 0), (7, 7), (0, 7)], list(RIM)
     for _ in range(9):

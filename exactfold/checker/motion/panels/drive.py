@@ -27,7 +27,7 @@ _Step = tuple[Interval, tuple[Interval, ...] | None]
 
 
 class Mode:
-    """Folds that move together: those at the vertices `near`, or one from border to border.
+    """Folds that move together: those at the vertices `near`, or one from boundary to boundary.
 
     `linear`: whether all vertices close for all T. `way`: vertices with a fold known by then.
     """
