@@ -73,7 +73,7 @@ def test_a_given_rim_is_accepted() -> None:
     rim = {v: Fraction(v * v + 1, 3) for v in pattern.boundary}
     claims = checker.check(branch_certificate(find_branch(pattern, "+-+", boundary_heights=rim)))
     assert claims["gauge"] == "rim"
-    assert checker.summary(claims).startswith("VALID: exactly one solution over the border")
+    assert checker.summary(claims).startswith("VALID: exactly one solution over the boundary")
 
 
 def shifted(text: str, by: int) -> str:

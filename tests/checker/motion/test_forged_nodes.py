@@ -92,13 +92,12 @@ def test_keys() -> None:
     for place, message in (
         (
             ("claims",),
-            "claims: expected an object with the keys vertex_signs side length branch point clear",
+            "claims: expected an object with the keys vertex_signs side length node clear",
         ),
         (
             ("evidence",),
             "evidence: expected an object with the keys emptied pinned bits start tubes "
-            "branch point "
-            "contacts",
+            "node contacts",
         ),
         (("claims", "node"), "node: expected an object with the keys flat clear"),
         (
@@ -118,7 +117,7 @@ def test_a_node_is_claimed_with_its_evidence() -> None:
     refused(forged, f"{names} contacts")
     forged = given()
     del forged["evidence"]["node"]
-    refused(forged, f"{names} branch point contacts")
+    refused(forged, f"{names} node contacts")
 
 
 @pytest.mark.slow
