@@ -1,4 +1,4 @@
-"""What people touch: the command line, answers in words, pictures, and the page in the browser."""
+"""The parts that people use: the command line, answers in words, pictures, and the viewer."""
 
 from exactfold._support.lazy import attached as _attached
 

@@ -1,7 +1,7 @@
-"""JSON Schemas of all that is printed with `--json`, made from the types of the documents.
+"""Makes JSON Schemas of everything that `--json` prints from the types of the documents.
 
-The type of a document is a `TypedDict` beside the function that makes it, so that one file says
-what a command prints: the type checker compares the function with it, and `schema` reads it.
+The type of a document is a `TypedDict` in the module with the function that makes the document. The
+type checker compares the function with this type, and `schema` turns it into a JSON Schema.
 """
 
 from __future__ import annotations
@@ -87,11 +87,11 @@ DOCUMENTS: Final = {
         "app.commands.batch_document:BatchDocument",
     ),
     "error": (
-        "what any command prints with --json where it fails",
+        "what any command prints with --json if it fails",
         "app.shell.shell:ErrorDocument",
     ),
 }
-"""By name of a schema: what prints such documents, and the types that they have."""
+"""For each schema by name: the command that prints such documents, and the types of them."""
 
 _PRIMITIVE: Final = {
     str: "string",
@@ -106,9 +106,9 @@ Parts: TypeAlias = dict[type, dict[str, Any]]
 
 
 def schema(name: str) -> dict[str, Any]:
-    """The JSON Schema (draft 2020-12) of a kind of output, whole: it refers to no other file.
+    """The JSON Schema (draft 2020-12) of a kind of output; it refers to no other file.
 
-    Raises `UsageError` for a name that no schema has.
+    Raises `UsageError` if no schema has this name.
 
     >>> schema("shapes")["properties"]["format"]
     {'const': 'exactfold shapes result'}
@@ -134,13 +134,13 @@ def _at(place: str) -> Any:
 
 
 def _schema(kind: Any, parts: Parts) -> dict[str, Any]:
-    """The schema of a type; that of a `TypedDict` is put among the `parts` and referred to."""
+    """The schema of a type; for a `TypedDict` a reference to its schema, which goes to `parts`."""
     origin, arguments = get_origin(kind), get_args(kind)
     if origin is Annotated:
-        found = _schema(arguments[0], parts)
+        constrained = _schema(arguments[0], parts)
         for constraint in arguments[1:]:
-            found |= constraint.keywords
-        return found
+            constrained |= constraint.keywords
+        return constrained
     if origin in (Union, UnionType):
         return _any_of(arguments, parts)
     if origin is Literal:
@@ -161,7 +161,7 @@ def _any_of(kinds: Any, parts: Parts) -> dict[str, Any]:
 
 
 def _by_key(key: dict[str, Any], value: dict[str, Any]) -> dict[str, Any]:
-    """The schema of a dictionary, whose keys are text, perhaps with a pattern."""
+    """The schema of a dictionary whose keys are texts; `key` may restrict them by a pattern."""
     if "pattern" not in key:
         return {"type": "object", "additionalProperties": value}
     by_pattern = {"patternProperties": {key["pattern"]: value}, "additionalProperties": False}
@@ -169,13 +169,13 @@ def _by_key(key: dict[str, Any], value: dict[str, Any]) -> dict[str, Any]:
 
 
 def _object(kind: type, parts: Parts) -> dict[str, Any]:
-    """The schema of a `TypedDict`: it has these keys and no others."""
+    """The schema of a `TypedDict`, which allows its keys and no others."""
     properties, required = {}, []
     described = _described(kind)
     for key, value in get_type_hints(kind, include_extras=True).items():
         optional = get_origin(value) is NotRequired
-        found = _schema(get_args(value)[0] if optional else value, parts)
-        properties[key] = found | ({"description": described[key]} if key in described else {})
+        inner = _schema(get_args(value)[0] if optional else value, parts)
+        properties[key] = inner | ({"description": described[key]} if key in described else {})
         if not optional:
             required.append(key)
     return {
@@ -188,11 +188,11 @@ def _object(kind: type, parts: Parts) -> dict[str, Any]:
 
 
 def _described(kind: type) -> dict[str, str]:
-    """By key of a `TypedDict` the string below it in the source."""
+    """For each key of a `TypedDict`, the string that follows it in the source."""
     module = import_module(kind.__module__)
     found: dict[str, str] = {}
     if (definition := _classes(module).get(kind.__name__)) is None:
-        return found  # made by a call, as names of keys like "from" need it
+        return found  # made by a call, which keys like "from" need
     for base in definition.bases:
         if isinstance(base, ast.Name) and is_typeddict(vars(module)[base.id]):
             found |= _described(vars(module)[base.id])

@@ -1,4 +1,4 @@
-"""What all certificates share: files, journals, and work divided among processes."""
+"""What all certificates share: files, journals, and checks divided among processes."""
 
 from exactfold._support.lazy import attached as _attached
 

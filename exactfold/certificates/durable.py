@@ -1,4 +1,4 @@
-"""Files that one process at a time writes, and that survive a crash of the machine."""
+"""Files that only one process writes at a time and that survive a crash of the machine."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from contextlib import suppress
 from exactfold.errors import JournalInUseError, UnwritableFileError
 
 _UNSYNCED = (errno.EINVAL, errno.ENOTSUP, errno.EROFS)
-"""What `fsync` says of files that are not on a disk."""
+"""Errors of `fsync` for files that are not on a disk."""
 
 
 def locked(path: str) -> io.FileIO:
-    """A file open for reading and appending, unbuffered, made if need be, locked until closed.
+    """Open a file, unbuffered, for reading and appending, and lock it until it is closed.
 
-    The lock ends with the process, however it ends. Where the system or the file system knows no
-    `flock`, there is none. Raises `JournalInUseError` if another process or object holds the lock,
-    `UnwritableFileError`.
+    A file that does not exist is created. The lock ends with the process, however it ends. If the
+    operating system or the file system has no `flock`, the file is not locked. Raises
+    `JournalInUseError` if another process or object holds the lock, `UnwritableFileError`.
     """
     try:
         file = open(path, "a+b", buffering=0)  # noqa: SIM115 - closed by its owner
@@ -39,7 +39,7 @@ def locked(path: str) -> io.FileIO:
 
 
 def synced(file: io.FileIO) -> None:
-    """Wait until what was written is on the disk; raises `OSError`."""
+    """Wait until everything written to the file is on the disk; raises `OSError`."""
     try:
         os.fsync(file.fileno())
     except OSError as error:
@@ -48,7 +48,7 @@ def synced(file: io.FileIO) -> None:
 
 
 def synced_entry(path: str) -> None:
-    """Bring the name of a new file to the disk too, where directories can be opened."""
+    """Bring the name of a new file to the disk, too, if its directory can be opened."""
     with suppress(OSError):
         folder = os.open(os.path.dirname(path) or ".", os.O_RDONLY)
         try:

@@ -1,4 +1,4 @@
-"""Certificate files: the exact pattern, the claims, and the evidence for them, without floats."""
+"""Writes the entries of certificates, without floats: patterns, evidence and roots."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class CertificateLines(tuple[str, ...]):
 
     @property
     def text(self) -> str:
-        """The file: each line with the digest that chains it to the line before."""
+        """The text of the file: each line has a digest that chains it to the line before."""
         return chained(self)
 
     def __repr__(self) -> str:
@@ -41,7 +41,7 @@ class CertificateLines(tuple[str, ...]):
 
 
 def pattern_document(pattern: CreasePattern) -> Document:
-    """Vertices and triangles, exactly."""
+    """The exact vertices and the triangles of a pattern."""
     return {
         "vertices": [[format_rational(x), format_rational(y)] for x, y in pattern.vertices],
         "triangles": [list(t) for t in pattern.triangles],
@@ -49,9 +49,9 @@ def pattern_document(pattern: CreasePattern) -> Document:
 
 
 def emptied_evidence(pattern: CreasePattern, curved: Collection[int] = ()) -> list[Document]:
-    """The 3-cycles with vertices inside, and these vertices, without further evidence.
+    """Each triangulated triangle by its corners and the vertices inside, without stresses.
 
-    Those that hold one of the vertices `curved` are left away: they are not flat.
+    A triangle with one of the vertices `curved` inside is left out, because it is not flat.
     """
     return [
         {"corners": list(corners), "inside": list(inside)}
@@ -73,9 +73,10 @@ def triangle_evidence(triangles: Iterable[RigidTriangle]) -> list[Document]:
 
 
 def chart_evidence(chart: Chart, labels: Sequence[int]) -> Document | None:
-    """None for the chart `saddle = 1`, else the functional that is 1, by vertex.
+    """None for the chart `saddle = 1`, else the weights of the functional that equals 1.
 
-    Pinned vertices have height 0 and are left out; `labels` names the vertices in the certificate.
+    The weights are given by vertex, without pinned vertices, whose heights are 0. `labels` has the
+    names of the vertices in the certificate.
     """
     system = chart.branch_system
     if chart.is_saddle:
@@ -94,7 +95,7 @@ def box_entry(box: IsolatingBox) -> Document:
 
 
 def algebraic_evidence(proof: AlgebraicProof, labels: Sequence[int]) -> dict[str, Any]:
-    """The proof as certificate evidence; `labels` names the vertices in the certificate."""
+    """The evidence for exact classes; `labels` has the names of vertices in the certificate."""
     return {
         "multipliers": [format_rational(m) for m in proof.multipliers],
         "separating": list(proof.classes[0][0].separating) if proof.classes else [],
@@ -110,7 +111,7 @@ def algebraic_evidence(proof: AlgebraicProof, labels: Sequence[int]) -> dict[str
 
 
 def flat_box_entry(sheets: FlatSheets, box: IsolatingBox, labels: Sequence[int]) -> dict[str, Any]:
-    """A root in a box on flat sheets."""
+    """A root that lies in a box on flat sheets."""
     return {"flat": sorted(labels[v] for v in sheets.vertices), **box_entry(box)}
 
 
@@ -126,7 +127,7 @@ def class_entry(
 def write_certificate(
     certificate: Document | CertificateLines, path: str | os.PathLike[str]
 ) -> None:
-    """Write a certificate whole or not at all; raises `UnwritableFileError`."""
+    """Write a certificate; if this fails, no part of it is left. Raises `UnwritableFileError`."""
     if isinstance(certificate, CertificateLines):
         text = certificate.text
     else:

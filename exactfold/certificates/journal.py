@@ -1,4 +1,4 @@
-"""Certificates as journals: written block by block, resumed after an interruption."""
+"""Journals: certificates that are written block by block and resumed after an interruption."""
 
 from __future__ import annotations
 
@@ -15,28 +15,29 @@ from exactfold.checker.core.reading import FormatError
 from exactfold.errors import ForeignJournalError, UnwritableFileError, UsageError
 
 SYNC = 5.0
-"""Seconds after which what was written is brought to the disk, past a crash of the machine."""
+"""Seconds after which written lines are synced to the disk, so that they survive a crash."""
 
 
 class Journal:
     """A file to which lines are appended, each with the digest that chains it to the last.
 
-    `blocks` counts the blocks in it. A line is written whole: after an interruption at most the
-    last line is cut off, and is dropped when the file is resumed. While the journal is open, no
-    other can be opened on its file.
+    `blocks` is the number of blocks in the file. After an interruption at most the last line is
+    incomplete; it is dropped when the file is resumed. While the journal is open, no other journal
+    can open its file.
     """
 
     _file: io.FileIO
 
     def __init__(self, path: str | os.PathLike[str], header: str, *, replace: bool = True) -> None:
-        """A new file with its header, in place of any other only if `replace`.
+        """Start a new file with its header; an existing file is replaced only if `replace`.
 
-        Raises `JournalInUseError`, `UnwritableFileError`, `UsageError` for a file that is there.
+        Raises `JournalInUseError`, `UnwritableFileError`, `UsageError` for a file that may not be
+        replaced.
         """
         self._open(path)
         try:
             if not replace and self._size():
-                raise UsageError(f"{self.path} is there already; --resume continues it")
+                raise UsageError(f"{self.path} exists already; --resume continues it")
             self._begin(header)
         except BaseException:
             self._file.close()
@@ -52,19 +53,19 @@ class Journal:
         opening: str = '{"block"',
         kind: str = "compact certificate",
     ) -> Journal:
-        """The file with its blocks as far as they are whole and verified, ready for more.
+        """Open an existing file, keep its verified blocks, and get ready to append more.
 
-        `refusal(body, number)` is None for a block that holds; a block begins with `opening`. What
-        follows the last such block is cut off. A file that does not exist is begun. Raises
-        `ForeignJournalError` if the file is not that of this pattern, `JournalInUseError`,
-        `UnwritableFileError`.
+        `refusal(body, number)` returns None for a block that holds; a block begins with `opening`.
+        The first block that does not hold is cut off with all that follows. A file that does not
+        exist is created. Raises `ForeignJournalError` if the file belongs to another pattern,
+        `JournalInUseError`, `UnwritableFileError`.
         """
         journal = cls.__new__(cls)
         journal._open(path)
         try:
             if length := journal._verified(header, refusal, opening):
                 journal._cut(length)
-            else:  # not even a header: begin anew, but not over a file of another kind
+            else:  # not even a whole header: start anew, unless the file is of another kind
                 line = f"{header}\t{digest('', header)}\n".encode("ascii")
                 journal._file.seek(0)
                 if not line.startswith(journal._file.read(len(line) + 1)):
@@ -76,16 +77,16 @@ class Journal:
         return journal
 
     def append(self, body: str) -> None:
-        """Write a block; raises `UnwritableFileError`."""
+        """Append a block; raises `UnwritableFileError`."""
         self._write(body)
         self.blocks += 1
         if time.monotonic() - self._synced > SYNC:
             self.sync()
 
     def finish(self, claims: str) -> None:
-        """Write the claims; the file is then complete, on the disk, and still where it was.
+        """Append the claims, bring the file to the disk, and check that it is still at its path.
 
-        Raises `UnwritableFileError` for a file that was removed or replaced in the meantime.
+        Raises `UnwritableFileError` if the file was removed or replaced in the meantime.
         """
         self._write(claims)
         self.sync()
@@ -98,7 +99,7 @@ class Journal:
         self.complete = True
 
     def sync(self) -> None:
-        """Bring everything to the disk; raises `UnwritableFileError`."""
+        """Bring everything written so far to the disk; raises `UnwritableFileError`."""
         try:
             synced(self._file)
         except OSError as error:
@@ -106,7 +107,7 @@ class Journal:
         self._synced = time.monotonic()
 
     def close(self) -> None:
-        """Close the file; what was written stays."""
+        """Close the file; it keeps what was written."""
         with suppress(UnwritableFileError):
             self.sync()
         self._file.close()
@@ -128,7 +129,7 @@ class Journal:
     def _verified(
         self, header: str, refusal: Callable[[str, int], str | None], opening: str
     ) -> int:
-        """Bytes of the header and the blocks that hold, 0 without a header."""
+        """The length of the header and of the blocks that hold, in bytes; 0 without a header."""
         length = 0
         self._file.seek(0)
         stream = io.BufferedReader(self._file)
@@ -140,7 +141,7 @@ class Journal:
                             f"{self.path} belongs to another pattern or version"
                         )
                 elif not body.startswith(opening) or refusal(body, number):
-                    break  # claims are written anew
+                    break  # also for claims, which are written again
                 else:
                     self.blocks += 1
                 self.digest = digest(self.digest, body)
@@ -167,12 +168,12 @@ class Journal:
 
 
 def _same(body: str, header: str) -> bool:
-    """Whether two headers agree in all but their provenance, to the type of every number."""
+    """Whether two headers agree, apart from their provenance; 1 and 1.0 differ."""
     try:
-        found, wanted = (read_object(text, "a header") for text in (body, header))
+        existing, wanted = (read_object(text, "a header") for text in (body, header))
     except FormatError:
         return False
-    return _canonical(found) == _canonical(wanted)
+    return _canonical(existing) == _canonical(wanted)
 
 
 def _canonical(header: dict[str, object]) -> str:

@@ -1,4 +1,4 @@
-"""Certificates that are checked part by part, shared among processes without threads."""
+"""Shares the check of a certificate among processes, part by part."""
 
 from __future__ import annotations
 
@@ -9,9 +9,10 @@ from exactfold.checker.core.parts import Engine, Said, Verifier
 
 
 class _Started:
-    """What each process does with parts: it makes its own verifier of the file, then asks it.
+    """The function that verifies a part in a worker process.
 
-    The verifier is in the copy that a worker process was sent, and goes with this process.
+    Each process has its own copy of this object. The copy makes a verifier of the file at its first
+    call and keeps it for the later ones.
     """
 
     def __init__(self, engine: Engine, header: str) -> None:
@@ -25,5 +26,8 @@ class _Started:
 
 
 def shared(engine: Engine, workers: int, header: str, parts: Iterator[tuple[str, int]]) -> Said:
-    """Parts of a file checked in several processes, in their order; raises as `in_order`."""
+    """Check parts of a file in several processes; yields the answers in the order of the parts.
+
+    Raises the errors of `in_order`.
+    """
     return in_order(workers, _Started(engine, header), parts, 3)

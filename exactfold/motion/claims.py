@@ -1,4 +1,4 @@
-"""Claims of motions as certificates have them. Each is made next to what proves it."""
+"""The claims about motions in certificates. Each claim is made in the module that proves it."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Claim:
-    """What one claim adds to a certificate: its keys among the claims, and in the evidence.
+    """The keys that one claim adds to the claims and to the evidence of a certificate.
 
-    The class of the checker that reads them has the same name (`exactfold/checker/motion`).
+    The class of the checker that reads these keys has the same name (`exactfold/checker/motion`).
     """
 
     claims: Mapping[str, Any]
@@ -19,9 +19,12 @@ class Claim:
 
 
 def joined(claims: Iterable[Claim], **evidence: Any) -> dict[str, dict[str, Any]]:
-    """The "claims" and the "evidence" of a certificate; `evidence` is what every motion has."""
-    found: dict[str, dict[str, Any]] = {"claims": {}, "evidence": evidence}
+    """The "claims" and the "evidence" of a certificate.
+
+    `evidence` has the evidence that every certificate of a motion contains.
+    """
+    parts: dict[str, dict[str, Any]] = {"claims": {}, "evidence": evidence}
     for claim in claims:
-        found["claims"].update(claim.claims)
-        found["evidence"].update(claim.evidence)
-    return found
+        parts["claims"].update(claim.claims)
+        parts["evidence"].update(claim.evidence)
+    return parts

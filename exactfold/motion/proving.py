@@ -1,4 +1,4 @@
-"""`prove`: the proof of a motion that was followed in floats."""
+"""`prove`: proves a motion that was followed in floats."""
 
 from __future__ import annotations
 
@@ -29,33 +29,35 @@ from exactfold.motion.tubes.passages import Passage
 from exactfold.motion.tubes.tracks import Frame, Track, follow_proved, ray
 
 BITS = 64, 128
-"""After the point, of the numbers in tubes: what is tried, one after the other."""
+"""Binary digits after the point of the numbers in tubes, in the order in which they are tried."""
 
 _AT_ONCE = 1e-9
+"""Relative to the duration: contacts this close to the end of a motion are at its end."""
 _FARTHER = Fraction(1, 1000)
-"""Of its time: what goes on so much longer than to the branch point that floats see meets none."""
+"""A proof longer than the motion by this fraction has missed the branch point at its end."""
 _BEYOND = 1e-8
-"""Of its time: so much longer a motion is followed, so that driven folds are beyond their goals."""
+"""A driven motion is proved longer by this fraction, so that the folds pass their final angles."""
 _NAMED = 3
-_NO_NODE = "no branch point was met where floats see one"
-_STRAYED = "the frames in floats are not near the proved curve: floats have left the branch"
+_NO_NODE = "the proof met no branch point where floats see one"
+_STRAYED = "the frames in floats are far from the proved curve: floats have left the branch"
 
 
 @dataclass(frozen=True, repr=False)
 class MotionProof:
-    """What is proved of a motion: that it exists, without a gap, and what touches first.
+    """The proof that a motion exists, without a gap, and of its first contact.
 
-    `motion`: the motion with the frames of the proved curve, each with a bound of how far it is off
-    (`Motion.bounds`); as it was given where it is not proved to its end. `track`: the chain of
-    tubes, None for a motion until its return. `contact`: how far no two faces touch, and the first
-    contact if the motion meets one; None until the return. `passed`: the motion goes on after that
-    contact, through the paper, or after it is not known to be clear. `branch_point`: where the
-    proof ends at a branch point (`Track.branch_point`). `looped`: the proof of a motion until its
-    return. `length` bounds how far it is proved, in the unit of the sheet.
+    `motion` is the motion with frames of the proved curve and error bounds (`Motion.bounds`). If
+    the motion is not proved to its end, it is the motion that was given. `track` is the chain of
+    tubes, and `contact` says until when no two faces touch, and which faces touch first, if any do.
+    Both are None for a motion until its return, whose proof is `looped`. `passed` is true if the
+    motion goes on after the first contact, through the paper, or after the time until which it is
+    proved to be clear. `branch_point` is the branch point at which the proof ends, if it ends at
+    one (`Track.branch_point`). `length` has bounds for the proved length, in the unit of the sheet.
 
-    `status` is PROVED if all of the motion is, and its contact where it ends at one; of a motion
-    that ends at a branch point also that no two faces touch up to the branch point, unless the
-    motion goes through the paper before. Else `reason` says what is missing.
+    `status` is PROVED if the whole motion is proved and, for a motion that ends at a contact, this
+    contact. If the motion ends at a branch point, it must also be proved that no two faces touch up
+    to this point, unless the motion goes through the paper before. Otherwise `reason` says what is
+    missing.
     """
 
     status: Verdict
@@ -70,29 +72,29 @@ class MotionProof:
 
     @property
     def loop(self) -> Loop | None:
-        """Of a motion until its return, where it ends."""
+        """The outline of the loop, for a motion until its return; otherwise None."""
         return None if self.looped is None else self.looped.outline
 
     @property
     def branch_point(self) -> Passage | None:
-        """The way to the branch point at which the proof ends, None if it ends elsewhere."""
+        """The passage to the branch point at which the proof ends; None if it ends elsewhere."""
         return None if self.track is None else self.track.branch_point
 
     @property
     def through(self) -> tuple[Passage, ...]:
-        """The passages of the branch points that the motion goes through."""
+        """The passages through the branch points that the motion goes through."""
         if self.looped is not None:
             return tuple(step for step in self.looped.steps if isinstance(step, Passage))
         return () if self.track is None else self.track.through
 
     @property
     def clear_to_the_end(self) -> bool:
-        """Whether no two faces touch on all that is proved, nor in its last configuration."""
+        """Whether no two faces touch in any proved configuration, including the last one."""
         return self.contact is not None and not self.passed and self.contact.clear_to_the_end
 
     @property
     def back_text(self) -> str:
-        """Along which ray the motion comes back, in words; empty if it does not."""
+        """The ray along which the motion comes back, in words; empty if it does not come back."""
         loop = self.loop
         if loop is None or loop.target is None:
             return ""
@@ -103,16 +105,16 @@ class MotionProof:
 
     @property
     def reached(self) -> bool | None:
-        """Whether driven angles are proved to reach the sizes in the drive; None without a drive.
+        """Whether the driven angles are proved to reach their final sizes; None without a drive.
 
-        At the end they are that large or larger, all to the right side (docs/motion.md, 10).
-        Of the one fold that is driven on a sheet with four corners nothing is said.
+        If so, they have at least these sizes at the end, each to its own side (docs/motion.md,
+        10). Nothing is said about the one driven fold of a sheet with four corners.
         """
         return None if self.track is None or self.track.drive is None else self.track.reached
 
     @property
     def through_text(self) -> str:
-        """Which branch points the motion goes through, in words; empty if it meets none."""
+        """The branch points that the motion goes through, in words; empty if there are none."""
         nodes = [
             f"a branch point at the time {in_floats(self._time_of(branch_point))[1]:.6g}, "
             f"where {branch_point.what}"
@@ -130,19 +132,23 @@ class MotionProof:
 
     @property
     def may_succeed_otherwise(self) -> bool:
-        """Whether tubes failed at a place where floats see nothing singular."""
+        """Whether tubes failed at a place where floats see no singularity.
+
+        Then a proof with other settings may succeed.
+        """
         if self.status is PROVED or self.motion.end == SINGULAR:
             return False
         return self.reason != _STRAYED and (self.track is None or self.track.status is not PROVED)
 
     def certificate(self) -> Document | CertificateLines:
-        """The certificate of what is proved, for `exactfold.check` and `write_certificate`.
+        """The certificate of the proved part, for `exactfold.check` and `write_certificate`.
 
-        With four corners a motion until its return is one loop in a file of loops
-        (docs/motions.md), if it is proved to its end. Any other motion has a certificate of its
-        own, as far as it is proved. Nothing is claimed of a contact that the motion passes.
+        If a motion of a sheet with four corners is proved until its return, the certificate is a
+        file of loops with this one loop (docs/motions.md). Any other motion has a certificate of
+        its own for the part that is proved. It claims nothing about a contact that the motion
+        passes.
 
-        Raises `NotApplicableError` where nothing is proved that a certificate could state.
+        Raises `NotApplicableError` if nothing is proved that a certificate could state.
 
         >>> import exactfold
         >>> proof = exactfold.prove(exactfold.follow("two-vertex", signs="+-", until="return"))
@@ -161,7 +167,7 @@ class MotionProof:
         return certificate_with_contact(self.track, self.contact)
 
     def write(self, path: str | os.PathLike[str]) -> bool:
-        """Write `certificate`; False if there is none. Raises `UnwritableFileError`.
+        """Write the certificate; return False if there is none. Raises `UnwritableFileError`.
 
         >>> import os, tempfile
         >>> from exactfold.checker import summary, verify
@@ -180,7 +186,7 @@ class MotionProof:
         return True
 
     def to_dict(self) -> ProofDocument:
-        """The proof as `exactfold fold --json` prints it."""
+        """The object that `exactfold fold --json` prints for the proof."""
         contact, loop = self.contact, self.loop
         event = None if contact is None else contact.event
         return {
@@ -205,7 +211,7 @@ class MotionProof:
         }
 
     def _time_of(self, branch_point: Passage) -> Interval:
-        """Bounds of the time at a branch point, in the unit of the sheet."""
+        """Bounds for the time of a branch point, in the unit of the sheet."""
         low, high = branch_point.time(0)
         unit = branch_point.tube.framework.unit
         return low * unit, high * unit
@@ -224,15 +230,16 @@ class MotionProof:
 def prove(motion: Motion, *, bits: int = BITS[0], progress: Progress | None = None) -> MotionProof:
     """Prove a motion as far as it was followed.
 
-    Tubes hold one configuration for each parameter, from the flat state to the end of the motion
-    (docs/motion.md), and separating planes show what does not touch (docs/contacts.md). A motion
-    until its first contact is proved with that contact; any other one with how far it is clear.
-    Through branch points that the motion passes the proof goes on along the same arc
-    (docs/motions.md); a motion that ends at a branch point is proved up to it. The frames of the
-    motion that is returned are those of the proved curve, each in a box (`Motion.bounds`). `bits`:
-    after the point, of all numbers in the tubes.
+    From the flat state to the end of the motion, tubes enclose exactly one configuration for each
+    parameter (docs/motion.md), and separating planes show which faces do not touch
+    (docs/contacts.md). If the motion ends at its first contact, this contact is proved; otherwise
+    the proof says until when the motion is clear. If the motion passes through branch points, the
+    proof goes on along the same arc (docs/motions.md); if it ends at a branch point, it is proved
+    up to this point. The result has the frames of the proved curve, each enclosed in a box
+    (`Motion.bounds`). All numbers in the tubes have `bits` binary digits after the point.
 
-    Raises `UsageError` where the branch is not proved. UNDECIDED says nothing against the motion.
+    Raises `UsageError` if the branch is not proved. UNDECIDED does not mean that the motion is
+    wrong.
 
     >>> from exactfold.branches.counting.find import find_branch
     >>> from exactfold.motion.following import follow
@@ -297,7 +304,7 @@ def _tracked(motion: Motion, bits: int, progress: Progress | None) -> MotionProo
 
 
 def _judged(motion: Motion, track: Track, contact: FirstContact) -> tuple[Verdict, str]:
-    """Whether a motion is proved to its end, or what is missing."""
+    """The verdict on a motion, and what is missing if it is not proved to its end."""
     to_contact, branch_point = _ends_at_the_first_contact(motion), _branch_point_of(motion)
     if motion.end == NODE and track.branch_point is not None:
         if contact.event is None and not contact.clear_to_the_end:
@@ -308,37 +315,36 @@ def _judged(motion: Motion, track: Track, contact: FirstContact) -> tuple[Verdic
     if to_contact and contact.status is PROVED:
         return PROVED, ""
     if track.branch_point is not None and (to_contact or track.status is not PROVED):
-        return UNDECIDED, "floats went on without seeing this node"
+        return UNDECIDED, "the motion in floats goes on without a branch point there"
     if track.status is PROVED:
         proved = contact.status is PROVED or not to_contact
         return (PROVED, "") if proved else (UNDECIDED, contact.reason)
     if branch_point is None or track.through:
         return UNDECIDED, track.reason
-    unproved = (
-        f"floats see a branch point at the time {branch_point.time[1]:.6g}, which is not proved"
-    )
+    time = f"{branch_point.time[1]:.6g}"
+    unproved = f"floats see a branch point at the time {time}, which is not proved"
     return UNDECIDED, f"{track.reason}; {unproved}"
 
 
 def _not_apart(contact: FirstContact) -> str:
-    """Which faces are not proved to stay apart."""
+    """The sentence that names the faces that are not proved to stay apart."""
     names = [" and ".join("-".join(map(str, face)) for face in pair) for pair in contact.open_faces]
     more = f", and {len(names) - _NAMED} more pairs" if len(names) > _NAMED else ""
     return f"faces {', '.join(names[:_NAMED])}{more} are not proved to stay apart"
 
 
 def _branch_point_of(motion: Motion) -> Event | None:
-    """The first branch point on a motion, as floats see it."""
+    """The first branch point that floats see on a motion."""
     return next((event for event in motion.events if event.kind == NODE), None)
 
 
 def _passes_branch_points(motion: Motion) -> bool:
-    """Whether a motion goes on beyond a branch point, as floats see it."""
+    """Whether floats see the motion go on beyond a branch point."""
     return motion.end != NODE and _branch_point_of(motion) is not None
 
 
 def _ends_at_the_first_contact(motion: Motion) -> bool:
-    """Whether nothing touches before the end of a motion, and something does there."""
+    """Whether the first contact of a motion is at its end."""
     touching = [event for event in motion.events if event.kind in (CONTACT, FLAT_FOLD)]
     return motion.end in (CONTACT, FLAT_FOLD) and all(
         event.time[1] >= motion.duration * (1 - _AT_ONCE) for event in touching
@@ -361,13 +367,13 @@ def _returning(motion: Motion, bits: int, progress: Progress | None) -> MotionPr
 def _with_frames(
     proof: MotionProof, framework: Framework, frame: Callable[[float], Frame]
 ) -> MotionProof:
-    """The proof with enclosed frames; UNDECIDED if it is that of another motion."""
+    """The proof with enclosed frames; UNDECIDED if the motion in floats left the proved curve."""
     if proof.status is not PROVED:
         return proof
     longest = in_floats((proof.length[1], proof.length[1]))[0]
     times = [min(time, longest) for time in proof.motion.times.tolist()]
     if proof.branch_point is not None and proof.motion.end == NODE:
-        times[-1] = longest  # the branch point itself, where floats come near to it only
+        times[-1] = longest  # the branch point itself, which floats only approach
     motion = with_enclosed_frames(proof.motion, framework, [frame(time) for time in times])
     if motion is None:
         return replace(proof, status=UNDECIDED, reason=_STRAYED)

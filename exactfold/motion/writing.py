@@ -1,4 +1,4 @@
-"""`write_motion`: a motion as FOLD with frames, as glTF with an animation, or as OBJ files."""
+"""`write_motion`: writes a motion as FOLD with frames, as animated glTF, or as OBJ files."""
 
 from __future__ import annotations
 
@@ -23,15 +23,16 @@ ENDINGS = (".fold", ".glb", ".gltf", ".obj")
 def write_motion(
     motion: SheetInMotion, path: str | PathLike[str], *, title: str | None = None
 ) -> tuple[Path, ...]:
-    """Write a motion in the format that the ending of the path names; the files written.
+    """Write a motion in the format that the ending of the path names; return the written files.
 
-    ".fold": FOLD 1.2, the exact flat sheet and after it all frames, with their fold angles
-    (`motion_document`). ".glb" and ".gltf": glTF 2.0 in one file with an animation of the frames,
-    for Blender and three.js; needs pygltflib (`pip install 'exactfold[motion]'`). ".obj": a file
-    for each frame, NAME_0000.obj and on. FOLD files hold panels as they are, the others cut them
-    into triangles. `title` names the pattern. See docs/folding.md.
+    ".fold" is FOLD 1.2: the exact flat sheet, followed by all frames with their fold angles
+    (`motion_document`). ".glb" and ".gltf" are glTF 2.0: one file with an animation of the frames,
+    for Blender and three.js; this needs pygltflib (`pip install 'exactfold[motion]'`). ".obj"
+    gives a file for each frame: NAME_0000.obj, NAME_0001.obj, and so on. FOLD files keep panels as
+    they are; in the other formats panels are cut into triangles. `title` is the title of the
+    pattern. See docs/folding.md.
 
-    Raises `UsageError` for another ending, `PackageMissingError`, `UnwritableFileError`.
+    Raises `UsageError` for any other ending, `PackageMissingError`, `UnwritableFileError`.
 
     >>> import os, tempfile
     >>> from exactfold.branches.counting.find import find_branch
@@ -67,16 +68,16 @@ def write_motion(
 
 
 def checked_ending(path: Path) -> str:
-    """The format that the path of a motion names; raises as `checked_target`."""
+    """The ending of the path, if it is one of `ENDINGS`; raises the errors of `checked_target`."""
     return checked_target(path, ENDINGS, "a motion")
 
 
 def fold_motion(motion: SheetInMotion, *, title: str | None = None) -> dict[str, Any]:
-    """The FOLD object of a motion, as `write_motion` writes it.
+    """The FOLD object of a motion that `write_motion` writes.
 
-    `edges_foldAngle` of the flat sheet are `motion.leading_angles`, the first-order angles of a
-    branch, or those of panels at 30 degrees: a simulator that reads no more than this frame stays
-    on the branch or mode (docs/export.md).
+    `edges_foldAngle` of the flat sheet has `motion.leading_angles`: the first-order angles of a
+    branch, or the angles of a motion of panels when its driving folds have 30 degrees. With these
+    angles, a simulator that reads only this frame stays on the branch or mode (docs/export.md).
     """
     folds, bounds = motion.pattern.folds, motion.bounds
     frames = [

@@ -82,7 +82,7 @@ def test_the_command_names_the_file_in_use(tmp_path: Path) -> None:
 
 def test_a_file_that_appears_in_the_last_moment_is_left_alone(tmp_path: Path, whole: bytes) -> None:
     path = tmp_path / "whole.txt"
-    with pytest.raises(UsageError, match="is there already"):
+    with pytest.raises(UsageError, match="exists already"):
         stream_branches(SQUARE, path, replace=False)
     assert path.read_bytes() == whole
     path.write_bytes(b"")

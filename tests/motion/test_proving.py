@@ -147,8 +147,8 @@ def test_a_motion_through_a_node_is_proved_with_its_first_contact():
     proof = prove(motion)
     assert (proof.status, proof.reason, proof.branch_point) == (PROVED, "", None)
     assert proof.through_text == (
-        "through a branch point at the time 1.72875, where vertex 9 is flat and another "
-        "curve crosses"
+        "through a branch point at the time 1.72875, where vertex 9 is flat and another curve "
+        "crosses"
     )
     low, high = proof.contact.event.time
     assert 1.73 < low <= motion.duration <= high < low * (1 + 1e-5)

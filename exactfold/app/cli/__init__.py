@@ -1,1 +1,1 @@
-"""The command line: options and exit codes, and nothing decided."""
+"""The command line: it reads options, calls commands, and returns their exit codes."""

@@ -39,13 +39,13 @@ from exactfold.app.shell.shell import (
 )
 from exactfold.app.shell.usage import Command, Group, taking
 
-# Each command imports what it needs: loading everything takes longer than most of the work.
+# Each command imports what it needs, because loading everything takes longer than most commands.
 
 app = typer.Typer(
     help="Proven branch counts of triangulated origami near the unfolded state.",
     epilog="Exit codes: 0 proved or valid; 1 refuted, or certificate invalid; 2 wrong usage; "
-    "3 bad input; 4 undecided, or a sheet of a kind that is not counted; 70 a process died, or a "
-    "defect of exactfold; 71 not enough memory; 74 standard output cannot be written; 130 "
+    "3 bad input; 4 undecided, or the sheet is of a kind that cannot be counted; 70 a process "
+    "died, or exactfold has a bug; 71 not enough memory; 74 standard output cannot be written; 130 "
     "interrupted.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
@@ -58,8 +58,9 @@ app = typer.Typer(
 def count(**options: Any) -> int:
     """Count the ways in which a pattern starts to fold (its branches), with proof.
 
-    With --stream, Ctrl-C loses one block at most and prints how to go on. Several
-    patterns are counted side by side; the exit code is the worst of theirs.
+    With --stream, Ctrl-C loses at most one block of branches and prints how to
+    continue. Several patterns are counted in parallel; the exit code is the worst
+    of their exit codes.
     """
     if len(options["patterns"]) > 1 or options["jsonl"] is not None:
         from exactfold.app.commands.batch import Batch
@@ -78,15 +79,15 @@ def check(
         typer.Argument(
             callback=standard_input,
             metavar="CERTIFICATE",
-            help="A certificate written by `count`, `branch`, `match` or `motions`, of any kind.",
+            help="A certificate that any command of exactfold wrote.",
         ),
     ],
     as_json: Json = False,
     workers: Annotated[
         int | None,
         number(
-            "Processes for a certificate of all branches (`count`) or of loops (`motions`). "
-            "Default: all cores."
+            "Number of processes for a certificate of all branches (`count`) or of loops "
+            "(`motions`). Default: all cores."
         ),
     ] = None,
     listed: Annotated[
@@ -97,10 +98,10 @@ def check(
     ] = False,
     heights: Annotated[
         bool,
-        flag("--heights", text="List them with heights of the vertices and angles of the folds."),
+        flag("--heights", text="List the branches with heights of vertices and angles of folds."),
     ] = False,
 ) -> None:
-    """Verify every claim of a certificate with code that trusts nothing."""
+    """Verify every claim of a certificate, without trusting the solvers that found it."""
     from exactfold.app.commands.check import valid
 
     done = valid(certificate, workers, as_json, listed=listed, heights=heights)
@@ -112,9 +113,10 @@ def check(
 def draw(**options: Any) -> int:
     """Draw a crease pattern, one way to fold it, or all ways, as SVG, PNG or PDF.
 
-    Mountains are red, valleys blue and dashed; the wider a fold, the more it
-    folds. Triangles point up at vertices that pop up. Without a way, the letters
-    of the file are drawn. A file that is no sheet is drawn as it is.
+    Mountains are red, valleys are blue and dashed, and a wider line folds more.
+    Triangles point up at vertices that pop up. If no way is named, the mountains
+    and valleys of the file are drawn. A file that is not a sheet is drawn as it
+    is.
     """
     from exactfold.app.commands.draw import Wanted
 
@@ -126,9 +128,9 @@ def draw(**options: Any) -> int:
 def view(**options: Any) -> int:
     """Show a sheet and its ways to fold in the browser: one HTML file that needs no network.
 
-    The crease pattern stands beside the sheet in space, with a slider from flat
-    to the first contact. A click on a vertex pops it through, a click on a fold
-    asks for a mountain or a valley.
+    The page shows the crease pattern beside the sheet in space, with a slider from
+    flat to the first contact. A click on a vertex pops it through; a click on a
+    fold asks for a mountain or a valley.
     """
     from exactfold.app.commands.view import Wanted
 
@@ -139,12 +141,13 @@ def view(**options: Any) -> int:
 @app.command(cls=Command)
 @taking(BranchOptions)
 def branch(**options: Any) -> int:
-    """Find and prove the one branch with given vertex signs, and no other.
+    """Find and prove the one branch with given vertex signs, without finding the others.
 
-    Signs are those of the side with boundary saddle +1 (with a reflex corner:
-    on which the corner pops up); the other side has all of them reversed. With
-    more corners they are those of the way with these boundary heights, or of
-    one on which folds start in the ratio of --drive. With --json, one object a line.
+    The signs belong to the side with boundary saddle +1 (with a reflex corner: the
+    side on which the corner pops up); on the other side all signs are reversed. On
+    a sheet with more corners, the branch is the one with the boundary heights of
+    --rim, or one on which folds start in the ratio of --drive. --json prints one
+    object per line.
     """
     from exactfold.app.commands.branch import Asked
 
@@ -156,8 +159,9 @@ def branch(**options: Any) -> int:
 def match(**options: Any) -> int:
     """Find the ways to start folding that have the mountains and valleys of a file, with proof.
 
-    All of them; or that there is none and why, and then those that differ at the
-    fewest creases. Exit code 1: proved that there is none.
+    All such ways are listed. If there are none, the answer says why, and lists the
+    ways that differ at the fewest creases. The exit code is 1 if it is proved that
+    there are none.
     """
     from exactfold.app.commands.match import Asked
 
@@ -169,10 +173,10 @@ def match(**options: Any) -> int:
 def export(**options: Any) -> int:
     """Write one branch as a FOLD file that simulators can fold, or a sheet for Coq.
 
-    The fold angles in it are in proportion to those of the branch, so that a
-    simulator that is driven by them stays on it. A second frame shows the sheet
-    in space, to second order. With --coq the file is one that Coq verifies: what
-    is proved of every sheet is stated for this one, and of the branches asked for.
+    The fold angles in the file are proportional to those of the branch, so that a
+    simulator that they drive stays on the branch. A second frame shows the sheet
+    in space, to second order. With --coq the file is for Coq instead: it applies
+    what is proved of every sheet to this sheet and to the named branches.
     """
     from exactfold.app.commands.export import Wanted, write_coq
 
@@ -185,9 +189,9 @@ def export(**options: Any) -> int:
 def assignments(**options: Any) -> int:
     """List every mountain-valley assignment with which a sheet with five corners starts to fold.
 
-    For a convex boundary of five vertices and up to six vertices inside that can
-    pop. The list is proved to be complete. With four corners, `count` lists
-    them with the branches.
+    The sheet needs a convex boundary with five vertices, and at most six interior
+    vertices that can pop. The list is proved to be complete. For a sheet with four
+    corners, `count` lists the assignments with the branches.
     """
     from exactfold.app.commands.assignments import Listed
 
@@ -197,14 +201,15 @@ def assignments(**options: Any) -> int:
 @app.command(cls=Command)
 @taking(FoldOptions)
 def fold(**options: Any) -> int:
-    """Fold a sheet in space, faces rigid, until something happens.
+    """Fold a sheet with rigid faces in space, until faces touch or another event.
 
-    A triangulated sheet with four corners follows a branch: the one named by
-    --signs, --up or --branch, else that on which all vertices pop up. With more
-    corners it does so if --signs, --up or --rim is given (its boundary then moves
-    in the ratio of the rim), or --drive (chosen folds then drive it). Any other
-    sheet follows modes of rigid panels: --component or --modes. That the branch
-    or mode exists is proved; the answer says what is proved of the motion.
+    A triangulated sheet with four corners follows the branch that --signs, --up or
+    --branch names; by default the branch on which all vertices pop up. A
+    triangulated sheet with more corners follows a branch if --signs, --up or --rim
+    is given (its boundary then moves in the ratio of the boundary heights), or
+    --drive (the chosen folds then drive it). Any other sheet follows modes of rigid
+    panels, which --component or --modes names. The existence of the branch or mode
+    is proved; the answer says what is proved of the motion.
     """
     from exactfold.app.commands.fold import Wanted
 
@@ -216,9 +221,9 @@ def fold(**options: Any) -> int:
 def motions(**options: Any) -> int:
     """Follow every branch, with proof, until the sheet is flat again.
 
-    A sheet with n foldable vertices leaves the flat state along 2^(n+1)
-    rays. True motions join them in pairs, contact ignored: this says
-    which with which.
+    A sheet with n foldable vertices leaves the flat state along 2^(n+1) rays. True
+    motions, on which contact is ignored, connect the rays in pairs; this command
+    finds the pairs.
     """
     from exactfold.app.commands.loops import Wanted
 
@@ -230,9 +235,9 @@ def motions(**options: Any) -> int:
 def actuate(**options: Any) -> int:
     """Find torques on the creases that drive the sheet along one branch and not along the others.
 
-    All torques have size at most 1, and a positive one folds towards a valley.
-    The sheet is driven to the side on which the vertex signs are those given;
-    opposite torques drive it to the other side.
+    All torques have size at most 1; a positive torque folds towards a valley. The
+    torques drive the sheet to the side with the given vertex signs; opposite
+    torques drive it to the other side.
     """
     from exactfold.app.commands.actuate import Driven
 
@@ -244,9 +249,9 @@ def actuate(**options: Any) -> int:
 def study(**options: Any) -> int:
     """Run a study: a table or figure of the paper, each number in it proved.
 
-    Rows are kept as they are ready; the same command goes on after an
-    interruption, and computes no row twice. The result depends on the seed, not
-    on the number of processes.
+    Each row is stored as soon as it is ready. After an interruption, the same
+    command continues and computes no row twice. The result depends on the seed,
+    not on the number of processes.
     """
     from exactfold.app.commands.study import Wanted
 
@@ -259,19 +264,19 @@ def random_(
     interior: Annotated[int, number("Number of interior vertices.")],
     seed: Annotated[
         int,
-        number("Seed; the same seed, the same pattern.", "S", least=None),
+        number("Seed; the same seed gives the same pattern.", "S", least=None),
     ],
     denominator: Annotated[int, number("Coordinates are multiples of 1/D.", "D", least=2)] = 1024,
     redraw: Annotated[
         bool,
         flag(
             "--redraw",
-            text="Draw points of degree 3 anew, not the whole sample: for hundreds of points.",
+            text="Redraw only points of degree 3, not the whole sample: for hundreds of points.",
         ),
     ] = False,
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", metavar="FILE.fold", help="Default, and -: stdout."),
+        typer.Option("-o", "--output", metavar="FILE.fold", help="Default, also for -: stdout."),
     ] = None,
 ) -> None:
     """Sample the paper's random squares: a Delaunay triangulation of random points."""
@@ -292,7 +297,7 @@ def random_(
 @app.command(cls=Command)
 @taking(InfoOptions)
 def info(**options: Any) -> int:
-    """Report what is exactly known of a pattern without solving for the ways to fold it."""
+    """Report exact facts about a pattern that are known without solving for its ways to fold."""
     from exactfold.app.commands.info import show_info
 
     show_info(InfoOptions(**options))
@@ -304,8 +309,8 @@ def info(**options: Any) -> int:
 def convert(**options: Any) -> int:
     """Write a drawing of any format as a FOLD file with exact coordinates.
 
-    Says what was read, each repair with its places, and how coordinates became
-    exact. Every command reads the file that is written as the identical sheet.
+    The command says what was read, what was repaired and where, and how coordinates
+    became exact. Every command reads the written file as exactly this sheet.
     """
     from exactfold.app.commands.convert import Conversion
 
@@ -332,7 +337,7 @@ class ExamplesDocument(TypedDict):
 @app.command(cls=Command)
 @reported
 def examples(as_json: Json = False) -> None:
-    """List the patterns that come with exactfold; their names stand for files in every command."""
+    """List the patterns that come with exactfold; every command takes their names as files."""
     from exactfold.app import report
     from exactfold.pattern.data import example_path
     from exactfold.pattern.data import examples as described
@@ -372,10 +377,10 @@ def main() -> None:
     """Entry point of the `exactfold` command."""
     one_thread()
     standard_streams()
-    if isinstance(sys.stdout, io.TextIOWrapper):  # names of files that the terminal cannot show
+    if isinstance(sys.stdout, io.TextIOWrapper):  # for file names that the terminal cannot show
         sys.stdout.reconfigure(errors="backslashreplace")
     try:
         app()
-    except OSError as error:  # of --help and --version; `reported` sees to the others
+    except OSError as error:  # from --help and --version; `reported` handles all others
         output_failed(error)
         raise SystemExit(OUTPUT_FAILED) from None

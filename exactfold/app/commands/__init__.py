@@ -1,1 +1,1 @@
-"""What the commands do, apart from their options."""
+"""The commands: each module answers one command, whose options are in `app/options`."""

@@ -1,4 +1,4 @@
-"""`exactfold actuate`: torques for one branch, or what given torques do, with proof."""
+"""`exactfold actuate`: finds torques for one branch, or judges given torques, with proof."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from exactfold.pattern.crease_pattern import CreasePattern, Edge
 
 
 class Driven(ActuateOptions):
-    """What was asked for on the command line."""
+    """The options of one call, and how they are answered."""
 
     def answer(self) -> int:
-        """Find or judge the torques and print; the exit code.
+        """Find or judge the torques, print the answer, and return the exit code.
 
         Raises the errors of `read`, `BranchFinder` and `actuate`, `InputError`, and
-        `UsageError` where neither `signs` nor `up` is given.
+        `UsageError` if neither `signs` nor `up` is given.
         """
         with Bar("reading") as bar:
             pattern = read(self.file, self.snap, self.sheet, "actuate").pattern
@@ -48,11 +48,11 @@ class Driven(ActuateOptions):
 
 
 def torques_in(path: Path, pattern: CreasePattern) -> dict[Edge, Fraction]:
-    """The torques in a JSON file {"i-j": number}, exactly as they are written.
+    """The exact torques in a JSON file {"i-j": number}.
 
     A number may be text such as "1/3". Raises `UnreadableFileError` and `InputError`.
     """
-    shape = 'write {"0-4": 0.5, ...}, a torque for each crease'
+    shape = 'write {"0-4": 0.5, ...}, with a torque for each crease'
     data = numbers_by_name(path, InputError, "crease", shape)
     names = {f"{i}-{j}": (i, j) for i, j in pattern.folds}
     found: dict[Edge, Fraction] = {}

@@ -15,10 +15,10 @@ from exactfold.errors import NotApplicableError
 
 
 class Listed(AssignmentsOptions):
-    """What was asked for on the command line."""
+    """The options of one call, and how they are answered."""
 
     def answer(self) -> int:
-        """List the assignments and print; the exit code.
+        """List the assignments, print the answer, and return the exit code.
 
         Raises the errors of `read` and `all_assignments`.
         """

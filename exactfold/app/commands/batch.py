@@ -1,4 +1,4 @@
-"""`exactfold count` of several files: a line of JSON for each, written as it is ready."""
+"""`exactfold count` of several files: each gets a line of JSON as soon as it is counted."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ if TYPE_CHECKING:
     from exactfold.panels.result import Decomposition
 
 FAILED: Final = "failed"
-"""In place of a status: there is an error."""
+"""The status of a file that ended with an error."""
 
 STATUSES = (str(PROVED), str(UNDECIDED), FAILED)
 
@@ -65,7 +65,7 @@ LINE: Final = "exactfold batch-line result"
 
 @dataclass(frozen=True)
 class Line:
-    """What became of a file; `text` is its line of JSON."""
+    """The outcome for one file; `text` is its line of JSON."""
 
     name: str
     status: str
@@ -78,7 +78,7 @@ class Line:
 
 @dataclass
 class Tally:
-    """How the files ended."""
+    """The outcomes of all files so far."""
 
     statuses: Counter[str] = field(default_factory=Counter)
     code: int = 0
@@ -86,29 +86,32 @@ class Tally:
     warned: int = 0
 
     def add(self, line: Line) -> None:
-        """One more file."""
+        """Add the outcome of one file."""
         self.statuses[line.status] += 1
         self.code = max(self.code, line.code, key=_WORST.index)
         self.warned += line.warned
 
     @property
     def note(self) -> str:
-        """What is not proved, for the line of progress."""
+        """The numbers of files that are not proved, for the progress line."""
         return "".join(f", {n} {s}" for s in STATUSES[1:] if (n := self.statuses[s]))
 
 
 class Batch(CountOptions):
-    """What was asked for of several patterns."""
+    """The options of one call with several patterns, and how they are answered."""
 
     def run(self) -> int:
-        """Count all and print what became of them; the worst exit code.
+        """Count all files, print their outcomes, and return the worst of their exit codes.
 
-        Raises the errors of `Lines` and `dask_pool`, `UsageError`.
+        Raises the errors of `Lines` and `dask_pool`, and `UsageError`.
         """
         from exactfold.app import report
 
         if STDIN in self.patterns:
-            raise UsageError("a pattern from standard input is counted by itself")
+            raise UsageError(
+                "a pattern from standard input is counted alone: leave out other patterns and "
+                "--jsonl"
+            )
         if self.jobs is not None and self.dask not in (None, LOCAL):
             raise UsageError("the cluster has its workers: --jobs goes with --dask local")
         apart(self.jsonl, *self.patterns)
@@ -142,7 +145,7 @@ class Batch(CountOptions):
         return tally.code
 
     def _lines(self, lines: Lines | None, tally: Tally) -> Generator[Line, None, None]:
-        """A line for each file that has none yet."""
+        """Count and yield a line for each file that has no line from an earlier run."""
         known = Known([]) if lines is None else Known(lines.found())
         names = {str(path) for path in self.patterns}
         bar = Bar("reading")
@@ -177,7 +180,7 @@ class Batch(CountOptions):
 
     @contextmanager
     def _resumable(self) -> Iterator[None]:
-        """Say how to go on when the batch stops early."""
+        """If the batch stops early, say how to continue it."""
         again = "the same command goes on" if self.jsonl is not None else ""
         try:
             with interruptible():
@@ -204,9 +207,10 @@ class Batch(CountOptions):
 
 
 class Known:
-    """The lines of an earlier run, by the content of the file and what was asked.
+    """The lines of an earlier run, by the content of the counted file and the options.
 
-    A file that failed has none: it is tried again, and said to fail again with the reason.
+    Lines of files that failed are left out: such files are tried again, and if they fail again, the
+    reason is printed again.
     """
 
     def __init__(self, found: Iterator[dict[str, Any]] | list[dict[str, Any]]) -> None:
@@ -216,11 +220,11 @@ class Known:
                 result = data["result"] or {}
                 warned = bool(result.get("warnings") or result.get("near_misses"))
                 line = Line(data["name"], data["status"], data["exit_code"], warned=warned)
-                asked = {"sheet": None, **data["asked"]}  # lines of earlier versions have none
+                asked = {"sheet": None, **data["asked"]}  # earlier versions wrote no "sheet"
                 self._lines.setdefault(_key(data["sha256"], asked), []).append(line)
 
     def take(self, job: Job, names: set[str]) -> Line | None:
-        """The line of this file, or of one with its content that has another name now."""
+        """Remove and return the line of this file, or of a renamed file with its content."""
         lines = self._lines.get(_key(_digest(job), _asked(job)), [])
         own = [line for line in lines if line.name == job.name]
         fitting = own or [line for line in lines if line.name not in names]
@@ -238,12 +242,12 @@ def _source(path: Path) -> Source:
 
 
 def line_of(job: Job) -> Line:
-    """Count a file and write its line, in a worker: the text is less work to send back."""
+    """Count a file and make its line in the worker, which sends back less than a result."""
     return line_for(job, count_job(job))
 
 
 def line_for(job: Job, result: BranchCount | Decomposition | Exception) -> Line:
-    """The line of a result."""
+    """The line for a result or an error."""
     if not isinstance(result, Exception):
         status, code = str(result.status), EXIT[result.status]
         document = _counted(job, result, status, code)
@@ -286,7 +290,7 @@ def _failed(job: Job, error: Exception) -> FailedLine:
 
 
 def _ways(result: BranchCount | Decomposition) -> int | None:
-    """The number of branches, or of families that truly fold; None if it is not known."""
+    """The number of branches, or of families that provably fold; None if it is not known."""
     if not isinstance(result, BranchCount):
         return result.ways
     return result.distinct if result.families is None else result.families.ways

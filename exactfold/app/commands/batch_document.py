@@ -1,4 +1,4 @@
-"""The JSON of a batch; it is apart from the batch, which does without what it loads."""
+"""The types of the JSON of a batch, in a module of their own that a batch need not load."""
 
 from __future__ import annotations
 
@@ -11,21 +11,21 @@ from exactfold.panels.result import PanelCountDocument
 
 
 class BatchNumbers(TypedDict):
-    """How many files ended in which way."""
+    """The number of files with each outcome."""
 
     files: Natural
     proved: Natural
     undecided: Natural
     failed: Natural
     skipped: Natural
-    """Files that were counted before."""
+    """The number of files that an earlier run has counted."""
     warned: Natural
-    """Patterns whose result has a warning."""
+    """The number of patterns whose result has a warning."""
     exit_code: Natural
 
 
 class BatchDocument(BatchNumbers):
-    """What became of the files of a batch."""
+    """The outcome of a batch."""
 
     format: Literal["exactfold batch result"]
     version: Literal[1]
@@ -33,7 +33,7 @@ class BatchDocument(BatchNumbers):
 
 
 class AskedDocument(TypedDict):
-    """What was asked for."""
+    """The options with which a file was counted."""
 
     method: str
     seed: Natural

@@ -1,4 +1,4 @@
-"""`exactfold branch`: branches by their signs, each shown or kept as briefly as it can be."""
+"""`exactfold branch`: finds and proves the branches with given vertex signs."""
 
 from __future__ import annotations
 
@@ -22,24 +22,24 @@ from exactfold.pattern.drawing.bounds import read_text
 
 
 class Asked(BranchOptions):
-    """What was asked for, as text from the command line."""
+    """The options of one call, and how they are answered."""
 
     @property
     def given(self) -> Given:
-        """Heights of the boundary and angle deficits, in files."""
+        """The files with boundary heights and angle deficits."""
         return Given(self.boundary_heights, self.curvature)
 
     @property
     def name(self) -> str:
-        """The pattern as it was named."""
+        """The name of the pattern on the command line."""
         return name_of(self.pattern)
 
     def answer(self) -> bool:
-        """Find, prove and print; whether all branches were proved.
+        """Find, prove and print the branches; return whether all were proved.
 
-        Of many branches none is kept: with JSON each is printed when it is found, and of the others
-        the row of the table remains. Raises the errors of `read` and `BranchFinder`, and
-        `UsageError` where none of `signs`, `up` and `batch` is given.
+        If there are many branches, none is kept in memory: with --json each is printed when it is
+        found, otherwise only its row of the table is kept. Raises the errors of `read` and
+        `BranchFinder`, and `UsageError` if none of `signs`, `up` and `batch` is given.
         """
         from exactfold.app import report
 
@@ -63,7 +63,7 @@ class Asked(BranchOptions):
         return proved
 
     def _driven(self, angles: Angles) -> bool:
-        """The branch on which folds start in the ratio of their angles, instead."""
+        """Find, prove and print the branch on which folds start in the ratio of these angles."""
         from exactfold.app import report
         from exactfold.motion.tubes.driven import find_driven
 
@@ -109,7 +109,7 @@ class Asked(BranchOptions):
             return
         chosen = None if self.pops == "all" else _indices("--neighbours", self.pops)
         if chosen == []:
-            raise UsageError("--neighbours names no vertex")
+            raise UsageError("--neighbours names no vertex: give vertices such as 5,7, or all")
         for v, result in finder.each_neighbour(given, chosen, progress=bar):
             yield f"pop {v}", result
 
@@ -123,14 +123,14 @@ class Asked(BranchOptions):
             with Bar("writing"):
                 write_certificate(branch_certificate(result), self.certificate)
         else:
-            say("no certificate was written: nothing is proved")
+            say("no certificate was written: the branch is not proved")
 
 
 def also_found(others: int) -> str:
-    """That folds start in a ratio on more branches."""
+    """A sentence that says on how many other branches the folds start in the same ratio."""
     return (
-        f"{counted(others, 'more branch')} with these signs on which the folds start so: this is "
-        "the one that bends least; --rim FILE starts from other boundary heights"
+        f"the folds start in this ratio on {counted(others, 'more branch')} with these signs: this "
+        "is the one that bends least; --rim FILE starts from other boundary heights"
     )
 
 
@@ -142,18 +142,21 @@ def chosen(
     bar: Bar,
     given: Given | None = None,
 ) -> Branch:
-    """The branch that --signs or --up names, or the one at a place in the listing, from 1.
+    """The branch that --signs or --up names, or that has the number `place` in the list of `count`.
 
-    `given`, for commands that take a rim: what is given of it.
+    `place` starts at 1. `given` has the files with boundary heights and angle deficits, for the
+    commands that take them.
 
     Raises the errors of `BranchFinder` and `count_branches`, and `UsageError` or `NotCountedError`
-    for a place that is not listed.
+    for a number that is not in the list.
     """
     if place is None:
         finder = BranchFinder(pattern) if given is None else given.finder(pattern)
         bar("setting up")
         return finder.find(given_signs(finder, signs, up), progress=bar)
-    from exactfold.branches.counting.collect import count_branches  # FLINT, for this alone
+    from exactfold.branches.counting.collect import (
+        count_branches,
+    )  # imported here: only this needs FLINT
 
     result = count_branches(pattern, progress=bar)
     if not 1 <= place <= len(result.branches):
@@ -168,7 +171,7 @@ def chosen(
 
 
 def given_signs(finder: BranchFinder, signs: str | None, up: str | None) -> dict[int, int]:
-    """The sign vector that --signs (text, or @FILE with the text in a file) or --up gives.
+    """The sign vector that --signs or --up gives; --signs is a text, or @FILE for a file with it.
 
     Raises `UsageError` and `UnreadableFileError`.
     """
@@ -182,10 +185,10 @@ def given_signs(finder: BranchFinder, signs: str | None, up: str | None) -> dict
 
 
 def _of_lines(finder: BranchFinder, path: Path, bar: Bar) -> Iterator[tuple[str, Branch]]:
-    """The branches of a file of sign vectors, which is read to its end before any is found."""
+    """The branches of a file of sign vectors; the whole file is checked before any is found."""
     lines = list(_lines(path))
     if not lines:
-        raise UsageError(f"{path} holds no sign vector")
+        raise UsageError(f"{path} holds no sign vector: write one per line")
     for line, text in lines:
         try:
             finder.signs(text, None)
@@ -208,7 +211,7 @@ def _indices(option: str, text: str) -> list[int]:
 
 
 def _lines(path: Path) -> Iterator[tuple[int, str]]:
-    """The lines of a text file that are not blank, with their numbers from 1."""
+    """The lines of a text file that are not blank, with their line numbers from 1."""
     for number, line in enumerate(read_text(path).split("\n"), 1):
         if line.strip():
             yield number, line.strip()

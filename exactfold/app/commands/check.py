@@ -1,4 +1,4 @@
-"""`exactfold check`: what the checker says of a file, the quick way, and what it lists."""
+"""`exactfold check`: verifies a certificate, fast, and lists the branches in it."""
 
 from __future__ import annotations
 
@@ -25,9 +25,10 @@ def valid(
     listed: bool = False,
     heights: bool = False,
 ) -> bool:
-    """Whether every claim of a file holds, which is printed; raises the errors of `check`.
+    """Print whether every claim of a file holds, and return it. Raises the errors of `check`.
 
-    With `listed` also the branches of a certificate of all branches, `heights` included.
+    With `listed`, the branches of a certificate of all branches are printed, too; with `heights`,
+    they are printed with the heights of the vertices and the angles of the folds.
     """
     branches: list[Branch] | None = None
     many = workers or cores()
@@ -50,10 +51,11 @@ def valid(
 
 
 def verified_branches(path: Path, workers: int) -> tuple[Checked, list[Branch] | None]:
-    """What is said of a certificate of all branches, and the branches as `count` lists them.
+    """The verdict on a certificate of all branches, and its branches in the order of `count`.
 
-    The file is read once: what is listed is what was verified. Raises as `check`, and
-    `CertificateFormatError` for other certificates, `NotApplicableError` for too many branches.
+    The file is read only once, so that exactly the verified branches are listed. They are None if a
+    claim does not hold. Raises the errors of `check`, `CertificateFormatError` for other
+    certificates, and `NotApplicableError` for too many branches.
     """
     from exactfold.branches.certificates.read import branches_of, read_listing
     from exactfold.branches.counting.by_theorem import IN_MEMORY
@@ -81,7 +83,7 @@ def verified_branches(path: Path, workers: int) -> tuple[Checked, list[Branch] |
 def _document(
     path: Path, found: Checked, branches: list[Branch] | None, heights: bool
 ) -> CheckDocument:
-    """What `check --json` prints."""
+    """The object that `check --json` prints."""
     document = found.to_dict(name_of(path))
     if branches is None:
         return document

@@ -1,4 +1,4 @@
-"""`exactfold convert`: a drawing of any format as a FOLD file with exact coordinates."""
+"""`exactfold convert`: writes a drawing of any format as a FOLD file with exact coordinates."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ from exactfold.pattern.panel_writing import Converted, converted
 
 
 class Conversion(ConvertOptions):
-    """What was asked for on the command line."""
+    """The options of one call, and how they are answered."""
 
     def run(self) -> None:
-        """Read, write and say what was done; to standard output the FOLD file itself can go.
+        """Read the drawing, write the FOLD file to a file or to stdout, and say what was done.
 
         Raises the errors of `open_pattern` and `write_text`, and `UsageError`.
         """
@@ -59,19 +59,19 @@ class Conversion(ConvertOptions):
             )
         except (FoldError, PatternError) as error:
             if not self.repair and not isinstance(error, NotFoldError):
-                error.args = (f"{error}; perhaps --repair mends it",)
+                error.args = (f"{error}; --repair may mend it",)
             raise
 
     @property
     def _steps(self) -> Steps:
         if self.steps is not None:
             if self.repair is not None:
-                raise UsageError("--steps names the steps: leave --repair and --no-repair away")
+                raise UsageError("--steps names the steps: leave out --repair and --no-repair")
             return tuple(name.strip() for name in self.steps.split(",") if name.strip())
         if self.repair is None:
             return "least"
         from exactfold.pattern.drawing.repair import (
-            STEPS,  # here, as it loads what a usage error needs not
+            STEPS,  # imported here: a usage error does not need it
         )
 
         return STEPS if self.repair else ()
@@ -98,7 +98,7 @@ def _written(made: Converted, output: str) -> str:
 
 
 class ConvertDocument(TypedDict):
-    """A drawing that was written as FOLD."""
+    """A drawing that was written as a FOLD file."""
 
     format: Literal["exactfold convert result"]
     version: Literal[1]

@@ -1,4 +1,4 @@
-"""`exactfold count` of one pattern: in memory or streamed, with a certificate where it is asked."""
+"""`exactfold count` of one pattern: in memory or streamed, with a certificate if asked for."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ from exactfold.certificates.entries import write_certificate
 from exactfold.errors import NotApplicableError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
 
-if TYPE_CHECKING:  # branches are counted without what panels need
+if TYPE_CHECKING:  # counting branches does not need it
     from exactfold.panels.result import Decomposition
 
 
 class Asked(CountOptions):
-    """What was asked for."""
+    """The options of one call, and how they are answered."""
 
     @property
     def pattern(self) -> Path:
@@ -35,11 +35,11 @@ class Asked(CountOptions):
 
     @property
     def given(self) -> Given:
-        """Heights of the boundary and angle deficits, in files."""
+        """The files with boundary heights and angle deficits."""
         return Given(self.boundary_heights, self.curvature)
 
     def run(self) -> int:
-        """Count, write what was asked for and print the answer; the exit code.
+        """Count, write the requested files, print the answer, and return the exit code.
 
         Raises the errors of `read_any`, `count_branches` and `Streaming`, and `UsageError`.
         """
@@ -69,11 +69,13 @@ class Asked(CountOptions):
         return EXIT[result.status]
 
     def _shapes(self) -> int:
-        """Count shapes with angle deficits."""
+        """Count the shapes with given angle deficits."""
         from exactfold.branches.counting.shapes import count_shapes
 
         if self.given.curvature is None:
-            raise UsageError("--rim goes with --curvature: branches are counted for all rims")
+            raise UsageError(
+                "--rim goes with --curvature: without it, all boundary heights are covered"
+            )
         for option, value in (
             ("--certificate", self.certificate),
             ("--stream", self.stream),
@@ -101,7 +103,7 @@ class Asked(CountOptions):
 
     def _streamed(self, file: Path) -> StreamedCount:
         if self.method != "auto":
-            raise UsageError("--stream has a method of its own: leave --method away")
+            raise UsageError("--stream has a method of its own: leave out --method")
         return Streaming(self, file).run()
 
     def _counted(self) -> BranchCount | Decomposition:
@@ -118,7 +120,7 @@ class Asked(CountOptions):
     def _certified(
         self, result: BranchCount | Decomposition, streamed: StreamedCount | None
     ) -> str | None:
-        """Where the certificate was written; where it was not, say why."""
+        """Write the certificate and return its path; if there is none, say why and return None."""
         if self.certificate is None:
             return None
         if not isinstance(result, BranchCount):
@@ -128,7 +130,7 @@ class Asked(CountOptions):
         if result.families is not None:
             return self._certified_panels(result.families, self.certificate)
         if result.status is not PROVED:
-            say("no certificate was written: nothing is proved")
+            say("no certificate was written: the count is not proved")
         elif streamed is not None and result.proof is None:
             say(f"the proof is in {self.stream}; no other was written")
         else:
@@ -138,18 +140,18 @@ class Asked(CountOptions):
 
     @property
     def _components(self) -> Path | None:
-        """Where the certificate of irreducible components goes beside that of pieces."""
+        """The path for the certificate of irreducible components, beside `certificate`."""
         file = self.certificate
         return None if file is None else file.with_suffix(f".components{file.suffix}")
 
     def _certified_components(self, result: BranchCount, file: Path) -> str | None:
-        """The certificate of pieces, and beside it that of the irreducible components."""
+        """Write the certificate of the connected components, and that of the irreducible ones."""
         written = None
         try:
             write_certificate(certificate_of(result), file)
             written = str(file)
         except NotApplicableError as error:
-            say(f"no certificate of the pieces was written: {error}")
+            say(f"no certificate of the connected components was written: {error}")
         if result.families is not None and result.families.status is PROVED:
             more = file if written is None else self._components or file
             found = self._certified_panels(result.families, more)

@@ -1,4 +1,4 @@
-"""`exactfold draw`: pictures of a crease pattern, of a way to fold it, or of all ways."""
+"""`exactfold draw`: draws a crease pattern, one way to fold it, or all ways."""
 
 from __future__ import annotations
 
@@ -42,28 +42,28 @@ if TYPE_CHECKING:
 
 
 class Wanted(DrawOptions):
-    """What was asked for on the command line."""
+    """The options of one call, and how they are answered."""
 
     @property
     def given(self) -> Given:
-        """Heights of the boundary, in files."""
+        """The file with boundary heights."""
         return Given(self.boundary_heights)
 
     @cached_property
     def amount(self) -> Amount | None:
-        """How far the sheet is drawn folded; None where it is drawn flat."""
+        """How far the sheet is folded in the picture; None if it is drawn flat."""
         return None if self.folded is None else Amount.of(self.folded)
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        self.amount  # noqa: B018 - a wrong one is refused before the work
+        self.amount  # noqa: B018 - a bad value raises before the work
 
     def answer(self) -> int:
-        """Draw, write and say where; the exit code: 4 where a way that is drawn is not proved.
+        """Draw, write the picture, say where, and return the exit code.
 
-        Without an output the picture goes to standard output, on a terminal to a file of its own.
-        Raises the errors of `read_any`, `chosen`, `count_opened`, `follow`, `follow_panels` and
-        `write_picture`.
+        The exit code is 4 if the drawn way is not proved. Without `output`, the picture goes to
+        standard output, or to a new file if standard output is a terminal. Raises the errors of
+        `read_any`, `chosen`, `count_opened`, `follow`, `follow_panels` and `write_picture`.
         """
         target = self._target()
         if target is not None:
@@ -99,7 +99,7 @@ class Wanted(DrawOptions):
 
     @property
     def _first(self) -> int:
-        """How many ways are drawn on one sheet."""
+        """The number of ways that are drawn on one page."""
         return MOST if self.most is None else self.most
 
     @property
@@ -108,13 +108,13 @@ class Wanted(DrawOptions):
 
     @property
     def _place(self) -> int | None:
-        """The number of a way, None for signs."""
+        """The number of the way; None if the way is named by signs or not at all."""
         if self.way is None or not self.way.isdecimal() or not int(self.way):
             return None
         return int(self.way)
 
     def _drawn(self, bar: Bar) -> tuple[str, Verdict]:
-        """The picture, and whether what it shows is proved."""
+        """The picture, and the verdict on the way that it shows."""
         try:
             opened = read_any(self.file, self.snap, self.sheet)
         except (FoldError, PatternError, SeveralSheetsError) as error:
@@ -123,7 +123,7 @@ class Wanted(DrawOptions):
             drawing = self._raw()
             if drawing is None:
                 raise
-            say(f"drawn as it is, no sheet that can be counted: {error}")
+            say(f"drawn as it is, because it is not a sheet that can be counted: {error}")
             return pattern_picture(drawing, title=self._title), PROVED
         if self._is_plain:
             return pattern_picture(opened.sheet, opened.assignment, title=self._title), PROVED
@@ -140,7 +140,10 @@ class Wanted(DrawOptions):
         return self._mode(opened, bar)
 
     def _raw(self) -> Drawing | None:
-        """The drawing in a file that is no sheet; None where there is none, or no second look."""
+        """The drawing in a file that is not a sheet; None if there is none.
+
+        Standard input cannot be read twice, so it gives None, too.
+        """
         from exactfold.pattern.drawing.formats.read import read_drawing
 
         if self.file == STDIN:
@@ -164,9 +167,11 @@ class Wanted(DrawOptions):
         return self._folded(folded(motion, self.amount, self._title)), branch.status
 
     def _mode(self, opened: Opened, bar: Bar) -> tuple[str, Verdict]:
-        """A mode of panels, by its number, and whether it truly folds."""
+        """The picture of a mode of panels, and the verdict on whether the mode provably folds."""
         if self.side is not None:
-            raise UsageError("--side is of a branch, and this sheet folds along modes")
+            raise UsageError(
+                "--side is for branches, and this sheet folds along modes: leave out --side"
+            )
         if self._place is None:
             raise UsageError(
                 "vertex signs are for triangulated sheets with four corners, and this sheet folds "
@@ -200,8 +205,8 @@ class Wanted(DrawOptions):
     def _folded(self, still: Folded) -> str:
         if not still.reached:
             say(
-                f"the sheet folds to {still.degrees:.1f} degrees only, where the motion ends "
-                f"({still.end}): drawn there"
+                f"the sheet folds only to {still.degrees:.1f} degrees, where its motion ends "
+                f"({still.end}): it is drawn there"
             )
         return still.text
 
@@ -209,13 +214,15 @@ class Wanted(DrawOptions):
         bar("solving")
         if isinstance(opened.sheet, CreasePattern) and has_branches(opened.sheet):
             return count_opened(opened, progress=bar)
-        ways = decompose_opened(opened, progress=bar)  # single modes can be drawn
+        ways = decompose_opened(
+            opened, progress=bar
+        )  # triangulated sheets, too: their modes can be drawn
         if ways.warning is not None:
             say(f"warning: {ways.warning}")
         return ways
 
     def _all(self, opened: Opened, bar: Bar) -> tuple[str, Verdict]:
-        """All ways that are listed, as small multiples."""
+        """The picture of all listed ways, each of them small, and the verdict on the count."""
         result = self._counted(opened, bar)
         bar("drawing")
         number = number_listed(result)
@@ -227,5 +234,5 @@ class Wanted(DrawOptions):
 
 
 def on_a_terminal() -> bool:
-    """Whether a picture on standard output would be shown as text."""
+    """Whether standard output is a terminal, which would show a picture as text."""
     return sys.stdout.isatty()

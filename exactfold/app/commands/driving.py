@@ -1,4 +1,4 @@
-"""Folds to drive and their angles, as --drive takes them: on the command line, or in a file."""
+"""Reads the folds to drive and their angles, which --drive gives directly or in a file."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from exactfold.exact.numbers import approx_number
 from exactfold.pattern.crease_pattern import Edge
 
 Angles = dict[Edge, float | None]
-"""By fold the angle in degrees to which it is driven; None: that of the branch."""
+"""For each driven fold its final angle in degrees; None stands for its angle on the branch."""
 
-_SHAPE = 'write {"3-7": 90, "4-9": -45, "2-8": null}, degrees for each fold'
+_SHAPE = 'write {"3-7": 90, "4-9": -45, "2-8": null}, an angle in degrees for each fold'
 
 
 def driven_angles(text: str) -> Angles:
-    """Folds and angles such as 3-7=90deg,4-9=-45deg,2-8, or those in a file FILE.json.
+    """The folds and angles in a text such as 3-7=90deg,4-9=-45deg,2-8, or in a file FILE.json.
 
-    Raises `UsageError`; `UnreadableFileError`, and `BadDriveError` for a file of another shape.
+    Raises `UsageError` for a bad text, `UnreadableFileError`, and `BadDriveError` for a bad file.
     """
     if text.endswith(".json"):
         return _of_file(Path(text))
@@ -40,7 +40,7 @@ def _of_file(path: Path) -> Angles:
     found: Angles = {}
     for name, value in numbers_by_name(path, BadDriveError, "fold", _SHAPE).items():
         if not (value is None or isinstance(value, int | str)) or isinstance(value, bool):
-            raise error(f"the angle of fold {name} is no number: {_SHAPE}")
+            raise error(f"the angle of fold {name} is not a number: {_SHAPE}")
         _add(found, name, None if value is None else str(value), error)
     return found
 
@@ -51,8 +51,8 @@ def _add(found: Angles, name: str, value: str | None, error: Callable[[str], Exc
     except typer.BadParameter as failure:
         raise error(str(failure)) from None
     if fold in found:
-        raise error(f"fold {name} is there twice")
+        raise error(f"fold {name} is given twice")
     try:
         found[fold] = None if value is None else approx_number(value.removesuffix("deg"))
     except NumberError:
-        raise error(f"fold {name}: {value!r} is no angle such as 90deg") from None
+        raise error(f"fold {name}: {value!r} is not an angle such as 90deg") from None

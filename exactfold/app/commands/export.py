@@ -1,6 +1,6 @@
-"""`exactfold export`: a branch, found by its signs or its place in the listing, as FOLD.
+"""`exactfold export`: writes a branch, named by its signs or its number, as a FOLD file.
 
-With `--coq` it is the sheet, as a file on which the formal proof is used.
+With `--coq` it writes the sheet as a file that applies the formal proof to this sheet.
 """
 
 from __future__ import annotations
@@ -38,19 +38,19 @@ from exactfold.pattern.near_degeneracy import WarningDocument, warnings
 
 
 class Wanted(ExportOptions):
-    """What was asked for on the command line."""
+    """The options of one call, and how they are answered."""
 
     @property
     def given(self) -> Given:
-        """Heights of the boundary, in files."""
+        """The file with boundary heights."""
         return Given(self.boundary_heights)
 
     def answer(self) -> int:
-        """Find the branch, write it and say so; the exit code.
+        """Find the branch, write it, say what was written, and return the exit code.
 
-        Raises the errors of `read`, `chosen` and `exported`, but for
-        `UndecidedBranchError`, which is said on stderr with what `BranchFinder` gave as a reason;
-        `UsageError` unless exactly one of `signs`, `up` and `place` is given.
+        A branch that `exported` refuses as undecided is not an error: the reason is printed to
+        stderr. Raises the other errors of `read`, `chosen` and `exported`, and `UsageError` unless
+        exactly one of `signs`, `up` and `place` is given.
         """
         options = "one of --signs, --up and --branch", self.signs, self.up, self.place
         one_at_most(*options)
@@ -88,7 +88,7 @@ class Wanted(ExportOptions):
 
     @property
     def written(self) -> Path | None:
-        """The file to write, None for standard output."""
+        """The file to write; None for standard output."""
         return None if self.output is None or str(self.output) == "-" else self.output
 
     @property
@@ -97,12 +97,12 @@ class Wanted(ExportOptions):
 
 
 def write_coq(asked: Wanted) -> int:
-    """Write the sheet as a file for the formal proof, with the branches asked for; the exit code.
+    """Write the sheet and the requested branches for the formal proof; return the exit code.
 
-    They are the one that is named, if any, or with `asked.everything` all: more than `FEW` are
-    written with `asked.force` alone. Raises the errors of `read`, `chosen`, `find_branches`,
-    `to_coq`, `branch_to_coq` and `branches_to_coq`, and `UsageError` for too many branches, a file
-    that Coq could not compile by its name, and options that do not go with this.
+    The branch that is named is written, if any, or all branches with `asked.everything`; more than
+    `FEW` branches are only written with `asked.force`. Raises the errors of `read`, `chosen`,
+    `find_branches`, `to_coq`, `branch_to_coq` and `branches_to_coq`, and `UsageError` for too many
+    branches, for a file name that Coq cannot compile, and for options that do not go with `--coq`.
     """
     from exactfold.branches import branch_certificate
     from exactfold.interop import branch_to_coq, branches_to_coq, to_coq
@@ -118,14 +118,14 @@ def write_coq(asked: Wanted) -> int:
     one_at_most("one of --signs and --up", asked.signs, asked.up)
     named = asked.signs is not None or asked.up is not None
     if named and asked.everything:
-        raise UsageError("--all names all branches: leave --signs and --up away")
+        raise UsageError("--all names all branches: leave out --signs and --up")
     if asked.given.boundary_heights is not None and not named:
         raise UsageError("--rim goes with --signs or --up")
     output = asked.written
     if output is not None and not _MODULE.match(output.name):
         raise UsageError(
-            f"Coq takes the name of a file for that of a module, which {output.name} cannot be: "
-            "a letter, then letters, digits and _, then .v"
+            f"Coq cannot compile a file with the name {output.name}: use a letter, then letters, "
+            "digits and _, then .v"
         )
     with Bar("reading") as bar:
         pattern = read(asked.file, asked.snap, asked.sheet, "export").pattern
@@ -156,13 +156,14 @@ def write_coq(asked: Wanted) -> int:
 
 
 FEW = 64
-"""So many branches are counted without `force`; with five vertices Coq takes 1.4 s for each."""
+"""Most branches that are written without `force`. With five vertices, Coq takes 1.4 s for each."""
 
 
 def _refuse_uncounted(pattern: CreasePattern, force: bool) -> None:
-    """Raise before any branch is looked for if Coq cannot count them, or not soon.
+    """Raise, before any branch is looked for, if Coq cannot count them or would take long.
 
-    `NotApplicableError` if a vertex lies in a triangulated triangle, else `UsageError`.
+    The error is `NotApplicableError` if a vertex lies in a triangulated triangle, else
+    `UsageError`.
     """
     if pattern.Ve != 4:
         raise UsageError(f"--all is for sheets with four corners, not {pattern.Ve}")
@@ -174,7 +175,7 @@ def _refuse_uncounted(pattern: CreasePattern, force: bool) -> None:
     if 2**pattern.Vi > FEW and not force:
         raise UsageError(
             f"{pattern.Vi} interior vertices have {2**pattern.Vi} sign vectors, and Coq takes a "
-            f"second or more for the branch of each: for more than {FEW} give --force, too"
+            f"second or more for the branch of each: to write more than {FEW}, add --force"
         )
 
 
@@ -182,7 +183,7 @@ _MODULE = re.compile(r"[A-Za-z][A-Za-z0-9_]*\.v\Z", re.ASCII)
 
 
 class ExportDocument(TypedDict):
-    """A branch that was written as FOLD."""
+    """A branch that was written as a FOLD file."""
 
     format: Literal["exactfold export result"]
     version: Literal[1]
@@ -191,14 +192,14 @@ class ExportDocument(TypedDict):
     vertex_signs: VertexSigns
     """By interior vertex: 1 up, -1 down, 0 flat."""
     assignment: Assignment
-    """By fold i-j: mountain, valley, flat, undecided; seen from +z."""
+    """By fold i-j: M (mountain), V (valley), F (flat) or U (undecided), seen from +z."""
     gauge: GaugeText
     output: str
     """The FOLD file that was written."""
     angles: dict[FoldText, Degrees]
-    """Fold angle in degrees by fold i-j, as written: valley positive."""
+    """The written angle of each fold i-j in degrees, positive for a valley."""
     length_error: NotNegative
-    """Largest relative change of a length in the frame in space."""
+    """Largest relative change of an edge length in the frame that shows the sheet in space."""
     warnings: list[WarningDocument]
 
 

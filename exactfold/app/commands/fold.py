@@ -1,4 +1,4 @@
-"""`exactfold fold`: a sheet followed in space, with frames for other programs and pictures."""
+"""`exactfold fold`: follows a sheet as it folds, and writes frames, pictures and a proof."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from exactfold.pattern.crease_pattern import CreasePattern, Triangle
 from exactfold.pattern.fold_writing import require_folder
 from exactfold.pattern.opening import Opened, has_branches
 
-if TYPE_CHECKING:  # branches are followed without what panels need
+if TYPE_CHECKING:  # following branches does not need it
     from exactfold.motion.panels.motion import PanelMotion
     from exactfold.motion.panels.proving import PanelProof
     from exactfold.motion.proving import MotionProof
@@ -43,21 +43,21 @@ class _Begin:
 
 
 class Wanted(FoldOptions):
-    """What was asked for on the command line."""
+    """The options of one call, and how they are answered."""
 
     @property
     def given(self) -> Given:
-        """Heights of the boundary, in files."""
+        """The file with boundary heights."""
         return Given(self.boundary_heights)
 
     def answer(self) -> int:
-        """Follow the sheet, write what was asked for and print; the exit code.
+        """Follow the sheet, write the requested files, print the answer, return the exit code.
 
-        0 where the branch is proved or modes truly fold, wherever the motion ends, and, with a
-        certificate, where the motion is proved. Raises the
-        errors of `read_any`, `chosen`, `follow`, `follow_panels` and `write_motion`, but for
-        `UndecidedBranchError`, which is said, and `UsageError` for options of the other kind of
-        sheet.
+        The exit code is 0 if the branch is proved or the modes provably fold, wherever the motion
+        ends; with a certificate the motion must be proved, too. A branch that is undecided is not
+        an error: the reason is printed to stderr. Raises the other errors of `read_any`, `chosen`,
+        `follow`, `follow_panels` and `write_motion`, and `UsageError` for options that belong to
+        the other kind of sheet.
         """
         from exactfold.app import report
 
@@ -90,7 +90,7 @@ class Wanted(FoldOptions):
         return EXIT[PROVED if proof is None else proof.status]
 
     def _check_outputs(self) -> None:
-        """Raise `UsageError` for an ending, `UnwritableFileError` for a folder that is missing."""
+        """Raise `UsageError` for a wrong ending, `UnwritableFileError` for a missing folder."""
         if self.output is not None:
             checked_ending(self.output)
         for drawn in (self.plot, self.picture):
@@ -107,17 +107,19 @@ class Wanted(FoldOptions):
 
     @property
     def _named(self) -> bool:
-        """Whether a branch was asked for, which a sheet with more corners has with a rim only."""
+        """Whether the options name a branch. More than four corners have branches only then."""
         return (self.signs or self.up or self.drive) is not None or bool(self.given)
 
     def _begin(self, pattern: CreasePattern, bar: Bar) -> _Begin:
-        """The ray to follow, and what is driven."""
+        """The ray to follow, and the folds that are driven."""
         if self.drive is None:
             return _Begin(self._branch(pattern, bar), self.side or 1)
         angles = driven_angles(self.drive)
         Goal.of(self.until)  # before the work
         if self.side is not None and pattern.Ve > 4:
-            raise UsageError("--side: with --drive the angles say to which side the sheet folds")
+            raise UsageError(
+                "--side does not go with --drive: the angles say to which side the sheet folds"
+            )
         from exactfold.motion.tubes.driven import find_driven
 
         finder = self.given.finder(pattern)
@@ -131,8 +133,8 @@ class Wanted(FoldOptions):
         )
         if signs is None:
             say(
-                "no branch was named (--signs, --up): this is the first that was found on which "
-                f"the folds start so: {found.branch.sign_text}"
+                "no branch was named (--signs, --up): this is the first branch found on which the "
+                f"folds start in this ratio: {found.branch.sign_text}"
             )
         if found.others:
             say(also_found(found.others))
@@ -186,7 +188,7 @@ class Wanted(FoldOptions):
         }
         _refuse(
             given,
-            "branches of triangulated sheets with four corners, or with more and a rim, and this "
+            "branches of triangulated sheets with four corners, or with more and --rim, and this "
             "sheet folds along modes of rigid panels: name them by --component or --modes",
         )
         ways = decompose_opened(opened, progress=bar)
@@ -253,7 +255,7 @@ def _refuse(given: Mapping[str, object], why: str) -> None:
 
 
 def _first(ways: Decomposition, motion: PanelMotion) -> str:
-    """That a component was chosen, and of how many."""
+    """A sentence that says which component was chosen, and from how many."""
     from exactfold.motion.panels.followable import panel_components
 
     number = len(panel_components(ways))

@@ -1,4 +1,4 @@
-"""`exactfold info`: what is known of a sheet before anything is solved."""
+"""`exactfold info`: reports facts about a sheet that are known without solving."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class BranchesFactsDocument(PatternFactsDocument):
-    """The facts of a sheet that has branches; what belongs to sheets of panels is null."""
+    """The facts of a sheet that has branches; keys for sheets of panels are null."""
 
     panels: None
     field: None
@@ -34,9 +34,10 @@ class BranchesFactsDocument(PatternFactsDocument):
 
 
 def show_info(asked: InfoOptions) -> None:
-    """Print the facts of a sheet; raises the errors of `read_any`.
+    """Print the facts of a sheet. Raises the errors of `read_any`.
 
-    A triangulated sheet whose motions `count` decomposes has the facts of both kinds.
+    If `count` decomposes the motions of a triangulated sheet, both its facts as a triangulated
+    sheet and its facts as a sheet of panels are printed.
     """
     name, exact = name_of(asked.file), asked.exact
     with Bar("reading") as bar:
@@ -65,7 +66,7 @@ def show_info(asked: InfoOptions) -> None:
 
 def _motions(pattern: PanelPattern) -> PanelFacts:
     from exactfold.branches.counting.motion_facts import (
-        panel_facts,  # sheets with branches need none of it
+        panel_facts,  # imported here: sheets with branches do not need it
     )
 
     return panel_facts(pattern)

@@ -1,4 +1,4 @@
-"""A file of results, one JSON object a line, that an interrupted batch goes on with."""
+"""A file of results, one JSON object per line, which an interrupted batch continues."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from exactfold.certificates.durable import locked, synced, synced_entry, unwrita
 from exactfold.errors import ForeignJournalError
 
 SYNC = 5.0
-"""Seconds after which what was written is brought to the disk, past a crash of the machine."""
+"""Seconds after which written lines are synced to the disk, so that they survive a crash."""
 
 
 class Lines:
-    """A file of objects with one "format", opened for more; one process at a time writes it.
+    """A file of objects that have the same "format"; only one process writes it at a time.
 
-    A line is written whole: after an interruption at most the last one is torn, and is dropped
-    here. Raises `JournalInUseError`, `UnwritableFileError`, and `ForeignJournalError` for a file
-    that holds anything else, which is then left as it is.
+    After an interruption at most the last line is incomplete, and `found` drops it. Raises
+    `JournalInUseError`, `UnwritableFileError`, and `ForeignJournalError` for a file that holds
+    anything else; such a file is left unchanged.
     """
 
     def __init__(self, path: str | os.PathLike[str], format_: str) -> None:
@@ -30,7 +30,7 @@ class Lines:
         self._synced = time.monotonic()
 
     def found(self) -> Iterator[dict[str, Any]]:
-        """The objects in the file; at the end it is ready for more."""
+        """Yield the objects in the file; after the last one, `append` can be called."""
         length = 0
         self._file.seek(0)
         stream = io.BufferedReader(self._file)
@@ -53,7 +53,7 @@ class Lines:
             synced_entry(self.path)
 
     def append(self, text: str) -> None:
-        """Write one object, given as its text; raises `UnwritableFileError`."""
+        """Append one object, given as its JSON text; raises `UnwritableFileError`."""
         left = memoryview(f"{text}\n".encode())
         try:
             while left:
@@ -65,7 +65,7 @@ class Lines:
             raise unwritable(self.path, error) from None
 
     def close(self) -> None:
-        """Bring what was written to the disk and let others have the file."""
+        """Bring everything written to the disk, and close and unlock the file."""
         try:
             synced(self._file)
         except OSError as error:
@@ -83,9 +83,11 @@ class Lines:
         return data
 
     def _may_begin(self, line: bytes) -> bool:
-        """Whether a torn first line may be one of this file, and not a file of another kind."""
+        """Whether an incomplete first line can be the start of a line with this format."""
         begin = f'{{"format": "{self._format}"'.encode()
         return begin.startswith(line[: len(begin)])
 
     def _foreign(self, number: int) -> ForeignJournalError:
-        return ForeignJournalError(f"{self.path}, line {number}: this is not a line of results")
+        return ForeignJournalError(
+            f"{self.path}, line {number}: this is not a line of results: name another file"
+        )

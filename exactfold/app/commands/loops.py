@@ -1,4 +1,4 @@
-"""`exactfold motions`: how the rays are joined by true motions, with proof."""
+"""`exactfold motions`: finds which rays true motions connect, with proof."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from exactfold.errors import UsageError
 from exactfold.motion.loops.matching import find_loops
 
 _FEW = 4
-"""With at most so many foldable vertices the loops are followed before other processes start."""
+"""A sheet with at most this many foldable vertices is followed in this process, by default."""
 
 
 class Wanted(MotionsOptions):
-    """What was asked for on the command line."""
+    """The options of one call, and how they are answered."""
 
     @property
     def again(self) -> str:
@@ -34,7 +34,7 @@ class Wanted(MotionsOptions):
         return shlex.join(words)
 
     def answer(self) -> int:
-        """Follow all rays and print; the exit code.
+        """Follow all rays, print the answer, and return the exit code.
 
         Raises the errors of `read`, `find_loops` and `dask_pool`, and `UsageError`.
         """

@@ -1,4 +1,4 @@
-"""`exactfold match`: which branches have the mountains and valleys of a designer."""
+"""`exactfold match`: finds the branches with the mountains and valleys of a designer."""
 
 from __future__ import annotations
 
@@ -30,20 +30,22 @@ from exactfold.pattern.opening import Opened, has_branches, triangles
 from exactfold.pattern.panel_pattern import PanelPattern
 
 _HALVES = 256
+"""Default of --most: the number of sign vectors whose branches are compared."""
 _RIMS = 16
-"""How many sign vectors are compared, and for how many a rim is looked for, unless it is said."""
+"""Default of --most if boundary heights are looked for: the number of sign vectors tried."""
 
 
 class Asked(MatchOptions):
-    """What was asked for on the command line."""
+    """The options of one call, and how they are answered."""
 
     def answer(self) -> int:
-        """Find the branches, or why there are none and the nearest, and print; the exit code.
+        """Find the branches with the letters, print them, and return the exit code.
 
-        Sheets of panels, and triangles with more than four corners, are asked whether they start
-        to fold. 1 where it is proved that no branch has the letters, or that they do not. Raises
-        the errors of `read_any`, `triangles` and `match`, and `UsageError` for letters that do not
-        fit the folds or that the file does not have.
+        If there are none, the reason and the nearest branches are printed. For sheets of panels and
+        triangulated sheets with more than four corners, the question is whether they start to fold
+        with the letters. The exit code is 1 if it is proved that no branch has the letters, or that
+        the sheet does not start to fold with them. Raises the errors of `read_any`, `triangles` and
+        `match`, and `UsageError` if the letters do not fit the folds or the file has none.
         """
         begin = time.perf_counter()
         nearest = None
@@ -88,7 +90,7 @@ class Asked(MatchOptions):
         if self.certificate is None:
             return
         if found.status is not PROVED:
-            say("no certificate was written: not all is proved")
+            say("no certificate was written: the answer is not proved")
             return
         bar("certificate")
         try:
@@ -99,7 +101,7 @@ class Asked(MatchOptions):
             write_certificate(certificate, self.certificate)
 
     def _over_a_boundary(self, found: BoundaryMatch) -> int:
-        """Print whether a sheet with more than four corners starts to fold; the exit code."""
+        """Print whether a sheet with more corners starts to fold; return the exit code."""
         if self.as_json:
             print(json.dumps(found.to_dict(name_of(self.file))))
         else:
@@ -109,7 +111,7 @@ class Asked(MatchOptions):
         return EXIT[found.starts]
 
     def _started(self, found: PanelMatch) -> int:
-        """Print whether panels start to fold; the exit code."""
+        """Print whether rigid panels start to fold; return the exit code."""
         if self.as_json:
             print(json.dumps(found.to_dict(name_of(self.file))))
         else:
@@ -123,7 +125,7 @@ class Asked(MatchOptions):
             if opened.letters:
                 return opened.letters
             raise UsageError(
-                f"{name_of(self.file)}: no fold is a mountain or a valley in the file: give "
+                f"{name_of(self.file)}: the file assigns mountain or valley to no fold: give "
                 "letters with --letters"
             )
         return given_letters(pattern, self.letters)
@@ -132,15 +134,15 @@ class Asked(MatchOptions):
 def _in_reach(pattern: CreasePattern) -> None:
     if pattern.interior and pattern.Ve == 3:
         raise NotCountedError(
-            "match takes sheets that can fold, and this one, with three vertices on its boundary, "
-            "is rigid"
+            "match needs a sheet that can fold, and this one is rigid: it has only three boundary "
+            "vertices"
         )
 
 
 def given_letters(pattern: CreasePattern | PanelPattern, text: str) -> dict[Edge, str]:
-    """The letters of --letters: in the order of the folds, or by fold as in "0-4=M,1-5=V".
+    """The letters that --letters gives: in the order of the folds, or by fold: "0-4=M,1-5=V".
 
-    @FILE reads them from a file; folds that are not named are free. Raises `UsageError` and
+    @FILE reads them from a file. Folds that are not named are free. Raises `UsageError` and
     `UnreadableFileError`.
     """
     where = ""
@@ -159,8 +161,8 @@ def _in_order(pattern: CreasePattern | PanelPattern, letters: str) -> dict[Edge,
         _check(fold, letter)
     if len(letters) != len(folds):
         raise UsageError(
-            f"{counted(len(letters), 'letter')} for {counted(len(folds), 'fold')}: one of M, V, F, "
-            "U for each, in the order of `exactfold count`, or by fold as in 0-4=M,1-5=V"
+            f"{counted(len(letters), 'letter')} for {counted(len(folds), 'fold')}: give one of M, "
+            "V, F, U for each, in the order of `exactfold count`, or by fold as in 0-4=M,1-5=V"
         )
     return dict(zip(folds, letters, strict=True))
 
@@ -176,13 +178,13 @@ def _by_name(pattern: CreasePattern | PanelPattern, text: str) -> dict[Edge, str
         fold = names[name]
         _check(fold, letter)
         if found.setdefault(fold, letter) != letter:
-            raise UsageError(f"fold {fold[0]}-{fold[1]} has two letters")
+            raise UsageError(f"fold {fold[0]}-{fold[1]} has two letters: give one")
     return found
 
 
 def _check(fold: Edge, letter: str) -> None:
     if letter not in tuple("MVFU"):
         raise UsageError(
-            f"fold {fold[0]}-{fold[1]} has the letter {letter!r}: M mountain, V valley, F flat and "
-            "U free are known"
+            f"fold {fold[0]}-{fold[1]} has the letter {letter!r}: use M (mountain), V (valley), F "
+            "(flat) or U (free)"
         )

@@ -1,4 +1,4 @@
-"""`exactfold count --stream`: all branches to a file, interruptible, handed over where open."""
+"""`exactfold count --stream`: streams all branches to a file; a run can be interrupted."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ from exactfold.errors import (
 from exactfold.pattern.crease_pattern import CreasePattern
 
 ADVISED = 16
-"""Foldable vertices from which plain `count` takes ten times as long, and doubles with each."""
+"""From this many foldable vertices on, `count` advises --stream, which takes less memory."""
 
 
 @dataclass(frozen=True)
 class Streaming:
-    """What was asked for, and the file to write."""
+    """The options of one call, and the file to write."""
 
     asked: CountOptions
     file: Path
@@ -41,7 +41,7 @@ class Streaming:
 
     @property
     def again(self) -> str:
-        """The command that continues."""
+        """The command that continues an interrupted run."""
         words = ["exactfold", "count", str(self.pattern), "--stream", str(self.file), "--resume"]
         for name in ("workers", "dask", "snap", "sheet", "seed", "certificate"):
             if value := getattr(self.asked, name):  # the seed is 0 by default, the others None
@@ -49,10 +49,10 @@ class Streaming:
         return shlex.join(words)
 
     def run(self) -> StreamedCount:
-        """The count, by another method where that proves what the run left open.
+        """Stream the branches and return the count.
 
-        Raises the errors of `stream_branches` and `dask_engine`, and `UsageError` for a file that
-        is there already.
+        Another method may have proved what the run left open. Raises the errors of
+        `stream_branches` and `dask_engine`, and `UsageError` for a file that exists already.
         """
         if self.asked.workers is not None and self.asked.dask not in (None, LOCAL):
             raise UsageError("the cluster has its workers: --workers goes with --dask local")
@@ -83,7 +83,7 @@ class Streaming:
 
 
 def advice(pattern: CreasePattern) -> str | None:
-    """Where plain `count` takes much memory: what to do instead."""
+    """What to do instead of plain `count` if it would take much memory; otherwise None."""
     foldable = pattern.Vi - pattern.Vt
     if pattern.Ve != 4 or foldable < ADVISED or is_too_many(pattern, IN_MEMORY):
         return None

@@ -1,4 +1,4 @@
-"""`exactfold study`: run a study, or compute one of its rows again."""
+"""`exactfold study`: runs a study, or computes one of its rows again."""
 
 from __future__ import annotations
 
@@ -42,9 +42,9 @@ class ListedStudy(TypedDict):
     study_version: Positive
     about: str
     numbers: dict[str, Natural]
-    """Rows by size."""
+    """The number of rows of each size."""
     extended: dict[str, Natural]
-    """Rows by size that --extend adds."""
+    """The number of rows of each size that --extend adds."""
 
 
 class StudiesDocument(TypedDict):
@@ -64,46 +64,46 @@ class StudyRowDocument(TypedDict):
     journal: str
     row: Annotated[str, Keywords(pattern="^[0-9a-f]{16}$")]
     sha256: Digest
-    """Of recipe and row as JSON, with sorted keys and without blanks."""
+    """Digest of the recipe and the row as JSON with sorted keys and without blanks."""
     recipe: dict[str, Any]
-    """What the row was made from."""
+    """The recipe from which the row is computed."""
     stored: dict[str, Any]
     """The row in the journal."""
     recomputed: dict[str, Any]
-    """The row, computed again."""
+    """The row that was computed again."""
     agrees: bool
     differing: list[str]
-    """Names of what differs."""
+    """The names of the columns in which the two rows differ."""
 
 
 class StudyDocument(TypedDict):
-    """What a run of a study shows."""
+    """The result of a run of a study."""
 
     format: Literal["exactfold study result"]
     version: Literal[1]
     study: str
     study_version: Positive
-    """Rises when rows change; journals of another version are not read."""
+    """The version rises when rows change; a journal of another version is not read."""
     about: str
     seed: Natural
     numbers: dict[str, Natural]
-    """Rows by size."""
+    """The number of rows of each size."""
     rows: Natural
     computed: Natural
-    """Rows that the journal did not have."""
+    """The number of rows that were computed because the journal did not have them."""
     undecided: Natural
-    """Rows that are not proved."""
+    """The number of rows that are not proved."""
     journal: str
     tables: list[TableDocument]
     files: list[str]
-    """What was written besides the journal."""
+    """The files that were written besides the journal."""
 
 
 class Wanted(StudyOptions):
-    """What was asked for on the command line."""
+    """The options of one call, and how they are answered."""
 
     def answer(self) -> int:
-        """Run what was asked for and print; the exit code.
+        """Run the study, or compute its row, print the answer, and return the exit code.
 
         Raises the errors of `run_study`, `recompute_row` and `dask_pool`, and `UsageError`.
         """
@@ -185,7 +185,7 @@ class Wanted(StudyOptions):
         given = None if self.number is None else read_numbers(self.number)
         numbers = study.chosen(self.sizes, given, extend=self.extend)
         if not study.number(self.seed, numbers):
-            raise UsageError("a study without rows says nothing")
+            raise UsageError("no rows are asked for: raise --number, or choose other --sizes")
         with Bar("starting") as bar, self._resumable(), self._pool() as pool:
             run = run_study(
                 study,
@@ -207,7 +207,7 @@ class Wanted(StudyOptions):
         return EXIT[UNDECIDED if undecided else PROVED]
 
     def _check_files(self) -> None:
-        """Raise before anything is computed for what could not be written."""
+        """Raise, before anything is computed, if an output could not be written."""
         for path, ending in zip(self._files, (".csv", ".parquet", ".html"), strict=True):
             if path is not None:
                 checked_target(path, (ending,), "this output")
@@ -220,7 +220,7 @@ class Wanted(StudyOptions):
             report.check_figures()
 
     def _write(self, run: StudyRun) -> list[str]:
-        """Write all files that were asked for; their names."""
+        """Write all requested files and return their names."""
         written = [str(path) for path in self._files if path is not None]
         if self.csv is not None:
             write_csv(run.rows, self.csv)
@@ -250,7 +250,7 @@ class Wanted(StudyOptions):
 
     @contextmanager
     def _resumable(self) -> Iterator[None]:
-        """Say how to go on when the study stops early."""
+        """If the study stops early, say how to continue it."""
         again = "the same command goes on"
         try:
             with interruptible():
@@ -298,7 +298,7 @@ def _described(study: Study) -> ListedStudy:
 
 
 def _with_rate(bar: Bar, clock: Callable[[], float] = time.monotonic) -> Progress:
-    """Progress that also says how many rows a second are ready."""
+    """A progress function that also shows how many rows are ready per second."""
     start = clock()
 
     def progress(stage: str, done: int, total: int) -> None:

@@ -1,4 +1,4 @@
-"""`exactfold view`: the page that shows a sheet and its ways to fold, in a file or served."""
+"""`exactfold view`: writes or serves the page that shows a sheet and its ways to fold."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from exactfold.pattern.opening import Opened
 
 
 class Wanted(ViewOptions):
-    """What was asked for on the command line."""
+    """The options of one call, and how they are answered."""
 
     def run(self) -> None:
         """Write the page and say where, or serve it until Ctrl-C.
@@ -77,7 +77,7 @@ class Wanted(ViewOptions):
 
 
 def _contents(document: Mapping[str, Any]) -> str:
-    """What a page shows beside the pattern, in words."""
+    """What the page shows besides the pattern, in words."""
     ways = document["ways"]
     if not ways:
         return "the pattern only: no single way to fold is known"

@@ -1,1 +1,1 @@
-"""What each command takes: its options once, with their help, and which go together."""
+"""The options of each command, with their help, and checks of which go together."""

@@ -1,4 +1,4 @@
-"""What the commands that look at single branches take: their options, and which go together."""
+"""The options of the commands for single branches, and checks of which go together."""
 
 from __future__ import annotations
 
@@ -30,25 +30,29 @@ from exactfold.errors import UsageError
 
 @dataclass(frozen=True)
 class BranchOptions:
-    """What `exactfold branch` takes; raises `UsageError` for options that do not go together."""
+    """The options of `exactfold branch`; `UsageError` if they do not go together."""
 
     pattern: Pattern
     signs: Signs = None
     up: Up = None
     batch: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Instead: one sign vector a line.")
+        Path | None,
+        typer.Option(
+            metavar="FILE", help="Instead of --signs: a file with one sign vector per line."
+        ),
     ] = None
     pops: Annotated[
         str | None,
         typer.Option(
             "--neighbours",
             metavar="5,7|all",
-            help="The branches reached by popping each of these vertices through, one at a time.",
+            help="Find the branches reached by popping each of these vertices through, one at a "
+            "time.",
         ),
     ] = None
     certificate: Annotated[
         Path | None,
-        written("Of one branch: write a certificate.", "OUT.json"),
+        written("Write a certificate of a single branch.", "OUT.json"),
     ] = None
     boundary_heights: BoundaryHeights = None
     drive: PrescribedAngles = None
@@ -68,36 +72,37 @@ class BranchOptions:
 
 @dataclass(frozen=True)
 class MatchOptions:
-    """What `exactfold match` takes; raises `UsageError` for an output that is the pattern."""
+    """The options of `exactfold match`; `UsageError` if the output is the pattern."""
 
     file: Pattern
     letters: Annotated[
         str | None,
         typer.Option(
             metavar="MVU...|0-4=M,...",
-            help="Instead of those of the file: M, V, F (flat) or U (free) for each fold in the "
-            "order of `count`, or by fold, the others free; @FILE reads.",
+            help="Use these letters instead of those in the file: M, V, F (flat) or U (free) for "
+            "each fold in the order of `count`; or letters by fold, the others are free. @FILE "
+            "reads them from a file.",
         ),
     ] = None
     most: Annotated[
         int | None,
         number(
-            "Compare the branches of N sign vectors at most. Default: 256; 16 where heights of the "
-            "border have to be found.",
+            "Compare the branches of at most N sign vectors. Default: 256; 16 if boundary heights "
+            "have to be found.",
             least=1,
         ),
     ] = None
     tries: Annotated[
         int | None,
         number(
-            "Of the search for the nearest: free N sets of folds at most. More proves more. "
-            "Default: by the size of the sheet.",
+            "In the search for the nearest branches, free at most N sets of folds. A larger N "
+            "proves more. Default: depends on the size of the sheet.",
             least=0,
         ),
     ] = None
     certificate: Annotated[
         Path | None,
-        written("Write a certificate, if all is proved.", "OUT.json"),
+        written("Write a certificate, if the answer is proved.", "OUT.json"),
     ] = None
     as_json: Json = False
     snap: Snap = None
@@ -110,7 +115,7 @@ class MatchOptions:
 
 @dataclass(frozen=True)
 class AssignmentsOptions:
-    """What `exactfold assignments` takes."""
+    """The options of `exactfold assignments`."""
 
     file: Pattern
     everything: Annotated[bool, flag("--all", text="List every assignment.")] = False
@@ -125,7 +130,7 @@ class AssignmentsOptions:
 
 @dataclass(frozen=True)
 class ExportOptions:
-    """What `exactfold export` takes; raises `UsageError` for options that do not go together."""
+    """The options of `exactfold export`; `UsageError` if they do not go together."""
 
     file: Pattern
     signs: Signs = None
@@ -133,7 +138,9 @@ class ExportOptions:
     place: Place = None
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", metavar="FILE", help="Default, and -: stdout."),
+        typer.Option(
+            "-o", "--output", metavar="FILE", help="The file to write. Default, also for -: stdout."
+        ),
     ] = None
     amount: Annotated[
         float | None,
@@ -144,7 +151,7 @@ class ExportOptions:
     force: Annotated[
         bool,
         flag(
-            "--force", text="Write a branch that is enclosed but not proved, too; see also --all."
+            "--force", text="Also write a branch that is enclosed but not proved; see also --all."
         ),
     ] = False
     boundary_heights: BoundaryHeights = None
@@ -157,7 +164,11 @@ class ExportOptions:
         ),
     ] = False
     coq: Annotated[
-        bool, flag("--coq", text="Instead: the sheet, and branches asked for, for the Coq proof.")
+        bool,
+        flag(
+            "--coq",
+            text="Write a file for the Coq proof instead: the sheet and the named branches.",
+        ),
     ] = False
     as_json: Json = False
     snap: Snap = None

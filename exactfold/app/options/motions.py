@@ -1,4 +1,4 @@
-"""What the commands that fold and drive sheets take: their options, and which go together."""
+"""The options of the commands that fold and drive sheets, and checks of which go together."""
 
 from __future__ import annotations
 
@@ -34,9 +34,9 @@ from exactfold.errors import UsageError
 
 @dataclass(frozen=True)
 class FoldOptions:
-    """What `exactfold fold` takes; raises `UsageError` for options that do not go together.
+    """The options of `exactfold fold`; `UsageError` if they do not go together.
 
-    `side` is None where it was not given.
+    `side` is None if it was not given.
     """
 
     file: Pattern
@@ -48,13 +48,16 @@ class FoldOptions:
     drive: PrescribedAngles = None
     through_branch_points: Annotated[
         bool,
-        flag("--through-nodes", text="Of a branch: go straight on where another motion crosses."),
+        flag(
+            "--through-nodes",
+            text="Along a branch: go straight on at points where another motion crosses.",
+        ),
     ] = False
     component: Annotated[
         int | None,
         number(
-            "Of panels: the K-th component of their motions, those with most folds first. "
-            "Default: 1.",
+            "For panels: follow the K-th component of the motions, counted from the one with most "
+            "folds. Default: 1.",
             "K",
         ),
     ] = None
@@ -63,16 +66,17 @@ class FoldOptions:
         typer.Option(
             parser=numbers,
             metavar="1,3",
-            help="Instead: modes that share no vertex, as `count` numbers them.",
+            help="Instead of --component: numbers of modes that share no vertex, as `count` "
+            "lists them.",
         ),
     ] = None
     until: Annotated[
         str,
         typer.Option(
             metavar="WHERE",
-            help="Where to stop: `contact`, when faces meet or a fold closes; a fold angle such as "
-            "90deg; of a branch also `return`, when the sheet is flat again, or a number, the "
-            "time.",
+            help="Where to stop: at `contact`, when faces meet or a fold closes, or at a fold "
+            "angle such as 90deg. Along a branch also at `return`, when the sheet is flat again, "
+            "or at a time, given as a number.",
         ),
     ] = "contact"
     frames: Annotated[int, number("Number of frames.", least=2)] = 60
@@ -81,14 +85,14 @@ class FoldOptions:
         typer.Option(
             parser=fold_name,
             metavar="I-J",
-            help="Frames at equal steps of the angle of this fold, not of time.",
+            help="Space the frames by equal steps of the angle of this fold, not of time.",
         ),
     ] = None
     output: Annotated[
         Path | None,
         written(
-            "Write the frames: FILE.fold; .glb or .gltf with an animation; or .obj, a file "
-            "for each, FILE_0000.obj and on.",
+            "Write the frames: to FILE.fold; as an animation to .glb or .gltf; or each to a file "
+            "of its own, FILE_0000.obj and so on, for .obj.",
             "FILE",
             "-o",
             "--output",
@@ -100,7 +104,7 @@ class FoldOptions:
     ] = None
     picture: Annotated[
         Path | None,
-        written("Draw the sheet at five times, in space: FILE.svg, .png or .pdf."),
+        written("Draw the sheet in space at five times: FILE.svg, .png or .pdf."),
     ] = None
     certificate: Annotated[
         Path | None,
@@ -119,7 +123,7 @@ class FoldOptions:
             option = "--drive" if self.boundary_heights is None else "--rim"
             raise UsageError(f"{option} goes with --signs or --up")
         if self.component is not None and self.modes is not None:
-            raise UsageError("give one of --component and --modes")
+            raise UsageError("give either --component or --modes, not both")
         apart(
             self.output, self.file, self.boundary_heights, self.plot, self.picture, self.certificate
         )
@@ -130,17 +134,17 @@ class FoldOptions:
 
 @dataclass(frozen=True)
 class MotionsOptions:
-    """What `exactfold motions` takes."""
+    """The options of `exactfold motions`."""
 
     file: Pattern
     workers: Annotated[
         int | None,
-        number("Processes. Default: all cores."),
+        number("Number of processes. Default: all cores."),
     ] = None
     dask: Dask = None
     certificate: Annotated[
         Path | None,
-        written("Write the proof of each loop to FILE as it is found, for `check`."),
+        written("Write the proof of each loop to FILE as soon as it is found, for `check`."),
     ] = None
     resume: Resume = False
     as_json: Json = False
@@ -150,7 +154,7 @@ class MotionsOptions:
 
 @dataclass(frozen=True)
 class ActuateOptions:
-    """What `exactfold actuate` takes; raises `UsageError` for options that do not go together."""
+    """The options of `exactfold actuate`; `UsageError` if they do not go together."""
 
     file: Pattern
     signs: Signs = None
@@ -163,7 +167,8 @@ class ActuateOptions:
         Path | None,
         typer.Option(
             metavar="FILE.json",
-            help='Instead: judge these torques, {"0-4": 0.5, ...}; creases not named have 0.',
+            help='Judge these torques instead: {"0-4": 0.5, ...}, 0 for creases that are not '
+            "named.",
         ),
     ] = None
     as_json: Json = False

@@ -1,4 +1,4 @@
-"""What the commands on whole patterns take: their options, and which of them go together."""
+"""The options of the commands for whole patterns, and checks of which go together."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ from exactfold.errors import UsageError
 
 @dataclass(frozen=True)
 class CountOptions:
-    """What `exactfold count` takes; raises `UsageError` for options that do not go together.
+    """The options of `exactfold count`; `UsageError` if they do not go together.
 
-    Several patterns, or one with `jsonl`, are counted side by side.
+    Several patterns, or one pattern with `jsonl`, are counted as a batch.
     """
 
     patterns: Patterns
@@ -43,41 +43,41 @@ class CountOptions:
             parser=method_name,
             autocompletion=complete_method,
             metavar="METHOD",
-            help=f"{', '.join(METHODS)}: how solutions are found. The proof does not depend on it.",
+            help=f"How solutions are found: {', '.join(METHODS)}. The proof does not depend on it.",
         ),
     ] = "auto"
     certificate: Annotated[
         Path | None,
         written(
-            "Write a certificate if proved. With --stream, only where other methods had to "
-            "prove what it left open."
+            "Write a certificate if the count is proved. With --stream, FILE of --stream is the "
+            "certificate, and this one is written only if another method proved the count."
         ),
     ] = None
     stream: Annotated[
         Path | None,
         written(
-            "Prove block by block and write each branch to FILE, a certificate: the "
-            "way for 14 foldable vertices and more. Memory: 100 MB for each worker and 100 MB "
-            "more, whatever the size; disk: 200 bytes a branch."
+            "Prove the branches block by block and write them to FILE, a certificate: use this for "
+            "14 foldable vertices and more. It takes 100 MB of memory and 100 MB more for each "
+            "worker, whatever the size of the sheet, and 200 bytes of disk per branch."
         ),
     ] = None
     resume: Resume = False
     workers: Annotated[
         int | None,
-        number("Processes of --stream. Default: all cores."),
+        number("Number of processes for --stream. Default: all cores."),
     ] = None
     jsonl: Annotated[
         Path | None,
         written(
-            "Write a line of JSON for each pattern as it is ready; files that were "
-            "counted there already are skipped, so the same command goes on after an interruption; "
-            "files that failed are tried again.",
+            "Write a line of JSON for each pattern as soon as it is counted. After an "
+            "interruption, the same command continues: it skips patterns that have a line, and "
+            "tries those that failed again.",
             "OUT.jsonl",
         ),
     ] = None
     jobs: Annotated[
         int | None,
-        number("Processes for several patterns. Default: all cores."),
+        number("Number of processes for several patterns. Default: all cores."),
     ] = None
     dask: Annotated[
         str | None,
@@ -94,9 +94,9 @@ class CountOptions:
     sheet: Sheet = None
     seed: Annotated[int, number("Seed of the complex homotopy.", "S", least=0)] = 0
     everything: Annotated[bool, flag("--all", text="List every way.")] = False
-    verbose: Annotated[bool, flag("--verbose", text="Also say how it was found and proved.")] = (
-        False
-    )
+    verbose: Annotated[
+        bool, flag("--verbose", text="Also say how the ways were found and proved.")
+    ] = False
 
     def __post_init__(self) -> None:
         if len(self.patterns) == 1 and self.jsonl is None:
@@ -119,14 +119,14 @@ class CountOptions:
 
 @dataclass(frozen=True)
 class InfoOptions:
-    """What `exactfold info` takes."""
+    """The options of `exactfold info`."""
 
     file: Pattern
     exact: Annotated[
         bool,
         flag(
             "--exact",
-            text="Also ranks, self stresses, curvature forms, the digest, the area as a fraction.",
+            text="Also show ranks, self stresses, curvature forms, the digest, and the exact area.",
         ),
     ] = False
     as_json: Json = False
@@ -136,7 +136,7 @@ class InfoOptions:
 
 @dataclass(frozen=True)
 class ConvertOptions:
-    """What `exactfold convert` takes."""
+    """The options of `exactfold convert`."""
 
     file: Pattern
     output: Annotated[
@@ -148,7 +148,7 @@ class ConvertOptions:
         typer.Option(
             parser=distance,
             metavar="EPS",
-            help="Merge points that are this close, in units of the size of the drawing.",
+            help="Merge points whose distance, divided by the size of the drawing, is at most EPS.",
         ),
     ] = None
     repair: Annotated[
@@ -156,14 +156,14 @@ class ConvertOptions:
         typer.Option(
             "--repair/--no-repair",
             metavar="",
-            help="Do every step of repair, or none. Default: only what it takes to find panels.",
+            help="Do every step of repair, or none. Default: only the steps needed to find panels.",
         ),
     ] = None
     steps: Annotated[
         str | None,
         typer.Option(
             metavar="NAMES",
-            help="Instead: these steps, such as merge,split; docs/files.md explains them.",
+            help="Do these steps of repair, such as merge,split; docs/files.md explains them.",
         ),
     ] = None
     triangulate: Annotated[

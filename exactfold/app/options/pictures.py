@@ -1,4 +1,4 @@
-"""What the commands that make pictures and pages take: their options, and which go together."""
+"""The options of the commands that make pictures and pages, and checks of them."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ from exactfold.errors import UsageError
 
 @dataclass(frozen=True)
 class DrawOptions:
-    """What `exactfold draw` takes; raises `UsageError` for options that do not go together.
+    """The options of `exactfold draw`; `UsageError` if they do not go together.
 
-    `way` is a number as `exactfold count` lists it, or vertex signs. `side` is None where it was
+    `way` is a number in the list of `exactfold count`, or vertex signs. `side` is None if it was
     not given.
     """
 
@@ -39,24 +39,24 @@ class DrawOptions:
             "--branch",
             "--signs",
             metavar="N|+-...",
-            help="One way to fold: the N-th that `count` lists, a branch or a mode of panels; or "
-            "the branch with these vertex signs; @FILE reads them.",
+            help="Draw one way to fold: the N-th branch or mode that `count` lists, or the "
+            "branch with these vertex signs; @FILE reads them from a file.",
         ),
     ] = None
     up: Up = None
     everything: Annotated[
-        bool, flag("--all", text="All ways that `count` lists, small, on one sheet.")
+        bool, flag("--all", text="Draw all ways that `count` lists, small, on one page.")
     ] = False
     most: Annotated[
         int | None,
-        number("Of --all: the first N. Default: 64."),
+        number("With --all: draw the first N ways. Default: 64."),
     ] = None
     folded: Annotated[
         str | None,
         typer.Option(
             metavar="60deg|0.5",
-            help="Of one way: the sheet in space, folded until its largest fold angle is this, or "
-            "through this part of its motion up to the first contact.",
+            help="With --branch: draw the sheet in space, folded until its largest fold angle is "
+            "this, or through this fraction of its motion to the first contact.",
         ),
     ] = None
     side: Side = None
@@ -67,8 +67,8 @@ class DrawOptions:
             "-o",
             "--output",
             metavar="FILE",
-            help="FILE.svg, .png or .pdf, or - for stdout. Default: stdout; on a terminal a file "
-            "NAME-drawn.svg, NAME-way.svg or NAME-ways.svg here.",
+            help="Write FILE.svg, .png or .pdf, or - for stdout. Default: stdout; on a terminal "
+            "a new file NAME-drawn.svg, NAME-way.svg or NAME-ways.svg.",
         ),
     ] = None
     snap: Snap = None
@@ -90,46 +90,52 @@ class DrawOptions:
 
 @dataclass(frozen=True)
 class ViewOptions:
-    """What `exactfold view` takes; raises `UsageError` for options that do not go together."""
+    """The options of `exactfold view`; `UsageError` if they do not go together."""
 
     file: Pattern
     output: Annotated[
         Path | None,
-        written("Default: PATTERN.view.html in this folder.", "VIEW.html", "-o", "--output"),
+        written(
+            "The page to write. Default: PATTERN.view.html in this folder.",
+            "VIEW.html",
+            "-o",
+            "--output",
+        ),
     ] = None
     branches: Annotated[
         Sequence[str] | None,
         typer.Option(
             parser=sign_vectors,
             metavar="+-+,++-",
-            help="Show the branches with these vertex signs only. Default: all, up to ten foldable "
-            "vertices; of larger sheets the one with all vertices up, and its neighbours.",
+            help="Show only the branches with these vertex signs. Default: all branches up to ten "
+            "foldable vertices; for larger sheets the branch with all vertices up, and its "
+            "neighbours.",
         ),
     ] = None
-    frames: Annotated[int, number("Frames of each motion.", least=2)] = 32
+    frames: Annotated[int, number("Number of frames of each motion.", least=2)] = 32
     proving: Annotated[
         bool,
         flag(
             "--prove",
-            text="Prove each motion along a branch and its first contact, too; of panels the "
-            "contacts.",
+            text="Also prove each motion along a branch and its first contact; for panels, prove "
+            "the contacts.",
         ),
     ] = False
     workers: Annotated[
         int | None,
-        number("Processes that follow motions. Default: all cores."),
+        number("Number of processes that follow motions. Default: all cores."),
     ] = None
     serve: Annotated[
         bool,
         flag(
             "--serve",
-            text="Write no file: serve the page on this machine, and follow branches as they are "
-            "looked at.",
+            text="Write no file, but serve the page on this machine, and follow each branch when "
+            "it is looked at.",
         ),
     ] = False
     port: Annotated[
         int | None,
-        number("Of --serve. Default: any that is free.", "P"),
+        number("The port for --serve. Default: any free port.", "P"),
     ] = None
     snap: Snap = None
     sheet: Sheet = None
@@ -137,6 +143,9 @@ class ViewOptions:
     def __post_init__(self) -> None:
         if self.serve:
             if self.output is not None or self.workers is not None:
-                raise UsageError("--serve writes no file and follows one branch at a time")
+                raise UsageError(
+                    "--serve writes no file and follows one branch at a time: leave out -o and "
+                    "--workers"
+                )
         elif self.port is not None:
             raise UsageError("--port goes with --serve")

@@ -1,4 +1,4 @@
-"""What the command that runs studies takes: its options, and how the shell completes them."""
+"""The options of the command that runs studies, and their completion by the shell."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from exactfold.app.shell.parameters import Dask, Json, flag, number, sizes, writ
 
 
 def _complete(incomplete: str) -> list[str]:
-    """The studies that begin with what is typed."""
+    """The studies whose names begin with the typed text."""
     from exactfold.studies.running.registry import MODULES
 
     return [name for name in MODULES if name.startswith(incomplete)]
 
 
 def _numbers_of(ctx: typer.Context) -> dict[int, int]:
-    """The numbers of rows, by size, of the study that is named; none without a name."""
+    """For each size, the number of rows of the named study; empty without a name."""
     from exactfold.studies.running.registry import MODULES, study_named
 
-    # while the shell completes an option, the words before it are not given to the arguments yet
+    # during completion, the words before an option are not assigned to arguments yet
     named = [word for word in (ctx.params.get("name"), *ctx.args) if word in MODULES]
     if not named:
         return {}
@@ -49,22 +49,22 @@ def _complete_numbers(ctx: typer.Context, incomplete: str) -> list[str]:
 
 @dataclass(frozen=True)
 class StudyOptions:
-    """What `exactfold study` takes."""
+    """The options of `exactfold study`."""
 
     name: Annotated[
         str | None,
         typer.Argument(
             metavar="NAME",
             autocompletion=_complete,
-            help="The study. Without a name, the studies are listed.",
+            help="The name of the study. Without it, all studies are listed.",
             show_default=False,
         ),
     ] = None
     seed: Annotated[
         int,
         number(
-            "Seed of all that is drawn at random. The k-th square with n interior vertices, from 0 "
-            "on, has the seed (100 S + n) 10^7 + k: see `random --seed`.",
+            "Seed of the random samples. Random square k = 0, 1, ... with n interior vertices has "
+            "the seed (100 S + n) 10^7 + k for `random --seed`.",
             "S",
             least=0,
         ),
@@ -75,7 +75,7 @@ class StudyOptions:
             parser=sizes,
             metavar="SIZES",
             autocompletion=_complete_sizes,
-            help="Only these sizes, such as 2-5,8: most often numbers of interior vertices.",
+            help="Only these sizes, such as 2-5,8. Sizes are usually numbers of interior vertices.",
         ),
     ] = None
     number: Annotated[
@@ -84,29 +84,33 @@ class StudyOptions:
             "--number",
             metavar="N|SIZES:N,...",
             autocompletion=_complete_numbers,
-            help="Rows of each size: one number for all, or by size, such as 2-4:1000,5:200; "
-            "then these sizes only, unless --sizes or --extend names more, which keep the "
-            "study's numbers. Default: as many as in the paper.",
+            help="Number of rows of each size: one number for all sizes, or by size, such as "
+            "2-4:1000,5:200. The latter runs only these sizes, unless --sizes or --extend adds "
+            "others, which keep the numbers of the study. Default: as many as in the paper.",
         ),
     ] = None
-    extend: Annotated[bool, flag("--extend", text="Also the larger sizes of the study.")] = False
-    workers: Annotated[int | None, number("Processes. Default: all cores.")] = None
+    extend: Annotated[bool, flag("--extend", text="Also run the larger sizes of the study.")] = (
+        False
+    )
+    workers: Annotated[int | None, number("Number of processes. Default: all cores.")] = None
     dask: Dask = None
     journal: Annotated[
         Path | None,
         written(
-            "Where rows are kept: the same command goes on with them, and a row that is there is "
-            "not computed again. Default: NAME.sqlite.",
+            "The file that keeps the rows: the same command continues it and does not compute a "
+            "row in it again. Default: NAME.sqlite.",
             "FILE.sqlite",
         ),
     ] = None
-    csv: Annotated[Path | None, written("Write the rows as a table, with recipes.", "OUT.csv")] = (
+    csv: Annotated[
+        Path | None, written("Write the rows and their recipes as a table.", "OUT.csv")
+    ] = None
+    parquet: Annotated[Path | None, written("Write the same table as Parquet.", "OUT.parquet")] = (
         None
     )
-    parquet: Annotated[Path | None, written("The same for Parquet.", "OUT.parquet")] = None
     html: Annotated[
         Path | None,
-        written("Write a report with tables and pictures, one file.", "OUT.html"),
+        written("Write a report with tables and pictures, in one file.", "OUT.html"),
     ] = None
     figures: Annotated[
         Path | None,
@@ -116,8 +120,8 @@ class StudyOptions:
         str | None,
         typer.Option(
             metavar="ID",
-            help="Instead: compute one row of the journal again, and compare. The first digits "
-            "of its name are enough.",
+            help="Only compute this row of the journal again, and compare. The first digits of its "
+            "name are enough.",
         ),
     ] = None
     as_json: Json = False

@@ -1,1 +1,1 @@
-"""What all commands share: parameters, files of numbers, errors, progress and interruptions."""
+"""Code that all commands share: parameters, input files, errors, progress and interruptions."""

@@ -1,4 +1,4 @@
-"""The line of progress on a terminal, with rich; loaded once there is something to show."""
+"""The progress line on a terminal, made with rich; loaded when there is progress to show."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from rich.progress import BarColumn, Progress, ProgressColumn, Task, TextColumn
 from rich.text import Text
 
 LARGEST = 1 << 31
-"""Totals beyond this are shown as parts of 1."""
+"""Larger totals are scaled to 1, because rich converts numbers to C integers."""
 
 
 class TimeColumn(ProgressColumn):
-    """The time left where the total is known, else the time since the stage began."""
+    """The time left if the total is known, otherwise the time since the stage began."""
 
     def render(self, task: Task) -> Text:
-        """Whole seconds."""
+        """The time in whole seconds."""
         if task.total is None:
             return Text(str(timedelta(seconds=int(task.elapsed or 0))))
         left = task.time_remaining
@@ -25,7 +25,7 @@ class TimeColumn(ProgressColumn):
 
 
 class Display:
-    """One line on the console of stderr for the stage under way, gone when it is closed."""
+    """A line on the console of stderr that shows the current stage; closing removes the line."""
 
     def __init__(self, console: Console) -> None:
         self.progress = Progress(
@@ -35,7 +35,7 @@ class Display:
             TimeColumn(),
             console=console,
             transient=True,
-            redirect_stdout=sys.stdout.isatty(),  # elsewhere what is printed must not come here
+            redirect_stdout=sys.stdout.isatty(),  # otherwise output must not go to stderr
         )
         self.stage: tuple[str, bool] | None = None
         self.progress.start()
@@ -50,10 +50,10 @@ class Display:
         count = (f"{done}/{total}" if total else str(done or "")) + note
         task = self.progress.task_ids[0]
         part: float = done
-        if total > LARGEST:  # rich turns numbers into those of C
+        if total > LARGEST:  # too large for the C integers that rich uses
             part, total = done / total, 1
         self.progress.update(task, completed=part, total=total or None, count=count)
 
     def close(self) -> None:
-        """Take the line away."""
+        """Remove the line."""
         self.progress.stop()

@@ -1,4 +1,4 @@
-"""Numbers by vertex in JSON files: boundary heights, angle deficits."""
+"""Reads boundary heights and angle deficits by vertex from JSON files."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from exactfold.pattern.crease_pattern import CreasePattern
 
 @dataclass(frozen=True)
 class Given:
-    """The files that --rim and --curvature name, None where the option is not there."""
+    """The files that --rim and --curvature name; None for an option that is not given."""
 
     boundary_heights: Path | None = None
     curvature: Path | None = None
@@ -27,9 +27,10 @@ class Given:
         return self.boundary_heights is not None or self.curvature is not None
 
     def finder(self, pattern: CreasePattern) -> BranchFinder:
-        """The finder of branches of a pattern with what is given, and a chosen rim if need be.
+        """The finder of branches of a pattern with these boundary heights and angle deficits.
 
-        Raises `UnreadableFileError` and the errors of `BranchFinder`, after the name of the file.
+        If the pattern needs boundary heights and none are given, default heights are used. Raises
+        `UnreadableFileError`, and the errors of `BranchFinder` with the name of the file in front.
         """
         boundary_heights = (
             None
@@ -41,7 +42,7 @@ class Given:
             curvature = numbers_in(self.curvature, BadCurvatureError, "1/3")
         finder = branch_finder(pattern, boundary_heights, curvature)  # type: ignore[arg-type]
         try:
-            finder.problem  # noqa: B018 - it is set up here, so that errors name the file
+            finder.problem  # noqa: B018 - set up here, so that errors name the file
         except (BoundaryHeightsError, BadCurvatureError) as error:
             file = self.curvature if isinstance(error, BadCurvatureError) else self.boundary_heights
             if file is None:
@@ -53,18 +54,18 @@ class Given:
 def numbers_in(
     path: Path, error: type[BoundaryHeightsError] | type[BadCurvatureError], example: str
 ) -> dict[int | str, Fraction | Any]:
-    """The numbers in a JSON file {"vertex": number}, as they are written; text such as "1/3" too.
+    """The numbers in a JSON file {"vertex": number}, exact; text such as "1/3" is allowed.
 
-    Raises `UnreadableFileError`, and `error` for a file of another shape. What the numbers and the
-    vertices are is not checked here.
+    Raises `UnreadableFileError`, and `error` if the file has another structure. Whether the values
+    are numbers and the names are vertices is not checked here.
     """
-    shape = f'write {{"0": 0.5, "3": "{example}", ...}}, a number for each vertex'
+    shape = f'write {{"0": 0.5, "3": "{example}", ...}}, with a number for each vertex'
     data = numbers_by_name(path, error, "vertex", shape)
     return {_vertex(name): value for name, value in data.items()}
 
 
 def _vertex(name: str) -> int | str:
-    """A vertex by its number; other text stays, to be named in a message."""
-    # "00" stays text: it would be vertex 0 a second time, unseen where keys are compared.
+    """The number of a vertex; other text is kept, so that a message can name it."""
+    # "00" stays text: as vertex 0 it could repeat the key "0" unnoticed.
     plain = name.isascii() and name.isdecimal() and len(name) < 20 and name == str(int(name))
     return int(name) if plain else name

@@ -1,8 +1,9 @@
-"""Ends that are no answer: interrupted while Python loads, or out of memory below Python.
+"""Guards against ends that look like an answer, on interruption or when memory runs out.
 
-Libraries written in C may end the process with exit code 1 where memory is short (OpenBLAS does),
-which would read "refuted" or "invalid". No Python code runs after that. So where memory is limited
-the program runs in a child process, and its parent sees whether the child ended by itself.
+When memory runs out, a library written in C may end the process with exit code 1, as OpenBLAS does.
+This code would mean "refuted" or "invalid", and no Python code runs after such an end. So where
+memory is limited, the program runs in a child process, and the parent process notices whether the
+child reached its proper end.
 """
 
 from __future__ import annotations
@@ -21,29 +22,30 @@ INTERRUPTED = 130
 NO_MEMORY = 71
 
 _errors = 2
-"""The file descriptor for what is said before, or instead of, a proper end."""
+"""The file descriptor for messages about an end."""
 
 
 def supervised(run: Callable[[], None]) -> None:
-    """Run a program; where memory is limited, in a child that has to say that it ended by itself.
+    """Run a program, in a child process if memory is limited.
 
-    Raises `SystemExit` with the code of the child, or `NO_MEMORY` if it did not say so.
+    The child reports that it reached its proper end. Raises `SystemExit` with the exit code of the
+    child, or with `NO_MEMORY` if the child did not report its end.
     """
     if not memory_is_limited():
         run()
         return
     code, whole = _in_child(run)
-    if not whole and code == -signal.SIGTERM:  # as without a limit: it ends this process, too
+    if not whole and code == -signal.SIGTERM:  # SIGTERM ends this process, too, as without a child
         signal.signal(signal.SIGTERM, signal.SIG_DFL)
         os.kill(os.getpid(), signal.SIGTERM)
     if not whole:
-        print("exactfold: ended without an answer: not enough memory", file=sys.stderr)
+        print("exactfold: not enough memory: the program ended without an answer", file=sys.stderr)
         code = NO_MEMORY
     raise SystemExit(code)
 
 
 def _in_child(run: Callable[[], None]) -> tuple[int, bool]:
-    """The exit code of a child that runs a program, and whether it ended by itself."""
+    """The exit code of a child that runs a program, and whether the child reported its end."""
     told, tell = os.pipe()
     try:
         child = os.fork()
@@ -63,7 +65,7 @@ def _in_child(run: Callable[[], None]) -> tuple[int, bool]:
 
 
 def _tell_the_end(run: Callable[[], None], tell: int) -> None:
-    """The child: run, say that the end was reached, and leave with its exit code."""
+    """In the child: run the program, report its end to the parent, and exit with its code."""
     code: object = 0
     _quiet_libraries()
     try:
@@ -82,7 +84,7 @@ def _tell_the_end(run: Callable[[], None], tell: int) -> None:
 
 
 def _quiet_libraries() -> None:
-    """Drop what libraries and worker processes write to stderr: a shortage is told in one line."""
+    """Discard what libraries and workers write to stderr, so that a shortage takes one line."""
     global _errors
     if sys.stderr is None:
         return
@@ -96,7 +98,10 @@ def _quiet_libraries() -> None:
 
 
 def _passed_on(child: int) -> dict[int, Any]:
-    """Signals that are meant for the child: Ctrl-C reaches it anyway, SIGTERM is sent on."""
+    """Ignore Ctrl-C, which reaches the child anyway, and pass SIGTERM on to the child.
+
+    Returns the former handlers by signal.
+    """
 
     def send_on(number: int, frame: FrameType | None) -> None:
         with suppress(ProcessLookupError):
@@ -109,7 +114,7 @@ def _passed_on(child: int) -> dict[int, Any]:
 
 
 def interrupted(number: int, frame: FrameType | None) -> None:
-    """Handle Ctrl-C while modules are loaded: end without a traceback."""
+    """Handle Ctrl-C while modules are loaded: end the process without a traceback."""
     with suppress(OSError):
         os.write(_errors, b"exactfold: interrupted\n")
     os._exit(INTERRUPTED)

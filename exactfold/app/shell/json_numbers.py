@@ -1,4 +1,4 @@
-"""Numbers by name in JSON files, exactly as they are written."""
+"""Reads exact numbers by name from JSON files."""
 
 from __future__ import annotations
 
@@ -12,11 +12,12 @@ from exactfold.pattern.drawing.bounds import read_bytes
 
 
 def numbers_by_name(path: Path, error: type[InputError], noun: str, shape: str) -> dict[str, Any]:
-    """The values in a JSON file {"name": number}; numbers are text, so that no digit is lost.
+    """The values in a JSON file {"name": number}.
 
-    Names are those of a `noun`, such as "vertex", and `shape` says how the file is to be written.
-    Raises the errors of `read_bytes`, and `error` for a file of another shape, with a name that is
-    there twice or an integer that is too long. What names and values are is not checked here.
+    Numbers with a decimal point are returned as text, so that no digit is lost. In messages, `noun`
+    says what the names are, such as "vertex", and `shape` says how to write the file. Raises the
+    errors of `read_bytes`, and `error` if the file has another structure, repeats a name or holds
+    an integer that is too long. Names and values are not checked otherwise.
     """
     try:
         text = read_bytes(path).decode("utf-8")
@@ -28,13 +29,13 @@ def numbers_by_name(path: Path, error: type[InputError], noun: str, shape: str) 
             object_pairs_hook=_without_repetition,
         )
     except _RepeatedError as repeated:
-        raise error(f"{path}: {noun} {repeated} is there twice") from None
+        raise error(f"{path}: {noun} {repeated} is given twice") from None
     except NumberError as number:
         raise error(f"{path}: {number}") from None
     except (ValueError, RecursionError):
         raise error(f"{path} is not JSON: {shape}") from None
     if not isinstance(data, dict):
-        raise error(f"{path} holds no numbers by {noun}: {shape}")
+        raise error(f"{path} does not hold numbers by {noun}: {shape}")
     return data
 
 
@@ -43,13 +44,13 @@ def _integer(digits: str) -> int:
 
 
 class _RepeatedError(Exception):
-    """A key that is there twice."""
+    """A JSON object has the same key twice."""
 
 
 def _without_repetition(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    found: dict[str, Any] = {}
+    values: dict[str, Any] = {}
     for name, value in pairs:
-        if name in found:
+        if name in values:
             raise _RepeatedError(name)
-        found[name] = value
-    return found
+        values[name] = value
+    return values

@@ -1,4 +1,4 @@
-"""Parameters that several commands take, and how the shell completes and shows them."""
+"""Parameters that several commands take, with their parsers, help and completion."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from exactfold.pattern.drawing.drawing import Snap as Snapping
 
 
 def complete_pattern(incomplete: str) -> list[str]:
-    """Shipped patterns, FOLD files and folders that begin with what is typed."""
+    """Shipped patterns, pattern files and folders whose names begin with the typed text."""
     from exactfold.pattern.data import EXAMPLES
 
     folder, _, _ = incomplete.rpartition("/")
@@ -40,12 +40,12 @@ def complete_pattern(incomplete: str) -> list[str]:
 
 
 def flag(*names: str, text: str, **more: Any) -> Any:
-    """An option without a value, shown without one."""
+    """An option without a value."""
     return typer.Option(*names, metavar="", help=text, **more)
 
 
 def whole(least: int | None = None) -> Callable[[object], int]:
-    """A reader of whole numbers, from `least` on; its messages name the text that is none."""
+    """A parser of whole numbers that are at least `least`; its errors name the bad text."""
 
     def read(text: object) -> int:
         try:
@@ -60,17 +60,17 @@ def whole(least: int | None = None) -> Callable[[object], int]:
 
 
 def number(text: str, metavar: str = "N", *names: str, least: int | None = 1) -> Any:
-    """An option that takes a whole number, from `least` on."""
+    """An option that takes a whole number, which is at least `least`."""
     return typer.Option(*names, parser=whole(least), metavar=metavar, help=text)
 
 
 def written(text: str, metavar: str = "FILE", *names: str) -> Any:
-    """An option that names a file to write, which is not `-`."""
+    """An option that names a file to write; `-` is refused."""
     return typer.Option(*names, callback=not_a_dash, metavar=metavar, help=text)
 
 
 def degrees(text: object) -> float:
-    """A number with a decimal point."""
+    """The floating-point number in a text."""
     try:
         return approx_number(str(text))
     except NumberError:
@@ -85,7 +85,7 @@ def one_side(text: object) -> int:
 
 
 def fold_name(text: object) -> tuple[int, int]:
-    """A fold as it is printed, such as 4-7."""
+    """The two vertices of a fold that is written like 4-7, the smaller one first."""
     try:
         i, j = (parse_whole(part) for part in str(text).split("-"))
     except ValueError:  # also NumberError, which is one
@@ -94,12 +94,12 @@ def fold_name(text: object) -> tuple[int, int]:
 
 
 def numbers(text: object) -> tuple[int, ...]:
-    """Numbers from 1 on, such as 1,3."""
+    """The numbers in a list such as 1,3; each is at least 1."""
     return tuple(whole(1)(part.strip()) for part in str(text).split(","))
 
 
 def sizes(text: object) -> tuple[int, ...]:
-    """Numbers from 1 on and ranges of them, such as 2-5,8."""
+    """The sorted sizes in a list of numbers and ranges such as 2-5,8; each is at least 1."""
     try:
         return tuple(sorted({size for part in str(text).split(",") for size in read_sizes(part)}))
     except UsageError as error:
@@ -126,7 +126,7 @@ def distance(text: object) -> Fraction:
 
 
 def method_name(text: object) -> str:
-    """The name of a method; names of earlier versions are taken, too."""
+    """The name of a method; names from earlier versions are accepted, too."""
     name = str(text)
     if name not in METHODS and name not in ALIASES:
         raise typer.BadParameter(f"{name!r} is not one of {', '.join(METHODS)}")
@@ -134,7 +134,7 @@ def method_name(text: object) -> str:
 
 
 def complete_method(incomplete: str) -> list[str]:
-    """The methods that begin with what is typed, without names of earlier versions."""
+    """The methods that begin with the typed text, without names from earlier versions."""
     return [name for name in METHODS if name.startswith(incomplete)]
 
 
@@ -170,47 +170,52 @@ Snap = Annotated[
     typer.Option(
         parser=snapping,
         metavar="DEN|auto|exact",
-        help="Round coordinates to multiples of 1/DEN; or find the exact numbers that were meant "
-        "(auto: the rule for drawings); or take them as written (exact).",
+        help="DEN: round coordinates to multiples of 1/DEN. auto: find the exact numbers that the "
+        "drawing means (default for drawings). exact: take coordinates as written.",
     ),
 ]
-Sheet = Annotated[int | None, number("Of a drawing with several sheets: the N-th.", "N", "--sheet")]
+Sheet = Annotated[
+    int | None, number("Take the N-th sheet of a drawing with several sheets.", "N", "--sheet")
+]
 Json = Annotated[bool, flag("--json", text="Print one JSON object.")]
 Signs = Annotated[
     str | None,
     typer.Option(
-        metavar="+-...", help="Vertex signs in the order of the interior vertices; @FILE reads."
+        metavar="+-...",
+        help="Vertex signs in the order of the interior vertices; @FILE reads them from a file.",
     ),
 ]
 Up = Annotated[
     str | None,
-    typer.Option(metavar="5,7", help="Instead: the vertices popped up, all others down."),
+    typer.Option(
+        metavar="5,7", help="Instead of --signs: the vertices that pop up. All others pop down."
+    ),
 ]
 PrescribedAngles = Annotated[
     str | None,
     typer.Option(
         metavar="I-J=DEG,...",
-        help="Drive folds: their angles grow together to these, 90deg a valley, -90deg a "
-        "mountain; a fold without one goes along as on the branch. FILE.json reads them. As "
-        "many as the sheet has degrees of freedom.",
+        help="Drive these folds, as many as the sheet has degrees of freedom: their angles grow "
+        "together to the given ones, such as 90deg (valley) or -90deg (mountain). A fold without "
+        "an angle gets the angle it has on the branch. FILE.json holds folds and angles.",
     ),
 ]
 
 BoundaryHeights = Annotated[
     Path | None,
     typer.Option(
+        "--rim",
         metavar="RIM.json",
-        help='Heights of all boundary vertices, {"0": 1, "1": "-1/2", ...}, of a convex boundary. '
-        "Default, with more than four: those of a saddle, which are shown.",
+        help='Heights of all boundary vertices, {"0": 1, "1": "-1/2", ...}, if the boundary is '
+        "convex. Default with more than four corners: the heights of a saddle, which are printed.",
     ),
 ]
 Curvature = Annotated[
     Path | None,
     typer.Option(
         metavar="FILE.json",
-        help='Angle deficits of interior vertices, {"5": "1/10", ...}, 0 for the others: the '
-        "shapes of a sheet that is not flat by itself. Without --rim its boundary stays "
-        "in a plane.",
+        help='Angle deficits of interior vertices, {"5": "1/10", ...}, 0 for the others. The sheet '
+        "is then not flat by itself. Without --rim its boundary stays in a plane.",
     ),
 ]
 
@@ -221,13 +226,15 @@ Dask = Annotated[
         help="Run on the dask.distributed cluster with this scheduler; `local` starts one here.",
     ),
 ]
-Place = Annotated[int | None, number("Instead: the N-th that `count` lists.", "N", "--branch")]
+Place = Annotated[
+    int | None, number("Instead of --signs: the N-th branch that `count` lists.", "N", "--branch")
+]
 Resume = Annotated[bool, flag("--resume", text="Continue the FILE that an interrupted run left.")]
 Side = Annotated[
     int | None,
     typer.Option(
         parser=one_side,
         metavar="+|-",
-        help="Of a branch. -: the mirror image, with all signs reversed.",
+        help="For branches: - follows the mirror image, with all signs reversed.",
     ),
 ]

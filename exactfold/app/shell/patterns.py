@@ -1,4 +1,4 @@
-"""Patterns as they are named on the command line: a file, `-`, or a shipped example."""
+"""Opens the pattern that the command line names: a file, `-`, or a shipped example."""
 
 from __future__ import annotations
 
@@ -16,22 +16,22 @@ from exactfold.pattern.opening import Opened, has_branches, open_pattern, triang
 
 @dataclass(frozen=True)
 class Triangulated:
-    """A triangulated sheet, and how it was read."""
+    """A triangulated sheet, and the record of how it was read."""
 
     pattern: CreasePattern
     opened: Opened
 
 
 def located(path: Path) -> Path:
-    """The file that is meant; the name of an example is that example, as for `load`.
+    """The file for a path or for the name of a shipped example.
 
-    Raises `UnreadableFileError` for a bare name that is neither.
+    Raises `UnreadableFileError` for a bare name that is neither a file nor an example.
     """
     name = str(path)
     if name in EXAMPLES:
         return example_path(name)
     if path == STDIN or path.exists() or path.suffix or len(path.parts) != 1:
-        return path  # reading it says what is wrong
+        return path  # reading raises an error that says what is wrong
     raise UnreadableFileError(
         f"{name} is neither a file nor a shipped pattern; the shipped patterns are: "
         f"{', '.join(EXAMPLES)}"
@@ -39,10 +39,9 @@ def located(path: Path) -> Path:
 
 
 def read(path: Path, snap: Snap | None, number: int | None, needs: str) -> Triangulated:
-    """The triangulated sheet that is meant, for a command that `needs` one.
+    """Open a triangulated sheet for the command `needs`, and print warnings to stderr.
 
-    What a designer should know of it before the answer is read is said on stderr. Raises the
-    errors of `located`, `open_pattern` and `triangles`.
+    Raises the errors of `located`, `open_pattern` and `triangles`.
     """
     opened = read_any(path, snap, number)
     pattern = triangles(opened, needs)
@@ -52,7 +51,7 @@ def read(path: Path, snap: Snap | None, number: int | None, needs: str) -> Trian
 
 
 def read_any(path: Path, snap: Snap | None, number: int | None = None) -> Opened:
-    """The sheet that is meant, of any format; what was read and repaired is said on stderr.
+    """Open a sheet in any format; print to stderr what was read and repaired, and warnings.
 
     Raises the errors of `located` and `open_pattern`.
     """
@@ -65,6 +64,6 @@ def read_any(path: Path, snap: Snap | None, number: int | None = None) -> Opened
 
 
 def warn(pattern: CreasePattern) -> None:
-    """Say on stderr what a designer should know of a sheet."""
+    """Print a warning to stderr if the sheet is nearly degenerate."""
     if (found := near_degenerate(pattern)) is not None:
         say(f"warning: {found.text}")

@@ -1,4 +1,4 @@
-"""Commands whose file can be continued: what they say when they stop early."""
+"""Tells users how to continue a file when a command stops early."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from exactfold.errors import (
 
 
 def require_file(file: Path, resume: bool) -> None:
-    """Raise `UsageError` for what is no file, and for a file that is there without `resume`."""
+    """Raise `UsageError` if the path is not a file, or if a file exists and not `resume`."""
     if file.exists() and not file.is_file():
         raise UsageError(f"{file} is not a file")
     if file.exists() and not resume:
-        raise UsageError(f"{file} is there already; --resume continues it")
+        raise UsageError(f"{file} exists already; --resume continues it")
 
 
 @contextmanager
 def resumable(file: Path, again: str) -> Iterator[None]:
-    """Say how to go on, with the command `again`, when the run stops early."""
+    """If the run stops early, say that the command `again` continues it."""
     try:
         yield
     except KeyboardInterrupt:

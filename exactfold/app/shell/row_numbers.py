@@ -1,4 +1,4 @@
-"""Numbers of rows of a study as they are written: 1000, or by size 2-4:1000,5:200."""
+"""Reads and writes sizes and numbers of rows of a study: 1000, or by size 2-4:1000,5:200."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from exactfold.errors import NumberError, UsageError
 from exactfold.exact.numbers import parse_whole
 
 MOST_SIZES = 1000
-"""That a command takes; a longer range is a slip."""
+"""Most sizes in a range; a longer range is taken for a slip."""
 
 _FORMS = "write one number for all sizes, such as 1000, or numbers by size, such as 2-4:1000,5:200"
 
@@ -22,16 +22,16 @@ def read_sizes(text: str) -> range:
     first, _, last = text.strip().partition("-")
     low, high = _whole(first), _whole(last or first)
     if low < 1:
-        raise UsageError(f"sizes are from 1 on, not {low}")
+        raise UsageError(f"the least size is 1, not {low}")
     if high < low:
         raise UsageError(f"{text.strip()!r} ends before it begins")
     if high - low >= MOST_SIZES:
-        raise UsageError(f"{text.strip()!r} are more than {MOST_SIZES} sizes")
+        raise UsageError(f"{text.strip()!r} is more than {MOST_SIZES} sizes")
     return range(low, high + 1)
 
 
 def read_numbers(text: str) -> int | dict[int, int]:
-    """The number of rows of all sizes, or those of each size; raises `UsageError`.
+    """One number of rows for all sizes, or a number for each size; raises `UsageError`.
 
     >>> read_numbers("1000"), read_numbers("2-4:1000,5:200")
     (1000, {2: 1000, 3: 1000, 4: 1000, 5: 200})
@@ -48,7 +48,7 @@ def _numbers(text: str) -> int | dict[int, int]:
         if number < 1:
             raise UsageError(f"{number} is less than 1")
         return number
-    found: dict[int, int] = {}
+    numbers: dict[int, int] = {}
     for part in text.split(","):
         sizes, colon, number_text = part.partition(":")
         if not colon:
@@ -57,10 +57,10 @@ def _numbers(text: str) -> int | dict[int, int]:
         if number < 0:
             raise UsageError(f"{number} is less than 0")
         for size in read_sizes(sizes):
-            if size in found:
-                raise UsageError(f"size {size} has two numbers")
-            found[size] = number
-    return found
+            if size in numbers:
+                raise UsageError(f"size {size} has two numbers: give one")
+            numbers[size] = number
+    return numbers
 
 
 def _whole(text: str) -> int:
@@ -71,7 +71,7 @@ def _whole(text: str) -> int:
 
 
 def written_sizes(sizes: Iterable[int]) -> str:
-    """Sizes as `--sizes` takes them, ranges put together.
+    """Sizes in the notation of `--sizes`, with consecutive sizes as ranges.
 
     >>> written_sizes([2, 3, 4, 8])
     '2-4,8'
@@ -80,7 +80,7 @@ def written_sizes(sizes: Iterable[int]) -> str:
 
 
 def written_numbers(numbers: int | Mapping[int, int]) -> str:
-    """Numbers as `--number` takes them.
+    """Numbers of rows in the notation of `--number`.
 
     >>> written_numbers(7), written_numbers({2: 1000, 3: 1000, 4: 1000, 5: 200})
     ('7', '2-4:1000,5:200')
@@ -95,7 +95,7 @@ def _range(first: int, last: int) -> str:
 
 
 def _runs(numbers: Mapping[int, int]) -> list[tuple[int, int, int]]:
-    """First and last of sizes that follow each other and have the same number, and this number."""
+    """For each run of consecutive sizes with the same number: first size, last size, number."""
     runs: list[tuple[int, int, int]] = []
     for size, number in sorted(numbers.items()):
         if runs and runs[-1][1:] == (size - 1, number):

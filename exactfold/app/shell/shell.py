@@ -1,4 +1,4 @@
-"""What all commands share: exit codes, errors as one line, progress, common options."""
+"""Code that all commands share: exit codes, errors in one line, progress, files."""
 
 from __future__ import annotations
 
@@ -54,9 +54,9 @@ R = TypeVar("R")
 
 
 def reported(command: Callable[P, R]) -> Callable[P, R]:
-    """Turn the package's errors into one line on stderr and an exit code.
+    """Decorate a command so that an error becomes one line on stderr and an exit code.
 
-    Output is flushed here, so that a closed pipe or a full disk has an exit code of its own.
+    Output is flushed here, so that a closed pipe or a full disk gets an exit code of its own.
     """
 
     @wraps(command)
@@ -83,7 +83,7 @@ def reported(command: Callable[P, R]) -> Callable[P, R]:
         except Exception as error:
             if is_shortage(error):
                 raise _short(error) from None
-            # A defect: never to be read as one of the documented codes.
+            # A bug in exactfold: its exit code must not look like an answer.
             with suppress(OSError):
                 traceback.print_exc()
             raise typer.Exit(INTERNAL) from None
@@ -97,13 +97,13 @@ def _short(error: Exception) -> typer.Exit:
 
 
 def say(text: str) -> None:
-    """A line on stderr; where that cannot be written nothing is said, and no exit code changes."""
+    """Print a line to stderr; if that fails, go on silently with the same exit code."""
     with suppress(OSError):
         print(f"exactfold: {visible(text)}", file=sys.stderr, flush=True)
 
 
 def tell(text: str) -> None:
-    """Lines on stdout; escape sequences in names of files do not reach the terminal."""
+    """Print lines to stdout, without escape sequences that file names may contain."""
     print(visible(text), flush=True)
 
 
@@ -121,11 +121,11 @@ def exit_code(error: Exception) -> int:
 CommandError = TypedDict(
     "CommandError", {"class": Annotated[str, Keywords(pattern="^[A-Za-z]+$")], "message": str}
 )
-"""The class of an error, for programs, and what it says."""
+"""The class of an error, for programs, and its message."""
 
 
 class ErrorDocument(TypedDict):
-    """What any command prints with --json where it fails."""
+    """The object that any command prints with --json if it fails."""
 
     format: Literal["exactfold error result"]
     version: Literal[1]
@@ -133,7 +133,7 @@ class ErrorDocument(TypedDict):
 
 
 def error_document(error: Exception) -> ErrorDocument:
-    """An error as a JSON object: its class, for programs, and what it says."""
+    """An error as a JSON object: its class, for programs, and its message."""
     return {
         "format": "exactfold error result",
         "version": 1,
@@ -142,55 +142,60 @@ def error_document(error: Exception) -> ErrorDocument:
 
 
 def output_failed(error: OSError) -> None:
-    """Say that standard output cannot be written, unless its reader has left, and drop the rest."""
+    """Say that standard output cannot be written, and discard all further output.
+
+    Nothing is said if the reader of a pipe has closed it.
+    """
     if not isinstance(error, BrokenPipeError):
         say(f"cannot write the output: {error.strerror}")
     sys.stdout = open(os.devnull, "w")  # noqa: SIM115 - it stays open to the end
 
 
 class _Closed(io.TextIOBase):
-    """Standard output that was closed before the start: it cannot be written."""
+    """Stands for a standard output that was closed before the start; writing raises an error."""
 
     def write(self, text: str, /) -> int:
         raise OSError(errno.EBADF, os.strerror(errno.EBADF))
 
 
 def standard_streams() -> None:
-    """Make output that was closed before the start fail when it is written, and not sooner.
+    """If standard streams were closed before the start, let only writing to them fail.
 
-    No file that is opened later takes its number.
+    Descriptors 0 to 2 are occupied, so that no file that is opened later gets one of them.
     """
     while (number := os.open(os.devnull, os.O_RDWR)) < 3:
         pass
     os.close(number)
     if sys.stdout is None:
         sys.stdout = _Closed()
-    if sys.stderr is None:  # what would be said there must not go to standard output
+    if sys.stderr is None:  # messages for it must not go to standard output
         sys.stderr = open(os.devnull, "w")  # noqa: SIM115 - it stays open to the end
 
 
 def stopped(advice: str = "") -> NoReturn:
-    """End after Ctrl-C or SIGTERM with an exit code of its own."""
+    """Say that the command was interrupted, and end it with the exit code for that."""
     say(f"interrupted{'; ' if advice else ''}{advice}")
     raise typer.Exit(INTERRUPTED) from None
 
 
 _asked: list[int] = []
-"""Signals of this `interruptible` block; a library in which the exception was lost forgets one."""
+"""Signals received in the current `interruptible` block, as a library may swallow the exception."""
 
 
 @contextmanager
 def interruptible() -> Iterator[None]:
-    """Within this block SIGTERM is a `KeyboardInterrupt`, as Ctrl-C is (main thread only).
+    """Within this block SIGTERM raises `KeyboardInterrupt`, as Ctrl-C does (main thread only).
 
-    Python drops an exception that is raised while it collects garbage or calls back from C. So the
-    interruption is raised again at the next line of progress, and at the end of the block.
+    Python drops an exception that is raised during garbage collection or in a callback from C. So
+    the interruption is raised again when progress is next reported, and at the end of the block.
     """
     if threading.current_thread() is not threading.main_thread():
         yield
         return
     numbers = {signal.SIGTERM}
-    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # else it is to be ignored
+    if (
+        signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    ):  # otherwise Ctrl-C is to be ignored
         numbers.add(signal.SIGINT)
     before = {number: signal.signal(number, _interrupt) for number in numbers}
     try:
@@ -214,7 +219,7 @@ def _insist() -> None:
 
 @contextmanager
 def _masked() -> Iterator[None]:
-    """Threads started in this block, and those they start, leave signals to the main thread."""
+    """Threads that start in this block, and threads that those start, receive no signals."""
     if not hasattr(signal, "pthread_sigmask"):  # Windows
         yield
         return
@@ -227,10 +232,10 @@ def _masked() -> Iterator[None]:
 
 
 class Bar:
-    """Progress on stderr, shown once the work has taken a second; silent off a terminal.
+    """Shows progress on stderr after the work has taken a second, if stderr is a terminal.
 
-    A timer shows it, so that stages which report nothing are seen too. Closed at the end of a
-    `with` block.
+    A timer shows it, so that a stage that reports nothing is shown, too. The end of a `with` block
+    closes the bar.
     """
 
     def __init__(self, stage: str, delay: float = 1.0) -> None:
@@ -240,9 +245,9 @@ class Bar:
         self.timer = threading.Timer(delay, self.show)
         self.timer.daemon = True
         if memory_is_limited() and not sys.stderr.isatty():
-            return  # a thread takes much memory, and there is nothing to show
-        # A thread that takes Ctrl-C would undo `held_interrupts` in the main one. Without a thread
-        # there is no line of progress, and all else goes on.
+            return  # a thread takes much memory, and off a terminal nothing is shown
+        # If this thread received Ctrl-C, `held_interrupts` in the main thread would have no effect.
+        # If no thread can be started, there is no progress line, and all else goes on.
         with suppress(RuntimeError), _masked():
             self.timer.start()
 
@@ -253,7 +258,7 @@ class Bar:
         self.close()
 
     def __call__(self, stage: str, done: int = 0, total: int = 0, note: str = "") -> None:
-        """Say how far a stage has come; a total of 0 means that it is not known."""
+        """Report how far a stage has come; a total of 0 means that the total is not known."""
         _insist()
         with self.lock:
             self.state = (stage, done, total, note)
@@ -261,7 +266,7 @@ class Bar:
                 self.display.show(*self.state)
 
     def show(self) -> None:
-        """Show the stage under way, from now on."""
+        """Show the current stage from now on."""
         from exactfold.app.report import console
         from exactfold.app.shell.display import Display
 
@@ -272,7 +277,7 @@ class Bar:
                 self.display.show(*self.state)
 
     def close(self) -> None:
-        """Take the line away."""
+        """Remove the progress line."""
         with self.lock:
             self.timer.cancel()
             if self.display is not None:
@@ -286,11 +291,13 @@ def apart(output: Path | None, *others: Path | None) -> None:
         if output is None or other is None:
             continue
         if os.path.realpath(output) == os.path.realpath(other) and not _is_special(output):
-            raise UsageError(f"{output} is also read or written otherwise: name another file")
+            raise UsageError(
+                f"this command already reads or writes {output}: name another file for the output"
+            )
 
 
 def one_at_most(options: str, *given: object) -> None:
-    """Raise `UsageError` if two of the options are given."""
+    """Raise `UsageError` if more than one of the options is given."""
     if sum(value is not None for value in given) > 1:
         raise UsageError(f"give {options}")
 
@@ -298,39 +305,42 @@ def one_at_most(options: str, *given: object) -> None:
 def one_at_least(options: str, *given: object) -> None:
     """Raise `UsageError` if none of the options is given.
 
-    To be asked when the sheet is read: for the wrong kind of sheet no option helps.
+    Commands call this after they have read the sheet, because no option helps with a sheet of the
+    wrong kind.
     """
     if all(value is None for value in given):
         raise UsageError(f"give {options}")
 
 
 def name_of(path: Path) -> str:
-    """A file as it was named on the command line."""
+    """The name of a file on the command line."""
     return "-" if path == STDIN else str(path)
 
 
 def said(path: Path) -> str:
-    """A file as messages call it."""
+    """The name of a file in messages."""
     return "standard input" if path == STDIN else str(path)
 
 
 def standard_input(path: Path) -> Path:
-    """`-` means standard input."""
+    """The path of standard input for `-`, otherwise the given path."""
     return STDIN if str(path) == "-" else path
 
 
 def not_a_dash(path: Path | None) -> Path | None:
-    """`-` does not name an output: the table or the JSON object goes to standard output."""
+    """Refuse `-` as an output, because the table or JSON object goes to standard output."""
     if path is not None and str(path) == "-":
-        raise typer.BadParameter("an output has a name of its own; write ./- if that is -")
+        raise typer.BadParameter(
+            "give the output file a name; write ./- for a file whose name is -"
+        )
     return path
 
 
 @contextmanager
 def regular(path: Path) -> Iterator[Path]:
-    """The path, or for a pipe that of a copy: what reads it may read it more than once.
+    """The path itself, or for a pipe the path of a copy, which can be read more than once.
 
-    Raises `UnreadableFileError` for what cannot be opened, such as a socket.
+    Raises `UnreadableFileError` if the path cannot be opened, such as a socket.
     """
     if not _is_special(path):
         yield path
@@ -347,5 +357,5 @@ def regular(path: Path) -> Iterator[Path]:
 
 
 def _is_special(path: Path) -> bool:
-    """Whether a path is there and neither a file nor a folder."""
+    """Whether a path exists and is neither a file nor a folder."""
     return path.exists() and not path.is_file() and not path.is_dir()

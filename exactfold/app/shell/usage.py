@@ -1,4 +1,4 @@
-"""Commands: their options from a dataclass, help without Python types, usage errors in one line."""
+"""Makes commands: options from a dataclass, plain help, usage errors in one line."""
 
 from __future__ import annotations
 
@@ -16,9 +16,10 @@ _WRONG_USAGE: type[Exception] = typer.BadParameter.__bases__[0]  # typer does no
 
 
 def taking(options: type[Any]) -> Callable[[Callable[..., int]], Callable[..., None]]:
-    """A command that takes the fields of a dataclass; what is decorated returns the exit code.
+    """A decorator that makes a command whose options are the fields of a dataclass.
 
-    Each field is an option or argument of typer, in the order in which the help lists them.
+    The decorated function returns the exit code. Each field is an option or argument of typer, and
+    the help lists them in the order of the fields.
     """
 
     def made(run: Callable[..., int]) -> Callable[..., None]:
@@ -27,16 +28,16 @@ def taking(options: type[Any]) -> Callable[[Callable[..., int]], Callable[..., N
 
         command.__name__, command.__doc__ = run.__name__, run.__doc__
         fields = signature(options, eval_str=True)
-        found = reported(command)
+        wrapped = reported(command)
         taken = [_for_typer(field) for field in fields.parameters.values()]
-        found.__signature__ = fields.replace(parameters=taken)  # type: ignore[attr-defined]
-        return found
+        wrapped.__signature__ = fields.replace(parameters=taken)  # type: ignore[attr-defined]
+        return wrapped
 
     return made
 
 
 def _for_typer(field: Parameter) -> Parameter:
-    """The same parameter; of any type where it has a reader of its own: typer knows few types."""
+    """The same parameter; its type is `Any` if it has its own parser, as typer knows few types."""
     option = field.annotation.__metadata__[0]
     if option.parser is None:
         return field
@@ -44,14 +45,14 @@ def _for_typer(field: Parameter) -> Parameter:
 
 
 class Command(TyperCommand):
-    """A command whose arguments and flags are shown by their names alone."""
+    """A command whose help shows arguments and flags without types."""
 
     def get_help_option(self, ctx: Any) -> Any:
-        """The option, or None where there is none."""
+        """The option --help, or None if the command has none."""
         return _bare(super().get_help_option(ctx))
 
     def get_params(self, ctx: Any) -> Any:
-        """All parameters; arguments without a type."""
+        """All parameters; the help shows arguments without a type."""
         found = super().get_params(ctx)
         for parameter in found:
             if parameter.param_type_name == "argument":
@@ -59,7 +60,7 @@ class Command(TyperCommand):
         return found
 
     def collect_usage_pieces(self, ctx: Any) -> list[str]:
-        """The words of the usage line: PATTERN..., not {PATTERN}..."""
+        """The words of the usage line, such as PATTERN... instead of {PATTERN}..."""
         return [re.sub("[{}]", "", piece) for piece in super().collect_usage_pieces(ctx)]
 
 
@@ -67,11 +68,11 @@ class Group(TyperGroup):
     """The program itself."""
 
     def get_help_option(self, ctx: Any) -> Any:
-        """The option, or None where there is none."""
+        """The option --help, or None if the program has none."""
         return _bare(super().get_help_option(ctx))
 
     def get_params(self, ctx: Any) -> Any:
-        """All options; those of completion are flags too."""
+        """All options; the help shows the options for completion as flags, too."""
         found = super().get_params(ctx)
         for parameter in found:
             if parameter.name in ("install_completion", "show_completion"):
@@ -79,7 +80,7 @@ class Group(TyperGroup):
         return found
 
     def main(self, *args: Any, **more: Any) -> Any:
-        """Run a command line; wrong usage is one line on stderr, as every other error is."""
+        """Run a command line; like every other error, wrong usage is one line on stderr."""
         alone = more.pop("standalone_mode", True)
         more["standalone_mode"] = False
         if not alone:
@@ -94,7 +95,7 @@ class Group(TyperGroup):
 
 
 def plain_usage(error: Any) -> str:
-    """What is wrong with a command line, in a line that names the help of the command."""
+    """What is wrong with a command line, in one line that points to the help of the command."""
     text = " ".join(error.format_message().split()).rstrip(".")
     text = re.sub(
         r"^Invalid value for (.+?): ", lambda found: found[1].replace("'", "") + ": ", text

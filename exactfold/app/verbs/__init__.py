@@ -1,1 +1,1 @@
-"""What Python users call: one function for each thing that can be done with any sheet."""
+"""The functions for Python users: one for each thing that can be done with a sheet."""

@@ -1,4 +1,4 @@
-"""The JSON of a check; it is apart from the check, which does without what it loads."""
+"""The types of the JSON of a check, in a module of their own that a check need not load."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from exactfold.branches.values.branch import ListedBranch
 
 
 class BranchWithAngles(ListedBranch):
-    """A branch of a certificate that was verified, with --heights."""
+    """A branch of a verified certificate, as --heights lists it."""
 
     angles: dict[FoldText, str]
-    """By fold i-j, how fast it starts to bend, in proportion to the largest; approximate."""
+    """For each fold i-j, its first-order angle divided by the largest one; approximate."""
 
 
 class CheckDocument(TypedDict):
-    """What the checker says of a file."""
+    """The verdict of the checker on a file."""
 
     format: Literal["exactfold check result"]
     version: Literal[1]
@@ -24,6 +24,6 @@ class CheckDocument(TypedDict):
     valid: bool
     reason: str
     claims: dict[str, Any]
-    """Those of the certificate that do not grow with the pattern; empty if it is invalid."""
+    """The claims that do not grow with the pattern; empty if the certificate is invalid."""
     branches: NotRequired[list[ListedBranch] | list[BranchWithAngles]]
-    """With --list: the branches as count --json lists them."""
+    """With --list: the branches in the form of count --json."""

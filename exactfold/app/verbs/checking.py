@@ -1,4 +1,4 @@
-"""`check`: what the stand-alone checker says of a certificate."""
+"""`check`: verifies a certificate with the stand-alone checker."""
 
 from __future__ import annotations
 
@@ -22,16 +22,17 @@ if TYPE_CHECKING:
 
 _LISTS = ("supports", "flat", "letters", "halves", "joints", "together", "never")
 _LONG = ("branches", "vertex_signs", "assignment", *_LISTS)
-"""Claims that grow with the pattern, left out of the document."""
+"""Claims that grow with the pattern; the JSON document leaves them out."""
 
 
 @dataclass(frozen=True, repr=False)
 class Checked:
-    """What the checker says of a certificate.
+    """The verdict of the checker on a certificate.
 
-    `status` is PROVED if every claim holds, and `claims` has them. It is REFUTED if the certificate
-    does not support some claim: then `reason` says which, `claims` is empty, and nothing is known
-    of the sheet. `text` says it in words, and `name` is the name of the file.
+    `status` is PROVED if every claim holds; `claims` has the claims. It is REFUTED if the
+    certificate does not support some claim: then `reason` says which claim, `claims` is empty, and
+    nothing is known about the sheet. `text` states the verdict in words. `name` is the name of the
+    file.
     """
 
     status: Verdict
@@ -63,12 +64,13 @@ def check(
     *,
     workers: int | None = None,
 ) -> Checked:
-    """Verify every claim of a certificate by the stand-alone checker, which believes nothing.
+    """Verify every claim of a certificate with the stand-alone checker, which trusts no solver.
 
-    `certificate`: the path of a file of any kind, or what `certificate()` of a result returned.
-    `workers`: processes that share a long one; by default as many as there are cores.
+    `certificate` is the path of a certificate of any kind, or what the method `certificate()` of a
+    result returned. `workers` is the number of processes that share the check of a long
+    certificate, by default the number of cores.
 
-    Raises `CertificateFormatError` for what is no certificate, `UnreadableFileError`,
+    Raises `CertificateFormatError` for anything that is not a certificate, `UnreadableFileError`,
     `WorkerDiedError`.
 
     >>> import exactfold
@@ -91,9 +93,9 @@ def check(
 
 
 def judged(name: str, verify: Callable[[], Verified[Any]]) -> Checked:
-    """What `verify` says of the certificate with this name; raises as `check`."""
+    """Run `verify` on the certificate with this name; raises the errors of `check`."""
     try:
-        found = verify()
+        claims = verify()
     except checker.CertificateError as error:
         unfinished = "unfinished: " if isinstance(error, UnfinishedError) else ""
         return Checked(REFUTED, unfinished + plain(error), refusal(error), name=name)
@@ -103,13 +105,15 @@ def judged(name: str, verify: Callable[[], Verified[Any]]) -> Checked:
         raise type(error)(f"{error}; nothing is known of the file") from None
     except OSError as error:
         raise UnreadableFileError(f"cannot read {name}: {error.strerror}") from None
-    return Checked(PROVED, "every claim holds", checker.summary(found), dict(found), name)
+    return Checked(PROVED, "every claim holds", checker.summary(claims), dict(claims), name)
 
 
 def quickest(kind: LineKind[Any]) -> Engine:
-    """How the lines of a file are verified: on processes, and where it can be in floats first."""
+    """The fastest engine for a kind of file: in processes, and in floats first if possible."""
     if kind is COMPACT:
-        from exactfold.branches.certificates.check import FLOATS  # needs NumPy, as no other does
+        from exactfold.branches.certificates.check import (
+            FLOATS,
+        )  # imported here: only this needs NumPy
 
         return FLOATS
     from exactfold.certificates.sharing import shared
@@ -118,7 +122,7 @@ def quickest(kind: LineKind[Any]) -> Engine:
 
 
 def cores() -> int:
-    """How many processes a check has, unless it is said."""
+    """The default number of processes for a check."""
     from exactfold._support.processes import available_cores
 
     return available_cores()

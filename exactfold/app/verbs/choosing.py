@@ -1,4 +1,4 @@
-"""How a verb chooses one way: by its number, by vertex signs, or by mountains and valleys."""
+"""Chooses one way of a sheet: by its number, by vertex signs, or by mountains and valleys."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from exactfold.panels.result import Decomposition
 
 DRAWN = "drawn"
-"""In place of letters: those of the file."""
+"""Given instead of letters: take the letters of the file."""
 _NAMED = 4
 
 Letters = Mapping[Edge, str] | str
@@ -50,7 +50,7 @@ def the_branch(
         raise UsageError(f"name the branch by one of signs, up, letters and way{but}")
     pattern = _triangulated(opened)
     if (boundary_heights is not None or curvature is not None) and named[0] in ("way", "letters"):
-        raise UsageError(f"rim and curvature go with signs or up, not with {named[0]}")
+        raise UsageError(f"boundary_heights and curvature go with signs or up, not with {named[0]}")
     if way is not None:
         from exactfold.branches.counting.collect import count_branches
 
@@ -62,10 +62,10 @@ def the_branch(
 
 
 def listed(result: BranchCount, way: int) -> Branch:
-    """The branch with a number, from 1, in the list of a count.
+    """The branch with the number `way`, from 1, in the list of a count.
 
-    Raises `NotCountedError` where the count lists no branch, `UsageError` for a number that it has
-    not.
+    Raises `NotCountedError` if the count lists no branch, `UsageError` for a number that is not in
+    the list.
     """
     if 1 <= way <= len(result.branches):
         return result.branches[way - 1]
@@ -81,9 +81,9 @@ def listed(result: BranchCount, way: int) -> Branch:
 
 
 def asked_letters(opened: Opened, letters: Letters | None) -> Letters:
-    """The letters that are meant; those of the file for None and "drawn".
+    """The given letters, or the letters of the file for None and "drawn".
 
-    Raises `UsageError` where the file has none.
+    Raises `UsageError` if the file has no letters.
     """
     if letters is not None and letters != DRAWN:
         return letters
@@ -95,10 +95,11 @@ def asked_letters(opened: Opened, letters: Letters | None) -> Letters:
 def modes_with(
     ways: Decomposition, wanted: int | Iterable[int] | None, letters: Mapping[Edge, str] | None
 ) -> dict[int | Edge, float] | None:
-    """The rates of the modes that are meant, by number: 1, or -1 on the other side of the sheet.
+    """The modes that numbers or letters name, each with its rate.
 
-    None where neither numbers nor letters are given. Raises `UsageError` for both, and for letters
-    that several modes have, `NotCountedError` for letters that no mode has.
+    The rate is 1, or -1 for a mode that has the letters on the other side of the sheet. None if
+    neither numbers nor letters are given. Raises `UsageError` if both are given or if several modes
+    have the letters, `NotCountedError` if no mode has them.
     """
     if letters is None:
         if wanted is None:
@@ -108,39 +109,39 @@ def modes_with(
         raise UsageError("name the mode by one of letters and way, not letters and way")
     from exactfold.motion.panels.followable import panel_modes
 
-    found: dict[int | Edge, float] = {}
+    rates: dict[int | Edge, float] = {}
     for mode in panel_modes(ways):
         for rate in (1.0, -1.0):
             turn = UPSIDE_DOWN if rate < 0 else {}
             own = {f: mode.letters.get(f, "F").translate(turn) for f in ways.pattern.folds}
             if all(x in ("U", own[fold]) for fold, x in letters.items()):
-                found[mode.number] = rate
+                rates[mode.number] = rate
                 break
-    if not found:
+    if not rates:
         raise NotCountedError(
-            "no mode that is known has these letters: `match` says whether the sheet starts to "
-            "fold with them"
+            "no known mode has these letters: `match` says whether the sheet starts to fold with "
+            "them"
         )
-    if len(found) > 1:
-        numbers = ", ".join(map(str, [*found][:_NAMED]))
-        raise UsageError(f"{len(found)} modes have these letters: name one by way={numbers}")
-    return found
+    if len(rates) > 1:
+        numbers = ", ".join(map(str, [*rates][:_NAMED]))
+        raise UsageError(f"{len(rates)} modes have these letters: name one by way={numbers}")
+    return rates
 
 
 def _triangulated(opened: Opened) -> CreasePattern:
-    """The sheet of triangles, or what the sheet has instead of branches."""
+    """The triangulated sheet; raises an error for a sheet that has modes instead of branches."""
     if isinstance(opened.sheet, CreasePattern):
         return opened.sheet
     if opened.sheet.field.radicands or all(len(face) == 3 for face in opened.sheet.faces):
         return triangles(opened, "branch")
     raise NotCountedError(
-        "this sheet of rigid panels has modes in place of branches: `count` lists them, and "
+        "this sheet of rigid panels has modes instead of branches: `count` lists them, and "
         "`follow(sheet, 1)` follows the first"
     )
 
 
 def _with_letters(pattern: CreasePattern, letters: Letters, progress: Progress | None) -> Ray:
-    """The ray that has letters, if there is one only."""
+    """The ray that has the letters, if exactly one ray has them."""
     from exactfold.design.assignments.boundary_match import match_boundary
     from exactfold.design.assignments.search import match
 

@@ -1,4 +1,4 @@
-"""`read`, `count`, `decompose` and `branch`: which sheet it is, and in which ways it folds."""
+"""`read`, `count`, `decompose` and `branch`: read a sheet and find its ways to fold."""
 
 from __future__ import annotations
 
@@ -37,14 +37,15 @@ def read(
     steps: Steps = "all",
     merge: Fraction | None = None,
 ) -> Opened:
-    """A sheet from wherever it is: `sheet` of the result is the pattern.
+    """Read a sheet from any source; the attribute `sheet` of the result is the pattern.
 
-    `sheet` is what every verb takes: the name of a shipped pattern (`examples`), the path of a
-    FOLD, SVG, CP, OPX, ORI or ORH file, FOLD as text or as a dictionary, a `CreasePattern`, a
-    `PanelPattern`, or a result of `read`. Drawings are repaired and their coordinates made exact;
-    `lines` of the result says how, and `letters` are the mountains and valleys as drawn. `snap`:
-    "auto", "exact", or n to round coordinates to multiples of 1/n. `number`: which sheet of a
-    drawing with several, from 1. `steps` and `merge`: what is repaired (`exactfold.pattern.STEPS`).
+    Every verb takes such a `sheet`: the name of a shipped pattern (`examples`), the path of a FOLD,
+    SVG, CP, OPX, ORI or ORH file, FOLD as text or as a dictionary, a `CreasePattern`, a
+    `PanelPattern`, or a result of `read`. Drawings are repaired, and their coordinates are made
+    exact; `lines` of the result says how. `letters` of the result has the mountains and valleys of
+    the drawing. `snap` is "auto", "exact", or n, which rounds coordinates to multiples of 1/n.
+    `number`, from 1, chooses a sheet of a drawing with several. `steps` and `merge` say what is
+    repaired (`exactfold.pattern.STEPS`).
 
     Raises `InputError`, whose message names the file and what is wrong with it.
 
@@ -90,19 +91,19 @@ def count(
     workers: int = 1,
     progress: Progress | None = None,
 ) -> BranchCount | Decomposition | Many:
-    """In how many ways a sheet starts to fold, proved; or each of many sheets.
+    """Count the ways in which a sheet, or each of many sheets, starts to fold, with proof.
 
-    The result says what a way is. `BranchCount`: isolated branches of a triangulated sheet, which
-    the result lists in order. `Decomposition`: modes and families of rigid panels. `sheet` is what
-    `read` takes. `method` and `seed` choose how candidates are found; every count is proved in
-    the same way.
+    The type of the result says what a way is. A `BranchCount` lists the branches of a triangulated
+    sheet in order. A `Decomposition` has the modes and families of rigid panels. `sheet` is
+    anything that `read` takes. `method` and `seed` choose how candidates are found; every count is
+    proved in the same way.
 
-    A list, or any other iterable, of sheets gives an iterator of (name, result) in the order in
-    which the counts are ready. `workers` processes share these sheets. What would be raised for one
-    sheet is its result there, and the others go on.
+    For a list, or any other iterable, of sheets the result is an iterator of pairs (name, result),
+    in the order in which the counts are ready. `workers` processes share these sheets. If one sheet
+    raises an error, the error is its result, and the others go on.
 
-    Raises `InputError` for what is no sheet, `UsageError` for an unknown method or for several
-    workers for one sheet. `UNDECIDED` says nothing against the ways that are missing.
+    Raises `InputError` for anything that is not a sheet, `UsageError` for an unknown method or for
+    several workers for one sheet. UNDECIDED does not mean that there are no other ways.
 
     >>> import exactfold
     >>> exactfold.count("two-vertex")
@@ -116,7 +117,9 @@ def count(
     """
     if _is_one(sheet):
         if workers != 1:
-            raise UsageError(f"{workers} workers share a list of sheets; one is counted by one")
+            raise UsageError(
+                f"{workers} workers share a list of sheets; a single sheet takes one worker"
+            )
         return count_ways(
             sheet, method=method, seed=seed, snap=snap, number=number, progress=progress
         )
@@ -138,12 +141,12 @@ def decompose(
     number: int | None = None,
     progress: Progress | None = None,
 ) -> Decomposition:
-    """The ways in which a sheet folds while its faces stay rigid: modes and families.
+    """Find the ways in which a sheet folds while its faces stay rigid: modes and families.
 
-    `sheet` is what `read` takes. `count` does this by itself for a sheet with larger panels; of a
-    triangulated sheet this gives the components of its motions where `count` gives branches.
+    `sheet` is anything that `read` takes. For a sheet with larger panels, `count` does the same.
+    For a triangulated sheet, `count` gives branches, and this gives the components of its motions.
 
-    Raises `InputError` for what is no sheet.
+    Raises `InputError` for anything that is not a sheet.
 
     >>> import exactfold
     >>> ways = exactfold.decompose("zigzags")
@@ -164,18 +167,19 @@ def branch(
     curvature: Deficits | None = None,
     progress: Progress | None = None,
 ) -> Branch:
-    """One branch of a triangulated sheet, proved; it is found alone, without the others.
+    """Find and prove one branch of a triangulated sheet.
 
-    Give one of these: `signs`, such as "+-+", in the order of the interior vertices, or by vertex;
-    `up`, the vertices that pop up, while the others pop down; `letters`, the mountains and valleys
-    in the order of the folds, by fold, or "drawn" for those of the file; `way`, the number of the
-    branch as `count` lists it, from 1. `sheet` is what `read` takes. `boundary_heights`: heights of
-    the boundary vertices of a convex sheet with more than four corners. `curvature`: angle deficits
-    of interior vertices; both as for `exactfold.branches.find_branch`.
+    `sheet` is anything that `read` takes. Exactly one of these arguments names the branch: `signs`,
+    such as "+-+", in the order of the interior vertices, or by vertex; `up`, the vertices that pop
+    up, while the others pop down; `letters`, the mountains and valleys in the order of the folds or
+    by fold, or "drawn" for the letters of the file; `way`, the number of the branch in the list of
+    `count`, from 1. `boundary_heights` gives heights of the boundary vertices of a convex sheet
+    with more than four corners, and `curvature` angle deficits of interior vertices, both as in
+    `exactfold.branches.find_branch`.
 
-    Raises `NotCountedError` for a sheet of panels, which has modes, and where no branch has the
-    letters; `UsageError` where nothing, or more than one thing, names the branch, for letters that
-    several branches have, and for a number that is not listed; and the errors of `find_branch`.
+    Raises `NotCountedError` for a sheet of panels, which has modes, and if no branch has the
+    letters; `UsageError` if none or several of the arguments name the branch, if several branches
+    have the letters, and for a number that is not in the list; and the errors of `find_branch`.
 
     >>> import exactfold
     >>> exactfold.branch("two-vertex", "+-")
@@ -185,7 +189,7 @@ def branch(
     >>> exactfold.branch("two-vertex", way=3).sign_text
     '+-'
     """
-    found, _ = the_branch(
+    chosen, _ = the_branch(
         open_sheet(sheet),
         way,
         signs,
@@ -195,10 +199,10 @@ def branch(
         curvature=curvature,
         progress=progress,
     )
-    return found
+    return chosen
 
 
 def _is_one(sheet: object) -> TypeGuard[PatternLike]:
-    """Whether this is one sheet, and not many: patterns and mappings are no lists of sheets."""
+    """Whether this is one sheet and not a list of sheets; a pattern or mapping is one sheet."""
     one = (str, bytes, PathLike, Mapping, CreasePattern, FoldFile, Opened, Drawing)
     return isinstance(sheet, one) or not isinstance(sheet, Iterable)

@@ -1,4 +1,4 @@
-"""`match` and `actuate`: from a wish to a way to fold."""
+"""`match` and `actuate`: find ways with given letters, and torques for one branch."""
 
 from __future__ import annotations
 
@@ -34,15 +34,16 @@ def match(
     most: int | None = None,
     progress: Progress | None = None,
 ) -> Match | BoundaryMatch | PanelMatch:
-    """Which ways have given mountains and valleys, or a proof that there are none.
+    """Find the ways that have given mountains and valleys, or prove that there are none.
 
-    `sheet` is what `read` takes. `letters`: M, V, F (flat) or U (free) for each fold, as text in
-    the order of the folds or by fold (i, j), i < j; None or "drawn" for those of the file. The
-    result depends on the sheet: a `Match` has all branches of a triangulated sheet with four
-    corners that have the letters; a `BoundaryMatch` says whether a sheet with more corners starts
-    to fold with them, and heights of its boundary with which it does; a `PanelMatch` says whether
-    rigid panels do. `most`: how many sign vectors of a triangulated sheet are tried before the
-    answer is UNDECIDED.
+    `sheet` is anything that `read` takes. `letters` has M, V, F (flat) or U (free) for each fold,
+    as text in the order of the folds or by fold (i, j), i < j; None or "drawn" takes the letters of
+    the file. The type of the result depends on the sheet. For a triangulated sheet with four
+    corners, a `Match` has all branches with the letters. For one with more corners, a
+    `BoundaryMatch` says whether the sheet starts to fold with the letters, and has boundary heights
+    with which it does. For rigid panels, a `PanelMatch` says whether they start to fold with the
+    letters. After `most` sign vectors of a triangulated sheet have been tried, the answer is
+    UNDECIDED.
 
     Raises `UsageError` for a file without mountains and valleys and for letters that do not fit,
     `NotCountedError` for a triangle, which is rigid.
@@ -78,10 +79,10 @@ def actuate(
     torques: Mapping[Edge, RationalLike] | None = None,
     progress: Progress | None = None,
 ) -> Actuation:
-    """Torques on the folds that drive a triangulated sheet along one branch and no other.
+    """Find torques on the folds that drive a triangulated sheet along one branch and no other.
 
-    The branch is named as for `branch`. On at most `creases` folds, if that is given. With
-    `torques`, exact numbers by fold, these are judged instead (docs/actuation.md).
+    The branch is named as in `branch`. If `creases` is given, at most so many folds have torques.
+    If `torques`, exact numbers by fold, are given, they are judged instead (docs/actuation.md).
 
     Raises `NotCountedError` for larger panels and for more than 12 vertices that fold, and the
     errors of `branch` and of `exactfold.design.actuate`.
@@ -102,5 +103,5 @@ def actuate(
 
 
 def _at_most(most: int | None) -> dict[str, int]:
-    """The limit as an argument; each kind of sheet has one of its own where none is given."""
+    """The limit as a keyword argument; without it, each kind of sheet has its own default."""
     return {} if most is None else {"most": most}

@@ -1,4 +1,4 @@
-"""`follow`, `prove` and `loops`: the sheet as it folds for real."""
+"""`follow`, `prove` and `loops`: finite motions of a sheet."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from typing import TypeAlias
 
 Way: TypeAlias = "Branch | MatchedRay | BranchCount | Decomposition | PatternLike"
-"""What can be followed: a way that was found, a result with a number, or a sheet."""
+"""What can be followed: a branch or a match, a result with the number of a way, or a sheet."""
 
 
 def follow(
@@ -62,24 +62,28 @@ def follow(
     through_branch_points: bool = False,
     progress: Progress | None = None,
 ) -> Motion | PanelMotion:
-    """The motion along one way: the sheet in space, from flat until something happens.
+    """Follow the motion of a sheet along one way, from the flat state to the event `until`.
 
-    `sheet`: a `Branch`, a way of a `Match`, a `BranchCount` or a `Decomposition`, or what `read`
-    takes. Which way of a sheet or a result is followed: `way`, its number as `count` lists it, from
-    1, or several numbers of modes that fold together; `signs` or `up`, of a branch, as for
-    `branch`; `letters`, of a branch or a mode, "drawn" for those of the file. Without any of these:
-    the branch on which all vertices pop up, or the modes with most folds.
+    `sheet` is a `Branch`, a way of a `Match`, a `BranchCount`, a `Decomposition`, or anything that
+    `read` takes. These arguments choose the way: `way`, its number in the list of `count`, from 1,
+    or several numbers of modes that fold together; `signs` or `up` for a branch, as in `branch`;
+    `letters` for a branch or a mode, "drawn" for the letters of the file. Without them, the sheet
+    follows the branch on which all vertices pop up, or the modes with most folds.
 
-    The motion ends at `until`: "contact", the first contact of two faces or fold that closes;
-    "90deg", the first fold angle of that size; along a branch also "return", the flat sheet again,
-    or a number, the time. `frames`: their number, at equal steps of time, or of the angle of the
-    fold `by`. `side`: -1 for the mirror image. `held`: the corners of the face that does not move.
-    Along a branch only: `boundary_heights`, the boundary heights of a sheet with more than
-    four corners; `drive`, the angles in degrees to which folds are driven
-    (`exactfold.motion.find_driven`); `through_branch_points`, to go on where another curve crosses.
+    `until` says where the motion ends: "contact" at the first contact of two faces or the first
+    fold that closes, "90deg" at the first fold angle of that size; along a branch also "return"
+    when the sheet is flat again, and a number at that time. The motion has `frames` frames, at
+    equal steps of time, or of the angle of the fold `by`. `side` is -1 for the mirror image. `held`
+    has the corners of the face that does not move.
 
-    Raises `UsageError` for what does not fit the sheet, `NotFollowedError` for what cannot be
-    followed, `UndecidedBranchError` for a branch that is not proved, and as `branch`.
+    These arguments are for branches only: `boundary_heights` are for a sheet with more than four
+    corners. `drive` gives angles in degrees to which folds are driven
+    (`exactfold.motion.find_driven`). With `through_branch_points` the motion goes on at points
+    where another curve crosses.
+
+    Raises `UsageError` for arguments that do not fit the sheet, `NotFollowedError` for a way that
+    cannot be followed, `UndecidedBranchError` for a branch that is not proved, and the errors of
+    `branch`.
 
     >>> import exactfold
     >>> exactfold.follow("two-vertex", signs="+-", until="90deg", frames=5)
@@ -125,13 +129,13 @@ def follow(
 def prove(
     motion: Motion | PanelMotion, *, progress: Progress | None = None
 ) -> MotionProof | PanelProof:
-    """Prove a motion: that the sheet folds so without a gap, and what touches first.
+    """Prove that a motion exists without a gap, and which faces touch first.
 
-    `motion` of the result has frames that are enclosed, `certificate()` is the evidence, and
-    `write(path)` writes it for `check`. UNDECIDED says nothing against the motion; `reason` says
-    what is missing.
+    `motion` of the result has enclosed frames. `certificate()` returns the evidence, and
+    `write(path)` writes it for `check`. UNDECIDED does not mean that the motion is wrong; `reason`
+    says what is missing.
 
-    Raises `UsageError` where the branch of the motion is not proved.
+    Raises `UsageError` if the branch of the motion is not proved.
 
     >>> import exactfold
     >>> motion = exactfold.follow("two-vertex", signs="+-", until="30deg", frames=2)
@@ -153,14 +157,14 @@ def loops(
     resume: bool = False,
     progress: Progress | None = None,
 ) -> Loops:
-    """All motions of a triangulated sheet with four corners that come back to the flat state.
+    """Find all motions of a triangulated sheet with four corners that return to the flat state.
 
-    Each is proved from end to end, contact ignored (docs/motions.md). `sheet` is what `read` takes;
-    `workers` processes share the work. The file `certificate` takes the proofs as they are found;
-    with `resume`, one that was interrupted is continued.
+    Each motion is proved from end to end; contact is ignored (docs/motions.md). `sheet` is anything
+    that `read` takes. `workers` processes share the work. Each proof is written to the file
+    `certificate` as soon as it is found; with `resume`, an interrupted file is continued.
 
-    Raises `NotCountedError` for larger panels, for a sheet without four corners, and for one whose
-    branches are not proved, and as `exactfold.motion.find_loops`.
+    Raises `NotCountedError` for larger panels, for a sheet that does not have four corners, and for
+    a sheet whose branches are not proved, and the errors of `exactfold.motion.find_loops`.
 
     >>> import exactfold
     >>> exactfold.loops("two-vertex")
@@ -177,7 +181,7 @@ def loops(
 
 @dataclass(frozen=True)
 class _Asked:
-    """Which way of a sheet was asked for."""
+    """The arguments of `follow` that choose a way of a sheet."""
 
     way: int | Sequence[int] | None
     signs: Signs | None
@@ -188,7 +192,7 @@ class _Asked:
     side: int | None
 
     def is_branch(self, pattern: CreasePattern) -> bool:
-        """Whether the way is a branch; with more than four corners, where it is named like one."""
+        """Whether the way is a branch; with more than four corners, if it is named like one."""
         like_one = (self.signs, self.up, self.boundary_heights, self.drive) != (
             None,
             None,
@@ -200,7 +204,7 @@ class _Asked:
     def ray(
         self, opened: Opened, pattern: CreasePattern, progress: Progress | None
     ) -> tuple[Ray, PrescribedAngles | None]:
-        """The ray that was asked for, and what is driven."""
+        """The chosen ray, and the folds that are driven."""
         if self.drive is not None:
             if self.way is not None or self.letters is not None:
                 raise UsageError("drive goes with signs or up, not with way or letters")
@@ -217,7 +221,7 @@ class _Asked:
             )
             return (driven.branch, driven.side), driven.drive
         if self.way is not None and not isinstance(self.way, int):
-            raise UsageError("branches do not fold together: give one number for way")
+            raise UsageError("two branches cannot be followed together: give one number for way")
         up = self.up
         if (self.way, self.signs, up, self.letters) == (None, None, None, None):
             up = pattern.foldable_vertices
@@ -233,15 +237,17 @@ class _Asked:
         return (branch, side * (self.side or 1)), None
 
     def refuse_names(self, what: str) -> None:
-        """Raise `UsageError` where a way is named although it is there."""
-        for name in ("way", "signs", "up", "letters", "rim", "drive"):
+        """Raise `UsageError` if an argument chooses a way, although `sheet` is one way already."""
+        for name in ("way", "signs", "up", "letters", "boundary_heights", "drive"):
             if getattr(self, name) is not None:
                 raise UsageError(f"{name} chooses a way of a sheet, and this is {what} already")
 
     def refuse_of_panels(self, through_branch_points: bool) -> None:
-        """Raise `UsageError` for what only branches have."""
-        given = {name: getattr(self, name) for name in ("signs", "up", "rim", "drive")}
-        for name, value in (given | {"through_nodes": through_branch_points or None}).items():
+        """Raise `UsageError` for arguments that are for branches only."""
+        given = {name: getattr(self, name) for name in ("signs", "up", "boundary_heights", "drive")}
+        for name, value in (
+            given | {"through_branch_points": through_branch_points or None}
+        ).items():
             if value is not None:
                 raise UsageError(
                     f"{name} is for branches, and this sheet of rigid panels has modes: choose one "

@@ -1,4 +1,4 @@
-"""`draw` and `view`: a picture of a sheet or of its ways, and the page that shows them in space."""
+"""`draw` and `view`: draw a sheet or its ways, and make the page that shows them in space."""
 
 from __future__ import annotations
 
@@ -48,16 +48,17 @@ def draw(
     path: str | PathLike[str] | None = None,
     progress: Progress | None = None,
 ) -> str:
-    """A picture as SVG text; with `path`, also written to a .svg, .png or .pdf file.
+    """A picture as SVG text; with `path`, it is also written to a .svg, .png or .pdf file.
 
-    Of a sheet, which is what `read` takes: its crease pattern with the mountains and valleys of the
-    file. Of a sheet, a `BranchCount` or a `Decomposition` with `way`, and of a sheet with `signs`,
-    `up` or `letters`, as for `follow`: that way. Of a `Branch`: the branch. Of a count alone: all
-    ways that it lists. Of a motion: the sheet in space, in a row of stills.
+    For a sheet, which is anything that `read` takes, the picture shows its crease pattern with the
+    mountains and valleys of the file. With `way`, `signs`, `up` or `letters`, as in `follow`, it
+    shows that way; `way` also chooses a way of a `BranchCount` or a `Decomposition`. For a `Branch`
+    it shows the branch. For a count without `way` it shows all ways that the count lists. For a
+    motion it shows the sheet in space, in a row of stills.
 
-    Raises `UsageError` for a way that is not there or a file with another ending,
-    `PackageMissingError` for .png and .pdf without the extra `exactfold[pictures]`, and as `read`
-    and `branch`.
+    Raises `UsageError` for a way that does not exist or a file with another ending,
+    `PackageMissingError` for .png and .pdf without the extra `exactfold[pictures]`, and the errors
+    of `read` and `branch`.
 
     >>> import exactfold
     >>> text = exactfold.draw("two-vertex", signs="+-")
@@ -96,14 +97,15 @@ def view(
     workers: int = 1,
     progress: Progress | None = None,
 ) -> str:
-    """The page that shows a sheet as it folds, as HTML text; with `path`, also written to a file.
+    """The page that shows how a sheet folds, as HTML text; with `path`, also written to a file.
 
-    The page opens in a browser without a network. `sheet` is what `read` takes. Of a large sheet
-    `signs` names the branches that are shown. Each way is followed in `frames` frames to its first
-    contact, and with `proving` its motion is proved, too. `workers` processes share the work.
+    The page opens in a browser without a network. `sheet` is anything that `read` takes. For a
+    large sheet, `signs` names the branches that the page shows. Each way is followed in `frames`
+    frames to its first contact; with `proving`, its motion is also proved. `workers` processes
+    share the work.
 
-    Raises `UsageError` for signs that do not fit or a file that does not end in .html, and as
-    `read`.
+    Raises `UsageError` for signs that do not fit the sheet or a file that does not end in .html,
+    and the errors of `read`.
 
     >>> import exactfold
     >>> page = exactfold.view("single-vertex-4", frames=3)
@@ -135,7 +137,7 @@ def _way(
     letters: Letters | None,
     progress: Progress | None,
 ) -> DrawnWay:
-    """One way of a sheet, or of a count by its number."""
+    """The picture of one way of a sheet, or of the way with a number in a count."""
     if isinstance(sheet, BranchCount):
         if way is None:
             raise UsageError("name a way of the count by its number, as in `draw(result, 3)`")

@@ -1,1 +1,1 @@
-"""Certificates of all branches and of single ones: written, read, and checked at scale."""
+"""Writes, reads and checks certificates of all branches and of single branches."""

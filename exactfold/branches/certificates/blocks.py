@@ -1,4 +1,4 @@
-"""Certificates of one root for each sign vector: proved blocks as lines of text.
+"""Writes proved blocks as lines of a certificate that has one root for each sign vector.
 
 `docs/compact-certificate.md` describes every key.
 """
@@ -25,7 +25,7 @@ from exactfold.rigidity.equations.problem import Problem
 
 
 def header_line(problem: Problem, block_size: int) -> str:
-    """The first line: the pattern and what its roots are proved with."""
+    """The first line: the pattern, and the evidence that all blocks share."""
     return line_text(
         {
             "format": COMPACT.format,
@@ -43,7 +43,7 @@ def header_line(problem: Problem, block_size: int) -> str:
 
 
 def block_line(block: ProvedBlock) -> str:
-    """One block; centres take as many bytes as the largest needs."""
+    """The line of a block; each centre takes as many bytes as the largest centre needs."""
     boxes = block.boxes
     largest = int(np.abs(boxes.centers).max(initial=0))
     width = largest.bit_length() // 8 + 1
@@ -74,13 +74,13 @@ def block_line(block: ProvedBlock) -> str:
 
 
 def compact_lines(problem: Problem, block_size: int, blocks: Sequence[str]) -> tuple[str, ...]:
-    """All lines of a certificate whose blocks are proved, without the digests that chain them."""
+    """All lines of a certificate, from the lines of its proved blocks, still without digests."""
     claims = claims_line(problem.pattern, chamber_counts(problem))
     return (header_line(problem, block_size), *blocks, claims)
 
 
 def chamber_counts(problem: Problem) -> Counts:
-    """What one root for each sign vector proves."""
+    """The counts that one root for each sign vector proves."""
     return {
         "distinct": 1 << problem.size,
         "with_multiplicity": 1 << problem.pattern.Vi,
@@ -91,7 +91,7 @@ def chamber_counts(problem: Problem) -> Counts:
 
 
 def claims_line(pattern: CreasePattern, counts: Counts) -> str:
-    """The last line of a file without open roots."""
+    """The last line of a file without open roots: its claims."""
     claims: CountClaims = {
         "interior": pattern.Vi,
         "boundary": pattern.Ve,
@@ -104,7 +104,7 @@ def claims_line(pattern: CreasePattern, counts: Counts) -> str:
 
 
 def line_text(data: Mapping[str, Any]) -> str:
-    """The text of one line."""
+    """The JSON text of one line."""
     return json.dumps(data, separators=(",", ":"))
 
 

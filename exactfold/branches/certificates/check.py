@@ -1,4 +1,4 @@
-"""Compact certificates checked at scale: floats with proved bounds first, integers for the rest."""
+"""Checks compact certificates fast: first in floats with proved bounds, the rest in integers."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from exactfold.solve.certify.float_krawczyk import UNPROVED, FloatBoxes, FloatKr
 from exactfold.solve.numeric.dense_newton import sign_vectors
 
 LEAST = 32
-"""Blocks for each worker that make starting processes worth while."""
+"""A worker process is worth starting if it gets at least this many blocks."""
 
 
 def check_compact(
@@ -31,14 +31,14 @@ def check_compact(
     fast: bool = True,
     name: str | os.PathLike[str] | None = None,
 ) -> CountClaims:
-    """Verify every claim of a compact certificate; returns the claims.
+    """Verify every claim of a compact certificate and return the claims.
 
-    The sheet and its system are rebuilt by the code of `exactfold.checker`. With `fast`, most roots
-    are verified by `FloatKrawczyk` and `FloatSigns`, whose rounding errors are bounded, and only
-    those that they leave open in integers; without it, all in integers and by the standard library
-    alone, as `python exactfold/checker` does. Several `workers` are processes; a script that asks
-    for them needs the usual `if __name__ == "__main__"`. Messages call the file `name`, by default
-    `path`.
+    The code of `exactfold.checker` rebuilds the sheet and its system. With `fast`, `FloatKrawczyk`
+    and `FloatSigns`, whose rounding errors are bounded, verify most roots, and integers verify the
+    roots that these leave open. Without `fast`, integers and the standard library alone verify all
+    roots, as in `python exactfold/checker`. More than one of `workers` are processes; a script that
+    uses them needs the usual `if __name__ == "__main__"`. Messages call the file `name`, which is
+    `path` by default.
 
     Raises `checker.CertificateError` if a claim is not supported, `CertificateFormatError` if the
     file is not a compact certificate or was altered, `UnreadableFileError`, `WorkerDiedError`.
@@ -56,7 +56,7 @@ def check_compact(
 
 
 class FastChecker:
-    """The tests of one file in floats, on the system that `CompactSheet` rebuilt."""
+    """Tests the roots of one file in floats, on the system that `CompactSheet` rebuilt."""
 
     def __init__(self, sheet: CompactSheet) -> None:
         self.sheet = sheet
@@ -72,13 +72,17 @@ class FastChecker:
         self.folds = FloatSigns(tuple(map(tuple, sheet.fold_rows)))
 
     def verified(self, block: Block) -> BoolArray:
-        """Which roots of the block have one regular zero in their box, and the signs given."""
+        """For each root of the block, whether floats verify its box and its signs.
+
+        They do if the box holds exactly one zero, which is regular, with the stated vertex signs
+        and folds. A root that is not verified here may still be right.
+        """
         count, n = self.sheet.block, self.sheet.size
         raw = np.zeros((count, n, 8), dtype=np.uint8)
         raw[:, :, : block.width] = np.frombuffer(block.centers, dtype=np.uint8).reshape(
             count, n, block.width
         )
-        # Moved to the top and back, so that the sign fills the missing bytes.
+        # Shift left and right again, so that the sign bit fills the missing bytes.
         missing = 8 * (8 - block.width)
         centers = (raw.view("<i8")[:, :, 0] << missing) >> missing
         exponents = np.frombuffer(block.radii, dtype=np.uint8).astype(np.int64)
@@ -97,7 +101,7 @@ class FastChecker:
         )
 
     def refusal(self, text: str, number: int) -> str | None:
-        """Verify one block: None, or why it does not hold."""
+        """Verify one block: None, or the reason why it does not hold."""
         try:
             with refusing(f"in block {number}"):
                 block = self.sheet.decode(text, number)
@@ -113,4 +117,4 @@ def _fast(header: str) -> FastChecker:
 
 
 FLOATS = Engine(_fast, LEAST, shared)
-"""In floats first, by `FastChecker`."""
+"""The engine that lets `FastChecker` verify roots in floats first."""

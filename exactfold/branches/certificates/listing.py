@@ -1,4 +1,4 @@
-"""The certificate of a count: claims and evidence, from a proved result."""
+"""Writes the certificate of a proved count: its claims and its evidence."""
 
 from __future__ import annotations
 
@@ -29,18 +29,18 @@ from exactfold.errors import NotApplicableError, UsageError
 from exactfold.exact.numbers import shown
 
 MOST_ROOTS = 256
-"""Roots in a line, fewer where their numbers are so long that the line would be."""
+"""Most roots in a line; fewer if their numbers are so long that the line would be too long."""
 
 _DIGEST = 66
-"""What the file adds to each line: a tab, the digest, and the end of the line."""
+"""Bytes that the file adds to each line: a tab, the digest, and the line feed."""
 
 
 def certificate(result: BranchCount) -> Document | CertificateLines:
-    """The certificate of a proved count: lines for `checker.check` and `write_certificate`.
+    """The certificate of a proved count, which `checker.check` and `write_certificate` take.
 
-    With more than four corners it is that of the pieces, one JSON object
-    (`components_certificate`). Raises `NotApplicableError` if the count is not proved, or was
-    proved in a stream, whose file is the certificate.
+    It consists of lines. For a sheet with more than four corners it is instead one JSON object, the
+    certificate of the connected components (`components_certificate`). Raises `NotApplicableError`
+    if the count is not proved, or if `stream_branches` proved it: then its file is the certificate.
 
     >>> from exactfold import checker
     >>> from exactfold.branches.counting.collect import count_branches
@@ -59,9 +59,10 @@ def certificate(result: BranchCount) -> Document | CertificateLines:
 
 
 def _root_lines(result: BranchCount, proof: Proof) -> list[str]:
-    """The lines of a count whose roots are not one simple root for each sign vector.
+    """The lines of a certificate that lists its roots one by one.
 
-    Raises `NotApplicableError` if one would be longer than what the checker reads.
+    This is for counts that do not have one simple root for each sign vector. Raises
+    `NotApplicableError` if a line would be longer than the checker reads.
     """
     evidence: Document = {"kind": proof.kind, "triangles": triangle_evidence(proof.triangles)}
     blocks: list[str] = []
@@ -104,7 +105,7 @@ def _header(result: BranchCount, evidence: Document) -> str:
 
 
 def _counts(result: BranchCount) -> Counts:
-    """What is claimed of the branches; all numbers are known, once proved."""
+    """The claims about the branches; a proved count knows all these numbers."""
     counts = {
         "distinct": result.distinct,
         "with_multiplicity": result.with_multiplicity,
@@ -116,7 +117,7 @@ def _counts(result: BranchCount) -> Counts:
 
 
 def _entry(proof: Proof, branch: Branch) -> Document:
-    """A branch and its root, as the certificate shows them."""
+    """A branch and its root, as entries of the certificate."""
     return {
         "root": _root(proof, branch),
         "vertex_signs": branch.sign_text,
@@ -138,7 +139,10 @@ def _root(proof: Proof, branch: Branch) -> dict[str, Any]:
 
 
 def _true_branches(result: BranchCount) -> Verdict:
-    """What simple solutions prove; that multiple ones fold once is left to the theorem."""
+    """The verdict on true branches that the checker can verify: it needs simple solutions.
+
+    The certificate holds no evidence that exactly one true branch starts at a multiple solution.
+    """
     simple = result.proof is None or result.proof.algebraic is None or _all_simple(result)
     return result.true_branches if simple else UNDECIDED
 

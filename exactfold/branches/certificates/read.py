@@ -1,4 +1,4 @@
-"""Branches out of certificates of all branches."""
+"""Reads the branches of certificates that hold all branches of a sheet."""
 
 from __future__ import annotations
 
@@ -35,12 +35,13 @@ from exactfold.solve.certify.box import IsolatingBox
 
 
 def read_branches(path: str | os.PathLike[str]) -> Iterator[Branch]:
-    """The branches of a certificate of all branches in the order of the file.
+    """Yield the branches of a certificate of all branches, in the order of the file.
 
-    Of one with a root for each sign vector one block is in memory. Listings in one JSON object,
-    as earlier versions wrote them, are read as well. Reading verifies digests, not claims: that is
-    `check_compact`. Raises `CertificateFormatError` for a file of another kind or an altered one,
-    `UnreadableFileError`; `checker.CertificateError` where a block is malformed or a root open.
+    If the file has a root for each sign vector, only one block of it is in memory at a time.
+    Certificates in one JSON object, which earlier versions wrote, are read as well. Reading
+    verifies digests, not claims; `check_compact` verifies claims. Raises `CertificateFormatError`
+    for a file that is of another kind or was altered, `UnreadableFileError`, and
+    `checker.CertificateError` if a block is malformed or a root is open.
     """
     try:
         if kind_in_lines(path) is not COMPACT:
@@ -61,7 +62,7 @@ def read_branches(path: str | os.PathLike[str]) -> Iterator[Branch]:
 def read_listing(path: str | os.PathLike[str]) -> Document | CertificateLines:
     """A whole certificate of all branches: its lines, or the JSON object of an earlier version.
 
-    Raises `checker.FormatError` for a file of another kind, or one beyond the limits; `OSError`.
+    Raises `checker.FormatError` for a file that is of another kind or beyond the limits; `OSError`.
     """
     at_most(
         os.path.getsize(path),
@@ -94,16 +95,16 @@ def branches_of(certificate: Document | CertificateLines) -> Iterator[Branch]:
     return _of_roots(certificate["pattern"], evidence, listed)
 
 
-def _of_lines(found: Iterator[str]) -> Iterator[Branch]:
-    header = COMPACT.header(next(found, "{}"))
+def _of_lines(texts: Iterator[str]) -> Iterator[Branch]:
+    header = COMPACT.header(next(texts, "{}"))
     if header["version"] == ROOTS:
-        evidence, listed, _ = gathered(header, found)
+        evidence, listed, _ = gathered(header, texts)
         return _of_roots(header["pattern"], evidence, listed)
-    return _of_blocks(header, found)
+    return _of_blocks(header, texts)
 
 
-def _of_blocks(header: dict[str, Any], found: Iterator[str]) -> Iterator[Branch]:
-    """The branches of the blocks of a file with a root for each sign vector."""
+def _of_blocks(header: dict[str, Any], texts: Iterator[str]) -> Iterator[Branch]:
+    """The branches of a file with a root for each sign vector, from the lines of its blocks."""
     known = CompactSheet(header)
     problem = Problem.of(_pattern(header["pattern"]))
     chart = read_chart(chart_evidence(problem.chart, problem.labels))
@@ -115,7 +116,7 @@ def _of_blocks(header: dict[str, Any], found: Iterator[str]) -> Iterator[Branch]
     maker = BranchMaker(problem, problem.chart)
     size = range(problem.size)
     for number in range(known.blocks):
-        text = next(found, None)
+        text = next(texts, None)
         if text is None:
             raise FormatError(f"only {number} of {known.blocks} blocks are there")
         block = known.decode(text, number)
@@ -136,7 +137,7 @@ def _of_blocks(header: dict[str, Any], found: Iterator[str]) -> Iterator[Branch]
 def _of_roots(
     pattern: Document, evidence: Document, listed: Iterable[Document]
 ) -> Iterator[Branch]:
-    """The branches that are listed one by one, at their roots."""
+    """The branches of a file that lists them one by one, each with its root."""
     if "roots" not in evidence:  # the sheet is rigid, or a single vertex
         return
     problem = Problem.of(_pattern(pattern))

@@ -1,4 +1,4 @@
-"""Roots out of the entries of a certificate that lists them one by one."""
+"""Reads roots from the entries of a certificate that lists them one by one."""
 
 from __future__ import annotations
 
@@ -29,7 +29,10 @@ _MOST_BITS = 1 << 12
 
 @dataclass(frozen=True)
 class Roots:
-    """The roots of one certificate, in its chart, each from the side of positive saddle."""
+    """Reads the roots of one certificate, in its chart.
+
+    A root with negative saddle is replaced by its reflection, which has positive saddle.
+    """
 
     problem: Problem
     chart: Chart
@@ -39,15 +42,15 @@ class Roots:
 
     @classmethod
     def of(cls, problem: Problem, evidence: Document) -> Roots:
-        """Raises `CertificateError` for a chart in which exactfold writes no roots."""
+        """The reader; raises `CertificateError` for a chart that exactfold does not write."""
         chart = _chart(problem, evidence["chart"])
         classes = [_root_class(evidence["separating"], c) for c in evidence.get("classes", ())]
         return cls(problem, chart, Functionals(chart).saddle, tuple(classes))
 
     def root(self, entry: Document) -> ChartRoot:
         """The root of an entry."""
-        found = self._root(entry)
-        return found.mirrored() if found.sign(self.saddle) == -1 else found
+        root = self._root(entry)
+        return root.mirrored() if root.sign(self.saddle) == -1 else root
 
     def _root(self, entry: Document) -> ChartRoot:
         if "class" in entry:
@@ -63,10 +66,10 @@ class Roots:
 
     def _flat_sheets(self, flat: tuple[int, ...]) -> FlatSheets:
         if flat not in self._sheets:
-            found = flat_sheets(self.chart, map(self.problem.labels.index, flat))
-            if found is None:
+            sheets = flat_sheets(self.chart, map(self.problem.labels.index, flat))
+            if sheets is None:
                 raise CertificateError("no heights in the chart are flat at the flat vertices")
-            self._sheets[flat] = found
+            self._sheets[flat] = sheets
         return self._sheets[flat]
 
 
@@ -88,7 +91,7 @@ def _root_class(separating: list[int], entry: Document) -> RootClass:
 
 
 def _index(root_class: RootClass, low: Fraction, high: Fraction) -> int:
-    """Which of the real roots of the class lies in an interval that holds one of them."""
+    """The index of the one real root of the class that lies in the interval."""
     bits = 64
     while bits <= _MOST_BITS:
         near = [k for k, (a, b) in enumerate(root_class.real_roots(bits)) if a <= high and low <= b]

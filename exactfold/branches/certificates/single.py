@@ -1,4 +1,4 @@
-"""Certificates of single branches, for `exactfold.checker`."""
+"""Writes certificates of single branches."""
 
 from __future__ import annotations
 
@@ -55,7 +55,9 @@ def branch_certificate(branch: Branch) -> dict[str, Any]:
 
 
 def heights_evidence(branch: Branch, emptied: Sequence[Document]) -> tuple[list[str | None], str]:
-    """The numerators by vertex, None inside the triangulated triangles `emptied`; the denominator.
+    """The heights of all vertices, as numerators and one common denominator.
+
+    The numerator is None for a vertex inside one of the triangulated triangles `emptied`.
 
     Raises `UsageError` unless the branch was proved by `find_branch`.
     """
@@ -73,5 +75,5 @@ def heights_evidence(branch: Branch, emptied: Sequence[Document]) -> tuple[list[
 def _enclosed(branch: Branch) -> EnclosedRoot:
     root = branch.root
     if branch.status is not PROVED or not isinstance(root, EnclosedRoot):
-        raise UsageError("there is no certificate of a branch that `find_branch` has not proved")
+        raise UsageError("a branch has a certificate only if `find_branch` has proved it")
     return root

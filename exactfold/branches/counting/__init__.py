@@ -1,1 +1,1 @@
-"""The conveyor: from a problem by ends and roots to branches, block by block."""
+"""Counting branches: candidates are solved for, proved, and turned into branches."""

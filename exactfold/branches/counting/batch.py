@@ -1,4 +1,4 @@
-"""Many patterns, counted independently of each other on all cores or on a cluster."""
+"""Counts many patterns, each independently of the others, on all cores or on a cluster."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ if TYPE_CHECKING:
     from exactfold.panels.result import Decomposition
 
 Source: TypeAlias = "bytes | PatternLike | InputError"
-"""What is sent to a worker: the bytes of a file, a sheet, or why there is neither."""
+"""What a worker gets: the bytes of a file, a sheet, or the error that reading it raised."""
 
 
 @dataclass(frozen=True)
 class Job:
-    """A pattern to count, and how: as for `count_ways`."""
+    """A pattern to count, and the arguments of `count_ways` for it."""
 
     name: str
     source: Source
@@ -41,7 +41,7 @@ class Job:
 
     @property
     def opened(self) -> Opened:
-        """The sheet, read; raises the errors of `open_pattern`."""
+        """The sheet, opened from its source. Raises the errors of `open_pattern`."""
         if isinstance(self.source, InputError):
             raise self.source
         if isinstance(self.source, bytes):
@@ -50,7 +50,7 @@ class Job:
 
 
 def read_source(path: str | os.PathLike[str]) -> bytes | UnreadableFileError:
-    """The bytes of a file, or why they cannot be read."""
+    """The bytes of a file, or the error that says why the file cannot be read."""
     try:
         return read_bytes(path)
     except UnreadableFileError as error:
@@ -58,10 +58,10 @@ def read_source(path: str | os.PathLike[str]) -> bytes | UnreadableFileError:
 
 
 def count_job(job: Job) -> BranchCount | Decomposition | Exception:
-    """The count of one pattern, or the error that it ended with, which stops no other."""
+    """The count of one pattern, or the error that ended it, so that the other patterns go on."""
     try:
         return count_opened(job.opened, method=job.method, seed=job.seed)
-    except Exception as error:  # also a defect: the other patterns are counted all the same
+    except Exception as error:  # even a bug must not stop the other patterns
         return NotEnoughMemoryError(shortage(error)) if is_shortage(error) else error
 
 
@@ -76,16 +76,17 @@ def count_many(
     number: int | None = None,
     progress: Progress | None = None,
 ) -> Generator[tuple[str, BranchCount | Decomposition | Exception], None, None]:
-    """The counts of many sheets, each with its name, as they are ready.
+    """Count many sheets and yield each name with its count, as soon as the count is ready.
 
-    A sheet is anything that `count_ways` takes. The name of a file or an example is its text, that
-    of a pattern its place ("0", "1", ...). Of drawings with several sheets the one with this
-    `number`, from 1, is counted. What `count_ways` raises for one pattern is its result, and the
-    others go on; a pattern whose process died has a `WorkerDiedError`. With `jobs` > 1 that many
-    processes share the work, and a script needs the usual `if __name__ == "__main__"`; an `engine`,
-    such as `dask_pool`, takes their place. Files are read here, a few at a time, and sent to the
-    workers. What to know of a pattern before its count is read is the `warning` of its count.
-    `progress("counting", done, total)` has a total of 0 where `patterns` has no length.
+    A sheet is anything that `count_ways` takes. A file or an example is named by its text, a
+    pattern by its place in `patterns` ("0", "1", ...). If a drawing holds several sheets, the one
+    with this `number`, from 1, is counted. If `count_ways` raises an error for one pattern, the
+    error is the result of that pattern, and the others go on; if the process that counts a pattern
+    dies, the result is a `WorkerDiedError`. With `jobs` > 1 that many processes share the work,
+    and a script needs the usual `if __name__ == "__main__"`. An `engine`, such as `dask_pool`,
+    replaces these processes. This process reads the files, a few at a time, and sends them to the
+    workers. The `warning` of a count says what one must know before relying on it.
+    `progress("counting", done, total)` reports a total of 0 if `patterns` has no length.
 
     Raises `UsageError` for an unknown method, a negative seed or fewer jobs than 1, before
     anything is counted.
@@ -99,7 +100,7 @@ def count_many(
     """
     choose(method)
     if isinstance(patterns, str | os.PathLike):
-        raise UsageError(f"{patterns} is one pattern: give a list of them")
+        raise UsageError(f"{patterns} is one pattern: give a list of patterns")
     if seed < 0:
         raise UsageError(f"the seed must not be negative: {seed}")
     if jobs < 1:

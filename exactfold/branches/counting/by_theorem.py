@@ -1,4 +1,4 @@
-"""Sheets with too many branches to list: what Theorem 2 says of their number."""
+"""Sheets with too many branches to list: what Theorem 2 says about their number."""
 
 from __future__ import annotations
 
@@ -10,25 +10,26 @@ from exactfold.checker.core.limits import MOST_UNKNOWNS
 from exactfold.pattern.crease_pattern import CreasePattern
 
 LIMIT = MOST_UNKNOWNS
-"""Most foldable vertices of a sheet whose 2^n branches are listed, in memory or streamed."""
+"""A sheet with n foldable vertices has its 2^n branches listed, in memory or in a file, if n is
+at most this."""
 
 
 IN_MEMORY = 20
-"""Most foldable vertices of a sheet whose branches are kept in memory: a million of them."""
+"""Most foldable vertices of a sheet whose branches are kept in memory: 2^20, a million branches."""
 
 
 def is_too_many(pattern: CreasePattern, limit: int | None = None) -> bool:
-    """Whether the branches of a pattern are isolated lines, and too many of them to be listed."""
+    """Whether the branches of a pattern are isolated lines that are too many to be listed."""
     return pattern.Ve == 4 and pattern.Vi - pattern.Vt > (LIMIT if limit is None else limit)
 
 
 def too_many(pattern: CreasePattern) -> BranchCount:
-    """The count of a sheet with four boundary vertices, as far as it follows without solving.
+    """What is known without solving about the count of a sheet with four boundary vertices.
 
     By Theorem 2 (docs/theorem.md, Four boundary vertices) the branch system of every triangulated
     quadrilateral, convex or with a reflex corner, has exactly 2^Vi solutions with multiplicity, all
-    real, and none at infinity. How many are distinct depends on flat vertices, so the count is
-    UNDECIDED.
+    real, and none at infinity. How many of them are distinct depends on which vertices are flat,
+    so the count is UNDECIDED.
 
     >>> from exactfold.pattern.random_squares import sample_random_square
     >>> result = too_many(sample_random_square(50, seed=1, redraw=True).pattern)

@@ -1,4 +1,4 @@
-"""All branches of a pattern in memory: from a problem to a proven count."""
+"""`count_branches`: finds, proves and counts all branches of a pattern, in memory."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 __all__ = ["METHODS", "count_branches"]
 
 _MOST_CLASSES: Final = 24
-"""Most sets of flat vertices that are looked at one by one."""
+"""Most sets of flat vertices for which solutions with flat stars are computed."""
 
 
 def count_branches(
@@ -37,17 +37,19 @@ def count_branches(
     seed: int = 0,
     progress: Progress | None = None,
 ) -> BranchCount:
-    """The number of branches at the unfolded state, proved, and what distinguishes them.
+    """The proved number of branches at the unfolded state, and the signs that tell them apart.
 
-    For D = 1: solve the branch system of the sheet without rigid parts, isolate every solution by
-    an exact test, prove by refined Bezout that there are no others (docs/mathematics.md, Krawczyk's
-    test to True branches), and decide all vertex signs and folds exactly. For Ve = 3 the sheet is
-    rigid: 0 branches. For D >= 2 and a convex boundary the solutions are 2^n graphs over the rim
-    heights, and `connected_components` says how they are joined (`find_connected_components`).
-    `method` is one of `METHODS`; "auto" takes Newton's method, one start for each sign vector, and
-    turns to the exact engine where that does not settle a small pattern. With more than 20 foldable
-    vertices nothing is kept in memory: `too_many` says what is known, at once; `stream_branches`
-    goes on to 40.
+    For D = 1, the branch system of the sheet without rigid parts is solved, an exact test isolates
+    every solution, refined Bezout proves that there are no others (docs/mathematics.md, Krawczyk's
+    test to True branches), and all vertex signs and folds are decided exactly. For Ve = 3 the sheet
+    is rigid: it has 0 branches. For D >= 2 and a convex boundary, the solutions form 2^n graphs
+    over the boundary heights, and `connected_components` says how the graphs are joined
+    (`find_connected_components`).
+
+    `method` is one of `METHODS`. "auto" runs Newton's method with one start for each sign vector;
+    if this does not prove the count of a small pattern, it runs the exact engine. A pattern with
+    more than 20 foldable vertices is not solved in memory: `too_many` says at once what is known,
+    and `stream_branches` counts patterns with up to 40.
 
     UNDECIDED does not mean that the count is unusual, only that it was not proved. Raises
     `NotCountedError` if there is nothing to count, `UsageError` for an unknown method.
@@ -84,11 +86,11 @@ def count_branches(
 
 
 def check_countable(pattern: CreasePattern) -> None:
-    """Raise `NotCountedError` if there is nothing to count."""
+    """Raise `NotCountedError` if the pattern has no interior vertex."""
     if not pattern.interior:
         raise NotCountedError(
-            "the pattern has no interior vertex, so there is nothing to count: every fold bends by "
-            "itself"
+            "the pattern has no interior vertex, so there is nothing to count: each fold bends "
+            "independently"
         )
 
 
@@ -111,9 +113,9 @@ def _rigid(pattern: CreasePattern, triangles: tuple[RigidTriangle, ...]) -> Bran
 def _higher(
     pattern: CreasePattern, triangles: tuple[RigidTriangle, ...], progress: Progress | None
 ) -> BranchCount:
-    """D >= 2: one double cone for a single vertex, else 2^n graphs over the boundary heights."""
+    """D >= 2: one double cone for a single vertex; for a convex boundary, 2^n graphs over it."""
     from exactfold.branches.connected_components.joining import (
-        find_connected_components,  # here, as most counts do without
+        find_connected_components,  # imported here: most counts do not need it
     )
 
     sheet, _ = pattern.without_rigid_parts()
@@ -147,7 +149,7 @@ def _higher(
         "for all boundary heights there is exactly one solution with each sign vector: "
         f"2^{len(connected_components.vertices)} graphs over the boundary heights, of dimension "
         f"{pattern.D} modulo planes",
-        why="the boundary is convex, with more than four vertices",
+        why="the boundary is convex and has more than four vertices",
         true_branches=PROVED,
         open_questions=tuple(
             f"whether the star of vertex {v} is flat in other solutions: {reason}"
@@ -158,7 +160,7 @@ def _higher(
 
 
 def _not_convex(pattern: CreasePattern) -> BranchCount:
-    """D >= 2 and a reflex corner: solutions over a rim need not be real."""
+    """D >= 2 and a reflex corner: the solutions over given boundary heights need not be real."""
     return BranchCount(pattern, UNDECIDED, "none", not_convex(pattern))
 
 
@@ -167,9 +169,9 @@ def not_convex(pattern: CreasePattern) -> str:
     chords = "".join(f", and the fold {i}-{j} splits it" for i, j in pattern.chords[:1])
     return (
         f"the sheet has {pattern.Ve} boundary vertices, so it has {pattern.degrees_of_freedom} "
-        f"degrees of freedom, and a reflex corner, vertex {pattern.reflex_corner}{chords}: with "
-        "more than four corners the shapes over a rim need not be real then, so that nothing "
-        "general is known of their number (docs/any_border.md, A boundary that is not convex)"
+        f"degrees of freedom, and a reflex corner, vertex {pattern.reflex_corner}{chords}: for "
+        "such a sheet, shapes with given boundary heights need not be real, and no theorem gives "
+        "their number (docs/any_border.md, A border that is not convex)"
     )
 
 
@@ -177,12 +179,12 @@ def not_convex(pattern: CreasePattern) -> str:
 
 
 def with_true_bounds(result: BranchCount) -> BranchCount:
-    """A count with bounds of the number of true branches, and the verdict that follows.
+    """The count with bounds for the number of true branches, and a verdict on this number.
 
-    Near the flat state there is exactly one true configuration for each sign vector and each small
-    rim (docs/any_border.md, Theorem 8). So a branch with f flat vertices is the start of at least
-    one and at most 2^f true branches, and of exactly one if the sheet with these stars held flat
-    truly folds along it.
+    Near the flat state there is exactly one true configuration for each sign vector and all small
+    boundary heights (docs/any_border.md, Theorem 8). So at least one and at most 2^f true branches
+    start along a branch with f flat vertices. Exactly one starts there if the branch extends to a
+    finite flex of the sheet on which the stars of these vertices stay flat.
     """
     if result.status is not PROVED or result.distinct is None:
         most = 1 << len(result.pattern.foldable_vertices)
@@ -197,16 +199,16 @@ def with_true_bounds(result: BranchCount) -> BranchCount:
 
 
 def _flat(pattern: CreasePattern, branch: Branch) -> frozenset[int]:
-    """The foldable vertices whose stars are flat."""
+    """The foldable vertices whose stars are flat on the branch."""
     return frozenset(v for v in pattern.foldable_vertices if not branch.vertex_signs[v])
 
 
 def _single(pattern: CreasePattern, branches: list[Branch]) -> list[bool]:
-    """Whether each branch is proved to fold truly with the same stars flat."""
+    """Whether each branch is proved to extend to a finite flex on which the same stars are flat."""
     if not branches:
         return []
     from exactfold.branches.connected_components.flat_stars import flat_solutions
-    from exactfold.panels.stars import edge_of, stars  # here, as most counts do without
+    from exactfold.panels.stars import edge_of, stars  # imported here: most counts do not need it
     from exactfold.pattern.opening import panels
 
     sheet, labels = pattern.without_rigid_parts()
@@ -215,7 +217,7 @@ def _single(pattern: CreasePattern, branches: list[Branch]) -> list[bool]:
     known: dict[frozenset[int], tuple[Joint, ...]] = {}
     complete: dict[frozenset[int], bool] = {}
     rows = {tuple(branch.vertex_signs.items()) for branch in branches}
-    found = []
+    singles = []
     for branch in branches:
         held = frozenset(place[v] for v in _flat(pattern, branch))
         if held not in known and len(known) < _MOST_CLASSES:
@@ -224,18 +226,18 @@ def _single(pattern: CreasePattern, branches: list[Branch]) -> list[bool]:
             known[held], complete[held] = solutions.joints, not solutions.open
         signs = {v: branch.vertex_signs[labels[v]] for v in sheet.interior}
         same = [joint.folds for joint in known.get(held, ()) if _are_same(signs, joint.signs)]
-        # A solution does not say on which side of the saddle it is. Where another branch has the
-        # opposite signs, its reflection has the same; with a reflex corner others can, too. Then
-        # all must be known.
+        # A solution does not say on which side of the saddle it lies. If another branch has the
+        # opposite signs, its reflection has the signs of this branch. With a reflex corner, other
+        # solutions can have them, too. In both cases all solutions must be known.
         opposite = tuple((v, -sign) for v, sign in branch.vertex_signs.items())
         alone = opposite not in rows or not any(signs.values())
         sure = complete.get(held, False) or (pattern.is_convex and alone)
-        found.append(sure and bool(same) and all(same))
-    return found
+        singles.append(sure and bool(same) and all(same))
+    return singles
 
 
 def _are_same(signs: Mapping[int, int], others: Mapping[int, int]) -> bool:
-    """Whether signs are those of a solution or of its reflection, absent ones being 0."""
+    """Whether `signs` equal `others` or the reflection of `others`; an absent sign counts as 0."""
     return any(
         all(sign == side * others.get(v, 0) for v, sign in signs.items()) for side in (1, -1)
     )

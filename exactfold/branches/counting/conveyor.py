@@ -1,11 +1,11 @@
-"""The conveyor of all branches: ends, roots and letters, one block of sign vectors at a time.
+"""The conveyor: it solves, proves and classifies all branches, a block of sign vectors at a time.
 
     problem = Problem.of(pattern)        # reduced sheet, labels, gauge, chart
-    ends    = conveyor.ends(block)       # proposals, in floats
-    roots   = conveyor.prove(block)      # proved roots with their letters, or what is open and why
+    ends    = conveyor.ends(block)       # candidates, in floats
+    roots   = conveyor.prove(block)      # proved roots with letters, and reasons for open ones
 
-In the chart of `Problem` zeros with different vertex signs are different, so a proved zero with the
-signs asked for in each of the 2^n chambers is the proof that these are all (docs/mathematics.md,
+Zeros with different vertex signs are different zeros in the chart of `Problem`. So if each of the
+2^n sign vectors has a proved zero with these signs, then these are all zeros (docs/mathematics.md,
 Completeness and Nappes).
 """
 
@@ -33,10 +33,10 @@ from exactfold.solve.certify.float_krawczyk import UNPROVED, FloatBoxes, FloatKr
 from exactfold.solve.numeric.dense_newton import NappeSystem, SweptPoints, sign_vectors
 
 BLOCK = 1024
-"""Sign vectors in a block, and the most that an interruption loses."""
+"""Sign vectors in a block. An interruption loses at most one block."""
 
 BITS = 44
-"""Bits of the centres: enough for every test and for nine digits of a height, and few bytes."""
+"""Bits of the centres: enough for every test and for nine digits of a height, yet few bytes."""
 
 _WIDEST = 52
 
@@ -53,7 +53,7 @@ class Conveyor:
 
     @classmethod
     def of(cls, pattern: CreasePattern | Problem, block_size: int | None = None) -> Conveyor:
-        """Blocks of `block_size` sign vectors, a power of two, 1024 by default.
+        """The conveyor of a pattern; `block_size` is a power of two, 1024 by default.
 
         Raises `NotApplicableError` unless D = 1 and some vertex is foldable, 40 at most.
 
@@ -108,17 +108,17 @@ class Conveyor:
         return BranchMaker(self.problem, self.problem.chart)
 
     def ends(self, index: int) -> SweptPoints:
-        """Proposals for the sign vectors of block `index`; kept until the block is proved."""
+        """Candidates for the sign vectors of block `index`; kept until `prove` uses them."""
         if index not in self._solved:
             start = time.process_time()
-            found = self._nappes.ends_of_block(index * self.block_size, self.block_size)
-            self._solved[index] = found, time.process_time() - start
+            ends = self._nappes.ends_of_block(index * self.block_size, self.block_size)
+            self._solved[index] = ends, time.process_time() - start
         return self._solved[index][0]
 
     def prove(self, index: int) -> ProvedBlock:
         """Solve, prove and classify the sign vectors of block `index`.
 
-        In floats whose rounding errors are bounded; what these leave open, in integers.
+        Floats with bounded rounding errors prove most roots; integers decide those left open.
         """
         count = self.block_size
         self.ends(index)
@@ -133,11 +133,11 @@ class Conveyor:
         exact: dict[int, ExactRoot] = {}
         unproved: dict[int, OpenEnd] = {}
         for j in np.flatnonzero(~good).tolist():
-            found = self._prover.prove([int(sign) for sign in signs[j]], ends.points[j])
-            if isinstance(found, ExactRoot):
-                exact[j] = found
+            root = self._prover.prove([int(sign) for sign in signs[j]], ends.points[j])
+            if isinstance(root, ExactRoot):
+                exact[j] = root
             else:
-                unproved[j] = found
+                unproved[j] = root
         return ProvedBlock(
             index,
             FloatBoxes(
@@ -160,7 +160,7 @@ class Conveyor:
         return BoxRoot(box, system=self.problem.chart.system)
 
     def branches(self, block: ProvedBlock) -> Iterator[Branch]:
-        """The branches of a block, in the order of the sign vectors; open ones are left out."""
+        """The proved branches of a block, in the order of the sign vectors."""
         count, boxes = self.block_size, block.boxes
         signs = sign_vectors(block.index * count, count, self.size).astype(int).tolist()
         centers, exponents = boxes.centers.tolist(), boxes.exponents.tolist()
@@ -175,7 +175,7 @@ class Conveyor:
 
 
 def letter_rows(valleys: BoolArray) -> list[str]:
-    """Rows of letters "V" and "M" as texts.
+    """Each row as a text with the letter V for a valley and M for a mountain.
 
     >>> letter_rows(np.array([[True, False]]))
     ['VM']

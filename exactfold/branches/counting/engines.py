@@ -1,4 +1,4 @@
-"""Engines that carry blocks: this process, or worker processes of this machine."""
+"""Engines that prove blocks: in this process, or in worker processes of this machine."""
 
 from __future__ import annotations
 
@@ -14,17 +14,18 @@ from exactfold.errors import WorkerDiedError
 from exactfold.pattern.crease_pattern import CreasePattern, Point, Triangle
 
 Engine = Callable[[Conveyor, range], Generator[tuple[ProvedBlock, str], None, None]]
-"""Yields the blocks with the numbers given and their lines, in order; closed at an interruption."""
+"""Given a conveyor and block numbers, yields each block with its line, in order. An interruption
+closes the generator."""
 
 LEAST = 8
-"""Blocks for each worker that make starting processes worth while."""
+"""A worker process is worth starting if at least this many blocks are left for it."""
 
 _AHEAD = 2
-"""Blocks under way or waiting for each worker: this bounds memory."""
+"""Blocks that each worker has under way or waiting: this bounds memory."""
 
 
 def processes(workers: int) -> Engine:
-    """The engine of up to `workers` processes of this machine, fewer if there is little to do."""
+    """The engine that uses up to `workers` processes of this machine, fewer if little is left."""
 
     def engine(conveyor: Conveyor, left: range) -> Generator[tuple[ProvedBlock, str], None, None]:
         most = min(workers, len(left) // LEAST)
@@ -36,7 +37,7 @@ def processes(workers: int) -> Engine:
 def in_this_process(
     conveyor: Conveyor, left: range
 ) -> Generator[tuple[ProvedBlock, str], None, None]:
-    """The engine of this process alone."""
+    """The engine that proves the blocks in this process."""
     for index in left:
         block = conveyor.prove(index)
         yield block, block_line(block)
@@ -45,7 +46,7 @@ def in_this_process(
 def _pool(
     conveyor: Conveyor, left: range, workers: int
 ) -> Generator[tuple[ProvedBlock, str], None, None]:
-    """The blocks with the numbers given and their lines, in order."""
+    """The blocks numbered in `left` with their lines, in order, proved by worker processes."""
     pattern = conveyor.problem.pattern
     prover = _Prover(pattern.vertices, pattern.triangles, conveyor.block_size)
     try:
@@ -56,7 +57,7 @@ def _pool(
 
 @dataclass(frozen=True)
 class _Prover:
-    """What a worker process needs to prove blocks by their numbers."""
+    """What a worker process needs to prove a block, given its number."""
 
     vertices: tuple[Point, ...]
     triangles: tuple[Triangle, ...]
@@ -64,7 +65,7 @@ class _Prover:
 
     @cached_property
     def conveyor(self) -> Conveyor:
-        """Set up anew in each process."""
+        """The conveyor, which each process sets up for itself."""
         return Conveyor.of(CreasePattern(self.vertices, self.triangles), self.block_size)
 
     def __call__(self, index: int) -> tuple[ProvedBlock, str]:

@@ -1,4 +1,4 @@
-"""Roots that the float test leaves open, one by one, in exact arithmetic."""
+"""Exact arithmetic proves, one by one, the roots that the float test leaves open."""
 
 from __future__ import annotations
 
@@ -25,10 +25,11 @@ _FAR = 1e100
 
 @dataclass(frozen=True)
 class ExactProver:
-    """Proves zeros with given vertex signs in integers, where floats leave them open.
+    """Proves in integers the zeros with given vertex signs that floats leave open.
 
-    Sets of vertices that look flat even in the highest precision are remembered: where the same
-    ones look flat in doubles, nothing more is tried, as the zeros cannot all be simple any more.
+    The prover remembers sets of vertices that look flat even in the highest precision. If the same
+    vertices look flat in doubles for other signs, it tries nothing more: several paths seem to meet
+    there, so their zeros most likely coincide.
     """
 
     system: NappeSystem
@@ -36,10 +37,11 @@ class ExactProver:
     _flat_before: set[tuple[int, ...]] = field(default_factory=set)
 
     def prove(self, signs: Sequence[int], point: FloatArray) -> ExactRoot | OpenEnd:
-        """The zero with these vertex signs, proved, or why it was not.
+        """The proved zero with these vertex signs, or the reason why it is open.
 
-        The exact test of `krawczyk` at `point`; if it fails, or finds a zero with other signs, at
-        the end of the nappe equations in rising precision, which is the one with these signs.
+        First `krawczyk`, an exact test, is run at `point`. If it fails or finds a zero with other
+        signs, the nappe equations for these signs are solved in rising precision, and the test is
+        run at their solution.
         """
         if self._flat_before:
             flat = self.system.flat_at_end(signs)
@@ -47,9 +49,9 @@ class ExactProver:
                 return self._multiple(flat, "in double precision")
         system = self.problem.chart.system
         if np.isfinite(point).all() and np.abs(point).max(initial=0.0) < _FAR:
-            (found,) = krawczyk(system, point[None], precisions=_FIRST)
-            if isinstance(found, IsolatingBox):
-                root = self._classified(signs, found)
+            (isolated,) = krawczyk(system, point[None], precisions=_FIRST)
+            if isinstance(isolated, IsolatingBox):
+                root = self._classified(signs, isolated)
                 if isinstance(root, ExactRoot):
                     return root
         reason = OpenEnd("no end was reached in higher precision")
@@ -78,13 +80,13 @@ class ExactProver:
         return OpenEnd(f"{which}: {1 << len(flat)} paths seem to meet in a multiple root", flat)
 
     def _classified(self, signs: Sequence[int], box: IsolatingBox) -> ExactRoot | str:
-        """The box, perhaps sharper, and its folds if its vertex signs are those asked for."""
+        """The root in the box if its vertex signs are `signs`, else the reason why they are not."""
         labels = self.problem.labels
         chart = self.problem.chart
-        root, found, folds = decide_signs(
+        root, vertices, folds = decide_signs(
             chart, self.problem.functionals, BoxRoot(box, system=chart.system)
         )
-        for wanted, (vertex, sign) in zip(signs, found.items(), strict=True):
+        for wanted, (vertex, sign) in zip(signs, vertices.items(), strict=True):
             if sign != wanted:
                 state = "undecided" if sign is None else "another"
                 return f"the sign of vertex {labels[vertex]} is {state}"

@@ -1,4 +1,4 @@
-"""`find_branch`: the branch with given vertex signs, alone and proved."""
+"""`find_branch`: finds and proves the branch with given vertex signs, without the others."""
 
 from __future__ import annotations
 
@@ -44,26 +44,28 @@ def find_branch(
     curvature: Deficits | None = None,
     progress: Progress | None = None,
 ) -> Branch:
-    """The one branch with given vertex signs, proved, without enumerating the others.
+    """Find and prove the one branch with given vertex signs, without enumerating the others.
 
-    `signs`: text such as "+-+" in the order of the interior vertices ("0", or nothing at all, for
-    those in triangulated triangles, which stay flat), a sequence of +1 and -1, or a mapping from
-    vertex to sign. `up`: instead, the vertices that pop up; the others pop down. Newton's method on
-    the nappes proposes heights (docs/mathematics.md, Nappes); they are refined in exact arithmetic
-    and enclosed by a theorem that needs no factorisation (docs/branch.md, `enclose`), so that the
-    cost of the proof grows like the number of folds. Gauge: see `Branch`. With `boundary_heights`,
-    heights of all boundary vertices of a convex boundary of any length, the branch of that rim; a
-    convex sheet with more than four boundary vertices has the rim `default_boundary_heights` if
-    none is given. `curvature`: angle deficits K_v > 0 of interior vertices, 0 where none is given;
-    then the one shape with these signs (docs/branch.md, Angle deficits), whose rim has height 0 if
-    none is given. A vertex that is proved flat on the branch gets the sign 0: either sign leads to
-    it, and so does 0.
+    `signs` is a text such as "+-+" in the order of the interior vertices, a sequence of +1 and -1,
+    or a mapping from vertex to sign. Vertices in triangulated triangles stay flat: their signs are
+    0 or are left out. Instead of `signs`, `up` gives the vertices that pop up; the others pop down.
 
-    Raises `UsageError` for signs that do not fit the pattern, among them a 0 where no branch with
-    the other signs is proved flat; `BoundaryHeightsError` and `BadCurvatureError`, which name the
-    vertex; `NotApplicableError` for a rim of a boundary that is not convex; `NotCountedError` where
-    signs name no branch, or if no vertex can pop. An `UNDECIDED` result does not say that the
-    branch does not exist.
+    Newton's method on the nappes proposes heights (docs/mathematics.md, Nappes). Exact arithmetic
+    refines them, and a theorem that needs no factorisation encloses them (docs/branch.md,
+    `enclose`), so that the cost of the proof grows like the number of folds. `Branch` explains the
+    gauge. `boundary_heights` gives the heights of all boundary vertices of a convex boundary of any
+    length; the result is the branch with these boundary heights. A convex sheet with more than four
+    boundary vertices has the heights `default_boundary_heights` if `boundary_heights` is not given.
+    `curvature` gives angle deficits K_v > 0 of interior vertices, 0 for vertices that it does not
+    name; the result is then the one shape with these signs (docs/branch.md, Angle deficits), and
+    the boundary has height 0 if `boundary_heights` is not given. A vertex that is proved flat on
+    the branch gets the sign 0. The signs +, - and 0 of such a vertex all lead to this branch.
+
+    Raises `UsageError` for signs that do not fit the pattern, also for a sign 0 if the vertex is
+    not flat on the branch with the other signs; `BoundaryHeightsError` and `BadCurvatureError`,
+    which name the vertex; `NotApplicableError` for `boundary_heights` if the boundary is not
+    convex; `NotCountedError` if signs name no branch or no vertex can pop. UNDECIDED does not mean
+    that the branch does not exist.
 
     >>> from exactfold.pattern.random_squares import random_square
     >>> branch = find_branch(random_square(8, seed=1), "+-++--+-")
@@ -82,7 +84,7 @@ def find_branches(
     curvature: Deficits | None = None,
     progress: Progress | None = None,
 ) -> Iterator[Branch]:
-    """`find_branch` for each of many sign vectors, one after the other, the setup shared.
+    """`find_branch` for many sign vectors, one after the other; the setup is done once.
 
     >>> from exactfold.pattern.random_squares import random_square
     >>> [b.sign_text for b in find_branches(random_square(3, seed=0), ["+-+", "---"])]
@@ -102,10 +104,11 @@ def neighbours(
     curvature: Deficits | None = None,
     progress: Progress | None = None,
 ) -> dict[int, Branch]:
-    """The branches reached by popping one vertex through, by vertex.
+    """For each vertex, the branch that is reached by popping this vertex through.
 
-    For each vertex of `vertices` (by default all that can pop) the branch whose sign vector differs
-    from `signs` there only, found from the branch with `signs` as a start. Raises as `find_branch`.
+    The sign vector of this branch differs from `signs` at the vertex only. The heights of the
+    branch with `signs` are the start of the search. `vertices` are by default all vertices that can
+    pop. Raises the errors of `find_branch`.
 
     >>> from exactfold.pattern.random_squares import random_square
     >>> {v: b.sign_text for v, b in neighbours(random_square(3, seed=0), "+-+").items()}
@@ -120,9 +123,7 @@ def branch_finder(
     boundary_heights: BoundaryHeights | None = None,
     curvature: Deficits | None = None,
 ) -> BranchFinder:
-    """The finder for a convex boundary of any length.
-
-    Where it needs boundary heights and has none, these are the `default_boundary_heights`.
+    """The finder of a pattern, with `default_boundary_heights` if it needs boundary heights.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> branch_finder(single_vertex(5)).problem.gauge
@@ -135,9 +136,10 @@ def branch_finder(
 
 @dataclass(frozen=True)
 class BranchFinder:
-    """Finds branches of one pattern; what does not depend on the signs is computed once.
+    """Finds branches of one pattern; whatever does not depend on the signs is computed once.
 
-    `boundary_heights` and `curvature` as in `find_branch`, but that no rim is chosen.
+    `boundary_heights` and `curvature` have the same meaning as in `find_branch`, but
+    `boundary_heights` has no default.
     """
 
     pattern: CreasePattern
@@ -146,7 +148,7 @@ class BranchFinder:
 
     @cached_property
     def problem(self) -> Problem:
-        """The problem in the gauge asked for."""
+        """The problem, in the gauge that `boundary_heights` and `curvature` ask for."""
         problem = Problem.of(
             self.pattern, boundary_heights=self.boundary_heights, curvature=self.curvature
         )
@@ -168,15 +170,15 @@ class BranchFinder:
         return self.problem.foldable
 
     def cannot_pop(self, vertex: object) -> str:
-        """Why a vertex has no sign."""
+        """The reason why a vertex cannot have a sign."""
         if vertex in self.problem.rigid:
             return f"vertex {vertex} lies in a triangulated triangle and stays flat"
         return f"vertex {vertex} is not an interior vertex"
 
     def signs(self, signs: Signs | None, up: Iterable[int] | None) -> dict[int, int]:
-        """The signs of all vertices that can pop, from either way to give them.
+        """The signs of all vertices that can pop, from vertex signs or from vertices that pop up.
 
-        Raises `UsageError`.
+        Raises `UsageError` for signs or vertices that do not fit the pattern.
         """
         names = self.poppable
         if (signs is None) == (up is None):
@@ -215,7 +217,7 @@ class BranchFinder:
     def propose(
         self, signs: Mapping[int, int], start: FloatArray | None, progress: Progress | None
     ) -> End:
-        """Float heights of the sheet's unknowns; `start` as found for other signs."""
+        """Float heights of the unknowns; `start` may be the heights found for other signs."""
         steps = None if progress is None else lambda k: progress("Newton steps", k, 0)
         return solve(self._floats, self._vector(signs), start, steps)
 
@@ -228,30 +230,30 @@ class BranchFinder:
     ) -> Branch:
         """The branch with the signs that `signs` returned.
 
-        A vertex with the sign 0 has to be proved flat on it. The branches with (s, 0) and with (s,
-        +1) both lie in the closed nappes of (s, +1), which hold one branch only (docs/theorem.md,
-        Four boundary vertices): if the one proved there has not the signs asked for, none has,
-        which is a `UsageError`.
+        A vertex with the sign 0 must be proved flat on the branch. The branches with the signs
+        (s, 0) and (s, +1) both lie in the closed nappes of (s, +1), which hold only one branch
+        (docs/theorem.md, Four boundary vertices). So if the branch that is proved there does not
+        have the given signs, no branch has them: this raises `UsageError`.
         """
         flat = [v for v, sign in signs.items() if sign == 0]
-        found = self._found({**signs, **dict.fromkeys(flat, 1)}, start, progress)
-        missed = [v for v in flat if found.vertex_signs[v] != 0]
-        if missed and found.status is PROVED:
+        branch = self._found({**signs, **dict.fromkeys(flat, 1)}, start, progress)
+        missed = [v for v in flat if branch.vertex_signs[v] != 0]
+        if missed and branch.status is PROVED:
             raise UsageError(
                 f"no branch has these signs: vertex {missed[0]} is not flat with the others as "
                 "given; give it + or -"
             )
-        return found
+        return branch
 
     def _found(
         self, signs: Mapping[int, int], start: FloatArray | None, progress: Progress | None
     ) -> Branch:
-        """The branch in the closed nappes of signs that are +1 or -1."""
+        """The branch in the closed nappes of `signs`, each of which is +1 or -1."""
         begin = time.perf_counter()
         steps = 0
         reason = ""
         try:
-            with np.errstate(all="ignore"):  # what leaves the range of floats is no proposal
+            with np.errstate(all="ignore"):  # points that are not finite are dropped below
                 end = self.propose(signs, start, progress)
                 if end.failure and start is not None:
                     end = self.propose(signs, None, progress)
@@ -283,7 +285,7 @@ class BranchFinder:
         *,
         progress: Progress | None = None,
     ) -> dict[int, Branch]:
-        """The branches that differ from `signs`, as returned by `signs`, at one of `vertices`."""
+        """By vertex of `vertices`, the branch that differs from `signs` there; see `neighbours`."""
         return dict(self.each_neighbour(signs, vertices, progress=progress))
 
     def each_neighbour(
@@ -293,7 +295,7 @@ class BranchFinder:
         *,
         progress: Progress | None = None,
     ) -> Iterator[tuple[int, Branch]]:
-        """`neighbours` one by one, for patterns where all of them would fill the memory."""
+        """The same branches one by one, for patterns whose neighbours would fill the memory."""
         flat = [v for v, sign in signs.items() if sign == 0]
         if flat:
             raise UsageError(
@@ -304,7 +306,7 @@ class BranchFinder:
         for v in chosen:
             if v not in self._names:
                 raise UsageError(self.cannot_pop(v))
-        first = None  # the branch with `signs` as a start, if it is found
+        first = None  # the heights of the branch with `signs`, if Newton's method finds them
         with suppress(OverflowError), np.errstate(all="ignore"):
             base = self.propose(signs, None, progress)
             first = None if base.failure else base.x
@@ -316,7 +318,7 @@ class BranchFinder:
     # --- the proof, and what it means ------------------------------------------------------------
 
     def _vector(self, signs: Mapping[int, int]) -> FloatArray:
-        """Signs in the order of the unknowns; a reflex corner pops up."""
+        """The signs in the order of the unknowns; a reflex corner counts as popping up."""
         labels, corner = self.sheet.labels, self.sheet.corner
         return np.array(
             [1.0 if v == corner else float(signs[labels[v]]) for v in self.sheet.unknowns]
@@ -324,8 +326,8 @@ class BranchFinder:
 
 
 def _value(sign: object) -> int:
-    """A sign, as a character or a number, as an integer."""
+    """The integer for a sign that is given as a character or as a number."""
     value = sign_value(sign)
     if value is None:
-        raise UsageError(f"{sign!r} is not a vertex sign: + or 1, - or -1, 0 where it is flat")
+        raise UsageError(f"{sign!r} is not a vertex sign: use + or 1, - or -1, or 0 for flat")
     return value

@@ -1,18 +1,18 @@
-"""The isolated branches of a sheet with four corners: what is tried, in which order, to prove all.
+"""Proves all branches of a sheet with four corners, whose branches are isolated.
 
-Until all solutions are proved:
+The following is tried, in this order, until all solutions are proved:
 
-1. The conveyor: Newton's method with a start for each sign vector, proved block by block. It is
-   left where two ends meet, and where a root or a letter stays open.
-2. The same ends, or the candidates of the method that was asked for, in the chart `saddle = 1`:
-   boxes isolate them. Zeros with flat vertices are multiple; they are solved for on flat sheets,
-   apart from the others: before the boxes where candidates meet or were lost, else after them.
-   Where boxes leave letters open, the zeros in them are recognised and proved exactly.
-3. With the method "auto" and a small system, the exact engine, also for letters alone.
-4. With a reflex corner some solutions may lie at infinity in that chart: 2 and 3 again, in the
-   chart of the closed notch, which misses none.
+1. The conveyor runs Newton's method from one start for each sign vector and proves the ends block
+   by block. It gives up if two ends meet, or if a root or a letter stays open.
+2. Boxes isolate the same ends, or the candidates of the requested method, in the chart
+   `saddle = 1`. Zeros with flat vertices are multiple, so they are solved for separately, on flat
+   sheets: before the boxes if candidates meet or were lost, otherwise after the boxes failed.
+   If boxes leave letters open, the zeros in these boxes are recognised and proved exactly.
+3. With the method "auto", the exact engine solves a small system, also if only letters are open.
+4. With a reflex corner, some solutions may lie at infinity in that chart. Then steps 2 and 3 are
+   repeated in the chart of the closed notch, in which no solution lies at infinity.
 
-What stays unproved leaves the count undecided, with the reason of the first chart.
+If this fails, too, the count is undecided, for the reason that was found in the first chart.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ from exactfold.solve.numeric.flat_guess import flat_vertices
 from exactfold.solve.numeric.newton import candidates_of
 
 _MEET = 9
-"""Digits to which ends agree where a root is multiple: they are as good there as elsewhere."""
+"""Two ends that agree to this many digits count as one end, at a multiple root."""
 
 GROEBNER_LIMIT = 6
 """Largest number of unknowns for which "auto" turns to the exact engine."""
@@ -63,11 +63,11 @@ GROEBNER_LIMIT = 6
 def count_lines(
     problem: Problem, choice: Choice, method: str, seed: int, progress: Progress | None
 ) -> BranchCount:
-    """D = 1: branches are isolated lines.
+    """The count for D = 1, where branches are isolated lines.
 
-    Where the conveyor leaves something open, and for other methods, zeros are proved in the chart
-    `saddle = 1`; as with a reflex corner some may lie at infinity there, then also in the chart of
-    the closed notch, which misses none.
+    If the conveyor leaves something open, or with another method, zeros are proved in the chart
+    `saddle = 1`. With a reflex corner some zeros may lie at infinity in that chart. If it proves
+    too little, the chart of the closed notch is tried, in which no zero lies at infinity.
     """
     ends: Candidates | None = None
     if choice.method == NEWTON and 0 < problem.size <= MOST_UNKNOWNS:
@@ -87,9 +87,9 @@ def count_lines(
 
 
 def _in_chart(attempt: _Attempt, ends: Candidates | None, method: str, seed: int) -> BranchCount:
-    """Prove zeros in one chart; those with flat vertices are solved for apart from the others.
+    """Prove zeros in one chart; zeros with flat vertices are solved for separately.
 
-    Where that fails too, "auto" turns to the exact engine for small systems.
+    If that fails, too, the method "auto" runs the exact engine on a small system.
     """
     size = attempt.chart.system.size
     if attempt.choice.method == "groebner" and size:
@@ -122,7 +122,7 @@ def _in_chart(attempt: _Attempt, ends: Candidates | None, method: str, seed: int
 
 @dataclass(frozen=True)
 class _Attempt:
-    """A problem, a chart of its sheet, and the method that was chosen."""
+    """A problem, a chart of its sheet, and the chosen method."""
 
     problem: Problem
     chart: Chart
@@ -131,16 +131,16 @@ class _Attempt:
 
     @property
     def total(self) -> int:
-        """2^n, what the solutions in the chart must add up to."""
+        """2^n, the number of solutions in the chart, with multiplicity."""
         return self.chart.system.bezout_number
 
     def stage(self, name: str) -> Callable[[int, int], None]:
-        """Progress of one stage."""
+        """The progress function of one stage."""
         report = self.progress
         return lambda done, total: None if report is None else report(name, done, total)
 
     def in_chart(self, candidates: Candidates) -> Candidates:
-        """Candidates found in the chart of the problem as points of this one."""
+        """Candidates from the chart of the problem, as points of the chart of this attempt."""
         candidates = candidates.finite()
         if self.chart == self.problem.chart:
             return candidates
@@ -149,7 +149,7 @@ class _Attempt:
         return replace(candidates, points=points)
 
     def undecided(self, reason: str, **known: Any) -> BranchCount:
-        """An undecided count, with what is known."""
+        """An undecided count with its reason and the facts that are known."""
         choice = self.choice
         return BranchCount(
             self.problem.pattern, UNDECIDED, choice.method, reason=reason, why=choice.why, **known
@@ -158,9 +158,9 @@ class _Attempt:
     def isolated(
         self, found: BranchCount, *, lines: tuple[str, ...] = (), **counts: Any
     ) -> BranchCount:
-        """The same count, proved: 2^n disjoint boxes are all zeros, by refined Bezout.
+        """The count `found` as a proved one: 2^n disjoint boxes hold all zeros, by refined Bezout.
 
-        `lines` are those of the certificate, where the conveyor has written them.
+        `lines` are the lines of the certificate, if the conveyor has written them.
         """
         reason = (
             f"{counted(self.total, 'solution')} isolated; by refined Bezout there are no others"
@@ -180,7 +180,7 @@ class _Attempt:
         lines: tuple[str, ...] = (),
         **counts: Any,
     ) -> BranchCount:
-        """The same count, proved."""
+        """The count `found` as a proved one, with its proof."""
         problem, triangles = self.problem, self.problem.triangles or ()
         return replace(
             found,
@@ -198,15 +198,15 @@ class _Attempt:
 def _ends(conveyor: Conveyor, attempt: _Attempt) -> Candidates:
     """The ends of all blocks, in the chart of the problem."""
     stage, count = attempt.stage("solving"), conveyor.block_size
-    found = []
+    ends = []
     for index in range(conveyor.blocks):
-        found.append(conveyor.ends(index))
+        ends.append(conveyor.ends(index))
         stage((index + 1) * count, attempt.total)
-    return candidates_of(found, conveyor.size).finite()
+    return candidates_of(ends, conveyor.size).finite()
 
 
 def _collected(conveyor: Conveyor, attempt: _Attempt, ends: Candidates) -> BranchCount | None:
-    """The branches of all blocks, None if a root or a letter stays open."""
+    """The proved count of all blocks; None if a root or a letter stays open."""
     stage, count = attempt.stage("certifying"), conveyor.block_size
     branches: list[Branch] = []
     proved: list[str] = []
@@ -229,7 +229,7 @@ def _collected(conveyor: Conveyor, attempt: _Attempt, ends: Candidates) -> Branc
 
 
 def _in_boxes(attempt: _Attempt, candidates: Candidates) -> BranchCount:
-    """Boxes around candidates, completeness by refined Bezout, signs on the boxes."""
+    """Isolate zeros in boxes around candidates, prove them complete, and decide their signs."""
     isolation = isolate(attempt.chart.system, candidates, progress=attempt.stage("certifying"))
     roots: list[tuple[ChartRoot, int]] = [
         (BoxRoot(box, system=attempt.chart.system), 1) for box in isolation.boxes if box.is_real
@@ -255,7 +255,7 @@ def _in_boxes(attempt: _Attempt, candidates: Candidates) -> BranchCount:
             return exactly
     if len(branches) < len(roots):
         return result
-    # What a solver lost was found all the same.
+    # All zeros are isolated, so the paths that a solver lost do not matter.
     return attempt.isolated(
         replace(result, open_questions=_signs(open_signs)),
         real=isolation.real,
@@ -264,9 +264,10 @@ def _in_boxes(attempt: _Attempt, candidates: Candidates) -> BranchCount:
 
 
 def _with_flat_vertices(attempt: _Attempt, candidates: Candidates) -> BranchCount | None:
-    """Zeros with flat vertices found on flat sheets, boxes for the others; None if some are lost.
+    """Solve for zeros with flat vertices on flat sheets and isolate the others in boxes.
 
-    Which vertices are flat is guessed from the candidates, one tolerance after the other.
+    The candidates suggest which vertices are flat, for one tolerance after the other. None if no
+    tolerance leads to all zeros.
     """
     points = candidates.points.real
     stage = attempt.stage("certifying")
@@ -287,7 +288,7 @@ def _with_flat_vertices(attempt: _Attempt, candidates: Candidates) -> BranchCoun
 
 
 def _solved_exactly(attempt: _Attempt) -> BranchCount:
-    """Groebner basis; simple roots are then isolated in boxes, multiple ones proved as they are."""
+    """Compute a Groebner basis; isolate simple roots in boxes and prove multiple ones exactly."""
     stage = attempt.stage("computing a Groebner basis")
     stage(0, 1)
     solution = groebner(attempt.chart.system)
@@ -299,7 +300,7 @@ def _solved_exactly(attempt: _Attempt) -> BranchCount:
         )
     proved = None
     if solution.distinct == attempt.total:
-        with suppress(OverflowError):  # zeros beyond floats are proved as they are
+        with suppress(OverflowError):  # zeros beyond the range of floats are proved exactly below
             result = _in_boxes(attempt, solution.candidates)
             proved = result if result.status is PROVED else None
     if proved is not None and not proved.undecided_folds:
@@ -309,7 +310,7 @@ def _solved_exactly(attempt: _Attempt) -> BranchCount:
 
 
 def _algebraic(attempt: _Attempt, found: Zeros, settings: Mapping[str, int | str]) -> BranchCount:
-    """Exact classes and boxes, complete by a definite stress and the sum of multiplicities."""
+    """Prove exact classes and boxes complete by a definite stress and the sum of multiplicities."""
     chart = attempt.chart
     classes = common_parameter(found.classes, chart.system.size) if found.classes else []
     proof = prove_algebraic(chart, classes, found.boxes, found.flat_boxes)
@@ -349,7 +350,7 @@ def _algebraic(attempt: _Attempt, found: Zeros, settings: Mapping[str, int | str
 
 
 def _failures(isolation: Isolation) -> list[str]:
-    """Where no box was found, and why."""
+    """The candidates around which no box was found, and the reasons."""
     return [
         f"no box around the candidate ({', '.join(f'{x.real:.6g}' for x in failure.point)}): "
         f"{failure.reason}"
@@ -358,7 +359,7 @@ def _failures(isolation: Isolation) -> list[str]:
 
 
 def _signs(undecided: list[Undecided]) -> tuple[str, ...]:
-    """What is not decided, and on how many roots."""
+    """The signs that are undecided, each with the number of roots on which it is."""
     counts = Counter(", ".join(item.what) for item in undecided)
     return tuple(
         f"sign not decided on {counted(count, 'root')}: {what}" for what, count in counts.items()

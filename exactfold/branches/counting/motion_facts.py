@@ -1,4 +1,4 @@
-"""What is known of a sheet of rigid panels before its motions are decomposed."""
+"""Facts about a sheet of rigid panels that are known before its motions are decomposed."""
 
 from __future__ import annotations
 
@@ -24,18 +24,18 @@ from exactfold.rigidity.facts import PatternFactsDocument
 
 
 class PanelKeys(TypedDict):
-    """The keys that belong to sheets of panels."""
+    """The keys for facts that only sheets of panels have."""
 
     panels: Positive
     field: FieldName
     flat_folds: list[FoldText]
     free_folds: list[FoldText]
     parts: list[Several[Natural]]
-    """Interior vertices that are joined by folds that may fold."""
+    """Each part lists interior vertices that are connected by folds that may fold."""
 
 
 class PanelFactsDocument(PanelKeys):
-    """The facts of a sheet of rigid panels; what belongs to triangulated sheets is null."""
+    """The facts of a sheet of rigid panels; keys for triangulated sheets are null."""
 
     format: Literal["exactfold info result"]
     version: Literal[1]
@@ -65,11 +65,11 @@ class DecomposedFactsDocument(PatternFactsDocument, PanelKeys):
 
 @dataclass(frozen=True)
 class PanelFacts:
-    """Facts of a sheet of rigid panels: nothing is solved.
+    """Facts about a sheet of rigid panels that need no solving.
 
-    `degrees` are the folds at each interior vertex. `flat` are the folds that stay flat in every
-    real motion, `free` those with both ends on the boundary; each of `parts` has the vertices that
-    are joined by other folds, and `moving` the number of folds at each of these that may fold.
+    `degrees` has the number of folds at each interior vertex. The folds `flat` stay flat in every
+    real motion. The folds `free` have both ends on the boundary. All other folds may fold:
+    each of `parts` lists vertices that such folds connect, and `moving` has their number at each.
     """
 
     pattern: PanelPattern
@@ -86,7 +86,7 @@ class PanelFacts:
 
     @property
     def expected(self) -> str:
-        """What `count` will do, in words."""
+        """What `count` will find or compute, in words."""
         if not self.parts:
             if not self.free:
                 return "rigid: no fold can fold while the panels stay rigid"
@@ -104,7 +104,7 @@ class PanelFacts:
         )
 
     def keys(self) -> PanelKeys:
-        """The keys of JSON that belong to sheets of panels."""
+        """The JSON keys for facts that only sheets of panels have."""
         return {
             "panels": len(self.pattern.faces),
             "field": self.pattern.field_name,
@@ -116,7 +116,7 @@ class PanelFacts:
     def to_dict(self, name: str | None = None) -> PanelFactsDocument:
         """The object printed by `exactfold info --json`: `schema("info")`.
 
-        What belongs to triangulated sheets is null.
+        Keys for triangulated sheets are null.
         """
         return {
             "format": "exactfold info result",
@@ -149,7 +149,7 @@ class PanelFacts:
 
 
 def panel_facts(pattern: PanelPattern) -> PanelFacts:
-    """The facts of a sheet of panels that `exactfold info` reports.
+    """The facts about a sheet of panels that `exactfold info` reports.
 
     >>> cross = PanelPattern([(-1, -1), (1, -1), (1, 1), (-1, 1), (0, 0)],
     ...     [(0, 1), (1, 2), (2, 3), (3, 0), (0, 4), (1, 4), (2, 4), (3, 4)])

@@ -1,4 +1,4 @@
-"""Multiple roots: the zeros of a chart with flat vertices, by the way in which each is proved."""
+"""Multiple roots: zeros at which vertices are flat, sorted by the way in which each is proved."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ from exactfold.solve.certify.isolation import isolate
 from exactfold.solve.certify.recognition import recognise
 from exactfold.solve.numeric.candidates import Candidates
 
-_MOST_TOGETHER = 64  # conjugate zeros in one class, for the sake of the checker
+_MOST_TOGETHER = 64  # most conjugate zeros in one class: more would cost the checker too much
 
 _FINE = 80
-"""Bits to which zeros of classes are told apart by the boxes that hold them."""
+"""Bits to which zeros of classes are enclosed when they are matched with boxes."""
 
 GROEBNER_LIMIT = 5
-"""Largest number of unknowns left on flat sheets for which a Groebner basis is computed."""
+"""A Groebner basis is computed if flat sheets leave at most this many unknowns."""
 
 
 @dataclass
 class Zeros:
-    """Zeros by the way in which they are proved."""
+    """Zeros, sorted by the way in which they are proved."""
 
     classes: list[RootClass] = field(default_factory=list)
     boxes: list[IsolatingBox] = field(default_factory=list)
@@ -42,15 +42,16 @@ class Zeros:
 
     @property
     def total(self) -> int:
-        """Their number with multiplicity."""
+        """The number of these zeros with multiplicity."""
         flat = sum(1 << len(sheets.vertices) for sheets, _ in self.flat_boxes)
         return sum(c.degree * c.multiplicity for c in self.classes) + len(self.boxes) + flat
 
 
 def solve_flat(chart: Chart, vertices: frozenset[int], points: FloatArray, found: Zeros) -> None:
-    """Add the zeros with these flat vertices; `points` are near them, shape (m, n).
+    """Add to `found` the zeros at which these vertices are flat.
 
-    Exactly if few unknowns are left on the flat sheets, else in boxes if the system is square.
+    They are solved for exactly if the flat sheets leave few unknowns, else isolated in boxes if the
+    system is square. `points`, of shape (m, n), are candidates near the zeros.
     """
     sheets = flat_sheets(chart, vertices)
     if sheets is None:
@@ -64,10 +65,10 @@ def solve_flat(chart: Chart, vertices: frozenset[int], points: FloatArray, found
 
 
 def recognised(chart: Chart, found: Zeros, undecided: Sequence[Undecided]) -> Zeros | None:
-    """The same zeros, those in boxes on which some folds seem flat as exact classes.
+    """The same zeros, but zeros in boxes at which folds seem flat are replaced by exact classes.
 
-    All zeros on which the same folds are flat are the zeros of a rational system, so they are
-    recognised together. None if none was.
+    The zeros at which the same folds are flat are all zeros of one rational system, so they are
+    recognised together. None if no zero was recognised.
     """
     groups: dict[tuple[object, ...], list[BoxRoot | FlatBoxRoot]] = {}
     for item in undecided:
@@ -100,11 +101,12 @@ def recognised(chart: Chart, found: Zeros, undecided: Sequence[Undecided]) -> Ze
 def with_exact_roots(
     branches: Sequence[Branch], classes: Sequence[RootClass]
 ) -> tuple[Branch, ...]:
-    """The same branches, whose boxes hold all zeros, told which zero of the classes each holds.
+    """The same branches, each with the exact zero that its box holds, if that is known.
 
-    A zero of a class whose bounds meet one box only is the zero in that box.
+    The boxes of the branches hold all zeros. If the bounds of a zero of a class meet only one box,
+    it is the zero in that box.
     """
-    found = list(branches)
+    exact = list(branches)
     for root_class in classes:
         for index, point in enumerate(root_class.real_points(_FINE)):
             near = [k for k, branch in enumerate(branches) if _meets(branch.root, point)]
@@ -112,12 +114,12 @@ def with_exact_roots(
                 root = branches[near[0]].root
                 if isinstance(root, BoxRoot):
                     known = AlgebraicRoot(root_class, index)
-                    found[near[0]] = replace(branches[near[0]], root=replace(root, known=known))
-    return tuple(found)
+                    exact[near[0]] = replace(branches[near[0]], root=replace(root, known=known))
+    return tuple(exact)
 
 
 def _meets(root: Root | None, point: Sequence[Interval]) -> bool:
-    """Whether a box of bounds meets the box of a root."""
+    """Whether the bounds of a point meet the box of a root."""
     return isinstance(root, BoxRoot) and all(
         low <= bounds[1] and bounds[0] <= high
         for (low, high), bounds in zip(
@@ -127,9 +129,9 @@ def _meets(root: Root | None, point: Sequence[Interval]) -> bool:
 
 
 def are_told_apart(branches: Sequence[Branch]) -> bool:
-    """Whether no two branches proved in different ways have the same, or mirrored, signs.
+    """Whether branches that were proved in different ways always differ in their signs.
 
-    Only the folds that are decided on all branches are looked at.
+    Opposite signs count as the same. Only folds that are decided on all branches are compared.
     """
     kinds: dict[tuple[str, str], object] = {}
     texts = [branch.assignment_text for branch in branches]

@@ -22,13 +22,13 @@ from exactfold.errors import ClusterError, PackageMissingError, WorkerDiedError
 from exactfold.pattern.crease_pattern import CreasePattern, Point, Triangle
 
 LOCAL = "local"
-"""In place of an address: a cluster of processes on this machine."""
+"""Given instead of an address: start a cluster of processes on this machine."""
 
 _AHEAD = 4
-"""Blocks submitted for each thread of the cluster, or waiting for their turn."""
+"""Blocks that are submitted at a time for each thread of the cluster."""
 
 _ASK = 5.0
-"""Seconds after which the number of threads is asked for again."""
+"""Seconds after which the cluster is asked again how many threads it has."""
 
 Spec = tuple[str, tuple[Point, ...], tuple[Triangle, ...], int]
 
@@ -39,16 +39,17 @@ def dask_engine(
 ) -> Iterator[Engine]:
     """An engine for `stream_branches` on the cluster whose scheduler is at `address`.
 
-    Each block is a task that depends on nothing else. A few for each thread of the cluster are
-    submitted at a time; results are yielded in order and once each, so that the file is that of a
-    local run. The tasks of a worker that dies are run again by the scheduler. With the address
-    "local", a cluster of `workers` processes (default: all cores) lives as long as the context; a
-    script that asks for it needs the usual `if __name__ == "__main__"`.
+    Each block is a task that depends on no other task. A few tasks are submitted at a time for each
+    thread of the cluster. Each result is yielded once, in order, so that the file equals that of a
+    local run. If a worker dies, the scheduler runs its tasks again. The address "local" starts a
+    cluster of `workers` processes (default: all cores), which lives as long as the context; a
+    script that uses it needs the usual `if __name__ == "__main__"`.
 
-    Workers need the same version of exactfold; they are believed, as processes of this machine
-    are, until `check_compact` is run. Raises `PackageMissingError`, `ClusterError` if no scheduler
-    answers or no worker joins within `timeout` seconds; the engine raises `WorkerDiedError` if one
-    block kills worker after worker or the scheduler is lost.
+    Workers must have the same version of exactfold. Their results are trusted, like those of
+    processes of this machine, until `check_compact` verifies the file. Raises
+    `PackageMissingError`, and `ClusterError` if no scheduler answers or no worker joins within
+    `timeout` seconds; the engine raises `WorkerDiedError` if one block kills worker after worker or
+    the scheduler is lost.
     """
     with cluster_client(address, workers, timeout=timeout) as client:
 
@@ -64,7 +65,7 @@ def dask_engine(
 def cluster_client(
     address: str, workers: int | None = None, *, timeout: float = 30.0
 ) -> Iterator[Any]:
-    """A client of the cluster at an address, or of one started here, as for `dask_engine`."""
+    """A client of the cluster at `address`; "local" starts one, as in `dask_engine`."""
     try:
         import distributed
     except ImportError:
@@ -80,7 +81,7 @@ def cluster_client(
                         n_workers=workers or available_cores(),
                         threads_per_worker=1,
                         dashboard_address=None,
-                        # Any free port: two runs at once would want the same one, and say so.
+                        # Any free port: two runs at once would want the same one and warn.
                         scheduler_kwargs={"dashboard_address": "127.0.0.1:0", "dashboard": False},
                         silence_logs=logging.CRITICAL,
                     )
@@ -99,13 +100,13 @@ def cluster_client(
 
 
 def _require_address(address: str) -> None:
-    """Raise `ValueError` unless an address has a scheme and a port: a client never gives up then.
+    """Raise `ValueError` for an address without a valid port, before a client is made for it.
 
-    Its constructor fails, and what it left hangs when it is collected.
+    The constructor of the client would fail, and its remains would hang when they are collected.
     """
     from distributed.comm import get_address_host_port
 
-    if address.startswith("inproc://"):  # of this process; it has no port
+    if address.startswith("inproc://"):  # a cluster in this process, without a port
         return
     _, port = get_address_host_port(address if "://" in address else f"tcp://{address}", True)
     if not 0 < int(port) < 1 << 16:
@@ -115,7 +116,7 @@ def _require_address(address: str) -> None:
 def _blocks(
     client: Any, conveyor: Conveyor, left: range
 ) -> Generator[tuple[ProvedBlock, str], None, None]:
-    """The blocks in `left` with their lines, in order, from the cluster of `client`."""
+    """The blocks numbered in `left` with their lines, in order, proved by the cluster."""
     from distributed import KilledWorker
 
     pattern = conveyor.problem.pattern
@@ -151,11 +152,11 @@ def _blocks(
             future.cancel()
 
 
-_worker = threading.local()  # a thread may not share what another is solving with
+_worker = threading.local()  # each thread has a conveyor of its own
 
 
 def prove_block(spec: Spec, index: int) -> tuple[ProvedBlock, str]:
-    """One block in a worker, without its boxes, which are in its line, and the line."""
+    """Prove one block in a worker: the block and its line. Only the line holds the boxes."""
     if getattr(_worker, "spec", None) != spec:
         needed, vertices, triangles, block_size = spec
         if (found := version("exactfold")) != needed:

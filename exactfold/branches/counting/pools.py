@@ -1,4 +1,4 @@
-"""Independent jobs on worker processes of this machine or on a dask cluster, as they end."""
+"""Runs independent jobs on processes of this machine or on a dask cluster."""
 
 from __future__ import annotations
 
@@ -18,29 +18,31 @@ J = TypeVar("J")
 R = TypeVar("R")
 
 _AHEAD = 3
-"""Jobs under way or waiting for each process: few, so that little is lost and memory is bounded."""
+"""Jobs that each process has under way or waiting: few, which bounds losses and memory."""
 
 _BUNCH = 0.25
-"""Seconds of work in a task of a cluster, where jobs are shorter: each task costs it some 10 ms."""
+"""Seconds of work in one task of a cluster. Shorter jobs share a task, as each task costs the
+cluster about 10 ms."""
 
-_DIED = "the process that worked on it died, most likely for want of memory"
+_DIED = "the process that worked on it died, most likely because memory ran out"
 
 
 class Pool(Protocol):
     """Runs `work` on every job and yields each with its result, in the order in which they end.
 
-    `work` is a function of a module, and jobs and results pickle. A job whose process died has a
-    `WorkerDiedError` as its result, and the others go on. Closed at an interruption.
+    `work` is a function of a module, and jobs and results can be pickled. If the process of a job
+    dies, the result of the job is a `WorkerDiedError`, and the other jobs go on. An interruption
+    closes the generator.
     """
 
     def __call__(
         self, work: Callable[[J], R], jobs: Iterable[J]
     ) -> Generator[tuple[J, R | WorkerDiedError], None, None]:
-        """Take jobs as there is room for them."""
+        """Run the jobs; a job is taken from `jobs` when there is room for it."""
 
 
 def process_pool(processes: int) -> Pool:
-    """Up to `processes` processes of this machine; with one, the work is done in this one."""
+    """Up to `processes` processes of this machine; with 1, the calling process does the work."""
 
     def run(
         work: Callable[[J], R], jobs: Iterable[J]
@@ -54,10 +56,10 @@ def process_pool(processes: int) -> Pool:
 
 @contextmanager
 def dask_pool(address: str, workers: int | None = None, *, timeout: float = 30.0) -> Iterator[Pool]:
-    """The cluster whose scheduler is at `address`, or a "local" one: see `dask_engine`.
+    """The cluster whose scheduler is at `address`; "local" starts one, as in `dask_engine`.
 
-    Raises `PackageMissingError` and `ClusterError` at once, and `WorkerDiedError` while it works if
-    the scheduler is lost.
+    Raises `PackageMissingError` and `ClusterError` at once, and `WorkerDiedError` if the scheduler
+    is lost during the work.
     """
     with cluster_client(address, workers, timeout=timeout) as client:
 
@@ -77,8 +79,8 @@ def _on_cluster(
     from distributed import KilledWorker, as_completed
 
     left, needed = iter(jobs), version("exactfold")
-    suspects: deque[J] = deque()  # under way where workers died: each runs again by itself
-    under_way: dict[Any, tuple[list[J], bool]] = {}  # the jobs, and whether nothing else runs
+    suspects: deque[J] = deque()  # jobs of tasks that killed workers: each runs again by itself
+    under_way: dict[Any, tuple[list[J], bool]] = {}  # by task: jobs, and whether alone
     ended = as_completed(loop=client.loop)
     bunch = 1
 
@@ -120,7 +122,7 @@ def _on_cluster(
 
 
 def _checked(needed: str, work: Callable[[J], R], jobs: list[J]) -> tuple[list[R], float]:
-    """The results of jobs on a worker that has the right version of exactfold, and the seconds."""
+    """Run jobs on a worker with the right version of exactfold; their results, and the seconds."""
     if (found := version("exactfold")) != needed:
         raise ClusterError(f"a worker has exactfold {found}, not {needed}")
     start = time.monotonic()

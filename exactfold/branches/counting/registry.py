@@ -1,4 +1,4 @@
-"""The registry of solvers: every way to propose zeros behind one signature, and one's own."""
+"""The registry of solvers: all have one signature, and users can register their own."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from exactfold.rigidity.equations.branch_system import Chart
     from exactfold.solve.numeric.candidates import Candidates
 
-# Each solver imports what it needs when it is called: the names alone must not take long to load.
+# Each solver imports its modules when it is called, so that the names alone load fast.
 
 NEWTON = "newton"
 """Newton's method, one start for each sign vector: the solver of the conveyor."""
@@ -26,12 +26,12 @@ _NAME = re.compile(r"[a-z][a-z0-9_-]*\Z")
 
 
 class Solver(Protocol):
-    """What proposes zeros of the system of a chart: a function (chart, seed, progress).
+    """A function (chart, seed, progress) that proposes zeros of the system of a chart.
 
     `chart.system` holds the quadrics, `chart.branch_system.pattern` the sheet. Equal seeds should
-    give equal results. `progress(done, total)`, unless it is None, may be called as work advances.
-    Nothing is expected of the points but their shape (m, n) and that they are finite: a wrong or
-    missing point costs the proof, never its truth.
+    give equal results. Unless `progress` is None, the solver may call `progress(done, total)` as
+    the work advances. The points must be finite and have the shape (m, n). Because of a wrong or
+    missing point a proof may fail, but nothing false is ever proved.
     """
 
     def __call__(self, chart: Chart, seed: int, progress: Steps | None, /) -> Candidates:
@@ -40,7 +40,7 @@ class Solver(Protocol):
 
 @dataclass(frozen=True)
 class RegisteredSolver:
-    """A solver by its name, with one line on how it works."""
+    """A solver with its name and one line on how it works."""
 
     name: str
     solver: Solver
@@ -52,11 +52,12 @@ _registered: dict[str, RegisteredSolver] = {}
 
 
 def register_solver(name: str, solver: Solver, *, description: str) -> None:
-    """Make a solver known as a method of `count_branches` and `find_candidates`.
+    """Register a solver as a method of `count_branches` and `find_candidates`.
 
-    `name` is of small letters, digits, "-" and "_". The registry belongs to the process: a script
-    that starts others registers in each. Raises `UsageError` for a name that is taken, for "auto"
-    and earlier names of methods, and for a solver that cannot be called.
+    `name` consists of small letters, digits, "-" and "_". The registry belongs to the process: a
+    script that starts other processes must register the solver in each. Raises `UsageError` for a
+    name that is taken, for "auto" and earlier names of methods, and for a solver that cannot be
+    called.
 
     >>> import numpy as np
     >>> from exactfold.solve.numeric.candidates import Candidates
@@ -68,16 +69,16 @@ def register_solver(name: str, solver: Solver, *, description: str) -> None:
     >>> unregister_solver("nothing")
     """
     if not isinstance(name, str) or not _NAME.match(name):
-        raise UsageError(f"{name!r} cannot name a solver: write small letters, digits, - and _")
+        raise UsageError(f"{name!r} cannot name a solver: use small letters, digits, - and _")
     if name in (*METHODS, *ALIASES):
-        raise UsageError(f"there is a method {name!r} already")
+        raise UsageError(f"there is a method {name!r} already: choose another name")
     if not callable(solver):
         raise UsageError(f"the solver {name!r} cannot be called: it is a {type(solver).__name__}")
     _registered[name] = RegisteredSolver(name, solver, description)
 
 
 def unregister_solver(name: str) -> None:
-    """Forget a solver of one's own; raises `UsageError` for any other name."""
+    """Remove a solver that `register_solver` added; raises `UsageError` for any other name."""
     if name not in _registered or _registered[name].is_built_in:
         raise UsageError(f"no solver {name!r} was registered")
     del _registered[name]
@@ -93,7 +94,7 @@ def solvers() -> dict[str, RegisteredSolver]:
 
 
 class _Methods(Sequence[str]):
-    """ "auto" and the names of all solvers, as they are now; equal to the tuple of them."""
+    """ "auto" and the current names of all solvers; equal to the tuple of these names."""
 
     def __iter__(self) -> Iterator[str]:
         return iter(("auto", *_registered))
@@ -121,14 +122,14 @@ METHODS: Sequence[str] = _Methods()
 
 @dataclass(frozen=True)
 class Choice:
-    """A method and why it was chosen."""
+    """A method and the reason why it was chosen."""
 
     method: str
     why: str
 
 
 def choose(method: str) -> Choice:
-    """The solver to start with; "auto" takes Newton's method, which every pattern with D = 1 has.
+    """The method to start with; "auto" chooses Newton's method, which suits every D = 1 pattern.
 
     Raises `UsageError` for a method that is neither in `METHODS` nor an earlier name of one.
 
@@ -146,13 +147,13 @@ def choose(method: str) -> Choice:
 def find_candidates(
     chart: Chart, method: str = "auto", *, seed: int = 0, progress: Steps | None = None
 ) -> Candidates:
-    """Candidates for all zeros of the system of a chart; untrusted, whatever the method.
+    """Candidates for all zeros of the system of a chart; no method is trusted to find them.
 
-    `method` is one of `METHODS`; of the solvers of exactfold only the complex homotopy uses `seed`.
-    `progress(done, total)` is called as work advances. A pattern beyond the range of floats gives
-    no candidates, and says so in `lost`, as does a registered solver that raises an exception.
-    Raises `UsageError` for an unknown method or a negative seed, `SolverError` if a solver
-    returns anything but finite points of the right shape.
+    `method` is one of `METHODS`. Among the solvers of exactfold only the complex homotopy uses
+    `seed`. The solver may call `progress(done, total)` as the work advances. If a pattern is beyond
+    the range of floats, or a registered solver raises an exception, there are no candidates, and
+    `lost` has the reason. Raises `UsageError` for an unknown method or a negative seed,
+    `SolverError` if a solver returns anything but finite points of the right shape.
 
     >>> from exactfold.pattern.families import two_vertex
     >>> from exactfold.rigidity.equations.branch_system import BranchSystem
@@ -168,7 +169,7 @@ def find_candidates(
     if seed < 0:
         raise UsageError(f"the seed must not be negative: {seed}")
     size = chart.system.size
-    if size == 0:  # no equation: the one point there is
+    if size == 0:  # without unknowns there is exactly one point
         return Candidates(chosen.name, np.zeros((1, 0), dtype=np.complex128))
     report = _Reported(progress)
     try:
@@ -188,7 +189,7 @@ def find_candidates(
 
 
 class _Reported:
-    """A progress function that remembers whether it raised: that is not a failure of the solver."""
+    """A progress function that remembers whether it raised, as the solver did not fail then."""
 
     def __init__(self, progress: Steps | None) -> None:
         self.progress = progress
@@ -205,7 +206,7 @@ class _Reported:
 
 
 def _checked(name: str, found: Any, size: int) -> Candidates:
-    """What a solver returned as `Candidates` of its name with complex points, or an error."""
+    """What a solver returned, as `Candidates` with its name; a bad result is a `SolverError`."""
     import numpy as np
 
     from exactfold.solve.numeric.candidates import Candidates
@@ -217,7 +218,7 @@ def _checked(name: str, found: Any, size: int) -> Candidates:
         points = np.asarray(found.points, dtype=np.complex128)
     except (TypeError, ValueError) as error:
         raise SolverError(
-            f"the points of the solver {name!r} are no array of complex numbers: {error}"
+            f"the points of the solver {name!r} are not an array of complex numbers: {error}"
         ) from None
     if points.ndim != 2 or points.shape[1] != size:
         raise SolverError(
@@ -232,7 +233,9 @@ def _checked(name: str, found: Any, size: int) -> Candidates:
         isinstance(key, str) and isinstance(value, int | str)
         for key, value in found.settings.items()
     ):
-        raise SolverError(f"`settings` of the solver {name!r} are not numbers and texts by name")
+        raise SolverError(
+            f"`settings` of the solver {name!r} do not map names to integers or texts"
+        )
     return replace(found, method=name, points=points, lost=tuple(found.lost))
 
 

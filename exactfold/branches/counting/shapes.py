@@ -1,4 +1,4 @@
-"""How many shapes a sheet has whose vertices have angle deficits."""
+"""Counts the shapes of a sheet whose vertices have angle deficits."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ from exactfold.pattern.described import PatternDocument, described
 from exactfold.pattern.loading import PatternLike, as_pattern
 
 MOST_LISTED = 10
-"""Vertices up to which the shapes are found one by one where some may coincide."""
+"""With at most this many vertices, shapes that may coincide are found one by one."""
 
 
 class ShapesDocument(TypedDict):
-    """The shapes of a sheet with given angle deficits and a given boundary."""
+    """The shapes of a sheet with given angle deficits and given boundary heights."""
 
     format: Literal["exactfold shapes result"]
     version: Literal[1]
@@ -39,23 +39,23 @@ class ShapesDocument(TypedDict):
     reason: str
     distinct: Positive | None
     bounds: Pair[Positive]
-    """Numbers between which `distinct` lies."""
+    """The least and the greatest number that `distinct` can be."""
     with_multiplicity: Annotated[int, Keywords(minimum=2)]
     curvature: dict[VertexText, Rational]
     """Angle deficits that are not 0, by interior vertex."""
     rim: dict[VertexText, Rational]
-    """Heights of the boundary."""
+    """Heights of the boundary vertices."""
     signs: list[Annotated[str, Keywords(pattern="^[-+0]+$")]]
-    """Vertex signs of the shapes, if they were found one by one."""
+    """Vertex signs of each shape, if the shapes were found one by one."""
 
 
 @dataclass(frozen=True, repr=False)
 class ShapeCount:
-    """The number of shapes with given angle deficits and a given boundary, PROVED or UNDECIDED.
+    """The number of shapes with given angle deficits and boundary heights, PROVED or UNDECIDED.
 
-    `distinct` lies between the two `bounds`, which agree if it is PROVED; `with_multiplicity` is
-    2^n, n the number of vertices that can pop. `signs` are those of the different shapes where they
-    were found one by one (0 where the star is flat), else empty.
+    `distinct` lies between the two `bounds`, which agree if the status is PROVED.
+    `with_multiplicity` is 2^n for n vertices that can pop. `signs` has the vertex signs of each
+    different shape (0 for a flat star) if the shapes were found one by one; otherwise it is empty.
     """
 
     pattern: CreasePattern
@@ -69,7 +69,7 @@ class ShapeCount:
 
     @property
     def distinct(self) -> int | None:
-        """The number of different shapes, None where it is not known."""
+        """The number of different shapes; None if it is not known."""
         return self.bounds[0] if self.status is PROVED else None
 
     def to_dict(self, name: str | None = None) -> ShapesDocument:
@@ -101,13 +101,14 @@ def count_shapes(
     boundary_heights: BoundaryHeights | None = None,
     progress: Progress | None = None,
 ) -> ShapeCount:
-    """The shapes of a convex sheet with given angle deficits and a given boundary.
+    """Count the shapes of a convex sheet with given angle deficits and boundary heights.
 
-    With a positive deficit at each of n vertices there are exactly 2^n, one for each sign vector
-    (docs/branch.md, Angle deficits). With deficits 0 at some there are 2^n with multiplicity, and
-    they differ unless stars are flat: up to ten vertices all are found and proved; beyond that the
-    number lies between 2^p, for p positive deficits, and 2^n. `boundary_heights`: heights of the
-    boundary, 0 if none are given. Raises as `find_branch`.
+    If n vertices can pop and each has a positive deficit, there are exactly 2^n shapes, one for
+    each sign vector (docs/branch.md, Angle deficits). If some deficits are 0, there are 2^n shapes
+    with multiplicity, and shapes coincide only if stars are flat. For at most ten vertices, all
+    shapes are found and proved. For more vertices, the number lies between 2^p, for p positive
+    deficits, and 2^n. `boundary_heights` gives the boundary heights, which are 0 by default. Raises
+    the errors of `find_branch`.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> count_shapes(single_vertex(5), {5: "1/10"})
@@ -134,9 +135,9 @@ def count_shapes(
     for k, signs in enumerate(product((-1, 1), repeat=size)):
         if progress is not None:
             progress("shapes", k, most)
-        found = finder.find(dict(zip(finder.poppable, signs, strict=True)))
-        if found.status is not PROVED:
-            return made(UNDECIDED, found.reason, (least, most))
-        texts.add("".join("0+-"[found.vertex_signs[v]] for v in finder.poppable))
+        shape = finder.find(dict(zip(finder.poppable, signs, strict=True)))
+        if shape.status is not PROVED:
+            return made(UNDECIDED, shape.reason, (least, most))
+        texts.add("".join("0+-"[shape.vertex_signs[v]] for v in finder.poppable))
     ordered = tuple(sorted(texts))
     return made(PROVED, "found one by one", (len(texts), len(texts)), ordered)

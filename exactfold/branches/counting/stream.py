@@ -1,4 +1,4 @@
-"""All branches of a pattern, proved block by block and streamed to a compact certificate."""
+"""Proves all branches of a pattern block by block and streams them to a compact certificate."""
 
 from __future__ import annotations
 
@@ -31,18 +31,19 @@ if TYPE_CHECKING:
     from exactfold.branches.values.count_document import StreamDocument, StreamedDocument
 
 HANDED_OVER = 12
-"""Most foldable vertices of a pattern with open sign vectors that is also counted otherwise."""
+"""The fallback `count_branches` is tried for patterns with at most this many foldable vertices."""
 
 MOST_LISTED = 1000
-"""Most open sign vectors that a run keeps."""
+"""Most open sign vectors that the result of a run names."""
 
 
 @dataclass(frozen=True)
 class OpenRoot:
-    """A sign vector whose branch was not proved, as text over the foldable vertices, and why.
+    """A sign vector whose branch was not proved, and the reason.
 
-    `limit` has 0 in place of the signs of vertices that look flat at the end of the path: paths
-    with the same `limit` seem to end at one point. Nothing of this is proved.
+    `signs` has one character for each foldable vertex. `limit` is the same text with 0 for each
+    vertex that looks flat at the end of the path: paths with the same `limit` seem to end at one
+    point. None of this is proved.
     """
 
     signs: str
@@ -52,14 +53,15 @@ class OpenRoot:
 
 @dataclass(frozen=True, repr=False)
 class StreamedCount(BranchCount):
-    """What a run of `stream_branches` proved: a `BranchCount`, and the file.
+    """The result of `stream_branches`: a `BranchCount`, and facts about the file and the run.
 
-    If `path` holds a complete certificate (`unproved` is 0), the branches are in the file and not
-    listed here: `read_branches` reads them. Otherwise the roots that are in the file are proved
-    nevertheless, `open_roots` names the sign vectors without one (1000 at most; their number is
-    `unproved`), and up to 12 foldable vertices the pattern was counted otherwise as well, which may
-    prove the count. `exact` counts roots that needed integers, `resumed` the blocks taken over from
-    an earlier run, verified again. `cpu_seconds` is processor time by stage, of all workers.
+    If `unproved` is 0, the file at `path` is a complete certificate. The branches are in the file
+    and not listed here; `read_branches` reads them. If `unproved` is positive, the roots in the
+    file are still proved, `open_roots` names up to 1000 of the `unproved` sign vectors without a
+    root, and `count_branches` has also counted a pattern with at most 12 foldable vertices, which
+    may prove the count. `exact` is the number of roots that needed integers, `resumed` the number
+    of blocks that an earlier run left and this run verified again. `cpu_seconds` is the processor
+    time of all workers by stage.
     """
 
     path: str = ""
@@ -83,7 +85,7 @@ class StreamedCount(BranchCount):
 
     @property
     def groups(self) -> dict[str, list[OpenRoot]]:
-        """The open roots whose paths seem to meet others, by the sign vector they share there."""
+        """The open roots whose paths seem to meet, grouped by the sign vector where they meet."""
         return by_limit(self.open_roots)
 
     def to_dict(self, certificate: str | None = None, name: str | None = None) -> StreamedDocument:
@@ -103,8 +105,8 @@ class StreamedCount(BranchCount):
             },
             "cpu_seconds": {name: round(value, 3) for name, value in self.cpu_seconds.items()},
         }
-        found = {**super().to_dict(certificate, name), "stream": stream}
-        return cast("StreamedDocument", found)
+        document = {**super().to_dict(certificate, name), "stream": stream}
+        return cast("StreamedDocument", document)
 
 
 def stream_branches(
@@ -121,23 +123,23 @@ def stream_branches(
 ) -> StreamedCount:
     """Prove all branches of a pattern with four boundary vertices, streaming them to `path`.
 
-    Each of the 2^n sign vectors leads to one candidate; a box around it with one zero whose signs
-    are those asked for makes the zeros pairwise different, and by refined Bezout complete
-    (docs/mathematics.md, Completeness and Nappes). Memory does not grow with 2^n: a block of 1024
-    roots, and two waiting for each worker. Where sign vectors stay open, as at multiple roots, the
-    pattern is handed over to `count_branches` if it has at most 12 foldable vertices; not without
-    `hand_over`.
+    Each of the 2^n sign vectors leads to one candidate. A box around the candidate is proved to
+    hold one zero with exactly these signs. So the zeros are pairwise different, and by refined
+    Bezout they are all (docs/mathematics.md, Completeness and Nappes). Memory does not grow with
+    2^n: it holds a block of 1024 roots, and two blocks for each worker. If sign vectors stay open,
+    as at multiple roots, and the pattern has at most 12 foldable vertices, `count_branches` counts
+    the pattern as a fallback, unless `hand_over` is False.
 
-    Up to `workers` processes share the blocks, fewer if there is little to do; a script that asks
-    for several needs the usual `if __name__ == "__main__"`. With `resume`, a file left by an
-    interrupted run is verified and continued; otherwise it is replaced, or refused without
-    `replace`. `progress(stage, done, total)` counts sign vectors. An `engine`, such as
-    `dask_engine`, takes the place of the `workers`.
+    Up to `workers` processes share the blocks, fewer if little is left to do; a script that asks
+    for several needs the usual `if __name__ == "__main__"`. An `engine`, such as `dask_engine`,
+    replaces these processes. With `resume`, a file that an interrupted run left is verified and
+    continued. Without it, a file at `path` is replaced, or refused if `replace` is False.
+    `progress(stage, done, total)` counts sign vectors.
 
-    Raises `NotApplicableError` unless D = 1 and some vertex is foldable, 40 at most,
-    `NotCountedError`, `ForeignJournalError`, `JournalInUseError` while another run writes the
-    file, `UnwritableFileError`, `UsageError`, `WorkerDiedError`. An interruption leaves a file that
-    can be resumed. UNDECIDED does not mean that the count is unusual.
+    Raises `NotApplicableError` unless D = 1 and 1 to 40 vertices are foldable, `NotCountedError`,
+    `ForeignJournalError`, `JournalInUseError` while another run writes the file,
+    `UnwritableFileError`, `UsageError`, `WorkerDiedError`. An interruption leaves a file that can
+    be resumed. UNDECIDED does not mean that the count is unusual.
 
     >>> import os, tempfile
     >>> from exactfold.pattern.random_squares import random_square
@@ -176,12 +178,12 @@ def stream_branches(
         else:
             journal.sync()
     if journal.complete:
-        found = _proved(pattern, total)
+        count = _proved(pattern, total)
     else:
-        found = _open(pattern, conveyor, tally)
+        count = _open(pattern, conveyor, tally)
         if hand_over and conveyor.size <= HANDED_OVER:
-            found = _handed_over(found, seed, progress)
-    given = {f.name: getattr(found, f.name) for f in fields(BranchCount)}
+            count = _handed_over(count, seed, progress)
+    given = {f.name: getattr(count, f.name) for f in fields(BranchCount)}
     given["seconds"] = time.perf_counter() - start
     return StreamedCount(
         **given,
@@ -231,35 +233,35 @@ def _open(pattern: CreasePattern, conveyor: Conveyor, tally: Tally) -> BranchCou
     )
 
 
-def _handed_over(found: BranchCount, seed: int, progress: Progress | None) -> BranchCount:
-    """The count by other means, with what the run left open if that proves nothing either."""
-    other = count_branches(found.pattern, seed=seed, progress=progress)
+def _handed_over(streamed: BranchCount, seed: int, progress: Progress | None) -> BranchCount:
+    """The count by `count_branches`; if undecided, with the open questions of the run, too."""
+    other = count_branches(streamed.pattern, seed=seed, progress=progress)
     if other.status is PROVED:
         return other
-    return changed(other, open_questions=(*found.open_questions, *other.open_questions))
+    return changed(other, open_questions=(*streamed.open_questions, *other.open_questions))
 
 
-# --- sign vectors whose branch was not proved: collected, grouped, and put into words ------------
+# --- sign vectors whose branch was not proved are collected, grouped, and put into words ---------
 
 
 def open_root(conveyor: Conveyor, number: int, end: OpenEnd) -> OpenRoot:
-    """The open end of a path by its number."""
+    """The open root of the sign vector with this number."""
     signs = "".join("+-"[number >> k & 1] for k in range(conveyor.size))
     limit = "".join("0" if k in end.flat else sign for k, sign in enumerate(signs))
     return OpenRoot(signs, end.reason, limit)
 
 
 def by_limit(roots: Sequence[OpenRoot]) -> dict[str, list[OpenRoot]]:
-    """The open roots whose paths seem to meet others, by the sign vector they share there."""
-    found: dict[str, list[OpenRoot]] = {}
+    """The open roots whose paths seem to meet, grouped by the sign vector where they meet."""
+    groups: dict[str, list[OpenRoot]] = {}
     for root in roots:
         if "0" in root.limit:
-            found.setdefault(root.limit, []).append(root)
-    return found
+            groups.setdefault(root.limit, []).append(root)
+    return groups
 
 
 class Tally:
-    """Sums over the blocks of a run; of open roots the first ones are kept."""
+    """Sums over the blocks of a run, and the first `MOST_LISTED` open roots."""
 
     def __init__(self) -> None:
         self.open_roots: list[OpenRoot] = []
@@ -267,7 +269,7 @@ class Tally:
         self.seconds: Counter[str] = Counter()
 
     def add(self, conveyor: Conveyor, block: ProvedBlock) -> None:
-        """Count one block."""
+        """Add one block to the sums."""
         self.exact += len(block.exact)
         self.unproved += len(block.open)
         self.steps += block.steps
@@ -278,16 +280,16 @@ class Tally:
                 self.open_roots.append(open_root(conveyor, number, end))
 
     def culprits(self, foldable: Sequence[int]) -> str:
-        """What keeps the open sign vectors from being proved; `foldable` names their vertices."""
+        """Why sign vectors are open, in words; `foldable` names the vertices of their signs."""
         zeros = {k for root in self.open_roots for k, s in enumerate(root.limit) if s == "0"}
         if not zeros:
-            return "for each other the reason is below"
+            return "the reasons for the others are below"
         flat = ", ".join(str(foldable[k]) for k in sorted(zeros))
         noun, verb = agreeing(len(zeros), "vertex"), agreeing(len(zeros), "looks")
         return f"on the others {noun} {flat} {verb} flat"
 
     def questions(self) -> Iterator[str]:
-        """Groups of sign vectors that seem to meet, then what is open by itself."""
+        """In words: groups of sign vectors that seem to meet, then single open sign vectors."""
         for limit, group in by_limit(self.open_roots).items():
             signs = ", ".join(root.signs for root in group[:8])
             more = f" and {len(group) - 8} more" if len(group) > 8 else ""

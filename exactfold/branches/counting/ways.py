@@ -1,4 +1,4 @@
-"""In how many ways any sheet folds: branches of triangulated sheets, motions of rigid panels."""
+"""Counts the ways in which any sheet folds: branches of triangles, motions of rigid panels."""
 
 from __future__ import annotations
 
@@ -34,15 +34,16 @@ def count_ways(
     number: int | None = None,
     progress: Progress | None = None,
 ) -> BranchCount | Decomposition:
-    """In how many ways a sheet folds, whatever its faces; the result says which theory applied.
+    """Count the ways in which a sheet folds, whatever its faces are.
 
-    A triangulated sheet with four boundary vertices (D = 1), with three, or with one interior
-    vertex has branches: `count_branches`. So has one with a convex boundary of more vertices, whose
-    `families` are its irreducible components besides. Every other sheet has motions of rigid
-    panels: `decompose`. Files of all formats are read (`open_pattern`), drawings repaired and made
-    exact; `number`, from 1, chooses among the sheets of a drawing with several. Where loops nearly
-    close, the sheet is read again with other values of `snap`, and the first that closes each is
-    named.
+    A triangulated sheet with three or four boundary vertices or one interior vertex has branches,
+    which `count_branches` counts. So has a triangulated sheet with a convex boundary of more
+    vertices; its irreducible components are the `families` of the result. Every other sheet has
+    motions of rigid panels, which `decompose` finds. The type of the result shows which theory
+    applied. Files of all formats are read (`open_pattern`); drawings are repaired and made exact.
+    If a drawing holds several sheets, `number`, from 1, chooses one. If loops of the sheet nearly
+    close, the file is read again with other values of `snap`, and for each loop the result names
+    the first value with which it closes.
 
     Raises the errors of `open_pattern` and `count_branches`.
 
@@ -61,7 +62,7 @@ def count_ways(
 def count_opened(
     opened: Opened, *, method: str = "auto", seed: int = 0, progress: Progress | None = None
 ) -> BranchCount | Decomposition:
-    """As `count_ways`, of a sheet that has been opened."""
+    """`count_ways` for a sheet that is already open."""
     sheet = opened.sheet
     if isinstance(sheet, CreasePattern) and sheet.interior:
         known = has_branches(sheet)
@@ -78,8 +79,8 @@ def count_opened(
 
 
 def decompose_opened(opened: Opened, *, progress: Progress | None = None) -> Decomposition:
-    """The motions of a sheet that has been opened, as of rigid panels; see `decompose`."""
-    from exactfold.panels.decomposition import decompose  # here, as branches do without
+    """The motions of an open sheet whose faces are treated as rigid panels; see `decompose`."""
+    from exactfold.panels.decomposition import decompose  # imported here: branches do not need it
 
     sheet = opened.sheet
     pattern = panels(sheet) if isinstance(sheet, CreasePattern) else sheet
@@ -93,10 +94,10 @@ def decompose_opened(opened: Opened, *, progress: Progress | None = None) -> Dec
 
 
 def _reopened(again: Callable[[Snap], Opened], snap: Snap) -> tuple[PanelPattern, float]:
-    """A sheet as it is read with another snap, and the largest move by the size."""
-    found = again(snap)
-    sheet = panels(found.sheet) if isinstance(found.sheet, CreasePattern) else found.sheet
-    if not found.snapped:
-        return sheet, found.largest_move
+    """The sheet that is read with another snap, and the largest move of a vertex over its size."""
+    opened = again(snap)
+    sheet = panels(opened.sheet) if isinstance(opened.sheet, CreasePattern) else opened.sheet
+    if not opened.snapped:
+        return sheet, opened.largest_move
     size = max(float(max(c) - min(c)) for c in zip(*sheet.vertices, strict=True))
-    return sheet, float(found.snapped) / size
+    return sheet, float(opened.snapped) / size

@@ -1,4 +1,4 @@
-"""A sheet as it folds: what motions along branches and motions of panels have in common."""
+"""`SheetInMotion`: what motions along branches and motions of panels have in common."""
 
 from __future__ import annotations
 
@@ -27,10 +27,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, repr=False)
 class FrameBounds:
-    """What is proved of the frames of a motion, frame by frame.
+    """Proved error bounds for each frame of a motion.
 
-    Every coordinate of frame k is within `radii[k]` of that of a true configuration of the branch's
-    motion, whose time lies between the two `times[k]`. Both are in the unit of the pattern.
+    Frame k is near an exact configuration of the motion: every coordinate differs by at most
+    `radii[k]`, and the time of the exact configuration lies between the two numbers `times[k]`.
+    Radii and times are in the unit of the pattern.
     """
 
     radii: tuple[float, ...]
@@ -41,17 +42,17 @@ class FrameBounds:
 
 
 class SheetInMotion(Picture, ABC):
-    """A sheet as it folds: a `Motion` along a branch, or a `PanelMotion` of rigid panels.
+    """A sheet that folds: a `Motion` along a branch, or a `PanelMotion` of rigid panels.
 
     `times` has shape (frames,), `coords` has shape (frames, V, 3), and `angles`, in radians, has
     shape (frames, folds) in the order of `pattern.folds`. These arrays are read-only. `events` are
-    sorted by time. `end`: the kind of event at which the motion stops.
+    sorted by time. `end` is the kind of event at which the motion stops.
 
-    A motion is compared by its fields, but for those that say `compare=False`; it pickles and
-    copies by them, and leaves behind what is cached.
+    Two motions are equal if all their fields are equal, except fields with `compare=False`. Pickles
+    and copies contain the fields, but no cached values.
     """
 
-    if TYPE_CHECKING:  # fields of both, or a field of one and a property of the other
+    if TYPE_CHECKING:  # each of these is a field or a property of both subclasses
 
         @property
         def pattern(self) -> CreasePattern | PanelPattern:
@@ -79,7 +80,7 @@ class SheetInMotion(Picture, ABC):
 
         @property
         def bounds(self) -> FrameBounds | None:
-            """How far the frames are from true configurations, None where that is not proved."""
+            """Proved error bounds of the frames; None if there are none."""
 
         __dataclass_fields__: ClassVar[Any]
 
@@ -90,7 +91,7 @@ class SheetInMotion(Picture, ABC):
             object.__setattr__(self, name, array)
 
     def __reduce__(self) -> tuple[object, ...]:
-        # Arrays are made anew, so they are fixed anew; what is cached stays behind.
+        # `__post_init__` makes the copied arrays read-only again; cached values are not copied.
         return type(self), tuple(getattr(self, field.name) for field in fields(self))
 
     def __eq__(self, other: object) -> bool:
@@ -106,7 +107,7 @@ class SheetInMotion(Picture, ABC):
             for one, two in pairs
         )
 
-    __hash__ = None  # type: ignore[assignment]  # arrays have none
+    __hash__ = None  # type: ignore[assignment]  # arrays are not hashable
 
     @property
     @abstractmethod
@@ -116,12 +117,12 @@ class SheetInMotion(Picture, ABC):
     @property
     @abstractmethod
     def reason(self) -> str:
-        """What is proved of the frames, or how they were found."""
+        """What is proved about the frames, or how they were found."""
 
     @property
     @abstractmethod
     def name(self) -> str:
-        """A short description of what the sheet folds along."""
+        """A short name of the branch or the modes along which the sheet folds."""
 
     @property
     @abstractmethod
@@ -131,7 +132,7 @@ class SheetInMotion(Picture, ABC):
     @property
     @abstractmethod
     def assignment(self) -> Mapping[Edge, str]:
-        """A letter for each fold, on the side that is followed."""
+        """The letter of each fold on the side that is followed."""
 
     @property
     @abstractmethod
@@ -151,7 +152,7 @@ class SheetInMotion(Picture, ABC):
     @property
     @abstractmethod
     def facts(self) -> dict[str, Any]:
-        """What files say of the motion, as JSON."""
+        """The facts about the motion that files contain, as JSON."""
 
     @abstractmethod
     def _positions(self, time: float) -> FloatArray:
@@ -207,12 +208,12 @@ class SheetInMotion(Picture, ABC):
         return np.asarray(np.degrees(self.angles[rows, np.arange(self.angles.shape[1])]))
 
     def table(self) -> tuple[tuple[str, ...], FloatArray]:
-        """The names of the columns, and a row for each frame: its time, then angles in degrees."""
+        """The column names, and a row for each frame: its time, then its angles in degrees."""
         names = ("time", *(f"{i}-{j}" for i, j in self.pattern.folds))
         return names, np.column_stack([self.times, np.degrees(self.angles)])
 
     def frames_reported(self, written: Sequence[str]) -> FrameKeys:
-        """The keys of `schema("motion")` that do not depend on what the sheet folds along."""
+        """The keys of `schema("motion")` that branches and modes have in common."""
         folds, bounds = [f"{i}-{j}" for i, j in self.pattern.folds], self.bounds
         return {
             "status": str(self.status),
@@ -234,7 +235,7 @@ class SheetInMotion(Picture, ABC):
         }
 
     def facts_of_frames(self) -> dict[str, Any]:
-        """The facts that do not depend on what the sheet folds along."""
+        """The facts that motions along branches and along modes have in common."""
         return {
             "status": str(self.status),
             "reason": self.reason,

@@ -1,4 +1,4 @@
-"""A motion: the sheet as it folds along a branch, with frames, fold angles and events."""
+"""`Motion`: a sheet that folds along a branch, with frames, fold angles and events."""
 
 from __future__ import annotations
 
@@ -35,21 +35,21 @@ _LONGEST: Final = 40
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Motion(SheetInMotion):
-    """The sheet folding along a branch; `branch` is proved, the motion is followed in floats.
+    """A sheet that folds along a branch; the motion is followed in floats.
 
-    With `bounds` its frames are proved: they are those of `prove(motion).motion`. Events, `at` and
-    `sampled` are in floats in any case.
+    If `bounds` is given, the frames are proved: `prove(motion).motion` is such a motion. Events,
+    `at` and `sampled` are in floats in any case.
 
-    Faces stay rigid: every edge keeps its length to about 1e-13 of it. Time is the arclength of the
-    curve of configurations: the length of the path in the coordinates of all corners that fold,
-    with the triangle `pinned` held, in the length unit of the pattern.
+    Faces stay rigid: every edge keeps its length with a relative error of about 1e-13. Time is the
+    arclength of the curve of configurations in the length unit of the pattern, that is, the length
+    of the path of the coordinates of all moving corners while the triangle `pinned` is held.
 
-    `times`: of the frames, shape (frames,), the first 0. `coords`: shape (frames, V, 3), the flat
-    sheet first, `pinned` held in its place in the plane z = 0. `angles`: fold angles in radians,
-    shape (frames, folds), in the order of `pattern.folds`, positive for a valley and continued past
-    +-pi. `events`: in the order of time. `end`: the kind of event at which the motion stops, or
-    "length". `side`: 1 for the ray of the branch that `branch` shows, -1 for its mirror image.
-    `drive`: the folds that are driven, None where there are none.
+    `times` has shape (frames,) and starts with 0. `coords` has shape (frames, V, 3); the first
+    frame is the flat sheet, and the triangle `pinned` stays in its place in the plane z = 0.
+    `angles`, in radians, has shape (frames, folds), in the order of `pattern.folds`; an angle is
+    positive for a valley and continues past +-pi. `events` are sorted by time. `end` is the kind of
+    event at which the motion stops, or "length". `side` is 1 for the ray that `branch` describes,
+    -1 for its mirror image. `drive` has the driven folds, or is None.
     """
 
     branch: Branch
@@ -85,7 +85,7 @@ class Motion(SheetInMotion):
 
     @property
     def boundary_heights(self) -> Mapping[int, Fraction] | None:
-        """With more than four corners the heights in the ratio of which the boundary stays."""
+        """With more than four corners, the heights whose ratio the boundary keeps; else None."""
         return self.branch.boundary_heights if self.curve.framework.ties else None
 
     @property
@@ -99,19 +99,19 @@ class Motion(SheetInMotion):
 
     @property
     def name(self) -> str:
-        """ "branch" and its signs, cut where there are many, and whether it is the mirror side."""
+        """A name made of the signs, shortened if there are many, and "mirror side" for side -1."""
         signs = self.branch.sign_text
         short = signs if len(signs) <= _LONGEST else f"{signs[: _LONGEST - 3]}..."
         return f"branch {short}" if self.side > 0 else f"branch {short}, mirror side"
 
     @property
     def time_name(self) -> str:
-        """What time is."""
+        """What the time measures."""
         return "arclength"
 
     @property
     def assignment(self) -> Mapping[Edge, str]:
-        """The letters of the branch on the side that is followed: "M", "V", "F" or "U" by fold."""
+        """The letter of each fold on the side that is followed: "M", "V", "F" or "U"."""
         letters = self.branch.assignment
         if self.side > 0:
             return letters
@@ -119,7 +119,7 @@ class Motion(SheetInMotion):
 
     @property
     def leading_angles(self) -> Mapping[Edge, float]:
-        """The first-order fold angles of the branch in degrees, the largest 30 (docs/export.md)."""
+        """The first-order fold angles, scaled to a largest angle of 30 degrees (docs/export.md)."""
         letters = self.assignment
         return {
             fold: self.side * angle if letters[fold] in "MV" else 0.0
@@ -128,12 +128,12 @@ class Motion(SheetInMotion):
 
     @property
     def leading_angles_are(self) -> str:
-        """What these are, in words."""
+        """What the leading angles are, in words."""
         return "the first-order fold angles"
 
     @property
     def pinned(self) -> Triangle:
-        """The triangle that is held."""
+        """The corners of the triangle that is held."""
         a, b, c = (self._problem.labels[v] for v in self.curve.framework.pinned)
         return a, b, c
 
@@ -148,7 +148,7 @@ class Motion(SheetInMotion):
     def sampled(self, least: int = 200) -> tuple[FloatArray, FloatArray]:
         """Times and all fold angles in radians at `least` points or more, for plots.
 
-        Shapes (times,) and (times, folds); the angles are continued past +-pi.
+        The shapes are (times,) and (times, folds). The angles continue past +-pi.
         """
         each = max(_SAMPLES, -(-least // len(self.curve.pieces)))
         times, unknowns = self.curve.samples(each)
@@ -159,7 +159,7 @@ class Motion(SheetInMotion):
     def to_dict(self, name: str | None = None, written: Sequence[str] = ()) -> MotionDocument:
         """The object printed by `exactfold fold --json`: `schema("motion")`.
 
-        `name`: of the pattern; `written`: the files that hold the motion.
+        `name` is the name of the pattern, and `written` lists the files that hold the motion.
         """
         branch = self.branch
         return {
@@ -182,7 +182,7 @@ class Motion(SheetInMotion):
 
     @property
     def facts(self) -> dict[str, Any]:
-        """What files say of the motion, as JSON."""
+        """The facts about the motion that files contain, as JSON."""
         boundary_heights = self._boundary_heights_reported
         return {
             "vertex_signs": self.branch.sign_text,
@@ -203,9 +203,10 @@ class Motion(SheetInMotion):
 
 
 def in_space(problem: Problem, curve: Curve, unknowns: FloatArray, side: int) -> FloatArray:
-    """All vertices of the pattern at given unknowns of the framework, shape (times, V, 3).
+    """The positions of all vertices at given unknowns of the framework, shape (times, V, 3).
 
-    What lies in a triangulated triangle moves with it. In the unit and at the place of the pattern.
+    Vertices inside a triangulated triangle move with it. The positions are in the unit and at the
+    place of the pattern.
     """
     framework, pattern = curve.framework, problem.pattern
     x, y = pattern.vertices[problem.labels[framework.pinned[0]]]
@@ -215,10 +216,10 @@ def in_space(problem: Problem, curve: Curve, unknowns: FloatArray, side: int) ->
 
 
 def _from_the_pin(problem: Problem, curve: Curve, unknowns: FloatArray, side: int) -> FloatArray:
-    """The same from the first pinned corner, in the unit of the framework.
+    """The same positions relative to the first pinned corner, in the unit of the framework.
 
-    Angles are read from these: far from the origin, or in very large or small units, coordinates of
-    the pattern have no digits left, or squares of them none.
+    Angles are computed from these positions. Coordinates of the pattern itself can be far from the
+    origin or in very large or small units, so that they, or their squares, have no digits left.
     """
     framework, pattern = curve.framework, problem.pattern
     coords = np.zeros((len(unknowns), len(pattern.vertices), 3))
@@ -233,10 +234,10 @@ def _from_the_pin(problem: Problem, curve: Curve, unknowns: FloatArray, side: in
 def angles_at(
     problem: Problem, curve: Curve, times: FloatArray, unknowns: FloatArray, side: int
 ) -> FloatArray:
-    """Fold angles of frames, continued without jumps along the whole curve, shape (times, folds).
+    """The fold angles of frames, shape (times, folds), continued without jumps along the curve.
 
-    `unknowns`: of the framework at the times. Between the frames the curve is sampled, so that few
-    frames suffice.
+    `unknowns` has the unknowns of the framework at the times. The curve is also sampled between the
+    frames, so that the angles are continued rightly even if there are few frames.
     """
     hinges = hinges_of(problem.pattern)
     between, there = curve.samples(_SAMPLES)

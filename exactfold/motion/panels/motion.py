@@ -1,4 +1,4 @@
-"""A motion of a sheet of rigid panels: frames, fold angles, events, and exact positions."""
+"""`PanelMotion`: a sheet of rigid panels that folds, with frames, events and exact positions."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
 Parameter: TypeAlias = "Number | float"
 AnglesAt: TypeAlias = "Callable[[FloatArray], FloatArray]"
-"""All fold angles, shape (times, folds), at times."""
+"""A function that gives all fold angles at times, shape (times, folds)."""
 
 _DEGREES = 2.0
 _MOST_SAMPLES = 4000
@@ -36,20 +36,20 @@ _NAMED: Final = 8
 
 @dataclass(frozen=True, repr=False, eq=False)
 class PanelMotion(SheetInMotion):
-    """A sheet of rigid panels as it folds along a component of its true motions.
+    """A sheet of rigid panels that folds along a component of its finite motions.
 
-    Each of the `curves`, one elementary mode each, has a driver, a fold that closes first. The
-    angle of a driver at time t is t times its rate, and so is that of a free fold in `free_rates`;
-    the largest rate is 1 in size. So time is an angle in radians, from 0 to pi at most: that of the
-    drivers and free folds of rate 1. `closes` is PROVED if all modes are linear in the half-angle
-    tangents: then every vertex closes exactly, at all fold angles. Otherwise the modes truly fold,
-    by the decomposition, and were followed in floats.
+    Each of the `curves` belongs to one elementary mode and has a driver, the fold of the mode that
+    closes first. At time t, the angle of a driver is t times its rate, and so is the angle of a
+    free fold in `free_rates`. The largest size of a rate is 1. So the time is the angle, in radians
+    from 0 to at most pi, of the drivers and free folds with rate 1. `closes` is PROVED if all modes
+    are linear in the half-angle tangents: then every vertex closes exactly, at all fold angles.
+    Otherwise the modes provably fold, by the decomposition, and were followed in floats.
 
-    `times`, shape (frames,); `coords`, shape (frames, V, 3), the flat sheet first, the panel `held`
-    in its place in the plane z = 0; `angles`, radians, shape (frames, folds) in the order of
-    `pattern.folds`, positive for a valley. `events`: in the order of time. `end`: the kind of event
-    at which the motion stops. `gap`: how far the panels are from closing in any frame, in the unit
-    of the pattern.
+    `times` has shape (frames,). `coords` has shape (frames, V, 3); the first frame is the flat
+    sheet, and the panel `held` stays in its place in the plane z = 0. `angles`, in radians, has
+    shape (frames, folds), in the order of `pattern.folds`; an angle is positive for a valley.
+    `events` are sorted by time. `end` is the kind of event at which the motion stops. `gap` is the
+    largest distance by which panels fail to close in any frame, in the unit of the pattern.
     """
 
     pattern: PanelPattern
@@ -68,39 +68,39 @@ class PanelMotion(SheetInMotion):
 
     @property
     def modes(self) -> tuple[int, ...]:
-        """The numbers of the modes that fold, as in the table of `exactfold count`."""
+        """The numbers of the modes that fold, in the table of `exactfold count`."""
         return tuple(curve.mode.number for curve in self.curves)
 
     @property
     def drivers(self) -> tuple[Edge, ...]:
-        """The fold of each mode whose angle is its rate times the time."""
+        """The driver of each mode: the fold whose angle is the rate of the mode times the time."""
         return tuple(curve.driver for curve in self.curves)
 
     @property
     def closes(self) -> Verdict:
-        """PROVED if every vertex closes at all fold angles, exactly; else UNDECIDED."""
+        """PROVED if every vertex closes exactly at all fold angles; else UNDECIDED."""
         linear = all(isinstance(curve, LinearCurve) for curve in self.curves)
         return PROVED if linear else UNDECIDED
 
     @property
     def exists(self) -> Verdict:
-        """PROVED if the sheet is proved to fold so until a fold is at 180 degrees; else UNDECIDED.
+        """PROVED if this motion is proved to exist until a fold is at 180 degrees; else UNDECIDED.
 
-        Modes that close exactly do, and those that truly fold and have at most four active folds
-        at each vertex (docs/panel_motion.md, 1 and 2); modes that share no vertex move
-        independently. That no panels touch on the way is not part of it.
+        This is proved for modes that close exactly, and for modes that provably fold and have at
+        most four active folds at each vertex (docs/panel_motion.md, 1 and 2). Modes that share no
+        vertex move independently. Whether panels touch on the way is a different question.
         """
         known = all(isinstance(curve, LinearCurve) or _continues(curve) for curve in self.curves)
         return PROVED if known else UNDECIDED
 
     @property
     def status(self) -> Verdict:
-        """That of `closes`: UNDECIDED where modes that truly fold were followed in floats."""
+        """The verdict `closes`: UNDECIDED if modes were followed in floats."""
         return self.closes
 
     @property
     def bounds(self) -> None:
-        """Frames of panels are not enclosed; `exactly` has exact positions."""
+        """None: frames of panels are not enclosed; `exactly` gives exact positions."""
         return None
 
     @property
@@ -110,15 +110,15 @@ class PanelMotion(SheetInMotion):
 
     @property
     def assignment(self) -> Mapping[Edge, str]:
-        """M or V of each fold that folds, F of the others, on the side that is followed."""
+        """The letter M or V of each fold that folds, and F of the others, on the followed side."""
         signs = np.sign(self.angles[-1]).astype(int)
         letters = {1: "V", -1: "M", 0: "F"}
-        found = {f: letters[s] for f, s in zip(self.pattern.folds, signs.tolist(), strict=True)}
-        return MappingProxyType(found)
+        by_fold = {f: letters[s] for f, s in zip(self.pattern.folds, signs.tolist(), strict=True)}
+        return MappingProxyType(by_fold)
 
     @property
     def name(self) -> str:
-        """The modes and free folds that fold, in a few words."""
+        """The modes and the number of free folds that fold, in words."""
         what = []
         if self.modes:
             numbers = ", ".join(map(str, self.modes[:_NAMED]))
@@ -130,23 +130,23 @@ class PanelMotion(SheetInMotion):
 
     @property
     def time_name(self) -> str:
-        """What time is."""
-        return "the angle of the folds that drive it, in radians"
+        """What the time measures."""
+        return "the angle of the driving folds, in radians"
 
     @property
     def leading_angles(self) -> Mapping[Edge, float]:
-        """The fold angles in degrees when the driving folds have 30 degrees, or at the end."""
+        """The fold angles in degrees when the drivers have 30 degrees, or at an earlier end."""
         [angles] = self.angles_at(np.array([min(radians(_LEADING), self.duration)]))
         return dict(zip(self.pattern.folds, np.degrees(angles).tolist(), strict=True))
 
     @property
     def leading_angles_are(self) -> str:
-        """What these are, in words."""
+        """What the leading angles are, in words."""
         return f"the fold angles at time {min(radians(_LEADING), self.duration):.3g}"
 
     @property
     def reason(self) -> str:
-        """What is proved of the motion."""
+        """What is proved about the motion, in words."""
         if self.closes is PROVED:
             return (
                 "all vertices close exactly at all fold angles"
@@ -157,11 +157,11 @@ class PanelMotion(SheetInMotion):
             return (
                 "each mode folds until a fold is at 180 degrees; its angles were followed in floats"
             )
-        return "each mode truly folds; its angles were followed in floats"
+        return "each mode provably folds; its angles were followed in floats"
 
     @property
     def facts(self) -> dict[str, Any]:
-        """What files say of the motion, as JSON."""
+        """The facts about the motion that files contain, as JSON."""
         return {
             "modes": list(self.modes),
             "component": self.component,
@@ -172,8 +172,8 @@ class PanelMotion(SheetInMotion):
     def to_dict(self, name: str | None = None, written: Sequence[str] = ()) -> PanelMotionDocument:
         """The object printed by `exactfold fold --json`: `schema("motion")`.
 
-        `name`: of the pattern; `written`: the files that hold the motion. What belongs to branches
-        of triangulated sheets is null.
+        `name` is the name of the pattern, and `written` lists the files that hold the motion. Keys
+        for branches of triangulated sheets are null.
         """
         return {
             "format": "exactfold motion result",
@@ -201,33 +201,34 @@ class PanelMotion(SheetInMotion):
         return np.asarray(self._placing.positions(self.angles_at(np.array([time])))[0][0])
 
     def angles_at(self, times: FloatArray) -> FloatArray:
-        """All fold angles in radians at times, shape (times, folds)."""
+        """All fold angles in radians at the given times, shape (times, folds)."""
         return all_angles(self.pattern, self.curves, self.rates, self.free_rates, times)
 
     @cached_property
     def ratios(self) -> Mapping[Edge, Number] | None:
-        """c_e for each active fold, `tau_e = c_e T` with the T of its mode, exactly.
+        """The exact ratio c_e of each active fold e: `tau_e = c_e T`, where T belongs to its mode.
 
-        `tau = tan(angle / 2) / length`; c is 1 or -1 at the drivers. None if a mode is not linear,
-        or needs more than three square roots beside those of the coordinates.
+        Here `tau = tan(angle / 2) / length`. The ratio of a driver is 1 or -1. None if a mode is
+        not linear, or needs more than three square roots besides those of the coordinates.
         """
-        found: dict[Edge, Number] = {}
+        ratios: dict[Edge, Number] = {}
         for curve in self.curves:
             if not isinstance(curve, LinearCurve) or curve.ratios is None:
                 return None
-            found.update(curve.ratios)
-        return MappingProxyType(found)
+            ratios.update(curve.ratios)
+        return MappingProxyType(ratios)
 
     def exactly(self, parameter: Parameter | Mapping[int, Parameter]) -> tuple[Spot, ...]:
-        """The exact positions of all vertices at a parameter T: `tau_e = c_e T`.
+        """The exact positions of all vertices at a parameter T, where `tau_e = c_e T`.
 
-        Numbers of a field of square roots, (x, y, z) for each vertex; rational if T, c_e and the
-        coordinates are. `math.inf` is the flat-folded sheet. For several modes T is the same for
-        all, or given for each by its number. Free folds stay flat. The panels close exactly, which
-        is checked at every corner.
+        The result has (x, y, z) for each vertex, in a field of square roots; the numbers are
+        rational if T, all c_e and the coordinates are rational. T = `math.inf` gives the
+        flat-folded sheet. A single T is used for all modes; a mapping gives T for each mode by its
+        number, and a mode that it leaves out stays flat. Free folds stay flat. The panels close
+        exactly; this is checked at every corner.
 
-        Raises `NotApplicableError` where `ratios` is None, `UsageError` for a float other than
-        infinity or a mode that does not fold here.
+        Raises `NotApplicableError` if `ratios` is None, `UsageError` for a float other than
+        infinity or for a mode that does not fold here.
 
         >>> from exactfold.motion.panels.following import follow_panels
         >>> from exactfold.pattern.panel_pattern import PanelPattern
@@ -239,7 +240,7 @@ class PanelMotion(SheetInMotion):
         if self.ratios is None:
             raise NotApplicableError(
                 "exact positions need modes that are linear in the half-angle tangents, with few "
-                "square roots; this motion has floats only"
+                "square roots; the positions of this motion are known only in floats"
             )
         given = (
             parameter if isinstance(parameter, Mapping) else dict.fromkeys(self.modes, parameter)
@@ -259,18 +260,19 @@ class PanelMotion(SheetInMotion):
 
     @property
     def residual(self) -> float:
-        """The largest failure of an interior vertex to close in any frame.
+        """The largest error with which an interior vertex closes in any frame.
 
-        The vector part of the product of the unit quaternions of its folds, which are
-        `cos(angle / 2) + sin(angle / 2) d / |d|`, counter-clockwise.
+        The error of a vertex is the largest component of the vector part of a product of unit
+        quaternions: one factor `cos(angle / 2) + sin(angle / 2) d / |d|` for each of its folds, in
+        counter-clockwise order.
         """
         return closing_residual(self.pattern, self.angles)
 
     def sampled(self, least: int = 200) -> tuple[FloatArray, FloatArray]:
         """Times and all fold angles in radians at `least` points or more, for plots.
 
-        Shapes (times,) and (times, folds); between two points no angle changes by more than about
-        two degrees.
+        The shapes are (times,) and (times, folds). Between two neighbouring points no angle changes
+        by more than about two degrees.
         """
         times = sampled_times(self.angles_at, self.duration, least)
         return times, self.angles_at(times)
@@ -284,7 +286,7 @@ class PanelMotion(SheetInMotion):
 
 
 def _continues(curve: FollowedCurve) -> bool:
-    """Whether the theorem of docs/panel_motion.md, 2, holds of a mode."""
+    """Whether the theorem of docs/panel_motion.md, 2, applies to a mode."""
     mode = curve.mode
     return mode.extends.verdict is PROVED and all(len(star.folds) <= 4 for star in mode.stars)
 
@@ -296,7 +298,7 @@ def all_angles(
     free_rates: Mapping[Edge, float],
     times: FloatArray,
 ) -> FloatArray:
-    """The fold angles of a sheet at times, shape (times, folds)."""
+    """All fold angles of a sheet at the given times, shape (times, folds)."""
     columns = {fold: k for k, fold in enumerate(pattern.folds)}
     angles = np.zeros((len(times), len(columns)))
     for curve, rate in zip(curves, rates, strict=True):
@@ -309,7 +311,7 @@ def all_angles(
 
 
 def closing_residual(pattern: PanelPattern, angles: FloatArray) -> float:
-    """The largest vector part of the quaternion product round a vertex, of unit quaternions."""
+    """The largest error with which a vertex closes; see `PanelMotion.residual`."""
     columns = {fold: k for k, fold in enumerate(pattern.folds)}
     worst = 0.0
     for v, around in pattern.stars.items():
@@ -333,7 +335,10 @@ def closing_residual(pattern: PanelPattern, angles: FloatArray) -> float:
 def sampled_times(
     angles_at: AnglesAt, duration: float, least: int, largest: float = np.radians(_DEGREES)
 ) -> FloatArray:
-    """Times from 0 to the end between which no fold angle changes much."""
+    """Times from 0 to the end, such that no fold angle changes by more than `largest` in between.
+
+    There are at least `least` times. Refining stops at `_MOST_SAMPLES` times.
+    """
     times = np.linspace(0.0, duration, max(least, 2))
     while len(times) < _MOST_SAMPLES:
         steps = np.abs(np.diff(angles_at(times), axis=0)).max(axis=1, initial=0.0)

@@ -128,8 +128,8 @@ def test_wrong_usage(options, message):
     ("text", "message"),
     [
         ("{", "is not JSON"),
-        ("[1]", "no numbers by crease"),
-        ('{"0-4": 1, "0-4": 2}', "crease 0-4 is there twice"),
+        ("[1]", "does not hold numbers by crease"),
+        ('{"0-4": 1, "0-4": 2}', "crease 0-4 is given twice"),
         ('{"0-5": 1}', "0-5 is not a fold"),
         ('{"0-4": true}', "0-4: True is a truth value"),
         ('{"0-4": NaN}', "0-4: 'NaN' is not a number"),

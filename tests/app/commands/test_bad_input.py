@@ -201,7 +201,7 @@ def test_drawings_without_panels_are_refused_for_what_they_lack(tmp_path, name, 
         out = [tmp_path / "out.fold"] if command == ["convert"] else []
         result = run(*command, path, *out)
         assert result.exit_code == BAD_INPUT
-        hint = "; perhaps --repair mends it" if out and "enclose" in wrong else ""
+        hint = "; --repair may mend it" if out and "enclose" in wrong else ""
         assert result.stderr == f"exactfold: {path}: {wrong}{hint}\n"
         assert sorted(p.name for p in tmp_path.iterdir()) == [name]
     path.write_text(json.dumps(SQUARE_FOLD))  # what is read decides, not the name

@@ -113,7 +113,7 @@ def test_without_the_flag_only_what_is_needed_is_done(tmp_path: Path) -> None:
     path.write_text(as_cp(loose))
     refused = run("convert", path, out, "--no-repair")
     assert refused.exit_code == BAD_INPUT
-    assert refused.stderr.endswith("; perhaps --repair mends it\n")
+    assert refused.stderr.endswith("; --repair may mend it\n")
     assert not out.exists()
     for flags in ([], ["--repair"], ["--steps", "dangling"]):
         result = run("convert", path, out, *flags)

@@ -186,7 +186,7 @@ def test_undecided_exits_4(tmp_path):
     found = {"found": {"3": 2}, "found_true": {"3": 2}}
     assert data["components"] == {"second_order": None, "true": None, **found}
     assert data["reason"].startswith("the part of 4 vertices with vertex 6: ")
-    assert "and a reflex corner, vertex 3: with more than four corners" in data["reason"]
+    assert "and a reflex corner, vertex 3: for such a sheet" in data["reason"]
     assert "no certificate was written" in result.stderr
     assert not out.exists()
 

@@ -97,7 +97,7 @@ def test_the_other_side_of_a_branch_is_its_mirror_image():
     assert mirror == folded(motion, Amount.of("60deg"), "two-vertex").text
     assert mirror != drawn(*asked) == drawn(*asked, "--side", "+")
     refused = run("draw", "zigzags", "--branch", "1", "--folded", "45deg", "--side", "-")
-    assert (refused.exit_code, "--side is of a branch" in refused.stderr) == (USAGE, True)
+    assert (refused.exit_code, "--side is for branches" in refused.stderr) == (USAGE, True)
 
 
 def test_a_drawing_with_a_hole_is_drawn_and_the_reason_told(tmp_path):
@@ -105,7 +105,7 @@ def test_a_drawing_with_a_hole_is_drawn_and_the_reason_told(tmp_path):
     result = run("draw", tmp_path / "hole.svg")
     assert result.exit_code == PROVED
     assert result.stdout.count('class="B"') == 8
-    assert "no sheet that can be counted" in result.stderr
+    assert "not a sheet that can be counted" in result.stderr
     assert run("draw", tmp_path / "hole.svg", "--all").exit_code == BAD_INPUT
 
 

@@ -260,7 +260,7 @@ def test_a_branch_is_written_for_coq():
     ("arguments", "code", "said"),
     [
         (["two-vertex", "--signs", "-+", "--up", "4"], USAGE, "give one of --signs and --up"),
-        (["two-vertex", "--all", "--up", "4"], USAGE, "leave --signs and --up away"),
+        (["two-vertex", "--all", "--up", "4"], USAGE, "leave out --signs and --up"),
         (["waterbomb", "--all"], USAGE, "with four corners, not 6"),
         (["two-vertex", "--branch", "1"], USAGE, "--branch does not go with --coq"),
         (["two-vertex", "--amount", "20"], USAGE, "--amount does not go with --coq"),
@@ -275,8 +275,8 @@ def test_a_branch_is_written_for_coq():
             "vertex 7 lies in a triangulated triangle and is flat",
         ),
         (["flat-vertex", "--signs", "++"], USAGE, "vertex 5 may be flat"),
-        (["two-vertex", "-o", "two-vertex.v"], USAGE, "which two-vertex.v cannot be"),
-        (["two-vertex", "-o", "two_vertex.coq"], USAGE, "which two_vertex.coq cannot be"),
+        (["two-vertex", "-o", "two-vertex.v"], USAGE, "with the name two-vertex.v: use"),
+        (["two-vertex", "-o", "two_vertex.coq"], USAGE, "with the name two_vertex.coq: use"),
         (["miura"], UNDECIDED, "16 panels with more than three sides"),
         (["bird-base"], UNDECIDED, "the coordinates of this one lie in Q(sqrt 2)"),
     ],
@@ -291,7 +291,7 @@ def test_many_branches_are_written_for_coq_by_force(monkeypatch):
     monkeypatch.setattr("exactfold.app.commands.export.FEW", 2)
     result = run("two-vertex", "--coq", "--all")
     assert (result.exit_code, result.stdout) == (USAGE, "")
-    assert "for more than 2 give --force" in result.stderr
+    assert "to write more than 2, add --force" in result.stderr
     result = run("two-vertex", "--coq", "--all", "--force")
     assert (result.exit_code, result.stdout.count("branch_3 :")) == (OK, 1)
 

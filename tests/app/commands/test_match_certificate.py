@@ -37,4 +37,4 @@ def test_the_pattern_is_not_written_over(tmp_path: Path) -> None:
     path.write_text(Path(FILE).read_text())
     done = run("match", str(path), "--letters", "4-5=V", "--certificate", str(path))
     assert done.exit_code == 2
-    assert "is also read or written otherwise" in done.stderr
+    assert "this command already reads or writes" in done.stderr

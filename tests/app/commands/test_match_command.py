@@ -204,7 +204,7 @@ def test_a_file_without_letters():
     result = run("match", "two-vertex", "--json")
     assert result.exit_code == USAGE
     assert error_class(result) == "UsageError"
-    assert "no fold is a mountain or a valley in the file" in result.stderr
+    assert "the file assigns mountain or valley to no fold" in result.stderr
 
 
 def test_a_sheet_with_three_corners_is_out_of_reach(tmp_path):
@@ -215,7 +215,7 @@ def test_a_sheet_with_three_corners_is_out_of_reach(tmp_path):
     result = run("match", path, "--letters", "MVM", "--json")
     assert result.exit_code == UNDECIDED
     assert json.loads(result.stdout)["error"]["class"] == "NotCountedError"
-    assert "exactfold: match takes sheets that can fold" in result.stderr
+    assert "exactfold: match needs a sheet that can fold" in result.stderr
 
 
 def test_creases_that_cannot_fold_are_named():

@@ -61,23 +61,38 @@ def test_a_shape_with_deficits(here: Path) -> None:
 @pytest.mark.parametrize(
     ("option", "text", "name", "said"),
     [
-        ("--rim", '{"0": 1}', "BadRimError", "boundary vertex 1 has no height"),
-        ("--rim", RIM.replace("0.25", '"x"'), "BadRimError", "the height of vertex 2: 'x'"),
-        ("--rim", RIM.replace("0.25", "NaN"), "BadRimError", "the height of vertex 2: 'NaN'"),
-        ("--rim", RIM.replace('"3"', '"0"'), "BadRimError", "vertex 0 is there twice"),
-        ("--rim", RIM.replace('"3"', '"0-5"'), "BadRimError", "0-5 is not a boundary vertex"),
+        ("--rim", '{"0": 1}', "BoundaryHeightsError", "boundary vertex 1 has no height"),
+        (
+            "--rim",
+            RIM.replace("0.25", '"x"'),
+            "BoundaryHeightsError",
+            "the height of vertex 2: 'x'",
+        ),
+        (
+            "--rim",
+            RIM.replace("0.25", "NaN"),
+            "BoundaryHeightsError",
+            "the height of vertex 2: 'NaN'",
+        ),
+        ("--rim", RIM.replace('"3"', '"0"'), "BoundaryHeightsError", "vertex 0 is given twice"),
+        (
+            "--rim",
+            RIM.replace('"3"', '"0-5"'),
+            "BoundaryHeightsError",
+            "0-5 is not a boundary vertex",
+        ),
         (
             "--rim",
             RIM.replace("}", ', "00": 2}'),
-            "BadRimError",
+            "BoundaryHeightsError",
             "00 is not a boundary vertex",
         ),
-        ("--rim", "[1, 2]", "BadRimError", "holds no numbers by vertex"),
-        ("--rim", "{", "BadRimError", "is not JSON"),
+        ("--rim", "[1, 2]", "BoundaryHeightsError", "does not hold numbers by vertex"),
+        ("--rim", "{", "BoundaryHeightsError", "is not JSON"),
         (
             "--rim",
             '{"0": 0, "1": 10, "2": 16, "3": 9, "4": -2}',
-            "BadRimError",
+            "BoundaryHeightsError",
             "lie in one plane",
         ),
         ("--curvature", '{"5": -1}', "BadCurvatureError", "deficit of vertex 5 is negative"),
@@ -125,7 +140,7 @@ def test_folds_drive_a_sheet(here: Path) -> None:
     assert "driven 1-5 to 6, 2-6 to -5 degrees; sines of half the angles in ratio" in said
     assert "on which the driven angles reach the sizes asked for" in said
     assert "folds 1-5, 2-6 have the angles of the drive" in said
-    assert "no branch was named (--signs, --up): this is the first that was found" in done.stderr
+    assert "no branch was named (--signs, --up): this is the first branch found" in done.stderr
     claims = checker.check(checker.load(Path("c.json").read_text()))
     assert claims["drive"]["folds"] == [[1, 5], [2, 6]]
     # From a file; a fold without an angle goes along as on the branch.
@@ -152,17 +167,17 @@ def test_folds_drive_a_sheet(here: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "code", "said"),
     [
-        ("1-5=x", 2, "fold 1-5: 'x' is no angle such as 90deg"),
-        ("1-5=3,5-1=4", 2, "fold 5-1 is there twice"),
+        ("1-5=x", 2, "fold 1-5: 'x' is not an angle such as 90deg"),
+        ("1-5=3,5-1=4", 2, "fold 5-1 is given twice"),
         ("1:5=3", 2, "'1:5' is not a fold such as 4-7"),
-        ("1-5=1_0", 2, "fold 1-5: '1_0' is no angle such as 90deg"),
+        ("1-5=1_0", 2, "fold 1-5: '1_0' is not an angle such as 90deg"),
         ("1_0-5=3", 2, "'1_0-5' is not a fold such as 4-7"),
         ("0-6=3,2-6=4", 3, "there is no fold 0-6 to drive"),
         ("0-1=3,2-6=4", 3, "0-1 is an edge of the boundary, not a fold to drive"),
         ("1-5=3", 3, "1 fold to drive: this sheet has 2 degrees of freedom"),
-        ('{"1-5": 3, "2-6": "y"}', 3, "drive.json: fold 2-6: 'y' is no angle"),
-        ('{"1-5": 3, "2-6": true}', 3, "drive.json: the angle of fold 2-6 is no number"),
-        ("[]", 3, "drive.json holds no numbers by fold"),
+        ('{"1-5": 3, "2-6": "y"}', 3, "drive.json: fold 2-6: 'y' is not an angle"),
+        ('{"1-5": 3, "2-6": true}', 3, "drive.json: the angle of fold 2-6 is not a number"),
+        ("[]", 3, "drive.json does not hold numbers by fold"),
     ],
 )
 def test_a_drive_that_is_none(here: Path, text: str, code: int, said: str) -> None:

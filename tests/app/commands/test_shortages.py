@@ -127,7 +127,7 @@ def test_a_library_that_ends_the_process_is_seen(files: Path, tmp_path: Path, co
     (tmp_path / "numpy.py").write_text(ENDS.format(code=code))
     done = shell("ulimit -v 4000000; $exactfold count two-vertex", files, FIRST=str(tmp_path))
     assert (done.returncode, done.stdout) == (NO_MEMORY, "")
-    assert done.stderr == "exactfold: ended without an answer: not enough memory\n"
+    assert done.stderr == "exactfold: not enough memory: the program ended without an answer\n"
 
 
 @pytest.mark.slow

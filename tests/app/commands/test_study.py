@@ -88,9 +88,9 @@ def test_numbers_by_size(here):
         ("5:3,2", "'2' has no number after a colon"),
         ("2-4:3,3:1", "size 3 has two numbers"),
         ("4-2:1", "'4-2' ends before it begins"),
-        ("0:4", "sizes are from 1 on, not 0"),
+        ("0:4", "the least size is 1, not 0"),
         ("2:-1", "-1 is less than 0"),
-        ("2-9999999999:1", "'2-9999999999' are more than 1000 sizes"),
+        ("2-9999999999:1", "'2-9999999999' is more than 1000 sizes"),
         ("3:x", "'x' is not a whole number"),
     ],
 )
@@ -180,7 +180,12 @@ def test_a_row_that_differs_is_said(here, done, monkeypatch):
             "UsageError",
             "rows for size 3, but this",
         ),
-        (("table1", "--number", "3:0"), USAGE, "UsageError", "a study without rows says nothing"),
+        (
+            ("table1", "--number", "3:0"),
+            USAGE,
+            "UsageError",
+            "no rows are asked for: raise --number",
+        ),
         (
             ("table1", "--row", "00", "--seed", "2"),
             USAGE,
@@ -198,7 +203,7 @@ def test_a_row_that_differs_is_said(here, done, monkeypatch):
             ("table1", "--csv", "a.csv", "--journal", "a.csv"),
             USAGE,
             "UsageError",
-            "is also read or written",
+            "already reads or writes",
         ),
         (
             ("table1", "--dask", "tcp://127.0.0.1:1", "--workers", "2"),

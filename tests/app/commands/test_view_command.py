@@ -60,7 +60,7 @@ def test_a_drawing_with_panels_is_shown_by_its_modes(tmp_path):
             "a motion in a page needs at least 2 and at most 1000",
         ),
         (["two-vertex", "--serve", "--port", "99999"], USAGE, "give a number from 0 to 65535"),
-        (["two-vertex", "-o", "-"], USAGE, "an output has a name of its own"),
+        (["two-vertex", "-o", "-"], USAGE, "give the output file a name"),
     ],
 )
 def test_what_is_refused(arguments, code, message, tmp_path, monkeypatch):

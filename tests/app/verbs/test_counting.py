@@ -154,7 +154,10 @@ def test_a_branch_is_named_in_four_ways(lettered):
     [
         ({}, "name the branch by one of signs, up, letters and way$"),
         ({"signs": "+-", "way": 3}, "and way, not way and signs$"),
-        ({"way": 3, "rim": {0: 1}}, "rim and curvature go with signs or up, not with way"),
+        (
+            {"way": 3, "boundary_heights": {0: 1}},
+            "boundary_heights and curvature go with signs or up",
+        ),
         ({"way": 0}, "there is no way 0: `count` lists 1 to 4"),
         ({"way": 5}, "there is no way 5: `count` lists 1 to 4"),
         ({"letters": "UUUUUUU"}, r'8 rays of branches have these letters: .* signs, "'),
@@ -187,7 +190,7 @@ def test_a_sheet_of_panels_has_modes_instead():
     with pytest.raises(NotCountedError) as caught:
         exactfold.branch("miura", "+")
     assert str(caught.value) == (
-        "this sheet of rigid panels has modes in place of branches: `count` lists them, and "
+        "this sheet of rigid panels has modes instead of branches: `count` lists them, and "
         "`follow(sheet, 1)` follows the first"
     )
     assert exactfold.follow("miura", 1, frames=2).modes == (1,)

@@ -73,7 +73,7 @@ def test_letters_turned_over_are_followed_on_the_other_side():
 
 
 def test_letters_that_no_mode_or_several_modes_have():
-    with pytest.raises(NotCountedError, match="no mode that is known has these letters"):
+    with pytest.raises(NotCountedError, match="no known mode has these letters"):
         exactfold.follow("zigzags", letters="MMMMMMMMMMMM")
     with pytest.raises(UsageError, match=r"5 modes have these letters: name one by way=1, 2, 3, 4"):
         exactfold.follow("zigzags", letters={})
@@ -120,9 +120,9 @@ def test_with_more_corners_a_branch_is_named_and_else_the_panels_move():
     [
         ("zigzags", {"signs": "+"}, "signs is for branches, .* choose one by way or letters"),
         ("zigzags", {"drive": {(0, 1): 3}}, "drive is for branches"),
-        ("zigzags", {"through_nodes": True}, "through_nodes is for branches"),
+        ("zigzags", {"through_branch_points": True}, "through_branch_points is for"),
         ("zigzags", {"way": 9}, "there is no mode 9: give numbers from 1 to 5"),
-        ("two-vertex", {"way": [1, 2]}, "branches do not fold together"),
+        ("two-vertex", {"way": [1, 2]}, "two branches cannot be followed together"),
         ("two-vertex", {"way": 9}, "there is no way 9: `count` lists 1 to 4"),
     ],
 )

@@ -39,7 +39,7 @@ def test_a_reflex_corner_of_a_sheet_with_more_degrees_of_freedom_is_undecided():
     result = count_branches(scrambled(1, DENTED, 2, loose=True))
     assert (result.status, result.connected_components) == (UNDECIDED, None)
     assert "6 boundary vertices, so it has 3 degrees of freedom, and a reflex" in result.reason
-    assert "the shapes over a rim need not be real" in result.reason
+    assert "shapes with given boundary heights need not be real" in result.reason
 
 
 def test_chord_of_a_sheet_with_more_degrees_of_freedom_joins_everything():

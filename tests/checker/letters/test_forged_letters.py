@@ -37,7 +37,7 @@ def claimed(document: Document) -> None:
     place = Place(sheet, evidence["emptied"])
     place.fix_boundary()
     wanted = dict(zip(sheet.folds, document["claims"]["letters"], strict=True))
-    found = letters._LetterSearch(place, wanted).halves(
+    found = letters._LetterSearch(place, wanted).rays(
         evidence["refuted"], evidence["tree"], evidence["leaves"]
     )
     document["claims"]["halves"] = [

@@ -168,7 +168,7 @@ def test_files_of_others_are_refused(tmp_path):
     file = tmp_path / "loops.txt"
     find_loops(random_square(1, seed=0), certificate=file)
     kept = file.read_bytes()
-    with pytest.raises(UsageError, match="is there already"):
+    with pytest.raises(UsageError, match="exists already"):
         find_loops(random_square(1, seed=0), certificate=file, replace=False)
     with pytest.raises(ForeignJournalError, match="another pattern"):
         find_loops(random_square(1, seed=3), certificate=file, resume=True)
@@ -231,7 +231,7 @@ def test_the_command_line(tmp_path):
     assert claims["loops"] == 2
     again = run("motions", TWO, "--certificate", file)
     assert again.exit_code == 2
-    assert f"{file} is there already; --resume continues it" in again.stderr
+    assert f"{file} exists already; --resume continues it" in again.stderr
     resumed = run("motions", TWO, "--certificate", file, "--resume", "--workers", 1)
     assert resumed.exit_code == 0
     assert resumed.stdout == first.stdout

@@ -55,8 +55,8 @@ def test_a_motion_to_a_node_is_proved_and_clear_up_to_it(motion, proof):
         "clear": True,
     }
     assert proof.end_text == (
-        "until a branch point at the time 0.500686, where vertex 6 is flat and another "
-        "curve crosses"
+        "until a branch point at the time 0.500686, where vertex 6 is flat and another curve "
+        "crosses"
     )
     assert proof.track.reason == "a branch point, where vertex 6 is flat and another curve crosses"
     claims = checker.check(proof.certificate())
@@ -147,7 +147,7 @@ def test_a_node_that_floats_do_not_see_is_not_passed(motion):
     unseen = replace(motion, events=(), end="contact")
     proof = prove(unseen)
     assert proof.status is UNDECIDED
-    assert proof.reason.endswith("crosses, but floats went on without seeing this node")
+    assert proof.reason.endswith("the motion in floats goes on without a branch point there")
     assert not proof.may_succeed_otherwise
     assert checker.check(proof.certificate())["node"] == {"flat": [FLAT], "clear": True}
 
@@ -205,7 +205,7 @@ def test_a_node_that_is_not_found_is_not_claimed(motion, monkeypatch):
     assert proof.branch_point is None
     assert proof.may_succeed_otherwise
     monkeypatch.setattr(proving, "_FARTHER", -1 / 2)
-    assert prove(motion).reason == "no branch point was met where floats see one"
+    assert prove(motion).reason == "the proof met no branch point where floats see one"
 
 
 def shown(proof):
