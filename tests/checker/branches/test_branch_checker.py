@@ -371,7 +371,7 @@ def test_versions_and_keys_are_checked() -> None:
 
 def test_nothing_undecided_gets_a_certificate() -> None:
     flat = find_branch(ringed_square(4), "+++++")
-    with pytest.raises(UsageError, match="not proved"):
+    with pytest.raises(UsageError, match="has proved it"):
         branch_certificate(flat)
 
 
