@@ -13,8 +13,7 @@ On a part with m unknowns there are these cases:
 - if a form has inertia (1, 1), it is a product of two linear factors, and the zeros of each factor
   are a part of their own;
 - otherwise boxes show some solutions. If these have all signs of the vertices that may bend, no
-  other solution joins more by a flip at a vertex that is flat in all of them. If not, nothing is
-  known of other solutions.
+  other solution joins more by a flip at a vertex that is flat in all of them.
 
 Evidence that does not hold proves nothing, so that the claims that need it are refused.
 """

@@ -73,7 +73,7 @@ def test_a_given_rim_is_accepted() -> None:
     rim = {v: Fraction(v * v + 1, 3) for v in pattern.boundary}
     claims = checker.check(branch_certificate(find_branch(pattern, "+-+", boundary_heights=rim)))
     assert claims["gauge"] == "rim"
-    assert checker.summary(claims).startswith("VALID: exactly one solution over the border")
+    assert checker.summary(claims).startswith("VALID: exactly one solution over the boundary")
 
 
 def shifted(text: str, by: int) -> str:
@@ -371,7 +371,7 @@ def test_versions_and_keys_are_checked() -> None:
 
 def test_nothing_undecided_gets_a_certificate() -> None:
     flat = find_branch(ringed_square(4), "+++++")
-    with pytest.raises(UsageError, match="not proved"):
+    with pytest.raises(UsageError, match="has proved it"):
         branch_certificate(flat)
 
 

@@ -97,8 +97,7 @@ def test_keys() -> None:
         (
             ("evidence",),
             "evidence: expected an object with the keys emptied pinned bits start tubes "
-            "node "
-            "contacts",
+            "node contacts",
         ),
         (("claims", "node"), "node: expected an object with the keys flat clear"),
         (
