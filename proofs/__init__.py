@@ -1,7 +1,8 @@
-"""Machine-checked verdicts on the statements of the paper and on those exactfold adds to it.
+"""Machine-checked verdicts on the statements of the paper, and on those that exactfold adds.
 
-One module a theorem or family. Each has `prove(change=None) -> Proof`, runs alone
-(`python -m proofs.NAME`), and is listed in `proofs.MODULES`; `python -m proofs` runs them all.
+There is one module for each theorem or family of theorems. Each module has the function
+`prove(change=None) -> Proof`, runs alone (`python -m proofs.NAME`), and is listed in
+`proofs.MODULES`. `python -m proofs` runs all of them.
 """
 
 MODULES: tuple[str, ...] = (

@@ -26,7 +26,7 @@ python -m proofs NAME shows the steps of a script (kapovich_millson) or of a sta
 
 @cache
 def load(name: str) -> Proof:
-    """The proof of one module, run once."""
+    """The proof of one module; it is run once."""
     proof = importlib.import_module(f"proofs.{name}").prove()
     if not isinstance(proof, Proof):
         raise TypeError(f"proofs.{name}.prove() returned no Proof")
@@ -34,7 +34,7 @@ def load(name: str) -> Proof:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run proofs; the exit code is 0 only if every step of every proof was established."""
+    """Run proofs; return 0 only if every step of every proof was established."""
     parser = argparse.ArgumentParser(prog="python -m proofs", description=__doc__)
     parser.add_argument(
         "names", nargs="*", metavar="NAME", help="scripts or statements to show (default: a table)"
@@ -73,7 +73,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def home(key: str) -> Proof | None:
-    """The proof that rules on a statement; scripts that name it in their text are run first."""
+    """The proof that rules on a statement, or None. Scripts whose text names it are run first."""
     ordered = sorted(MODULES, key=lambda name: f'"{key}"' not in _source(name))
     for name in ordered:
         proof = load(name)
@@ -90,7 +90,7 @@ def _source(name: str) -> str:
 
 
 def table() -> int:
-    """One line for each script, and what the columns say."""
+    """Print one line for each script, and the meaning of the columns; return the exit code."""
     print(
         f"{'proof':24}{'verdict':10}{'steps':>6}{'tested':>8}{'stated':>8}{'corrected':>11}  time"
     )

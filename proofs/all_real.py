@@ -95,7 +95,7 @@ def _minus(d: Vector, e: Vector) -> Vector:
 
 
 def _corner(d: Vector, e: Vector, g: Vector) -> Any:
-    """What the face with spokes d, e (counter-clockwise) adds to the curvature form, by c and s."""
+    """The term of a face with spokes d, e (counter-clockwise) in the curvature form, by c and s."""
     c, s = _dot(_turned(d), e), _dot(d, e)
     x, y = _dot(g, d), _dot(g, e)
     return x * y / c - s / (2 * c) * (x**2 / _dot(d, d) + y**2 / _dot(e, e))
@@ -135,7 +135,7 @@ def _corner_identity(script: Script) -> None:
 
 @cache
 def _face_sums() -> tuple[list[Any], Any, Any, Any]:
-    """Of a general triangle and gradient: all k, sum |U_v|^2 k, 2 |T| |g|^2, and the edge terms."""
+    """For a general triangle and gradient: all k, sum |U_v|^2 k, 2 |T| |g|^2, and edge terms."""
     _, *x = field("a1 a2 b1 b2 p1 p2 g1 g2", QQ)
     corners, g = [(x[0], x[1]), (x[2], x[3]), (x[4], x[5])], (x[6], x[7])
     parts, moment, edges = [], 0 * x[0], 0 * x[0]
@@ -191,7 +191,8 @@ def _wirtinger(script: Script) -> None:
 
     With angles a_1, ..., a_k between consecutive spokes, the form is tridiagonal with diagonal
     (cot a_j + cot a_{j+1})/2 and off-diagonal -(csc a_{j+1})/2; in units of 1/2 its leading minors
-    are D_j = sin(a_1 + ... + a_{j+1}) / (sin a_1 ... sin a_{j+1}). Base and induction step.
+    are D_j = sin(a_1 + ... + a_{j+1}) / (sin a_1 ... sin a_{j+1}). The base and the step of the
+    induction are checked.
     """
     t, u, w = sympy.symbols("t u w")
 
@@ -219,7 +220,7 @@ def _wirtinger(script: Script) -> None:
 
 
 def _theorem_1_on_patterns(script: Script) -> None:
-    """The identity of Theorem 1 against the package's own curvature forms, with any heights."""
+    """Compare the identity of Theorem 1 with exactfold's own curvature forms, at any heights."""
     shift = script.alter("multipliers shifted", Fraction(0), Fraction(1, 7))
 
     def holds(pattern: CreasePattern, seed: int) -> bool:
@@ -261,7 +262,7 @@ def _theorem_1_on_patterns(script: Script) -> None:
 
 
 def _five_corners(script: Script) -> None:
-    """Right-hand side 0 without convexity, five boundary vertices."""
+    """The right-hand side 0 on a sheet that is not convex, with five boundary vertices."""
     notch = script.alter("the notch closed", (1, 0), (5, 0))
     sheet = CreasePattern(
         [(4, -4), notch, (4, 4), (-4, 2), (-4, -2), (0, 0)],
@@ -312,7 +313,7 @@ def _boundary_corner(
 
 
 def _conclusions_on_patterns(script: Script) -> None:
-    """(a), (b), (d), (e) and section 4, by counting that knows nothing of the theorem."""
+    """Test (a), (b), (d), (e) and section 4 by a count that does not use the theorem."""
     extra = script.alter("one branch too many", 0, 1)
 
     def all_real(pattern: CreasePattern) -> bool:
@@ -330,7 +331,7 @@ def _conclusions_on_patterns(script: Script) -> None:
     by_vertex = script.alter("ends told apart by the first vertex", False, True)
 
     def one_each(result: BranchCount) -> bool:
-        """Each sign vector once, with saddle +1 (convex) or the reflex corner up (closed sheet)."""
+        """Whether each sign vector occurs once, with saddle +1 or, if closed, reflex corner up."""
         vectors = set()
         for branch in result.branches:
             plain = result.pattern.is_convex or saddle_only

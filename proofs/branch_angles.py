@@ -1,7 +1,7 @@
 """The angles between the branches of random squares (Section V and Appendix D).
 
-The samples of the paper are not published. Here angles are measured, in floating point, on samples
-of our own from fixed seeds; every step is a measurement and says on how many squares.
+The samples of the paper are not published. Here angles are measured in floating point, on samples
+of our own that come from fixed seeds. Every step is a measurement, and says on how many squares.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ PLACE = "Appendix D"
 
 
 def prove(change: str | None = None) -> Proof:
-    """What the histograms of Appendix D show, on samples of our own."""
+    """Measure on samples of our own what the histograms of Appendix D show."""
     script = Script(
         NAME,
         TITLE,
@@ -48,7 +48,7 @@ def prove(change: str | None = None) -> Proof:
 
 @cache
 def cosines(interior: int) -> tuple[NDArray[np.float64], ...]:
-    """For each square of the sample the cosines of the angles of all pairs of branches."""
+    """For each square of the sample, the cosines of the angles between all pairs of branches."""
     found = []
     for seed in range(SQUARES[interior]):
         branches = count_branches(random_square(interior, seed)).branches
@@ -59,7 +59,7 @@ def cosines(interior: int) -> tuple[NDArray[np.float64], ...]:
 
 
 def _orthogonality(script: Script) -> None:
-    """The mean of cos^2, which is 1/(n + 1) for random points on the n-dimensional sphere."""
+    """Measure the mean of cos^2; for random points on the n-dimensional sphere it is 1/(n + 1)."""
     means = {n: float(np.mean(np.concatenate(cosines(n)) ** 2)) for n in SQUARES}
     least = script.alter("more orthogonal than random points", 1, 3)
     script.cases(
@@ -80,7 +80,7 @@ def _orthogonality(script: Script) -> None:
 
 
 def _tails(script: Script) -> None:
-    """Shares of angles near pi/2 and near 0, against random points."""
+    """Compare the shares of angles near pi/2 and near 0 with those of random points."""
     sample = np.abs(np.concatenate(cosines(5)))
     width = np.pi / 32
     grid = np.linspace(0, np.pi, 20001)
@@ -130,7 +130,7 @@ def _tails(script: Script) -> None:
 
 
 def _samples(script: Script) -> None:
-    """Pairs of branches of one square are not independent."""
+    """Show that pairs of branches of one square are not independent."""
     means = [float(np.mean(c**2)) for c in cosines(6)]
     spread = float(np.std(means))
     pooled = np.concatenate(cosines(6)) ** 2

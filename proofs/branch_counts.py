@@ -40,7 +40,7 @@ TWO_CONES = CreasePattern(
 
 
 def prove(change: str | None = None) -> Proof:
-    """Which of the simplest patterns have how many branches, and what a branch is for D >= 2."""
+    """Count the branches of the simplest patterns, and show what a branch is for D >= 2."""
     script = Script(
         NAME, TITLE, ("curvature forms have inertia (1, N - 3, 3) (Appendix C)",), change
     )
@@ -52,7 +52,7 @@ def prove(change: str | None = None) -> Proof:
 
 
 def _single_vertex(script: Script) -> None:
-    """Null cones of Lorentzian forms: none, two lines, then one double cone."""
+    """The null cone of one vertex: only 0, then two lines, then one double cone, as N grows."""
     found = [count_branches(families.single_vertex(n)).distinct for n in range(3, 9)]
     script.example(
         "branches of a vertex with N = 3, 4, 5, 6, 7, 8 folds: 0, 2, 1, 1, 1, 1",
@@ -115,7 +115,7 @@ def _single_vertex(script: Script) -> None:
 
 
 def _rigid_triangles(script: Script) -> None:
-    """Ve = 3: definite stress; Schlegel diagrams; chords."""
+    """Sheets with Ve = 3 are rigid: definite stresses, Schlegel diagrams, chords."""
     octahedron = CreasePattern(
         [(0, 0), (9, 0), (0, 9), *inner_points((0, 0), (9, 0), (0, 9))], OCTAHEDRON
     )
@@ -204,7 +204,7 @@ def _rigid_triangles(script: Script) -> None:
 
 
 def _components(script: Script) -> None:
-    """For D >= 2 connected components of the solution set are not the branches."""
+    """For D >= 2 the branches are not the connected components of the solution set."""
     p = TWO_CONES
     free = [2, 3, 4, 6]
     # Modulo planes the heights at 5, 0 and 1 are 0, so that 5 is flat where h_2 = h_6 = 0
@@ -247,7 +247,7 @@ TWO_LINES = CreasePattern(
 
 
 def _linear_branches(script: Script) -> None:
-    """A branch for D = 2 that is a plane, and smooth there."""
+    """A sheet with D = 2 and a branch that is a plane, along which the solutions are smooth."""
     p = TWO_LINES
     span = []
     end = script.alter("a line that is no crease path", 3, 4)

@@ -25,7 +25,7 @@ TITLE = "Krawczyk's test, completeness, and multiplicities"
 
 
 def prove(change: str | None = None) -> Proof:
-    """The identities behind docs/mathematics.md, 3, 4 and 8."""
+    """Prove the identities behind docs/mathematics.md, 3, 4 and 8."""
     script = Script(
         NAME,
         TITLE,
@@ -60,8 +60,8 @@ def prove(change: str | None = None) -> Proof:
 def _contraction(script: Script) -> None:
     """G(x) - G(y) = (I - Y F'(m)) (x - y) - Y H((x + y)/2 - m, x - y), for n = 2 and any numbers.
 
-    Every quadric is a sum of monomials x_j x_k, x_j, 1, and the identity is linear in F and in Y:
-    two unknowns are the general case.
+    Every quadric is a sum of monomials x_j x_k, x_j and 1. The identity is linear in F and in Y, so
+    that the case of two unknowns proves the general case.
     """
     names = "x1 x2 y1 y2 m1 m2 y11 y12 y21 y22 a b c d e f g h i j k l"
     _, *z = ring(names, QQ)

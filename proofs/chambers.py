@@ -40,17 +40,18 @@ def sign_functionals(pattern: CreasePattern) -> dict[int, dict[int, int]]:
 
 @lru_cache(maxsize=256)
 def counted(pattern: CreasePattern) -> BranchCount:
-    """The branches of a pattern, counted once: proofs are run again for each deliberate mistake."""
+    """The branches of a pattern, remembered, because tests run a proof once for each mistake."""
     return count_branches(pattern)
 
 
 @dataclass(frozen=True)
 class Solutions:
-    """What was found for the right-hand sides k_v > 0 and the boundary heights of one pattern.
+    """The solutions for right-hand sides k_v > 0 and boundary heights of one pattern.
 
-    `points` are the rational centres of the boxes of the real solutions, no height farther than
-    `radius` from that of the solution, and `signs` the vertex signs that hold on all of each box,
-    None where undecided. `complete` is PROVED if there are no other solutions, real or complex.
+    `points` are the rational centres of boxes that hold the real solutions; no height of a solution
+    differs from that of its centre by more than `radius`. `signs` are the vertex signs that hold on
+    the whole of each box, None where they are undecided. `complete` is PROVED if there are no other
+    solutions, real or complex.
     """
 
     pattern: CreasePattern
@@ -116,7 +117,7 @@ def vertex_signs(pattern: CreasePattern, heights: Mapping[int, Fraction]) -> tup
 
 
 def corner_sign(pattern: CreasePattern, branch: Branch) -> int | None:
-    """Whether the reflex corner pops up (1) or down (-1) in the closed sheet, on a shown branch.
+    """Whether on a branch the reflex corner pops up (1) or down (-1) in the closed sheet.
 
     None if the enclosure of the branch does not decide it.
     """
@@ -140,11 +141,11 @@ def jacobian(pattern: CreasePattern, heights: Mapping[int, Fraction]) -> list[li
 def inertia_at(
     pattern: CreasePattern, box: Mapping[int, tuple[Fraction, Fraction]], flat: Set[int]
 ) -> Inertia | None:
-    """The inertia of J(h) for every h with heights between the two bounds; None if not decided.
+    """The inertia of J(h), the same for all heights h between two bounds; None if undecided.
 
-    `flat` names vertices that are known to be flat, whose rows of J are zero. Otherwise J(m) at the
-    centre m has an inverse Y, and no matrix that differs from J(m) by less than R entrywise is
-    singular if the rows of |Y| R add up to less than 1.
+    `flat` names vertices that are known to be flat; their rows of J are zero and are left out. Let
+    Y be the inverse of J(m) at the centre m. If the entries of each row of |Y| R add up to less
+    than 1, no matrix is singular whose entries differ from those of J(m) by less than those of R.
     """
     centre = {v: (low + high) / 2 for v, (low, high) in box.items()}
     reach = {v: abs(high - low) / 2 for v, (low, high) in box.items()}

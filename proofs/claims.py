@@ -1,4 +1,4 @@
-"""Statements that are expressions, and what evaluates them."""
+"""Statements that are formulas, and their evaluation."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ MEANINGLESS = (LookupError, ZeroDivisionError, TypeError, ValueError, AttributeE
 
 @dataclass(frozen=True)
 class Claim:
-    """The formulas of a statement and where they are evaluated.
+    """The formulas of a statement, and the geometries in which they are evaluated.
 
-    `right` (as printed, or as corrected) holds in each of `over` and `at`; if it is a correction,
-    `printed` does not hold in one of `at`. `over` are free geometries, `at` those with numbers, in
-    which a mistake shows quickly.
+    `over` are free geometries. `at` are geometries with numbers, in which a mistake shows quickly.
+    The text `right`, as printed or as corrected, must hold in all of them. If it is a correction,
+    the `printed` text must fail in one of `at`.
     """
 
     key: str
@@ -38,9 +38,10 @@ class Claim:
 
 
 def holds(text: Text, names: Names) -> bool:
-    """Whether all formulas of a text hold with this meaning of the names.
+    """Whether all formulas of a text hold if the names have these meanings.
 
-    The k-th expression that is no equation has to have the k-th of `names["values"]`.
+    An expression that is not an equation must have a given value: the k-th such expression has the
+    k-th value of `names["values"]`.
     """
     values = iter(names.get("values", ()))
     bare = [f for f in text.formulas if not f.relations]
@@ -53,9 +54,9 @@ def holds(text: Text, names: Names) -> bool:
 
 
 def is_true(formula: Formula, names: Names) -> bool:
-    """Whether all relations hold; False also where a name or an index has no value.
+    """Whether all relations hold; False if a name or an index has no value.
 
-    `names["zero"]`, if there is one, decides whether a difference is zero.
+    If `names` has a "zero", this function decides whether a difference is zero.
     """
     zero = names.get("zero", is_zero)
     try:
@@ -78,9 +79,9 @@ def _is_value(formula: Formula, value: Any, names: Names) -> bool:
 def is_zero(value: Any) -> bool:
     """Whether a number, a SymPy ring or field element, or a SymPy expression is identically 0.
 
-    Ring and field elements are in normal form, so `== 0` decides; an expression is first brought
-    over one denominator and expanded, which decides for rational functions of its symbols. An
-    angle is 0 if its sine is 0 and its cosine 1.
+    Ring and field elements are in normal form, so that `== 0` decides. An expression is first
+    brought over one denominator and expanded; this decides for rational functions of its symbols.
+    An angle is 0 if its sine is 0 and its cosine is 1.
     """
     if hasattr(value, "is_Matrix") and value.is_Matrix:
         return all(is_zero(entry) for entry in value)

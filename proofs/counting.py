@@ -26,7 +26,7 @@ TITLE = "Degrees of freedom, folds, assignments and chambers"
 
 
 def prove(change: str | None = None) -> Proof:
-    """Every count that follows from Euler's formula and linear algebra."""
+    """Prove every count that follows from Euler's formula and linear algebra."""
     script = Script(NAME, TITLE, ("a triangulated disk with Vi, Ve vertices",), change)
     _freedom(script)
     _folds(script)
@@ -346,14 +346,14 @@ def _chambers(script: Script) -> None:
 
 
 def _freedoms(system: BranchSystem) -> dict[str, Any]:
-    """Numbers of a sheet, with D by the lengths of a folded one: 3 V - 6 - E."""
+    """The numbers of a sheet; D = 3 V - 6 - E counts the freedoms of a folded sheet."""
     p = system.pattern
     D = 3 * len(p.vertices) - 6 - len(p.edges)
     return {"V_i": p.Vi, "V_e": p.Ve, "D": D}
 
 
 def _share(pattern: CreasePattern) -> dict[str, Any]:
-    """The share of all assignments, up to reflection, that are those of branches."""
+    """The share of assignments that belong to branches, among all assignments up to reflection."""
     count = count_branches(pattern)
     found = (count.distinct or 0) - (count.repeated_assignments or 0)
     share = Fraction(found, 2 ** len(pattern.without_rigid_parts()[0].folds) // 2)
@@ -361,7 +361,7 @@ def _share(pattern: CreasePattern) -> dict[str, Any]:
 
 
 def _squares() -> list[dict[str, Any]]:
-    """Numbers of squares: folds outside triangulated triangles, and vertices."""
+    """For some squares, the numbers of folds outside triangulated triangles, and of vertices."""
     sheets = [families.single_vertex(4), families.two_vertex(), families.hypar(2)]
     sheets += [families.flat_octahedron_in_square()]
     return [

@@ -74,7 +74,7 @@ def _law_of_cosines(script: Script) -> None:
 
 
 def _expansion(script: Script) -> Change:
-    """Insert psi = pi/2 + t p and beta = alpha + t b1 + t^2 b2, and compare powers of t."""
+    """Insert psi = pi/2 + t p and beta = alpha + t b1 + t^2 b2, and compare the powers of t."""
     _, t, C, S, p, q, b1, b2, x = ring("t C S p q b1 b2 x", QQ)
 
     def sine(y: Any) -> Any:  # up to and including t^4
@@ -150,7 +150,7 @@ def _expansion(script: Script) -> Change:
 
 
 def _deficit(script: Script, change: Change) -> None:
-    """The angles beta close up around the z axis; the angles alpha lack K."""
+    """The angles beta add up to a full turn round the z axis; the angles alpha fall short by K."""
     _, *g = ring("a b c d e f", QQ)
     z0, z1, z2 = (g[0], g[1]), (g[2], g[3]), (g[4], g[5])
 
@@ -199,7 +199,7 @@ def _deficit(script: Script, change: Change) -> None:
 
 
 def _sector(angle: Angle, L: Any, L1: Any, x: Any, x1: Any) -> Any:
-    """delta beta by A.3 with delta psi = -x/L."""
+    """The value of delta beta by A.3, with delta psi = -x/L."""
     d, d1 = -x / L, -x1 / L1
     return (2 * d * d1 - (d * d + d1 * d1) * angle.cos) / (2 * angle.sin)
 
@@ -293,7 +293,7 @@ def _heights(script: Script, change: Change) -> None:
 
 
 def _constraint(script: Script) -> None:
-    """Collect the two sectors (i-1, i) and (i, i+1) at spoke i, for every N."""
+    """Add the terms of the two sectors (i-1, i) and (i, i+1) at spoke i, for every N."""
     _, p, q, L0, L1, L2, x0, x1, x2 = field("p q L0 L1 L2 x0 x1 x2", QQ)
     before, after = Angle.twice_arctan(p), Angle.twice_arctan(q)
     both = _sector(before, L0, L1, x0, x1) + _sector(after, L1, L2, x1, x2)
@@ -326,7 +326,7 @@ def _constraint(script: Script) -> None:
 
 
 def _curvature_form(script: Script) -> None:
-    """The same form as the angle deficit of a graph, and as it is computed in exactfold."""
+    """The form equals the angle deficit of a graph, and the form that exactfold computes."""
     _, t, a, b, u, v, x, x1, k = field("t a b u v x x1 k", QQ)
     c, s, l2, m2 = a * v - b * u, a * u + b * v, a * a + b * b, u * u + v * v
     kappa = x * x1 / c - s / (2 * c) * (x**2 / l2 + x1**2 / m2)

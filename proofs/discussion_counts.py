@@ -34,7 +34,7 @@ WIDE = star((1, 0), (0, 1), (-2, -1), (-1, -2), (1, -1))
 
 
 def prove(change: str | None = None) -> Proof:
-    """Rigidified folds, and gradients orthogonal to all branches but one."""
+    """Rigid folds, and gradients that are orthogonal to all branches except one."""
     script = Script(NAME, TITLE, ("a triangulated disk with Vi, Ve vertices",), change)
     _rigid_folds(script)
     _orthogonality(script)
@@ -42,7 +42,7 @@ def prove(change: str | None = None) -> Proof:
 
 
 def _rigid_folds(script: Script) -> None:
-    """D for non-triangulated origami."""
+    """The number D for origami that is not triangulated."""
     wheel = families.single_vertex(5)
     gram = _restricted(curvature_form(wheel, 5), fold_functional(wheel, (0, 5)))
     rigid = script.alter("D = Ve - 4 - E", 3, 4)
@@ -144,7 +144,10 @@ def _rigid_folds(script: Script) -> None:
     corners_ = [ends[2 * k : 2 * k + 2] for k in range(4)]
 
     def area(k: int) -> sympy.Expr:
-        """Signed area of the triangle without corner k, alternating: an affine dependency."""
+        """The signed area of the triangle without corner k, with alternating sign.
+
+        These areas are the coefficients of an affine dependency.
+        """
         rows = [[1, *corners_[j]] for j in range(4) if j != k]
         return (-1) ** k * sympy.Matrix(rows).det()
 
@@ -173,14 +176,14 @@ def _rigid_folds(script: Script) -> None:
 
 
 def _restricted(form: QuadraticForm, weights: Mapping[int, int | Fraction]) -> list[list[Fraction]]:
-    """The Gram matrix of a form where a functional vanishes."""
+    """The Gram matrix of a form on the space where a functional vanishes."""
     kernel = nullspace([[Fraction(weights.get(v, 0)) for v in form.labels]])
     basis = [dict(zip(form.labels, row, strict=True)) for row in kernel]
     return [[form.polar(a, b) for b in basis] for a in basis]
 
 
 def _orthogonality(script: Script) -> None:
-    """Gradients orthogonal to all branches but one."""
+    """Gradients that are orthogonal to all branches except one."""
     branches = count_branches(families.two_vertex()).branches
     rows = [[h for _, h in sorted(b.heights.items()) if any(h)] for b in branches]
     rows[3] = rows[script.alter("one branch counted twice", 3, 0)]
@@ -295,7 +298,8 @@ def _orthogonality(script: Script) -> None:
 def _independent(rows: list[list[tuple[Fraction, Fraction]]]) -> bool:
     """Whether the determinant of a square matrix of intervals cannot vanish.
 
-    It differs from that of the midpoints by at most n! n r M^(n-1), r the radius, M a bound.
+    It differs from the determinant of the midpoints by at most n! n r M^(n-1), where r bounds the
+    radii and M the entries.
     """
     size = len(rows)
     middle = [[(low + high) / 2 for low, high in row] for row in rows]
@@ -307,7 +311,7 @@ def _independent(rows: list[list[tuple[Fraction, Fraction]]]) -> bool:
 
 @cache
 def _spanning_sets(interior: int, seed: int) -> int:
-    """How many disjoint spanning sets of branches of a random square a search finds: 2 or 0."""
+    """The number of disjoint spanning sets of branches that a search finds: 2, or else 0."""
     pattern = random_square(interior, seed)
     branches = count_branches(pattern).branches
     rows = [[h for _, h in sorted(b.heights.items()) if any(h)] for b in branches]
@@ -320,7 +324,7 @@ def _spanning_sets(interior: int, seed: int) -> int:
 
 
 def _rigidified() -> list[dict[str, Any]]:
-    """Freedoms of single vertices whose first fold is rigid (E = 1) or not, by their null cones."""
+    """The freedoms of single vertices, by null cones; the first fold is rigid (E = 1) or free."""
     found = []
     for n in (5, 6, 7):
         wheel = families.single_vertex(n)

@@ -42,7 +42,10 @@ class DualSpace:
 
     @property
     def dimension(self) -> int:
-        """Number of functionals: a lower bound for the multiplicity, equal if complete."""
+        """The number of functionals.
+
+        It is a lower bound of the multiplicity, and equals it if the space is complete.
+        """
         return len(self.functionals)
 
     @property
@@ -92,7 +95,7 @@ def dual_space(system: QuadraticSystem, root_class: RootClass, limit: int) -> Du
 
 
 def taylor_expansions(system: QuadraticSystem, root_class: RootClass) -> list[Taylor]:
-    """Coefficients at the root of the quadrics times p'(T)^2, modulo p, by exponent.
+    """The Taylor coefficients of the quadrics at the root, times p'(T)^2 and modulo p, by exponent.
 
     The factor is a unit modulo p and saves divisions. With z = (w, p') at the root and S the matrix
     of a quadric z^T S z, value, gradient and half the Hessian are z^T S z, 2 p' (S z)_i, and
@@ -123,10 +126,11 @@ def taylor_expansions(system: QuadraticSystem, root_class: RootClass) -> list[Ta
 def unit_rank(polynomial: Sequence[int], equations: Sequence[Taylor]) -> int:
     """A proved lower bound for the rank of linear equations over Q[T]/p, at every root of p.
 
-    An equation maps an unknown to its coefficient. Elimination modulo a prime, with pivots that are
-    units modulo the prime and p: the product of the pivots is a minor up to sign, and a minor that
-    is a unit there is one in Q[T]/p. The prime (the first above 2^62 that divides no denominator
-    and not the leading coefficient of p) matters for the strength of the bound only.
+    An equation maps an unknown to its coefficient. The equations are eliminated modulo a prime,
+    with pivots that are units modulo the prime and p. The product of the pivots is a minor up to
+    sign, and a minor that is a unit modulo the prime is a unit in Q[T]/p. The prime is the first
+    one above 2^62 that divides neither a denominator nor the leading coefficient of p. Another
+    prime might give a weaker bound, but never a wrong one.
 
     >>> x, y = (1, 0), (0, 1)
     >>> unit_rank((-2, 0, 1), [{x: fmpq_poly([0, 1]), y: fmpq_poly([2])},

@@ -1,7 +1,8 @@
 """The eigenvector h_- of a vertex, the round cone, and the two nappes (Section II B).
 
-K is the curvature form of a vertex; h_- is the eigenvector of its one positive eigenvalue, which is
-the one negative eigenvalue in the sign of Appendix C. What it says of popping is in `vertex_signs`.
+K is the curvature form of a vertex, and h_- is the eigenvector of its only positive eigenvalue. In
+the sign convention of Appendix C this is the only negative eigenvalue. The module `vertex_signs`
+has what follows about popping.
 """
 
 from __future__ import annotations
@@ -254,7 +255,7 @@ def _components(script: Script) -> None:
 
 
 def _largest(script: Script) -> None:
-    """Steps of LARGEST, and its claim on stars with reflex links."""
+    """The steps of the statement LARGEST, and what it claims, on stars with reflex links."""
     s, t, r, q, p = symbols("s t r q p")
     u, v = unit(s), unit(t)  # a sector; slopes r and q of h at its spokes
     polar = ((r * v[1] + q * u[1]) * csc(u, v) - cot(u, v) * (r * u[1] + q * v[1])) / 2

@@ -31,7 +31,7 @@ RIM = frozenset(range(4))
 
 
 def prove(change: str | None = None) -> Proof:
-    """The case analysis behind docs/generic.md, Theorem 12, and its hypersurfaces on examples."""
+    """Check the cases behind docs/generic.md, Theorem 12, and examples on its hypersurfaces."""
     script = Script(
         NAME,
         TITLE,
@@ -69,15 +69,19 @@ def graph(disk: Iterable[Triangle]) -> nx.Graph:
 
 
 def enclosed(disk: Iterable[Triangle], size: int) -> set[frozenset[int]]:
-    """The sets of interior vertices that are all that is inside some cycle of 3 or 4 vertices.
+    """All sets of interior vertices that fill the inside of some cycle of `size` vertices, 3 or 4.
 
-    A component without corners of what is left without `size` vertices, which are not the rim.
+    When the vertices of the cycle are taken away, such a set is a component without corners. The
+    cycle is not the boundary.
     """
     return {part for parts in separating(disk, size).values() for part in parts}
 
 
 def separating(disk: Iterable[Triangle], size: int) -> dict[tuple[int, ...], set[frozenset[int]]]:
-    """The sets of `size` vertices, but the rim, that part others from the corners; and these."""
+    """The sets of `size` vertices that separate others from the corners, with what they separate.
+
+    The boundary is not counted.
+    """
     edges = graph(disk)
     found: dict[tuple[int, ...], set[frozenset[int]]] = {}
     for ring in combinations(sorted(edges), size):
@@ -91,8 +95,9 @@ def separating(disk: Iterable[Triangle], size: int) -> dict[tuple[int, ...], set
 def triangulations(n: int) -> list[Disk]:
     """All triangulated disks with 4 corners and n inner vertices, none inside a triangle of edges.
 
-    The corners are 0 to 3 in their order; one of each class under renaming of the others and the
-    symmetries of the square. They are found by flips from one disk, and put in order.
+    The corners are 0 to 3 in their order. Disks that differ only by names of the other vertices and
+    a symmetry of the square count once. They are found by flips, starting from one disk, and
+    sorted.
 
     >>> [len(triangulations(n)) for n in range(1, 5)]
     [1, 1, 2, 6]
@@ -124,7 +129,7 @@ def _flips(disk: Disk) -> Iterator[list[Triangle]]:
 
 
 def _renamed(disk: Iterable[Triangle]) -> Disk:
-    """The same for all disks that differ in names and by a symmetry of the square."""
+    """A normal form: the same for disks that differ by names and a symmetry of the square."""
     left = _next(disk)
     right = {(b, a): c for (a, b), c in left.items()}
     return min(
@@ -135,7 +140,7 @@ def _renamed(disk: Iterable[Triangle]) -> Disk:
 
 
 def _walk(third: dict[tuple[int, int], int], corners: list[int]) -> Disk:
-    """The faces in names given in the order in which a walk from the rim meets the vertices."""
+    """The faces, with vertices renamed in the order in which a walk from the rim meets them."""
     names = {corner: i for i, corner in enumerate(corners)}
     queue = [(corners[i - 1], corners[i]) for i in range(4)]
     faces: dict[frozenset[int], Triangle] = {}
@@ -153,7 +158,7 @@ def _walk(third: dict[tuple[int, int], int], corners: list[int]) -> Disk:
 
 
 class Case(NamedTuple):
-    """What a branch with a flat star is like: points on lines, flat stars, stars not decided.
+    """A case of a branch with a flat star: points on lines, flat stars, and undecided stars.
 
     Each of `lines` is an interior vertex w with two of its neighbours a < c: w lies on ac.
     """
@@ -166,9 +171,9 @@ class Case(NamedTuple):
 def cases(disk: Disk, v: int) -> set[Case]:
     """All cases of a branch with a flat star of v, followed from star to star.
 
-    A star with one fold that is not yet flat is flat. One with two is flat or they form a line. One
-    with three is flat or two of them form a line and the third is flat. The four corners do not lie
-    in a plane, and no line is a side of a face.
+    A star with one fold that is not yet flat is flat. A star with two such folds is flat, or the
+    two form a line. A star with three such folds is flat, or two of them form a line and the third
+    is flat. The four corners do not lie in a plane, and no line is a side of a face.
     """
     faces = [frozenset(face) for face in disk]
     third = _next(disk)
@@ -178,7 +183,7 @@ def cases(disk: Disk, v: int) -> set[Case]:
     seen: set[tuple[frozenset[Edge], frozenset[tuple[int, int, int]]]] = set()
 
     def planar(flat: Collection[Edge]) -> bool:
-        """Whether faces that flat folds join hold all four corners."""
+        """Whether the faces that are joined by flat folds contain all four corners."""
         joined = nx.Graph()
         joined.add_nodes_from(faces)
         for a, b in flat:
@@ -218,7 +223,7 @@ def cases(disk: Disk, v: int) -> set[Case]:
 
 
 def is_settled(disk: Disk, v: int, size: int = 4) -> bool:
-    """Whether every case of at most one line has all stars inside a 4-cycle around v flat."""
+    """Whether in every case with at most one line, all stars inside a 4-cycle round v are flat."""
     around = [part for part in enclosed(disk, size) if v in part]
     return all(
         len(case.lines) > 1 or any(part <= case.flat for part in around) for case in cases(disk, v)
@@ -297,9 +302,10 @@ def _case_analysis(script: Script) -> None:
 
 
 def placed(disk: Disk, between: Mapping[int, tuple[int, int]]) -> CreasePattern:
-    """The disk in the unit square; vertices of `between` halfway between two neighbours.
+    """The disk drawn in the unit square.
 
-    Each of the others is a mean of its neighbours, with unequal weights (Tutte).
+    Each vertex of `between` lies halfway between two given neighbours. Every other inner vertex is
+    a mean of its neighbours with unequal weights (Tutte).
     """
     inner = sorted({*sum(disk, ())} - RIM)
     edges = graph(disk)
@@ -353,7 +359,7 @@ def _straight_lines(script: Script) -> None:
 
 
 def one_line(disk: Disk) -> dict[tuple[int, int, int], set[int]]:
-    """For each line that is the only one of some case, the stars that are flat then."""
+    """For each line that is the only line of some case, the stars that are flat in this case."""
     found: dict[tuple[int, int, int], set[int]] = {}
     for v in {*sum(disk, ())} - RIM:
         for case in cases(disk, v):

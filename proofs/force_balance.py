@@ -37,7 +37,7 @@ def star(*spokes: tuple[Any, Any]) -> CreasePattern:
 
 
 def prove(change: str | None = None) -> Proof:
-    """Appendix B line by line, and a proof in one line that covers every star."""
+    """Check Appendix B line by line, and give a proof in one line that covers every star."""
     hypotheses = (
         "a hub 0 with N >= 3 spokes of lengths L_i > 0, angles alpha_{i,i+1} in (0, pi) between "
         "adjacent ones, sum 2 pi; eta_{i,i+1}, eta_{i-1,i} are the angles at spoke vertex i",
@@ -289,7 +289,8 @@ def _rim_forces(names: dict[str, Any]) -> dict[str, Any]:
 
 
 def _telescope(script: Script) -> None:
-    """Every N at once, with densities w: the spokes d, e, f are consecutive; J turns left."""
+    """The balance for all N at once, by densities w. The spokes d, e, f are consecutive; J turns
+    left."""
     _, *g = field("x0 y0 x1 y1 x2 y2", QQ)
     d, e, f = (g[0], g[1]), (g[2], g[3]), (g[4], g[5])
 
@@ -339,7 +340,7 @@ def _telescope(script: Script) -> None:
 
 
 def _small_triangle(script: Script) -> None:
-    """The sides of the triangle of the induction, where a spoke is taken out of five."""
+    """The sides of the triangle in the induction, for five spokes one of which is taken out."""
     five: list[tuple[Any, Any]] = [(1, 0), ("4/5", "3/5"), ("7/25", "24/25"), (-1, 0), (0, -1)]
     i = script.alter("a spoke taken out that is not beside the first", 1, 2)
     full, less = wheel_stress(star(*five), 5), wheel_stress(star(*five[:i], *five[i + 1 :]), 4)

@@ -1,8 +1,8 @@
-r"""Formulas as expressions: evaluated by a step, written as LaTeX.
+r"""Formulas as expressions that a step can evaluate and that are written as LaTeX.
 
-What a page prints as a formula is what a step evaluates: `proofs.reading.parse` reads the LaTeX of
-the paper into an expression, `Formula.comparisons` evaluates its sides in an environment that says
-what the names mean, and `latex` writes it. `proofs.mutation` puts mistakes into it.
+So a page prints exactly the formula that a step evaluates. `proofs.reading.parse` reads the LaTeX
+of the paper into an expression. `Formula.comparisons` evaluates its sides in an environment, which
+says what the names mean. `latex` writes it, and `proofs.mutation` puts mistakes into it.
 
 >>> from proofs.reading import parse
 >>> f = parse(r"\chi(N+2)=f_{N+1}\chi(N+1)-g_{N,N+1}^2\chi(N)", functions=["chi"])
@@ -48,7 +48,7 @@ class Node:
 class Formula:
     """A chain of expressions with relations between them, for one index in a range if there is one.
 
-    Without a relation it is an expression; `is_mention` if it is only a name or a number.
+    Without a relation it is an expression. If it is only a name or a number, it is a mention.
     """
 
     sides: tuple[Node, ...]
@@ -58,11 +58,11 @@ class Formula:
 
     @property
     def is_mention(self) -> bool:
-        """Whether nothing is said that could be evaluated."""
+        """Whether the formula is only a name or a number, so that it says nothing to evaluate."""
         return not self.relations and self.sides[0].kind in ("name", "number")
 
     def comparisons(self, names: Names) -> list[tuple[Any, str, Any]]:
-        """What stands on both sides of each relation, for all indices of the range.
+        """The values of both sides of each relation, for all indices of the range.
 
         Raises `LookupError` if a name, or a value for an index, is missing.
         """
@@ -112,7 +112,7 @@ def evaluate(node: Node, names: Names) -> Any:
 
 
 def compare(left: Any, relation: str, right: Any) -> bool:
-    """Whether a relation between numbers holds; not for equations, which have a zero of their own.
+    """Whether an inequality between numbers holds. Equations are decided in `claims`.
 
     >>> compare(2, r"\\le", 3)
     True

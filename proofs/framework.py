@@ -1,4 +1,4 @@
-"""What a proof is made of: statements with verdicts, and steps that a machine establishes."""
+"""The parts of a proof: statements with verdicts, and steps that a machine establishes."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ class Proof:
     statements: tuple[Statement, ...]
     steps: tuple[Step, ...]
     changes: tuple[str, ...] = ()
-    """Names of the deliberate mistakes that `prove(change)` can make; each must be refused."""
+    """Names of deliberate mistakes that `prove(change)` can make; some step must refuse each."""
     claims: tuple[Claim, ...] = field(default=(), compare=False)
-    """Statements that are expressions, with what evaluates them."""
+    """Statements that are formulas, with the geometries in which they are evaluated."""
 
     @property
     def holds(self) -> bool:
@@ -36,21 +36,22 @@ class Proof:
 
     @property
     def verdict(self) -> str:
-        """`proved`; `tested` if at least half of the steps are; `refuted` if a step fails."""
+        """`refuted` if a step fails; else `tested` if half of the steps or more only test cases;
+        else `proved`."""
         if not self.holds:
             return "refuted"
         return "tested" if 2 * self.tested_only >= len(self.steps) else "proved"
 
     def steps_of(self, key: str) -> list[Step]:
-        """The steps that name a statement, for it or against its printed form."""
+        """The steps that name a statement: those for it, and those against its printed form."""
         return [step for step in self.steps if key in (*step.of, *step.against)]
 
     def kind(self, statement: Statement) -> str:
-        """Whether the text of a statement is a formula that a step evaluates, or words."""
+        """The kind of the text of a statement: a formula that a step evaluates, or words."""
         return "formula" if any(c.key == statement.key for c in self.claims) else "in words"
 
     def basis(self, statement: Statement) -> str:
-        """What a statement rests on, from the strongest to the weakest, in words."""
+        """In words, what a statement rests on, from the strongest to the weakest."""
         steps = [step for step in self.steps if statement.key in step.of]
         kinds = {how: [s for s in steps if s.how is how] for how in How}
         general = len(kinds[How.IDENTITY]) + len(kinds[How.CERTIFICATE])
@@ -114,7 +115,7 @@ class Proof:
 
 @dataclass
 class Script:
-    """Collects the steps of one proof; a formula passes through `alter`, so that it can be broken.
+    """Collects the steps of one proof. Formulas pass through `alter`, so that tests can break them.
 
     >>> script = Script("demo", "Squares", ())
     >>> sign = script.alter("wrong sign", 1, -1)
@@ -137,7 +138,7 @@ class Script:
     claims: list[Claim] = field(default_factory=list)
 
     def alter(self, name: str, right: T, wrong: T) -> T:
-        """`right`, or `wrong` if this change was asked for; registers the change."""
+        """Register a change; return `wrong` if this change was asked for, else `right`."""
         self.changes.append(name)
         return wrong if self.change == name else right
 
@@ -146,27 +147,30 @@ class Script:
         self.statements.append(Statement(*args, **kwargs))
 
     def identity(self, text: str, *differences: Any, of: str = "", against: str = "") -> None:
-        """Every difference (number, polynomial, rational function) is identically zero."""
+        """Add a step: every difference (number, polynomial, rational function) is identically 0."""
         self._step(text, How.IDENTITY, all(is_zero(d) for d in differences), of, against)
 
     def certificate(self, text: str, holds: bool, *, of: str = "", against: str = "") -> None:
-        """An inequality or finite claim with an explicit certificate that was just checked."""
+        """Add a step: an inequality or finite claim, with a certificate that was just checked."""
         self._step(text, How.CERTIFICATE, holds, of, against)
 
     def counterexample(self, text: str, holds: bool, *, of: str = "", against: str = "") -> None:
-        """An exact counterexample was just evaluated and does what it should."""
+        """Add a step: an exact counterexample, which was just evaluated and does what it should."""
         self._step(text, How.COUNTEREXAMPLE, holds, of, against)
 
     def cases(
         self, text: str, outcomes: Iterable[bool], *, of: str = "", against: str = ""
     ) -> None:
-        """Exact cases, counted: tested, not proved."""
+        """Add a step: exact cases, which are counted; it is tested, not proved."""
         results = [bool(outcome) for outcome in outcomes]
         holds = bool(results) and all(results)
         self._step(text, How.CASES, holds, of, against, cases=len(results))
 
     def example(self, text: str, holds: bool, *, of: str = "", against: str = "") -> None:
-        """One exact example of a general claim that is argued in words: tested, not proved."""
+        """Add a step: one exact example of a general claim that is argued in words.
+
+        It is tested, not proved.
+        """
         self._step(text, How.CASES, holds, of, against, cases=1)
 
     def _step(
@@ -188,18 +192,19 @@ class Script:
         mentions: bool = False,
         **fields: Any,
     ) -> None:
-        """State formulas, and evaluate them: as they stand, or as corrected, and then as printed.
+        """State formulas and evaluate them, as they stand or as corrected.
 
-        `over` and `at` say what the names mean: free geometries, in which they have to hold
-        identically, and such with numbers, where the printed form fails (`over` if none is given).
-        Without the first they are tested only, on each of the second.
-        With `mentions` single names and numbers among the words are evaluated, too.
+        `over` and `at` say what the names mean. `over` are free geometries; the formulas must hold
+        in them identically. `at` are geometries with numbers. If the formulas are a correction, the
+        printed form must fail in `at`, or in `over` if `at` is empty. If `over` is empty, the
+        formulas are only tested, on each of `at`. With `mentions`, single names and numbers among
+        the words are evaluated too.
         """
         names = tuple(functions)
         first = read(printed, names, mentions)
         right = read(corrected, names, mentions) if corrected else first
         if first.formulas and first.expressions != right.expressions:
-            raise ValueError(f"{key}: as many expressions are needed in both forms")
+            raise ValueError(f"{key}: the two forms need the same number of expressions")
         free = tuple(over)
         claim = Claim(key, first, right, free, tuple(at) or free)
         self.claims.append(claim)
@@ -229,7 +234,7 @@ class Script:
         self.state(key, place, first.latex, right.latex if corrected else "", **fields)
 
     def proof(self) -> Proof:
-        """The finished proof. Raises `ValueError` if the change asked for does not exist."""
+        """The finished proof. Raises `ValueError` if the requested change does not exist."""
         if self.change is not None and self.change not in self.changes:
             raise ValueError(f"{self.name} has no change {self.change!r}")
         return Proof(
@@ -243,7 +248,7 @@ class Script:
         )
 
     def _ruled(self, statement: Statement) -> Statement:
-        """The statement with its ruling. Raises `ValueError` if nothing carries it."""
+        """The statement with its ruling. Raises `ValueError` if it rests on nothing."""
         key = statement.key
         refuted = bool(statement.contradiction)
         refuted = refuted or any(key in step.against for step in self.steps)
@@ -269,7 +274,7 @@ def report(proof: Proof) -> str:
 
 
 def stated(proof: Proof, s: Statement) -> list[str]:
-    """The lines on one statement: where, printed, corrected, why, and what it rests on."""
+    """The lines about one statement: its place, its text, its correction, why, what it rests on."""
     where = f"{s.place}, Eq. ({s.equation})" if s.equation else s.place
     lines = [
         f"  {s.key}  {s.ruling.value}; {proof.kind(s)}: {where}",
@@ -283,7 +288,7 @@ def stated(proof: Proof, s: Statement) -> list[str]:
 
 
 def shown(step: Step) -> str:
-    """The line on one step."""
+    """The line about one step."""
     count = f" ({step.cases})" if step.how is How.CASES else ""
     names = [*step.of, *(f"against {key}" for key in step.against)]
     ends = f"  [{', '.join(names)}]" if names else ""
@@ -291,12 +296,12 @@ def shown(step: Step) -> str:
 
 
 def report_statement(proof: Proof, statement: Statement) -> str:
-    """What `python -m proofs KEY` prints: one statement and the steps that name it."""
+    """The text that `python -m proofs KEY` prints: one statement and the steps that name it."""
     steps = [shown(step) for step in proof.steps_of(statement.key)]
     return "\n".join([*stated(proof, statement), "", "Steps", *(steps or ["  none is run"])])
 
 
 def run(proof: Proof) -> int:
-    """Print a proof; the exit code: 0 only if every step was established."""
+    """Print a proof; return the exit code, which is 0 only if every step was established."""
     sys.stdout.write(report(proof) + "\n")
     return 0 if proof.holds else 1

@@ -91,7 +91,10 @@ def _projective(script: Script) -> None:
 
 
 def _jump_of_the_gradient(turn: int) -> list[Any]:
-    """At a = 0 with height 0, to which a translation and a plane lead: two coordinates, all 0."""
+    """The identity of the jump of the gradient, in two coordinates.
+
+    A translation and a plane reduce it to a point a = 0 with height 0.
+    """
     _, *z = field("c1 c2 c3 y1 y2 y3 z1 z2 z3", QQ)
     c, y, z3 = z[:3], z[3:6], z[6:]
 
@@ -111,7 +114,7 @@ def _jump_of_the_gradient(turn: int) -> list[Any]:
 
 
 def _stress_is_carried_over(rng: random.Random, power: int) -> bool:
-    """Of four random points with heights, a the first, c the second, under a random map."""
+    """Test the stress of four random points with heights (a first, c second) under a random map."""
     points = [[1, *(Fraction(rng.randint(-99, 99), 7) for _ in range(3))] for _ in range(4)]
     matrix = sympy.Matrix(3, 3, [rng.randint(-99, 99) for _ in range(9)])
     factors, images = [], []
@@ -121,7 +124,7 @@ def _stress_is_carried_over(rng: random.Random, power: int) -> bool:
         images.append([1, *(entry / mu for entry in image), height / mu])
 
     def stress(of: list[list[Any]]) -> Any:
-        """The jump of the gradient over the length, up to a sign that depends on no point."""
+        """The jump of the gradient over the length, up to one sign that no point changes."""
         a, c, y, z = (row[:3] for row in of)
         return sympy.Matrix(of).det() / (
             sympy.Matrix([a, c, y]).det() * sympy.Matrix([c, a, z]).det()
@@ -132,7 +135,7 @@ def _stress_is_carried_over(rng: random.Random, power: int) -> bool:
 
 
 def _corner(d: tuple[Any, Any], e: tuple[Any, Any], rise: Any, other: Any) -> Any:
-    """What a face with spokes d, e (counter-clockwise) adds to K, by the heights at their ends."""
+    """The term of a face with spokes d, e (counter-clockwise) in K, by heights at their ends."""
     c, s = d[0] * e[1] - d[1] * e[0], d[0] * e[0] + d[1] * e[1]
     dd, ee = d[0] ** 2 + d[1] ** 2, e[0] ** 2 + e[1] ** 2
     return rise * other / c - s / (2 * c) * (rise**2 / dd + other**2 / ee)
@@ -164,7 +167,7 @@ def _thin_faces(script: Script) -> None:
 
 
 def _straight_corner(script: Script) -> None:
-    """The limit where x lies on the side pq and has no other neighbour than u."""
+    """The limit case: x lies on the side pq, and u is its only other neighbour."""
     P, Q, m, eps = sympy.symbols("P Q m epsilon", positive=True)
     hx, hu, hp, hq = sympy.symbols("h_x h_u h_p h_q")
     u = (m * eps, eps)
@@ -190,7 +193,7 @@ def _straight_corner(script: Script) -> None:
 def disjoint_paths(
     triangles: Iterable[Triangle], rim: Iterable[int], corners: Iterable[int]
 ) -> list[list[int]]:
-    """As many disjoint paths as there are from corners to the rim, none through the rim."""
+    """A largest set of disjoint paths from the corners to the rim, none of them through the rim."""
     graph, rim = nx.Graph(), set(rim)
     for a, b, c in triangles:
         graph.add_edges_from([(a, b), (b, c), (c, a)])
@@ -206,7 +209,7 @@ def outside_triangles(pattern: CreasePattern, corners: set[int]) -> bool:
 
 
 def contracted(triangles: Iterable[Triangle], u: int, x: int) -> list[Triangle]:
-    """The triangles after u is moved into its neighbour x: those with both vanish."""
+    """The triangles after u is moved into its neighbour x; triangles with both vanish."""
     return [
         (x if a == u else a, x if b == u else b, x if c == u else c)
         for a, b, c in triangles
@@ -215,7 +218,7 @@ def contracted(triangles: Iterable[Triangle], u: int, x: int) -> list[Triangle]:
 
 
 def is_simple_disk(triangles: Sequence[Triangle]) -> bool:
-    """Whether triangles that fit together form a disk in which no two vertices have two edges."""
+    """Whether triangles that fit together form a disk without double edges."""
     halves = [half for a, b, c in triangles for half in ((a, b), (b, c), (c, a))]
     edges = {frozenset(half) for half in halves}
     vertices = {v for face in triangles for v in face}
@@ -224,7 +227,7 @@ def is_simple_disk(triangles: Sequence[Triangle]) -> bool:
 
 
 def _contractions(pattern: CreasePattern, ends: int) -> Iterator[bool]:
-    """Step 4 of the proof for all folds: whether what is left is as it says."""
+    """Step 4 of the proof, for all folds: whether the sheet that is left is as the step says."""
     for fold in pattern.folds:
         corners = {*fold, *pattern.opposite(fold)}
         for path in disjoint_paths(pattern.triangles, pattern.boundary, corners):

@@ -141,7 +141,7 @@ def _reducible() -> tuple[int, ...]:
 
 
 def reductions(script: Script) -> None:
-    """How many more moves can be made: the share with more falls more slowly than exponentially."""
+    """How many reverse moves can still be made: the share falls more slowly than exponentially."""
     counts = _reducible()
     share = script.alter("no decay", Fraction(3, 4), Fraction(1, 20))
     script.cases(

@@ -34,7 +34,7 @@ LARGEST = 4
 
 
 def prove(change: str | None = None) -> Proof:
-    """The counting claims on H1 triangulations, and that they are all for Vi <= 3."""
+    """The claims on numbers of H1 triangulations; for Vi <= 3 all triangulations are H1."""
     script = Script(
         NAME, TITLE, ("triangulations of a 4-gon without double edges, chords excluded",), change
     )
@@ -128,7 +128,7 @@ def _enumeration(script: Script) -> list[set[Triangulation]]:
 
 
 def _eligible(level: set[Triangulation]) -> list[Triangulation]:
-    """Without chords and without interior vertices of degree 3."""
+    """Whether a triangulation has no chords and no interior vertices of degree 3."""
     kept = []
     for t in level:
         degree = degrees(t)
@@ -139,7 +139,7 @@ def _eligible(level: set[Triangulation]) -> list[Triangulation]:
 
 
 def _small(script: Script, levels: list[set[Triangulation]]) -> None:
-    """All are H1 up to three interior vertices, and not for four."""
+    """Up to three interior vertices all triangulations are H1; with four some are not."""
     shares = [
         (sum(map(is_h1, kept)), len(kept)) for kept in (_eligible(level) for level in levels[1:])
     ]

@@ -326,7 +326,7 @@ def _last_display(script: Script) -> None:
 
 
 def _choice_of_spoke(script: Script) -> None:
-    """Which spoke can be taken out, and the one star where none can."""
+    """Which spoke can be taken out, and the only star from which none can."""
     straight = star((1, 0), (0, 1), (-1, 0), (0, -1)).vertices
     step = script.alter("one angle for the sum of two", 1, 0)
     script.counterexample(

@@ -32,7 +32,7 @@ Point = tuple[Any, Any]
 
 
 def prove(change: str | None = None) -> Proof:
-    """Every identity of the proof of Theorem 4; `inertia_cases` tests the theorem itself."""
+    """Prove every identity in the proof of Theorem 4; `inertia_cases` tests the theorem itself."""
     script = Script(
         NAME,
         TITLE,
@@ -74,7 +74,7 @@ def _laplace_matrix(script: Script) -> None:
         return p[0] - q[0], p[1] - q[1]
 
     def at(o: Point, ho: Any, first: int) -> Any:
-        """K_o(h, e_w) summed over both faces; `first` is 1 if o = v, else the edge is ow = wv."""
+        """K_o(h, e_w), summed over both faces; `first` is 1 if o = v, else the edge is ow = wv."""
         other, height = (w, hw) if first else ((0 * w[0], 0 * w[0]), hv)
         left, right = ((a, ha), (b, hb)) if first else ((b, hb), (a, ha))
         return corner_polar(
@@ -133,7 +133,7 @@ def _is_laplacian(pattern: CreasePattern, seed: int, sign: int) -> bool:
 
 
 def _all_up(script: Script) -> None:
-    """Tutte's drawing, the way to it, its lifting; sheets without chords."""
+    """Tutte's drawing, the drawings on the way to it, and its lifting, on sheets without chords."""
     sheets = [p for p in hostile_patterns(24) if not p.chords]
     sheets += [flipped(random_square(5, s), random.Random(s)) for s in range(6)]
     stress = script.alter("a lifting that is no equilibrium", Fraction(1), Fraction(0))
@@ -163,7 +163,7 @@ def _all_up(script: Script) -> None:
 
 
 def _tensor(script: Script) -> None:
-    """T any symmetric trilinear form in n variables, K_u(a, b) = T(e_u, a, b), J = T(h, ., .)."""
+    """The case K_u(a, b) = T(e_u, a, b), J = T(h, ., .), with any symmetric trilinear form T."""
     sign = script.alter("derivative of the tangent with the wrong sign", 1, -1)
     count = script.alter("K_u(w) counted twice", 1, 2)
     for n in (1, 2, 3, 4):
@@ -229,7 +229,7 @@ def _midpoints(script: Script) -> None:
 
 
 def _level_pairs(script: Script) -> None:
-    """The lemma on chords depends on the order of the critical values only."""
+    """The lemma on chords, for all orders of the critical values, on which alone it depends."""
     lone = script.alter("a maximum left over", 0, 1)
     checked = []
     for count in (1, 3, 5, 7):

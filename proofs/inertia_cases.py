@@ -1,4 +1,4 @@
-"""The inertia of the Jacobian on hostile patterns, and popping one vertex up raises it."""
+"""The inertia of the Jacobian on hostile patterns; popping a vertex up raises its height."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ TITLE = "Theorem 4 on hostile patterns, and popping up raises a vertex"
 
 
 def prove(change: str | None = None) -> Proof:
-    """Theorem 4 and its corollary where they could fail; exact signs and eigenvalue counts."""
+    """Test Theorem 4 and its corollary where they could fail, by exact signs and inertias."""
     script = Script(
         NAME,
         TITLE,
@@ -84,7 +84,7 @@ def _squares() -> list[CreasePattern]:
 
 
 def _chambers(script: Script) -> None:
-    """Heights with all K_v > 0: solutions for all sign vectors, and sums within a chamber."""
+    """Heights with all K_v > 0: solutions for all sign vectors, and sums within one chamber."""
     swapped = script.alter("up and down exchanged", False, True)
 
     def agree(pattern: CreasePattern, heights: dict[int, Fraction]) -> bool:
@@ -150,11 +150,11 @@ def _branches(script: Script) -> None:
 
 
 def _popping_raises(script: Script) -> None:
-    """h_v is larger where v is up, all other signs, k >= 0 and the boundary heights being equal."""
+    """h_v is larger if v is up, when all other signs, k >= 0 and the boundary heights are equal."""
     down = script.alter("popping up lowers", 1, -1)
 
     def pairs(vectors: Sequence[tuple[Any, ...]]) -> Iterator[tuple[int, int, int]]:
-        """Positions of two vectors that differ at one place, where the first is up."""
+        """Positions of two sign vectors that differ at one vertex only, where the first is up."""
         for one, other in product(range(len(vectors)), repeat=2):
             places = [k for k, s in enumerate(vectors[one]) if s != vectors[other][k]]
             if len(places) == 1 and vectors[one][places[0]] == 1:

@@ -1,6 +1,6 @@
 """Kapovich and Millson's signature of a flat vertex with back-tracks and any winding (Appendix C).
 
-With p_n = d_1 x d_n the form is, on h_0 = h_1 = h_N = 0, the explicit sum of squares
+Let p_n = d_1 x d_n. On h_0 = h_1 = h_N = 0 the form is the explicit sum of squares
 
     sum_{n=2}^{N-1} (p_{n+1} x_n - p_n x_{n+1})^2 / (p_n p_{n+1} c_n),
 
@@ -42,7 +42,7 @@ TWICE_BACK: Spokes = [(1, 0), (-5, 1), (-1, 5), (0, -1), (-5, -2)]
 
 
 def prove(change: str | None = None) -> Proof:
-    """Theorem KM with a complete count of crossings and the case of vanishing minors."""
+    """Prove Theorem KM, with a complete count of crossings and the case of vanishing minors."""
     script = Script(NAME, TITLE, HYPOTHESES, change)
     _minors(script)
     _squares(script)
@@ -185,7 +185,7 @@ def _crossings(script: Script) -> None:
 
 
 def _crossed(d: Spokes) -> Names:
-    """The names of a star, with the crossings counted along its partial sums; angles by signs."""
+    """The names of a star, with the crossings of its partial sums; signs determine the angles."""
     found, n = kapovich_millson(d), len(d)
     half = Fraction(1, 2)
     signs = [half if cross(d[k], d[(k + 1) % n]) > 0 else -half for k in range(n)]
@@ -381,7 +381,7 @@ def _changes(script: Script) -> None:
 
 
 def _winding_star(n: int, winding: int) -> dict[str, Any]:
-    """The names of a star of n different angles that goes round `winding` times."""
+    """The names of a star with n different angles that goes round the hub `winding` times."""
     weights = [2 * n + k for k in range(n)]
 
     def alpha(i: int, j: int) -> Any:

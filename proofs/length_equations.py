@@ -102,8 +102,8 @@ def _expansion(script: Script) -> None:
 def _edge(t: Any, *free: Any) -> Names:
     """The names of one edge whose ends move by t^2 u in the plane and by t h out of it.
 
-    The left side of Eq. (expanded) stands for what the length equation, divided by the length,
-    has of order t^2.
+    The left side of Eq. (expanded) stands for the terms of order t^2 of the length equation
+    divided by the length.
     """
     coordinates, length = free[:8], free[10]
     h = {1: free[8], 2: free[9]}
@@ -212,7 +212,7 @@ def _in_plane(script: Script) -> None:
 
 
 def _stresses(script: Script) -> None:
-    """Rows of C are edges, not folds; Eq. (compat) and what it says."""
+    """The rows of C belong to edges, not folds; Eq. (compat) and its meaning."""
     free = _sheet(wheel(3))
     one = script.alter("a rim without its stress", 0, 1)
     script.identity(
@@ -312,7 +312,7 @@ def _stresses(script: Script) -> None:
 
 
 def _by_rows(names: Names) -> Names:
-    """The same names with the row of the rigidity matrix of exactfold, divided by the length."""
+    """The same names, with the row of exactfold's rigidity matrix divided by the length."""
     ends, moves = ([names[x](k).coordinates for k in (1, 2)] for x in "Uu")
     triangle = with_vertices(TRIANGLE, [*ends, (0 * ends[0][0], 0 * ends[0][0])])
     row = rigidity_matrix(triangle)[triangle.edges.index((0, 1))]
@@ -322,7 +322,7 @@ def _by_rows(names: Names) -> Names:
 
 
 def _compatible(names: Names) -> Names:
-    """The same names where the right side 0 stands for 2 K_v(h) = 0."""
+    """The same names, where the right side 0 stands for 2 K_v(h) = 0."""
     return {**names, "zero": lambda d: is_zero(d + 2 * names["K"]())}
 
 

@@ -1,4 +1,4 @@
-"""Pairs a < b with f(a) = f(b) of a function on the line that tends to infinity at both ends."""
+"""Pairs a < b with f(a) = f(b), for a function f on the line with limit infinity at both ends."""
 
 from __future__ import annotations
 
@@ -9,9 +9,10 @@ from itertools import pairwise, permutations
 def partners(values: Sequence[int]) -> list[int | None]:
     """For each critical point, the other end of the curve of pairs that starts there.
 
-    `values` are the critical values of f, all different, from left to right: a minimum, a maximum,
-    ..., a minimum. The pairs a < b with f(a) = f(b) form curves, and one ends at each critical
-    point, where a = b. The answer is the critical point at the other end, None at infinity.
+    `values` are the critical values of f from left to right, all different: a minimum, a maximum,
+    ..., a minimum. The pairs a < b with f(a) = f(b) form curves. One curve ends at each critical
+    point, where a = b. The result has the critical point at its other end, or None if that end is
+    at infinity.
 
     >>> partners([0, 5, 1])
     [None, 2, 1]
@@ -19,7 +20,10 @@ def partners(values: Sequence[int]) -> list[int | None]:
     count = len(values)
 
     def end(piece: int, up: bool) -> int:
-        """The critical point where piece k, from point k - 1 to k, ends; -1 and count: infinity."""
+        """The critical point at the end of piece k, which goes from point k - 1 to point k.
+
+        -1 and `count` stand for infinity.
+        """
         return piece - 1 if up == (piece % 2 == 0) else piece
 
     found: list[int | None] = []
@@ -35,7 +39,7 @@ def partners(values: Sequence[int]) -> list[int | None]:
                 found.append(None)
                 break
             turning = min(open_ends, key=lambda p: values[p] if up else -values[p])
-            if turning == first:  # one passes a critical point, both now move the other way
+            if turning == first:  # a or b passes a critical point, and both turn round
                 a = 2 * turning + 1 - a
             else:
                 b = 2 * turning + 1 - b
@@ -44,7 +48,7 @@ def partners(values: Sequence[int]) -> list[int | None]:
 
 
 def alternating(count: int) -> Iterator[tuple[int, ...]]:
-    """All orders of `count` critical values, even places lower than their neighbours.
+    """Yield all orders of `count` critical values in which even places are below their neighbours.
 
     >>> list(alternating(3))
     [(0, 2, 1), (1, 2, 0)]

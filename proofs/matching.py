@@ -1,7 +1,7 @@
-"""Which half-branches true motions join: the identities of docs/matching.md.
+"""Which rays true motions join: the identities of docs/matching.md.
 
-The arguments are there; here the machine checks the formulas they use. Labels and loops of actual
-sheets are compared in tests/motion/loops/test_matching.py, in floats.
+That page has the arguments; here the machine checks their formulas. The test
+tests/motion/loops/test_matching.py compares labels and loops of actual sheets, in floats.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ Vector = tuple[Any, Any, Any]
 
 
 def prove(change: str | None = None) -> Proof:
-    """The formulas of docs/matching.md."""
+    """Prove the formulas of docs/matching.md."""
     script = Script(NAME, TITLE, HYPOTHESES, change)
     _four_bar(script)
     _fans(script)
@@ -71,7 +71,7 @@ def _turned(axis: Vector, tau: Any, v: Vector) -> Vector:
 
 
 def _four_bar(script: Script) -> None:
-    """One vertex: its configurations are a curve of bidegree (2, 2), and where that crosses."""
+    """One vertex: its configurations are a curve of bidegree (2, 2); where the curve crosses."""
     _, *gens = ring("p1,q1,p2,q2,p3,q3,p4,q4,x,y", QQ)
     zero = gens[0] * 0
     d1, d2, d3, d4 = ((gens[2 * k], gens[2 * k + 1], zero) for k in range(4))
@@ -175,7 +175,7 @@ def _h1_sheets() -> Iterator[CreasePattern]:
 
 
 def _removable(pattern: CreasePattern) -> tuple[int, int, int, int]:
-    """x of degree 3 on the boundary, its interior neighbour w, and its neighbours q, r there."""
+    """A boundary vertex x of degree 3, its interior neighbour w, its boundary neighbours q, r."""
     for x in pattern.boundary:
         star = pattern.star(x)
         inside = [v for v in star if v in pattern.interior_set]
@@ -190,7 +190,7 @@ def _removable(pattern: CreasePattern) -> tuple[int, int, int, int]:
 
 
 def _wedge(pattern: CreasePattern, q: int, w: int, r: int) -> Fraction:
-    """[d_q, d_r] at w: negative iff the angle from q over x to r exceeds pi."""
+    """[d_q, d_r] at w, which is negative if and only if the angle from q over x to r exceeds pi."""
     (wx, wy), (qx, qy), (rx, ry) = (pattern.vertices[v] for v in (w, q, r))
     return Fraction((qx - wx) * (ry - wy) - (qy - wy) * (rx - wx))
 
@@ -203,7 +203,7 @@ def _heights(pattern: CreasePattern, seed: int) -> dict[int, Fraction]:
 def _rows(
     pattern: CreasePattern, vertices: Sequence[int], free: Sequence[int], h: dict[int, Fraction]
 ) -> list[list[Fraction]]:
-    """K_v(h, .) in the coordinates `free`."""
+    """The rows K_v(h, .) of some vertices v, in the coordinates `free`."""
     rows = []
     for v in vertices:
         row = curvature_form(pattern, v).functional(h)
@@ -217,9 +217,9 @@ def _determinant(rows: list[list[Fraction]]) -> Fraction:
 
 
 def _factorises(pattern: CreasePattern, x: int, w: int, by: int) -> bool:
-    """Whether both sides agree up to one constant, for three h; `by` in place of x is wrong.
+    """Whether both determinants agree up to one sign, for three height vectors h.
 
-    In the gauge in which the three boundary vertices other than x have height 0.
+    The three boundary vertices other than x have height 0. `by` is x; another vertex is wrong.
     """
     pinned = [v for v in pattern.boundary if v != x]
     others = [v for v in pattern.interior if v != w]
@@ -236,7 +236,7 @@ def _factorises(pattern: CreasePattern, x: int, w: int, by: int) -> bool:
 
 
 def _orientation(script: Script) -> None:
-    """det [J; X'] near the flat state, and the determinant of the curvature forms."""
+    """The determinant of [J; X'] near the flat state, and that of the curvature forms."""
     t, h = sympy.symbols("t h")
     flat, u, du = (sympy.Matrix(sympy.symbols(f"{n}_x {n}_y")) for n in ("U", "u", "du"))
     dh = sympy.symbols("dh")

@@ -54,7 +54,7 @@ CROSS = {+1: (-9, -9, -6, -1, -9, -6, -1, 0), -1: (1, 3, 1, 3, 1, 0, 3, 0)}
 
 
 def prove(change: str | None = None) -> Proof:
-    """Second-order versions of Section III C's statements on popping and bird's feet."""
+    """Prove second-order versions of the statements of Section III C on popping and bird's feet."""
     script = Script(
         NAME,
         TITLE,
@@ -84,7 +84,8 @@ def half_bend(rho: Any, sigma: Any, t: Any) -> Any:
 
 
 def _bends(script: Script) -> None:
-    """K = (1/2) sum rho_j b_j, its polar form, the closed polygon of bends, flat spokes."""
+    """The identity K = (1/2) sum rho_j b_j, its polar form, the closed polygon of bends, flat
+    spokes."""
     r, s, p, q, t = sympy.symbols("rho sigma rho_1 sigma_1 t")
     sine, cosine = 2 * t / (1 + t**2), (1 - t**2) / (1 + t**2)
     half = script.alter("factor one half dropped", sympy.Rational(1, 2), 1)
@@ -125,7 +126,7 @@ def _bends(script: Script) -> None:
 
 
 def _inequality(script: Script) -> None:
-    """Valleys in a closed half-plane y >= 0 are impossible on a vertex popped down."""
+    """At a vertex that is popped down the valleys cannot all lie in a closed half-plane y >= 0."""
     x = sympy.Matrix(sympy.symbols("x1:4"))
     y = sympy.Matrix(sympy.symbols("y1:4"))
     s = script.alter("wrong sign of the spacelike part", -1, 1)
@@ -180,7 +181,7 @@ def _null_vectors() -> list[tuple[CreasePattern, int, dict[int, Fraction]]]:
 
 
 def _bend(pattern: CreasePattern, hub: int, j: int, heights: Mapping[int, Fraction]) -> Fraction:
-    """b_j / L_j, which is rational, from the two sectors at a spoke."""
+    """The quotient b_j / L_j, which is rational, from the two sectors at a spoke."""
     ring, d = pattern.star(hub), {k: _direction(pattern, hub, k) for k in pattern.star(hub)}
     x = {k: heights[k] - heights[hub] for k in ring}
     size, total, at = d[j][0] ** 2 + d[j][1] ** 2, Fraction(0), ring.index(j)

@@ -53,7 +53,7 @@ HUB = (Fraction(3, 7), Fraction(5, 9))
 
 
 def prove(change: str | None = None) -> Proof:
-    """2^Vt times the multiplicity without rigid parts, and 2^(number of flat vertices)."""
+    """Multiplicities are 2^Vt times those without rigid parts, and 2^(number of flat vertices)."""
     script = Script(
         NAME,
         TITLE,
@@ -68,7 +68,7 @@ def prove(change: str | None = None) -> Proof:
 
 
 def _multiplicity(script: Script) -> None:
-    """2^Vt, times the multiplicity without rigid parts; the number of distinct branches."""
+    """The factor 2^Vt of rigid parts, and the number of distinct branches."""
     inner = CreasePattern(
         [(0, 0), (9, 0), (0, 9), *inner_points((0, 0), (9, 0), (0, 9))], OCTAHEDRON
     )
@@ -163,13 +163,13 @@ def _with_flat_vertices(pattern: CreasePattern) -> Names:
 
 
 def _multiplicities(pattern: CreasePattern) -> list[int]:
-    """Multiplicities of all roots of the branch system of the whole pattern, in order."""
+    """The multiplicities of all roots of the branch system of the whole pattern, sorted."""
     classes = groebner(BranchSystem(pattern).chart.system).classes
     return sorted(c.multiplicity for c in classes for _ in range(c.degree))
 
 
 def _flat_star(script: Script) -> None:
-    """Where the star of v is flat in h, K_v(h, .) = 0 and K_v(h + w) = K_v(w)."""
+    """If the star of v is flat in h, then K_v(h, .) = 0 and K_v(h + w) = K_v(w)."""
     _, *z = field("d1 d2 e1 e2 g1 g2 x y", QQ)
     d, e, g, x, y = (z[0], z[1]), (z[2], z[3]), (z[4], z[5]), z[6], z[7]
 
@@ -232,7 +232,7 @@ def _transversality(script: Script) -> None:
 
 @lru_cache(maxsize=1)
 def _solved() -> list[tuple[CreasePattern, Functionals, ExactSolution]]:
-    """Degenerate quadrilaterals, convex and reflex, in a chart that holds all their branches."""
+    """Degenerate quadrilaterals, convex and reflex, each in a chart with all its branches."""
     found = []
     for pattern in [*degenerate_patterns().values(), *grid_quadrilaterals(60, 4)]:
         chart = BranchSystem(pattern).chart if pattern.is_convex else notch_chart(pattern)
@@ -304,7 +304,7 @@ def _theorem_3(script: Script) -> None:
 
 
 def _initial_forms(pattern: CreasePattern, chart: Chart, root: RootClass, sign: int) -> bool:
-    """The proof at one branch: N = kernel of the linear forms of the vertices that are not flat."""
+    """The proof at one branch; N is the kernel of the linear forms of vertices not flat there."""
     heights = chart.heights([x[0] if x else Fraction(0) for x in root.coordinates])
     rows = jacobian(pattern, heights)
     flat = [v for v, row in zip(pattern.interior, rows, strict=True) if not any(row)]

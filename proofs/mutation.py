@@ -1,7 +1,7 @@
-"""Formulas and texts with one mistake, all of them: what a step has to refuse.
+"""All formulas and texts with one mistake, which a step must refuse.
 
-`survivors` puts each of them in the place of a statement as it should be and evaluates it where the
-step does: first in geometries with numbers, where nearly all fail at once.
+`survivors` puts each of them in place of the right statement, and evaluates it in the geometries
+of the step: first in those with numbers, where nearly all fail at once.
 
 >>> from proofs.formulas import latex
 >>> from proofs.reading import parse
@@ -23,7 +23,7 @@ _OPPOSITE = {"<": ">", ">": "<", r"\le": r"\ge", r"\ge": r"\le"}
 
 
 def survivors(claim: Claim) -> list[str]:
-    """The texts with one mistake that hold all the same, as LaTeX."""
+    """The texts with one mistake that hold nevertheless, as LaTeX."""
     return [wrong.latex for wrong in garbled(claim.right) if claim.holds(wrong)]
 
 
@@ -38,7 +38,8 @@ def garbled(text: Text) -> Iterator[Text]:
 def mutants(formula: Formula) -> list[Formula]:
     """Every formula with one mistake.
 
-    A sign, an index, a number, a function, a factor, a name for another one, a relation, a range.
+    The mistake is in a sign, an index, a number, a function, a factor, a name, a relation or a
+    range.
     """
     found = [
         replace(formula, sides=(*formula.sides[:k], wrong, *formula.sides[k + 1 :]))
@@ -70,7 +71,7 @@ def _names(node: Node) -> Iterator[Node]:
 
 
 def _renamed(node: Node, names: list[str]) -> Iterator[Node]:
-    """All expressions with another name in one place; indices of sums are left alone."""
+    """All expressions with another name in one place; indices of sums are not changed."""
     if node.kind == "name" and not node.parts:
         yield from (replace(node, text=other) for other in names if other != node.text)
     for k, part in enumerate(node.parts):

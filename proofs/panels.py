@@ -37,7 +37,7 @@ Vector = tuple[Any, Any]
 
 
 def prove(change: str | None = None) -> Proof:
-    """The identities of docs/panels.md, sections 1 to 3."""
+    """Prove the identities of docs/panels.md, sections 1 to 3."""
     script = Script(NAME, TITLE, HYPOTHESES, change)
     script.state(
         "T.51",
@@ -91,19 +91,19 @@ def _directions() -> tuple[Vector, Vector, Vector, Vector]:
 
 
 def c(i: int, j: int) -> Any:
-    """[d_i, d_j]."""
+    """The bracket [d_i, d_j]."""
     a, b = _directions()[i - 1], _directions()[j - 1]
     return a[0] * b[1] - a[1] * b[0]
 
 
 def s(i: int, j: int) -> Any:
-    """d_i . d_j."""
+    """The scalar product d_i . d_j."""
     a, b = _directions()[i - 1], _directions()[j - 1]
     return a[0] * b[0] + a[1] * b[1]
 
 
 def turn(tau: Any, d: Vector) -> Quaternion:
-    """1 + tau d."""
+    """The quaternion 1 + tau d."""
     return 1 + 0 * tau, tau * d[0], tau * d[1], 0 * tau
 
 
@@ -123,7 +123,7 @@ def conjugate(a: Quaternion) -> Quaternion:
 
 
 def _halves() -> tuple[Quaternion, Quaternion]:
-    """(1 + x d_1)(1 + y d_2) and (1 + z d_3)(1 + w d_4)."""
+    """The two halves (1 + x d_1)(1 + y d_2) and (1 + z d_3)(1 + w d_4) of the closing condition."""
     x, y, z, w = _symbols()[8:12]
     d1, d2, d3, d4 = _directions()
     return times(turn(x, d1), turn(y, d2)), times(turn(z, d3), turn(w, d4))
@@ -169,12 +169,13 @@ def _closing(script: Script) -> None:
 
 
 def q_factor(wrong: bool = False) -> Any:
-    """Q."""
+    """The number Q of docs/panels.md, 3."""
     return c(1, 2) * (c(3, 4) * s(1, 2) + (-1 if wrong else 1) * c(1, 2) * s(3, 4))
 
 
 def _neighbours(script: Script) -> None:
-    """The first transmission from A = l B*: the four components, with polynomial cofactors."""
+    """The first transmission follows from the four components of A = l B*, with polynomial
+    cofactors."""
     x, y, z, w, l = _symbols()[8:13]  # noqa: E741
     a, b = _halves()
     gap = tuple(p - l * q for p, q in zip(a, conjugate(b), strict=True))
@@ -217,7 +218,7 @@ def _neighbours(script: Script) -> None:
 
 
 def _opposite(script: Script) -> None:
-    """The second: (1 + x d_1)(1 + y d_2)(1 + z d_3) is a multiple of 1 - w d_4."""
+    """The second transmission: (1 + x d_1)(1 + y d_2)(1 + z d_3) is a multiple of 1 - w d_4."""
     x, y, z = _symbols()[8:11]
     d1, d2, d3, d4 = _directions()
     three = times(times(turn(x, d1), turn(y, d2)), turn(z, d3))
@@ -254,7 +255,7 @@ def _flat_foldable(script: Script) -> None:
     sign = script.alter("the difference of the sectors", 1, -1)
 
     def sector(i: int, j: int, side: int = 1) -> tuple[Any, Any]:
-        """(cos, sin) of the angle from d_i to d_j, times both lengths."""
+        """The cosine and the sine of the angle from d_i to d_j, times both lengths."""
         return s(i, j), side * c(i, j)
 
     def added(a: tuple[Any, Any], b: tuple[Any, Any]) -> tuple[Any, Any]:
@@ -289,7 +290,7 @@ def _modes(script: Script) -> None:
     product = c(1, 2) * c(2, 3) * c(3, 4) * c(4, 1)
 
     def reduced(polynomial: Any) -> Any:
-        """With e^2 = P."""
+        """The expression after e^2 is replaced by P."""
         total = 0 * e
         for m, k in polynomial.terms():
             rest = polynomial.ring.from_dict({(*m[:13], m[13] % 2): k})
@@ -335,7 +336,7 @@ def _inertia(script: Script) -> None:
     swapped = script.alter("positive and negative exchanged", False, True)
 
     def found(star: Sequence[tuple[int, int]]) -> Inertia:
-        """K_v on the densities with sum w_j d_j = 0."""
+        """The inertia of K_v on the densities with sum w_j d_j = 0."""
         pairs = list(combinations(range(len(star)), 2))
         cross = {(i, j): star[i][0] * star[j][1] - star[i][1] * star[j][0] for i, j in pairs}
         basis = nullspace([[Fraction(d[axis]) for d in star] for axis in (0, 1)])

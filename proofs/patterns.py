@@ -90,7 +90,7 @@ def grid_quadrilaterals(count: int, interior: int = 3) -> Iterator[CreasePattern
 
 
 def degenerate_patterns() -> dict[str, CreasePattern]:
-    """Quadrilaterals with flat vertices on some branch, or on all, by name."""
+    """Named quadrilaterals on which some vertices are flat, on one branch or on all branches."""
     square = [(0, 0), (8, 0), (8, 8), (0, 8)]
     cross = [(0, 1, 5), (1, 4, 5), (4, 0, 5), (1, 2, 4), (2, 3, 4), (3, 0, 4)]
     above = [(0, 4, 7), (4, 5, 7), (5, 2, 7), (2, 3, 7), (3, 0, 7)]
@@ -116,7 +116,7 @@ def degenerate_patterns() -> dict[str, CreasePattern]:
 
 
 def flipped(pattern: CreasePattern, source: random.Random) -> CreasePattern:
-    """Thirty random edge flips, those that leave a triangulation."""
+    """The pattern after thirty random edge flips, without those that destroy the triangulation."""
     for _ in range(30):
         if not pattern.folds:
             break

@@ -50,7 +50,7 @@ def prove(change: str | None = None) -> Proof:
 
 
 def corner_polar(d: Vector, e: Vector, x: Any, y: Any, u: Any, v: Any) -> Any:
-    """Polar form, at (x, y) and (u, v), of what a face with spokes d, e adds to K."""
+    """The polar form, at (x, y) and (u, v), of the term of a face with spokes d, e in K."""
     c, s = d[0] * e[1] - d[1] * e[0], d[0] * e[0] + d[1] * e[1]
     dd, ee = d[0] ** 2 + d[1] ** 2, e[0] ** 2 + e[1] ** 2
     return (x * v + y * u) / (2 * c) - s / (2 * c) * (x * u / dd + y * v / ee)

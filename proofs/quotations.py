@@ -1,10 +1,10 @@
 r"""The words and formulas that are printed in the paper, compared with its source.
 
-What a statement gives as printed (`Statement.source`) is cut at dots, quotation marks and between
-formulas; each fragment has to stand in the LaTeX source of the paper, apart from spaces, fonts,
-braces, square brackets, underscores, and how lines of formulas are aligned. The source is no part
-of this project: `docs/read_paper.py` reads it and keeps a digest of each statement, with which the
-tests compare.
+`Statement.source` is the text that a statement gives as printed. It is cut at dots, at quotation
+marks and between formulas. Each fragment must stand in the LaTeX source of the paper; spaces,
+fonts, braces, square brackets, underscores and the alignment of formulas do not count. The source
+is not part of this project: `docs/read_paper.py` reads it and keeps a digest of each statement, and
+the tests compare with these digests.
 
 >>> fragments(r"D=V_{e}-3\text{, ``which is \dots\ small''}")
 ['D=Ve-3', 'whichis', 'small']
@@ -30,12 +30,12 @@ _CUT = re.compile(r"\\dots|``|''|[,;]\\quad")
 
 
 def plain(latex: str) -> str:
-    """A LaTeX source without what does not count."""
+    """A LaTeX source without the signs that do not count."""
     return _GONE.sub("", re.sub(r"(?<!\\)%.*", "", latex))
 
 
 def fragments(printed: str) -> list[str]:
-    """What has to stand in the paper, in the order in which a statement gives it."""
+    """The fragments that must stand in the paper, in the order in which a statement gives them."""
     found = (plain(part).strip(",;:.") for part in _CUT.split(printed))
     return [part for part in found if part]
 

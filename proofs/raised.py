@@ -1,4 +1,4 @@
-"""What the names in the formulas of Appendix A mean: a vertex whose folds are raised a little."""
+"""The names in the formulas of Appendix A: a vertex whose folds are raised a little."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Change = Callable[[Any, Any, Any, Any], Any]
 
 
 def between(psi: Angle, psi1: Angle, phi: Angle, beta: Angle) -> Any:
-    """The scalar product of unit vectors at polar angles psi, psi1, azimuths phi, phi + beta."""
+    """The scalar product of unit vectors with polar angles psi, psi1, azimuths phi, phi + beta."""
     turned = phi + beta
     fold = (psi.sin * phi.cos, psi.sin * phi.sin, psi.cos)
     fold1 = (psi1.sin * turned.cos, psi1.sin * turned.sin, psi1.cos)
@@ -25,7 +25,7 @@ def between(psi: Angle, psi1: Angle, phi: Angle, beta: Angle) -> Any:
 
 
 def triangle(psi: Angle, psi1: Angle, phi: Angle, beta: Angle) -> Names:
-    """The names in the law of cosines, of folds i = 1 and 2."""
+    """The names in the law of cosines, for the folds i = 1 and 2."""
     alpha = Angle(between(psi, psi1, phi, beta), None)
     return {
         "i": 1,
@@ -36,9 +36,11 @@ def triangle(psi: Angle, psi1: Angle, phi: Angle, beta: Angle) -> Names:
 
 
 def change_by(order2: Any, names: dict[str, Any]) -> Change:
-    """The second-order change of beta for cos and sin of alpha and the slopes, from order t^2 = 0.
+    """A function that computes the second-order change of beta.
 
-    The equation is affine in it; it is evaluated term by term, in any field.
+    Its arguments are the cosine and sine of alpha, and the two slopes. The coefficient of t^2,
+    `order2`, must be 0. This equation is affine in the change, and is evaluated term by term in any
+    field.
     """
     places = {name: order2.ring.gens.index(generator) for name, generator in names.items()}
     parts: list[list[tuple[int, dict[str, int]]]] = [[], []]
@@ -58,7 +60,10 @@ def change_by(order2: Any, names: dict[str, Any]) -> Change:
 
 
 def slopes(change: Change, C: Any, S: Any, p: Any, q: Any) -> Names:
-    """The names in the expansion, of folds i = 1 and 2; of order t^2, t each."""
+    """The names in the expansion, for the folds i = 1 and 2.
+
+    "delta beta" is of order t^2, and "delta psi" of order t.
+    """
     return {
         "i": 1,
         "delta beta": lambda *ij: {(1, 2): change(C, S, p, q)}[ij],
@@ -68,11 +73,11 @@ def slopes(change: Change, C: Any, S: Any, p: Any, q: Any) -> Names:
 
 
 def raised(names: Names, change: Change) -> Names:
-    """The names of a wheel whose heights are raised: K to second order, as are all changes.
+    """The names of a wheel whose heights are raised; K and all changes are to second order.
 
-    The flat angles are free, as they add up only: 1, 2, 3, ... times the same number. From them the
-    angle between the edges d + t x z and d' + t x' z differs by -kappa t^2, where
-    L L' cos(angle) = s + c kappa t^2.
+    Only the sum of the flat angles matters, so they are taken as 1, 2, 3, ... times one number. The
+    angle between the edges d + t x z and d' + t x' z differs from the flat angle by -kappa t^2,
+    where L L' cos(angle) = s + c kappa t^2.
     """
     n, h, length = names["N"], names["h"], names["L"]
 
@@ -103,13 +108,13 @@ def raised(names: Names, change: Change) -> Names:
 
 
 def elevated(names: Names) -> Names:
-    """The constraint K_v(h) = 0 in the angles psi from the plane, to lowest order."""
+    """The names for the constraint K_v(h) = 0 in terms of the angles psi, to lowest order."""
     heights, length = names["h"], names["L"]
     return equation({**names, "psi": lambda i: (heights(i) - heights(0)) / length(i)}, 1)
 
 
 def chords(names: Names) -> Names:
-    """The same names where Delta L are lengths of vectors between the ends of spokes."""
+    """The same names, where Delta L are the lengths of vectors between the ends of spokes."""
     ends = [Vector(end) for end in names["ends"]]
     n = len(ends)
 
@@ -124,7 +129,7 @@ def chords(names: Names) -> Names:
 
 @dataclass(frozen=True)
 class Length:
-    """A length of which only even powers are known."""
+    """A length of which only the square is known, so that it has no other powers."""
 
     square: Any
 

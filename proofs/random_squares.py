@@ -1,8 +1,8 @@
-"""What the paper found by computing random squares, computed again exactly (Sections III and IV).
+"""The paper's findings on random squares, computed again exactly (Sections III and IV).
 
-The numbers in the text and in Table (summary) belong to samples that are not published; here they
-are compared with samples of our own, from fixed seeds. Such a comparison proves nothing general,
-and every step that rests on one says on how many cases.
+The numbers in the text and in Table (summary) belong to samples that are not published. Here they
+are compared with samples of our own, which come from fixed seeds. Such a comparison proves nothing
+general, and every step that rests on one says on how many cases.
 """
 
 from __future__ import annotations
@@ -67,13 +67,13 @@ def prove(change: str | None = None) -> Proof:
 
 
 def _ensemble(script: Script) -> None:
-    """No Delaunay edge joins opposite corners."""
+    """In the ensemble no Delaunay edge joins opposite corners."""
     s, x, y = sympy.symbols("s x y")
     half = sympy.Rational(1, 2)
     centre = (half + s, half - s)  # any circle through the corners (0, 0) and (1, 1)
 
     def power(px: sympy.Expr | int, py: sympy.Expr | int) -> sympy.Expr:
-        """Negative inside the circle."""
+        """The power of a point with respect to the circle; it is negative inside."""
         return (px - centre[0]) ** 2 + (py - centre[1]) ** 2 - centre[0] ** 2 - centre[1] ** 2
 
     side = script.alter("both corners outside", -1, 1)
@@ -142,7 +142,7 @@ def coincidences(pattern: CreasePattern) -> Iterator[set[int]]:
 
 
 def _oriented(branch: Branch) -> tuple[str, str]:
-    """Folds and vertex signs on the end of the branch whose letters come first."""
+    """The letters and vertex signs on a ray of a branch: on the one whose letters sort first."""
     text, signs = branch.assignment_text, branch.sign_text
     turned = text.translate(TRANSPOSED)
     return (text, signs) if text < turned else (turned, signs.translate(TRANSPOSED))
@@ -210,7 +210,8 @@ def _real_signs(pattern: CreasePattern, system: QuadraticSystem) -> list[str]:
 
 @cache
 def _perturbed_squares() -> tuple[list[list[int]], int, list[bool]]:
-    """Branches by chamber of each square; afterwards, how many are not all real; unevenness."""
+    """For each square its branches by chamber; after a perturbation, how many squares have branches
+    that are not real; and how unevenly branches fill the chambers."""
     before, complex_pairs, uneven = [], 0, []
     for seed in range(12):
         pattern = random_square(3, seed)
@@ -250,7 +251,7 @@ def _perturbations(script: Script) -> None:
 
 
 def _precision(script: Script) -> None:
-    """All 256 branches of a square with eight vertices from floating point numbers."""
+    """The proof of all 256 branches of a square with eight vertices from floating-point numbers."""
     count = count_branches(random_square(8, 0), method="auto")
     points = np.array(
         [[float(sum(box) / 2) for _, box in sorted(b.heights.items())] for b in count.branches]

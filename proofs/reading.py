@@ -1,4 +1,4 @@
-r"""Formulas and texts with formulas in them, read from the LaTeX of the paper.
+r"""Reading formulas, and texts with formulas in them, from the LaTeX of the paper.
 
 >>> text = read(r"D=V_e-3\text{, and }2\text{ lines}")
 >>> text.latex
@@ -31,7 +31,7 @@ class Text:
 
     @property
     def formulas(self) -> tuple[Formula, ...]:
-        """Those that say something: single names and numbers only if `mentions` says so."""
+        """The formulas to evaluate; single names and numbers are among them only if `mentions`."""
         return tuple(p for p in self.parts if isinstance(p, Formula) and self.says(p))
 
     def says(self, formula: Formula) -> bool:
@@ -40,12 +40,12 @@ class Text:
 
     @property
     def expressions(self) -> int:
-        """The number of formulas that are no equation or inequality."""
+        """The number of formulas that are neither equations nor inequalities."""
         return sum(not formula.relations for formula in self.formulas)
 
     @property
     def latex(self) -> str:
-        """The text as LaTeX, its formulas written anew."""
+        """The text as LaTeX; its formulas are written anew."""
         return "".join(part if isinstance(part, str) else latex(part) for part in self.parts)
 
 
@@ -53,9 +53,9 @@ _RANGE = re.compile(r"[a-z]=.*\\dots")
 
 
 def read(text: str, functions: Sequence[str] = (), mentions: bool = False) -> Text:
-    """Words are in `\\text{...}`; formulas are set apart by `,\\quad` or `;\\quad`.
+    """Read a text: words are in `\\text{...}`, and `,\\quad` or `;\\quad` separate formulas.
 
-    Raises `ValueError` where anything else is no formula.
+    Raises `ValueError` if anything else is not a formula.
     """
     parts: list[str | Formula] = []
     for is_prose, content in pieces(" ".join(text.split())):
@@ -97,9 +97,9 @@ def pieces(latex: str) -> list[tuple[bool, str]]:
 
 
 def parse(text: str, functions: Sequence[str] = ()) -> Formula:
-    """The formula of a LaTeX text. Raises `ValueError` where it has something else in it.
+    """Read the formula of a LaTeX text. Raises `ValueError` if the text has anything else in it.
 
-    `functions` are names before brackets, and names with what is written below them.
+    `functions` are names of functions, which brackets follow; "_" in a name begins its subscript.
     """
     found = re.fullmatch(r"(.*),\\q?quad\s*([a-z])=(.*),\\dots,(.*)", text, re.DOTALL)
     chain, index, ends = (found[1], found[2], (found[3], found[4])) if found else (text, "", ())
@@ -179,7 +179,7 @@ class _Reader:
         return base
 
     def argument(self) -> Node:
-        """What follows ^, _ or a command: one token, or a group in braces."""
+        """Read the argument of ^, _ or a command: one token, or a group in braces."""
         if self.peek() != "{":
             return self.base()
         self.take("{")

@@ -1,8 +1,8 @@
-r"""What to put in place of passages of the paper: pairs of LaTeX, by the key of the statement.
+r"""Corrected texts for passages of the paper: pairs of LaTeX, by the key of the statement.
 
-The first of a pair stands once in the source of the paper (`docs/read_paper.py` replaces it), the
-second can be pasted in its place. Formulas in it are those of the correction, which a step
-evaluates; the tests compare them.
+The first text of a pair stands once in the source of the paper. `docs/read_paper.py` replaces it by
+the second. The formulas in the second text are those of the correction, which a step evaluates; the
+tests compare them.
 """
 
 from __future__ import annotations

@@ -39,7 +39,7 @@ def prove(change: str | None = None) -> Proof:
 
 
 def _extension(script: Script) -> None:
-    """Regular second-order solutions are tangents of true configurations."""
+    """Regular second-order solutions are tangent to true configurations."""
     t, h = sympy.symbols("t h")
     U, u = sympy.Matrix(sympy.symbols("U_x U_y")), sympy.Matrix(sympy.symbols("u_x u_y"))
     X = U + t**2 * u
@@ -210,7 +210,7 @@ def _energy(script: Script) -> None:
 
 
 def _fold_angles(script: Script) -> None:
-    """Fold angles are, to first order, injective linear functions of the heights."""
+    """To first order the fold angles are linear functions of the heights, and determine them."""
     a, b, c, d = (sympy.Matrix(sympy.symbols(f"{n}_x {n}_y {n}_z")) for n in "abcd")
     e, f, g = b - a, c - a, d - a
     normals = e.cross(f).cross(g.cross(e))

@@ -1,8 +1,8 @@
-"""What the names in the formulas of the appendices mean: stars with free spokes.
+"""The names in the formulas of the appendices: stars with free spokes.
 
-The environments of `Script.formula`. Spokes, lengths and heights are the free elements of a field
-of rational functions; stresses, forms and determinants are those of exactfold over that field, so
-that a formula is compared with what the library computes and not with another formula.
+These are the environments of `Script.formula`. Spokes, lengths and heights are free elements of a
+field of rational functions. exactfold computes stresses, forms and determinants over this field, so
+that a formula is compared with the library and not with another formula.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from proofs.wheel_stress import Angle, cross, dot, with_vertices
 
 @dataclass(frozen=True)
 class Vector:
-    """A vector, and the lengths of those vectors that are asked for: square roots are free."""
+    """A vector, with the lengths of vectors that formulas use; square roots are free symbols."""
 
     coordinates: tuple[Any, ...]
     sizes: Mapping[tuple[Any, ...], Any] = field_(default_factory=dict, compare=False)
@@ -65,12 +65,13 @@ def wheel(
 ) -> dict[str, Any]:
     """The names of a flat vertex with n free spokes; indices are taken modulo n, the hub is 0.
 
-    "alpha" are angles (over one or more sectors), "eta" those at spoke vertex 2, "L" and "Delta L"
-    lengths, "h" heights, "sigma" stresses of the wheel stress of exactfold, "f", "g", "A" entries
-    of -2 K_v, "K" computes K_v(h). The lengths of the rim, which are square roots, are free as
-    well: a formula that holds does not depend on them, or uses "Delta L squared". `pinned`: heights
-    that are 0 at the hub and at spokes 1 and n. `numbers`: rational numbers for all that is free;
-    `flat`: for rims and heights only, which the names of a flat sheet do not need.
+    "alpha" are angles over one or more sectors, and "eta" are angles at spoke vertex 2. "L" and
+    "Delta L" are lengths, "h" heights, and "sigma" the stresses of exactfold's wheel stress. "f",
+    "g" and "A" are entries of -2 K_v, and "K" computes K_v(h). The lengths of the rim are square
+    roots, but they are free symbols too: a right formula does not depend on them, or uses "Delta L
+    squared". If `pinned`, the heights of the hub and of spokes 1 and n are 0. If `numbers`, all
+    free elements are rational numbers. If `flat`, only the lengths of the rim and the heights are
+    numbers, because names of a flat sheet do not need them.
     """
     letters = [f"p{k}" for k in range(1, n)]
     letters += [f"{x}{k}" for x in "LDh" for k in range(1, n + 1)] + ["h0"]
@@ -99,7 +100,7 @@ def wheel(
         return (i - 1) % n
 
     def adjacent(i: int, j: int) -> int:
-        """The sector from spoke i to spoke j."""
+        """The number of the sector from spoke i to spoke j."""
         if (j - i) % n != 1:
             raise LookupError(f"no sector from {i} to {j}")
         return spoke(i)
@@ -173,7 +174,7 @@ def wheel(
 
 
 def _determinant(rows: list[list[Any]], one: Any) -> Any:
-    """By expansion along the first row, in any ring."""
+    """The determinant by expansion along the first row, in any ring."""
     if not rows:
         return one
     total = 0 * one
@@ -185,27 +186,31 @@ def _determinant(rows: list[list[Any]], one: Any) -> Any:
 
 
 def equation(names: dict[str, Any], factor: int) -> dict[str, Any]:
-    """The same names where the left side 0 stands for K_v(h) = 0: the right is `factor` K_v(h)."""
+    """The same names, for formulas 0 = right side that state K_v(h) = 0.
+
+    The right side must be `factor` times K_v(h).
+    """
     target = factor * names["K"]()
     return {**names, "zero": lambda difference: is_zero(difference - target)}
 
 
 def drawn(*sizes: int) -> list[dict[str, Any]]:
-    """Wheels with numbers, where a mistake in a formula shows quickly."""
+    """The names of wheels with numbers, where a mistake in a formula shows quickly."""
     return [wheel(n, numbers=True) for n in sizes]
 
 
 def forces(names: dict[str, Any]) -> list[dict[str, Any]]:
-    """The same names twice, where u are the first and the second coordinates of the unit spokes."""
+    """The same names twice: "u" are the first, then the second coordinates of the unit spokes."""
     ends, length = names["ends"], names["L"]
     return [{**names, "u": lambda i, k=k: ends[(i - 1) % len(ends)][k] / length(i)} for k in (0, 1)]
 
 
 def ladder(names: dict[str, Any]) -> dict[str, Any]:
-    """The same names with the three parallel segments of the crossed ladders at spoke 2.
+    """The same names, with the three parallel segments of the crossed ladders at spoke 2.
 
-    All are perpendicular to it: A at the hub up to the line of the rim from spoke 1, B at its end
-    up to the line of spoke 1, h between the ends of both. Signed: positive on the side of spoke 1.
+    All three are perpendicular to spoke 2, and positive on the side of spoke 1. A goes from the hub
+    to the line of the rim from spoke 1. B goes from the end of spoke 2 to the line of spoke 1. h
+    goes from spoke 2 to the end of spoke 1.
     """
     ends, length = names["ends"], names["L"](2)
     spoke, other = ends[1], ends[0]
@@ -215,16 +220,16 @@ def ladder(names: dict[str, Any]) -> dict[str, Any]:
 
 
 def without(n: int, i: int = 2, numbers: bool = False) -> dict[str, Any]:
-    """Names of a wheel of n spokes for the induction of Appendix B, spoke i being taken out.
+    """The names of a wheel of n spokes for the induction of Appendix B, where spoke i is taken out.
 
-    "sigma0" are the stresses without it; "Delta sigma" is the change at its two neighbours; "beta"
-    is the angle between spoke i + 1 and the line of spoke i - 1 drawn on through the hub.
+    "Delta sigma" is the change of the stresses of its two neighbours. "beta" is the angle between
+    spoke i + 1 and the line of spoke i - 1, drawn on through the hub.
     """
     names = dict(wheel(n, numbers=numbers, flat=True))
     a, length, ends = names["alpha"], names["L"], names["ends"]
 
     def spokes(before: int, at: int, after: int) -> Any:
-        """Eq. (spokes) for a spoke between two others."""
+        """The stress of a spoke between two others, by Eq. (spokes)."""
         left, right = a(before, at), a(at, after)
         terms = right.csc / length(after) + left.csc / length(before)
         return terms - (right.cot + left.cot) / length(at)

@@ -7,7 +7,7 @@ from enum import Enum
 
 
 class Ruling(Enum):
-    """What became of a statement; it follows from the steps that speak against it."""
+    """The ruling on a statement; it follows from the steps that speak against the statement."""
 
     AS_PRINTED = "holds as printed"
     CORRECTED = "holds when corrected"
@@ -44,16 +44,16 @@ class How(Enum):
 
 @dataclass(frozen=True)
 class Statement:
-    """One formula or claim: where it stands, as printed (LaTeX), the ruling, and the correction.
+    """One formula or claim: its place, its text as printed (LaTeX), the ruling, and the correction.
 
-    `key` numbers it within the paper, as in "C.4" for the fourth statement of Appendix C;
-    `corrected` is empty if it holds as printed, or cannot be mended; `code` names what in exactfold
-    implements it, `equation` is its number in the paper. Where `printed` is a formula that is put
-    together from what stands in the paper, `quoted` is what stands there. What it rests on besides
-    the steps that name it: `rests` (keys of other statements), `cited` (a theorem of others) and
-    `words` (where a proof is written out that is not run); `contradiction` names another place of
-    the paper that says something else, which no step has to refute. The ruling is set when a proof
-    is finished.
+    `key` numbers it within the paper: "C.4" is the fourth statement of Appendix C. `corrected` is
+    empty if the statement holds as printed, or cannot be mended. `code` names the part of exactfold
+    that implements it, and `equation` is its number in the paper. If the formula `printed` is put
+    together from several places, `quoted` has the words of the paper. A statement rests on the
+    steps that name it, and besides on `rests` (keys of other statements), `cited` (a theorem of
+    others) and `words` (the place of a written proof that is not run). `contradiction` names
+    another place of the paper that says something else; no step has to refute it. The ruling is set
+    when a proof is finished.
     """
 
     key: str
@@ -73,12 +73,12 @@ class Statement:
 
     @property
     def source(self) -> str:
-        """What stands in the paper, word by word."""
+        """The words of the paper."""
         return self.quoted or self.printed
 
     @property
     def is_own(self) -> bool:
-        """Whether it is a statement of exactfold and not of the paper."""
+        """Whether the statement is exactfold's own, not the paper's."""
         return self.key.startswith("T.")
 
 

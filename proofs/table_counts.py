@@ -27,7 +27,7 @@ TABLE |= {6: (1000, 1, 28), 7: (300, 0, 17), 8: (50, 0, 8)}
 
 
 def prove(change: str | None = None) -> Proof:
-    """The numbers quoted from the computations, and the dimensions of Appendix D."""
+    """Check the numbers that the paper quotes from computations, and Appendix D's dimensions."""
     script = Script(NAME, TITLE, ("a triangulated disk with Vi, Ve vertices",), change)
     _table(script)
     _appendix(script)

@@ -1,4 +1,7 @@
-"""Tutte's drawing of a triangulation, the way to it, and its concave lifting: all exact."""
+"""Tutte's drawing of a triangulation, the drawings on the way to it, and its concave lifting.
+
+All of it is exact.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +18,7 @@ Weights = Mapping[int, Mapping[int, Fraction]]
 
 
 def equal_weights(pattern: CreasePattern) -> Weights:
-    """Tutte: each interior vertex the mean of its neighbours."""
+    """Tutte's weights: each interior vertex is the mean of its neighbours."""
     return {
         v: dict.fromkeys(pattern.star(v), Fraction(1, pattern.degree(v))) for v in pattern.interior
     }
@@ -24,8 +27,9 @@ def equal_weights(pattern: CreasePattern) -> Weights:
 def own_weights(pattern: CreasePattern) -> Weights:
     """Weights that give the pattern itself: barycentric coordinates, averaged over the neighbours.
 
-    For a neighbour j the ray from j through v leaves the star between neighbours k and k + 1, or at
-    one, and v lies in the triangle j, k, k + 1 (Floater's shape-preserving weights).
+    For each neighbour j, the ray from j through v leaves the star between two neighbours k and
+    k + 1, or at one of them, so that v lies in the triangle j, k, k + 1. These are Floater's
+    shape-preserving weights.
     """
     result = {}
     for v in pattern.interior:
@@ -49,7 +53,7 @@ def own_weights(pattern: CreasePattern) -> Weights:
 
 
 def mixed(one: Weights, other: Weights, t: Fraction) -> Weights:
-    """(1 - t) one + t other."""
+    """The weights (1 - t) one + t other."""
     return {v: {u: (1 - t) * x + t * other[v][u] for u, x in row.items()} for v, row in one.items()}
 
 
@@ -78,7 +82,7 @@ def drawing(pattern: CreasePattern, weights: Weights) -> CreasePattern:
 
 
 def fold_weight(pattern: CreasePattern, fold: Edge, heights: Mapping[int, Fraction]) -> Fraction:
-    """-K_v(h, e_w) = fold / (2 length) at the fold vw: positive where it is a mountain."""
+    """The weight -K_v(h, e_w) = fold / (2 length) of the fold vw; it is positive at a mountain."""
     points, scale = pattern.integer_vertices
     value = sum((c * heights[v] for v, c in fold_functional(pattern, fold).items()), Fraction(0))
     areas = 1
@@ -89,7 +93,10 @@ def fold_weight(pattern: CreasePattern, fold: Edge, heights: Mapping[int, Fracti
 
 
 def lifting(pattern: CreasePattern) -> dict[int, Fraction]:
-    """Heights with fold weight 1 on a tree of faces: on all folds if weights 1 are a stress."""
+    """Heights with fold weight 1 on the folds of a tree of faces.
+
+    If the weights 1 are a stress, all folds have weight 1.
+    """
     heights = dict.fromkeys(pattern.triangles[0], Fraction(0))
     while len(heights) < len(pattern.vertices):
         for fold in pattern.folds:

@@ -33,7 +33,7 @@ HYPOTHESES = (
 
 
 def prove(change: str | None = None) -> Proof:
-    """The eigenvalue formulas with their ranges, the inertia, and the null cone."""
+    """Prove the eigenvalue formulas with their ranges, the inertia, and the null cone."""
     script = Script(NAME, TITLE, HYPOTHESES, change)
     _equal_angles(script)
     _all_angles(script)

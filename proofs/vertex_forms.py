@@ -41,7 +41,7 @@ REFLEX = [(4, 0), (1, 1), (0, 4), (-1, -1)]  # the link polygon is reflex at (1,
 
 
 def cross(a: Any, b: Any) -> Any:
-    """a x b in the plane."""
+    """The cross product a x b in the plane."""
     return a[0] * b[1] - a[1] * b[0]
 
 
@@ -88,7 +88,7 @@ def prove(change: str | None = None) -> Proof:
 
 
 def _forms(script: Script) -> None:
-    """One sector between spokes n and n+1 at a time; the forms are sums over the sectors."""
+    """The forms as sums over sectors: one sector between spokes n and n+1 after the other."""
     t, s, L, M, h0, h, k = symbols("t s L M h0 h k")
     csc_, cot_ = csc(unit(t), unit(s)), cot(unit(t), unit(s))
     x, y = h - h0, k - h0
@@ -295,7 +295,7 @@ def _determinant(script: Script) -> None:
     matrix = kapovich_millson(d).form.matrix
 
     def minor(n: int) -> Fraction:
-        """chi(n) by elimination: rows 2 to n-1."""
+        """The minor chi(n) of rows 2 to n-1, by elimination."""
         rows = [row[2:n] for row in matrix[2:n]]
         return from_fmpq(to_flint(rows).det()) if rows else Fraction(1)
 

@@ -1,6 +1,7 @@
 """Popping up and down, and the chambers of vertex sign patterns (Sections II B and III B).
 
-K is the curvature form of a vertex, t its round cone; nappes and h_- are in `eigenvector`.
+K is the curvature form of a vertex, and t its round cone. The module `eigenvector` has the nappes
+and the eigenvector h_-.
 """
 
 from __future__ import annotations

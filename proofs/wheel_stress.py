@@ -28,14 +28,14 @@ TRIANGLE = CreasePattern([(0, 0), (1, 0), (0, 1)], [(0, 1, 2)])
 
 @dataclass(frozen=True)
 class Angle:
-    """An angle by cosine and sine, in any field: sums and functions of angles are then rational."""
+    """An angle, given by its cosine and sine in any field, so that sums of angles stay rational."""
 
     cos: Any
     sin: Any
 
     @classmethod
     def twice_arctan(cls, p: Any) -> Angle:
-        """The angle 2 arctan p; every angle but pi is one, and p > 0 gives those in (0, pi)."""
+        """The angle 2 arctan p. Every angle except pi is one; p > 0 gives the angles in (0, pi)."""
         return cls((1 - p * p) / (1 + p * p), 2 * p / (1 + p * p))
 
     def __add__(self, other: Angle) -> Angle:
@@ -90,7 +90,7 @@ def dot(a: Any, b: Any) -> Any:
 
 
 def prove(change: str | None = None) -> Proof:
-    """Rank 2V - 3 by gluing triangles, the wheel stress, and Vi independent ones."""
+    """Prove the rank 2V - 3 by gluing triangles, the wheel stress, and Vi independent stresses."""
     hypotheses = (
         "a triangulated disk in the plane: V = Vi + Ve vertices, E edges, F triangles of non-zero "
         "area, any two of them joined by a chain of triangles that share edges",
@@ -107,7 +107,7 @@ def prove(change: str | None = None) -> Proof:
 
 
 def _compatibility(script: Script) -> None:
-    """Rows of C times the lengths are the rows of `rigidity_matrix`; rigid motions are in ker C."""
+    """The rows of C times lengths are those of `rigidity_matrix`; rigid motions are in ker C."""
     K, ax, ay, bx, by, cx, cy, tx, ty, w = field("ax ay bx by cx cy tx ty w", QQ)
     triangle = with_vertices(TRIANGLE, [(ax, ay), (bx, by), (cx, cy)])
     rows, points = rigidity_matrix(triangle), triangle.vertices
@@ -254,7 +254,7 @@ def _force_balance(script: Script) -> None:
 
 
 def _independence(script: Script) -> None:
-    """On edge ab of triangle abp the wheel stress of p has density -1/c, c twice the area."""
+    """On edge ab of triangle abp the wheel stress of p has density -1/c; c is twice the area."""
     wheel = free_wheel(4)
     d, stress = wheel.vertices, wheel_stress(wheel, 4)
     c = [cross(d[j], d[(j + 1) % 4]) for j in range(4)]
@@ -291,7 +291,7 @@ def _ranks(pattern: CreasePattern, motions: int) -> bool:
 
 
 def _basis(script: Script) -> None:
-    """What follows: Vi independent elements of a space of dimension E - rank C = Vi."""
+    """The conclusion: Vi independent elements of a space of dimension E - rank C = Vi."""
     script.state(
         "IIB.6",
         "Section II B, first observation",

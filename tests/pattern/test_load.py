@@ -182,8 +182,8 @@ TAKES_PATTERN_ELSEWHERE = {
     "interop.to_trimesh",
     "design.all_assignments",
     "design.match_panels",
-    "design.match_rim",
-    "branches.pieces_certificate",
+    "design.match_boundary",
+    "branches.components_certificate",
     "branches.BranchFinder",
     "branches.find_branches",
     "branches.fold_angles",
@@ -191,7 +191,7 @@ TAKES_PATTERN_ELSEWHERE = {
     "branches.stream_branches",
     "pattern.write_fold",
     "motion.find_loops",
-    "branches.find_pieces",
+    "branches.find_connected_components",
 }
 
 
@@ -223,7 +223,7 @@ def test_no_public_function_that_takes_a_pattern_is_missing():
         "design.AllAssignments",
         "design.Match",
         "design.PanelMatch",
-        "design.RimMatch",
+        "design.BoundaryMatch",
         "branches.ShapeCount",
         "motion.Loops",
         "motion.PanelMode",

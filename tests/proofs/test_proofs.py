@@ -249,7 +249,7 @@ def test_rulings_that_do_not_follow_are_refused() -> None:
 
 def test_as_many_expressions_are_evaluated_in_both_forms() -> None:
     script = Script("demo", "Demo", ())
-    with pytest.raises(ValueError, match="as many expressions"):
+    with pytest.raises(ValueError, match="the same number of expressions"):
         script.formula("A.1", "Demo", r"1+1\text{ or }1+2", "1+1", at=[{"values": (2,)}])
 
 

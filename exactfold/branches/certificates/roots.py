@@ -68,7 +68,7 @@ class Roots:
         if flat not in self._sheets:
             sheets = flat_sheets(self.chart, map(self.problem.labels.index, flat))
             if sheets is None:
-                raise CertificateError("no sheet is flat at the flat vertices")
+                raise CertificateError("no heights in the chart are flat at the flat vertices")
             self._sheets[flat] = sheets
         return self._sheets[flat]
 

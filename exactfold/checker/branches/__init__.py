@@ -1,1 +1,1 @@
-"""Certificates of branches: all, one, or the components that they form."""
+"""Certificates of all branches, of one branch, and of the pieces that solutions form."""

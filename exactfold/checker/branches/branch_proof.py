@@ -144,7 +144,7 @@ class Proof:
         return None
 
     def _letters(self) -> dict[Edge, str]:
-        """The letters of all folds; a fold is also "F" where `close_flat` proves it flat."""
+        """The letters of all folds: by `_side`, "F" also if `close_flat` proves it, else "U"."""
         sides = {fold: self._side(fold) for fold in self.sheet.folds}
         close_flat(self.sheet, sides, self.targets)
         return {fold: "U" if s is None else "MFV"[s + 1] for fold, s in sides.items()}

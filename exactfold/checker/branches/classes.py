@@ -43,7 +43,7 @@ class RootClass:
             len(flat) == len(entry["flat"])
             and all(type(v) is int for v in flat)
             and flat <= set(system.sheet.interior),
-            "the flat vertices are no inner vertices, or appear twice",
+            "a flat vertex is not an interior vertex, or appears twice",
         )
         z = [*self.w, self.slope]
         for v, quadric in zip(system.sheet.interior, system.quadrics, strict=True):
@@ -56,7 +56,7 @@ class RootClass:
             require(not remainder(total, self.p), "the parametrisation misses a quadric")
             require(
                 v not in flat or not any(remainder(g, self.p) for g in gradient[:n]),
-                f"the quadric of vertex {v} has order 1",
+                f"vertex {v} is listed as flat, but its quadric has order 1",
             )
         self.multiplicity = 1 << len(flat)  # a lower bound: the product of the quadrics' orders
         form: Poly = []

@@ -88,7 +88,7 @@ def _check_claims(texts: Iterator[str], facts: CountClaims, blocks: int) -> None
         raise UnfinishedError(f"all {blocks} blocks hold, but the claims are missing")
     claims = read_object(last, "the last line")
     keys(claims, "claims", "the last line")
-    require(next(texts, None) is None, "something follows the claims")
+    require(next(texts, None) is None, "a line follows the claims")
     keys(claims["claims"], keys_of(CountClaims), "claims")
     for key, fact in facts.items():
         claim = claims["claims"][key]

@@ -147,7 +147,7 @@ class _JointSearch:
     def _near(self, held: list[int]) -> dict[int, list[int]]:
         inside = set(self.vertices)
         inner = held and inside.issuperset(held)
-        require(inner, f"the vertices held flat, {held[:20]}, are none, or not all can pop")
+        require(inner, f"{held[:20]}, held flat, are not one or more vertices that can pop")
         flat = {pair(self._new[v], self._new[u]) for v in held for u in self.sheet.star(v)}
         return self._panels.live(flat)
 

@@ -23,14 +23,17 @@ class FlatSheets:
 
     def __init__(self, system: BranchSystem, flat: list[Any]) -> None:
         sheet, n = system.sheet, system.size
-        require(flat and all(type(v) is int for v in flat), "flat vertices are no vertices")
+        require(
+            flat and all(type(v) is int for v in flat),
+            "a flat vertex is not a vertex of the sheet, or none is given",
+        )
         require(
             flat == sorted(set(flat)) and set(flat) <= set(sheet.interior),
             "the flat vertices are not sorted inner vertices",
         )
         folds = [fold for fold in sheet.folds if set(fold) & set(flat)]
         lines = echelon([[Fraction(c) for c in system.row(sheet.bend(f))] for f in folds])
-        require(n not in lines, "no sheet is flat at the flat vertices")
+        require(n not in lines, "no heights in the chart are flat at the flat vertices")
         free = [k for k in range(n) if k not in lines]
         self.system, self.size, self.multiplicity = system, len(free), 1 << len(flat)
         self.lifts = [

@@ -213,7 +213,7 @@ def _boxes(part: _Part) -> Found:
     if "chart" in entry:
         keys(entry, "folds chart roots", "a part")
         require(part.count == size - 1, "the forms are not one less than the unknowns")
-        require(size <= MOST_UNKNOWNS, f"more than {MOST_UNKNOWNS} unknowns")
+        require(size <= MOST_UNKNOWNS, f"a part has more than {MOST_UNKNOWNS} unknowns")
         chart = [parse_rational(c) for c in items(entry["chart"], "chart", size - 1)]
         lifted = [[Fraction(int(i == j)) for j in range(size)] for i in range(size - 1)]
         lifted.append([-c for c in chart] + [Fraction(1)])

@@ -6,9 +6,9 @@ Each limit bounds memory or time, and lies far above the largest work that exact
 from __future__ import annotations
 
 # --- any file ------------------------------------------------------------------------------------
-MOST_BYTES = 1 << 30  # of a drawing, a pattern, or a certificate that is one JSON object
+MOST_BYTES = 1 << 30  # bytes of a drawing, a pattern, or a certificate that is one JSON object
 MOST_NUMBER = 1 << 16  # digits of an integer, and of each of the two numbers of a fraction
-MOST_EXPONENT = 20_000  # of a decimal number
+MOST_EXPONENT = 20_000  # size of the exponent of a decimal number
 MOST_ROOTS = 6  # square roots in the field of the coordinates of one sheet
 
 # --- coordinates ---------------------------------------------------------------------------------
@@ -19,8 +19,8 @@ MOST_COMMON = 1 << 35  # number of coordinates times (64-bit words over a common
 LARGEST, SMALLEST = 50, 50  # powers of ten: the size of a drawing is from 1e-50 to 1e50
 
 # --- drawings ------------------------------------------------------------------------------------
-MOST_LINES = 500_000  # of a drawing
-MOST_CROSSINGS = 100_000  # of lines of a drawing
+MOST_LINES = 500_000  # lines of a drawing
+MOST_CROSSINGS = 100_000  # crossings of the lines of a drawing
 MOST_PAIRS = 2 * 10**9  # pairs of lines with overlapping x-ranges, compared by arrays of floats
 MOST_NEAR = 5 * 10**7  # pairs of points so near that they may be merged
 MOST_COMPARED = 10**9  # pairs of edges with overlapping x-ranges, compared one by one
@@ -42,17 +42,17 @@ MOST_BITS = 1 << 14  # bits of a box in a listing, and digits of each of its num
 MOST_UNITS = 52  # bits of the boxes in a compact block, and the largest radius byte
 MOST_WIDTH = 8  # bytes of a centre
 MOST_BLOCK = 1 << 16  # roots in a block
-MOST_UNKNOWNS = 40
+MOST_UNKNOWNS = 40  # unknowns of the branch system
 MOST_LINE = 1 << 25  # bytes of a line
 MOST_DIGITS = 4000  # digits of each number of an exact root in a block, and bits of this root
 MOST_ENTRIES = 1 << 20  # roots that are listed one by one
 
 # --- motions -------------------------------------------------------------------------------------
-MOST_TUBES = 1 << 12  # of a motion
-MOST_WORK = 1 << 34  # of a motion: about so many products of 256-bit numbers; under an hour
+MOST_TUBES = 1 << 12  # tubes of a motion
+MOST_WORK = 1 << 34  # work of a motion, in products of 256-bit numbers; under an hour
 MOTION_BITS = 1 << 11  # bits of the numbers of a motion
 MOST_TESTS = 1 << 23  # contact tests of a motion (of two faces, or of one vertex); under an hour
-NODE_WORK = 16  # a branch point, or an arc between two, counts as much work as so many tubes
+NODE_WORK = 16  # an arc through a branch point counts as much work as so many tubes
 
 # --- letters and pieces --------------------------------------------------------------------------
 MOST_OPEN = 1 << 12  # ways to complete the open letters of one assignment

@@ -157,7 +157,7 @@ def keys_of(form: type) -> str:
 def items(value: Any, what: str, length: int | None = None) -> list[Any]:
     """Return `value` if it is a list, and has `length` entries if a length is given."""
     require(isinstance(value, list), f"{what} is not a list")
-    require(length is None or len(value) == length, f"{what} has not {length} entries")
+    require(length is None or len(value) == length, f"{what} does not have {length} entries")
     return list(value)
 
 

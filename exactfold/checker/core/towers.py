@@ -190,7 +190,8 @@ class Number:
 def enclosed(parts: Parts, products: list[Interval], bits: int) -> Interval:
     """An interval that holds the number with these coefficients.
 
-    The number is the sum of the coefficients times the products of roots, given as intervals.
+    The number is the sum of all coefficients, each times its product of roots. The products are
+    given as intervals.
     """
     total = Interval.of(Fraction(0), bits)
     for c, product in zip(parts, products, strict=True):

@@ -1,1 +1,1 @@
-"""Certificates of mountains and valleys: of branches and of rigid panels."""
+"""Certificates about given mountains and valleys, of branches and of rigid panels."""

@@ -1,14 +1,15 @@
-"""Solutions with given vertex signs over all directions of the boundary, and their letters.
+"""Solutions with given vertex signs over all directions of the boundary heights, and their letters.
 
 Heights g with K_v(g) > 0 at every interior vertex lie in the nappes of one sign vector, and so does
-every sum of two of them with positive weights. Over the boundary of g these nappes hold exactly one
-solution h, with int |grad(h - g)|^2 <= D(g) = sum_v m_v K_v(g) (docs/branch.md, Theorem 5). A fold
-that bends more than that in g bends to the same side in h. For g = (1 - t) a + t b the bend is
-linear in t and D is a quadratic form, so that three products decide a fold for all t at once.
+every sum of two such heights with positive weights. These nappes hold exactly one solution h with
+the boundary heights of g, and int |grad(h - g)|^2 <= D(g) = sum_v m_v K_v(g) (docs/branch.md,
+Theorem 5). A fold that g bends by more than this bound allows bends to the same side in h. For
+g = (1 - t) a + t b the bend is linear in t and D is a quadratic form in t, so that three products
+decide a fold for all t at once.
 
-Letters that are left open are those of a solution only if they agree with the sign at each vertex:
-the mountains round a vertex that pops up lie in no closed half-plane, and it has a valley
-(docs/assignment.md, The search).
+Some letters may stay open. Letters of a solution must agree with the sign at each vertex: if a
+vertex pops up, its mountains lie in no closed half-plane, and it has a valley (docs/assignment.md,
+The search).
 """
 
 from __future__ import annotations
@@ -24,18 +25,18 @@ from ..core.reading import at_most, require
 from ..sheets.sheet import Edge, Sheet, turn
 
 MOST_OPEN = limits.MOST_OPEN
-"""Most ways to complete open letters that are looked at."""
+"""The largest number of ways to complete open letters that are tried."""
 
 Heights: TypeAlias = Sequence[int]
 Word: TypeAlias = tuple[int, ...]
-"""For each fold 1 for a valley, -1 for a mountain, 0 where it is open."""
+"""For each fold 1 if it is a valley, -1 if it is a mountain, 0 if its letter is open."""
 _Form: TypeAlias = list[tuple[int, int, int]]
 
 
 class Arcs:
-    """The solutions of a convex sheet in integer coordinates, by heights of some of its vertices.
+    """The letters of solutions of a convex sheet with integer coordinates.
 
-    `places` are these vertices; all others have height 0.
+    `places` are the vertices whose heights are given; all other vertices have height 0.
     """
 
     def __init__(self, sheet: Sheet, places: Sequence[int]) -> None:
@@ -52,7 +53,7 @@ class Arcs:
     # --- forms in integers -----------------------------------------------------------------------
 
     def _whole(self, form: Mapping[tuple[int, int], Fraction]) -> _Form:
-        """A form on the heights that are given, times a positive number."""
+        """A form restricted to the given heights, times a positive number that makes it integer."""
         own = {pair: w for pair, w in form.items() if w and set(pair) <= self._at.keys()}
         unit = lcm(*(w.denominator for w in own.values()))
         return [(self._at[i], self._at[j], int(w * unit)) for (i, j), w in own.items()]
@@ -63,7 +64,10 @@ class Arcs:
         return [(self._at[v], int(w * unit)) for v, w in own.items()]
 
     def _weighted(self) -> tuple[_Form, int]:
-        """4 D times a number, and it; m_v = R^2 - |U_v - c|^2 for a disk round the sheet."""
+        """The form 4 D times a number that makes it integer, and this number.
+
+        m_v = R^2 - |U_v - c|^2 for a disk round the sheet with centre c and radius R.
+        """
         points = self.sheet.points
         xs, ys = zip(*points.values(), strict=True)
         x, y = min(xs) + max(xs), min(ys) + max(ys)
@@ -81,9 +85,9 @@ class Arcs:
         return [(self._at[i], self._at[j], int(w * unit)) for (i, j), w in total.items()], unit
 
     def _bend(self, fold: Edge) -> tuple[list[tuple[int, int]], int, int]:
-        """The bend as a row, and the numbers p, q for which bend^2 p > 4 D unit q decides it.
+        """The bend of a fold as a row, and numbers p and q: bend^2 p > 4 D unit q decides its side.
 
-        |omega| L > (D (2/c + 2/d))^(1/2) with omega = bend / (c d).
+        This is the condition |omega| L > (D (2/c + 2/d))^(1/2) with omega = bend / (c d).
         """
         i, j = fold
         points = self.sheet.points
@@ -102,34 +106,35 @@ class Arcs:
             form = self._forms[v]
             require(_polar(form, heights, heights) > 0, f"{what}: K is not positive at vertex {v}")
             side = sum(w * heights[k] for k, w in self._sides[v])
-            require(side * sign > 0, f"{what}: vertex {v} has another sign")
+            require(side * sign > 0, f"{what}: vertex {v} does not have the sign {sign}")
 
     def letters(self, a: Heights, b: Heights) -> Word:
-        """The letters of all solutions over the boundaries of (1 - t) a + t b, 0 where open.
+        """The letters of all solutions with the boundary heights of (1 - t) a + t b, 0 <= t <= 1.
 
-        Both have to be inside the nappes of the same signs.
+        A letter is 0 where it is open. Both a and b must be inside the nappes of the same signs.
         """
         first, last, both = (_polar(self._distance, *pair) for pair in ((a, a), (b, b), (a, b)))
-        found = []
+        letters = []
         for row, p, q in self._bends:
             x, y = sum(w * a[k] for k, w in row), sum(w * b[k] for k, w in row)
             bent = x * x * p > first * q and y * y * p > last * q and x * y * p > both * q
-            found.append(0 if not bent else 1 if x > 0 else -1)
-        return tuple(found)
+            letters.append(0 if not bent else 1 if x > 0 else -1)
+        return tuple(letters)
 
     # --- letters ---------------------------------------------------------------------------------
 
     def possible(self, letters: Word, signs: Word) -> set[Word]:
-        """The letters of solutions with these signs that bend all folds round interior vertices."""
+        """All ways to complete the letters of a solution with these signs that bends every fold.
+
+        Only folds round interior vertices are completed.
+        """
         if (letters, signs) not in self._known:
-            found = {letters}
+            completed = {letters}
             for v, sign in zip(self.sheet.interior, signs, strict=True):
                 words = self._allowed(v, sign)
-                found = {made for word in found for made in self._joined(word, v, words)}
-                at_most(
-                    len(found), MOST_OPEN, "the words that open letters may become", "MOST_OPEN"
-                )
-            self._known[letters, signs] = found
+                completed = {made for word in completed for made in self._joined(word, v, words)}
+                at_most(len(completed), MOST_OPEN, "the ways to complete open letters", "MOST_OPEN")
+            self._known[letters, signs] = completed
         return self._known[letters, signs]
 
     def _joined(self, letters: Word, v: int, words: list[Word]) -> Iterable[Word]:
@@ -142,12 +147,12 @@ class Arcs:
                 yield tuple(made)
 
     def _star(self, v: int) -> list[int]:
-        """The places of the folds round a vertex, counter-clockwise."""
+        """The indices of the folds round a vertex, counter-clockwise."""
         place = {fold: k for k, fold in enumerate(self.sheet.folds)}
         return [place[min(v, w), max(v, w)] for w in self.sheet.star(v)]
 
     def _allowed(self, v: int, sign: int) -> list[Word]:
-        """The letters round a vertex with a sign."""
+        """The letters that the folds round a vertex with this sign may have."""
         if (v, sign) not in self._words:
             ring = self.sheet.star(v)
             self._words[v, sign] = [

@@ -1,12 +1,13 @@
-"""Certificates of all halves of branches with given letters (docs/assignment.md).
+"""Certificates of all rays of branches with given letters (docs/assignment.md).
 
-Why it is a proof: a branch is a line of solutions; each of its two halves lies in the closed nappes
-of some sign vector. The tree covers all sign vectors. Those that contain the signs of a refuted set
-have no solution with these letters (`letters_refuted`); for each other, that is left as a leaf, the
-two halves are proved as those of one branch are (`branch`, Theorem 5 of docs/branch.md): the one in
-its nappes with a positive saddle, and the opposite of the one in the opposite nappes. With another
-number of boundary vertices there are no leaves: every solution lies in the closed nappes of some
-sign vector all the same, so that none has the letters if all ends of the tree are refuted.
+Why it is a proof: a branch is a line of solutions, and each of its two rays lies in the closed
+nappes of some sign vector. The tree covers all sign vectors. A sign vector that contains the signs
+of a refuted set has no solution with these letters (`refuted`). Every other sign vector is a leaf
+of the tree, and two rays are proved for it as for a single branch (`branch`, Theorem 5 of
+docs/branch.md): the ray in its nappes with a positive saddle, and the opposite of the ray in the
+opposite nappes with a positive saddle. If the sheet does not have four boundary vertices, there are
+no leaves. Every solution still lies in the closed nappes of some sign vector, so that no solution
+has the letters if all ends of the tree are refuted.
 """
 
 from __future__ import annotations
@@ -22,27 +23,27 @@ from ..sheets.sheet import Edge, read_sheet
 from .refuted import Signs, Stars
 
 Ray = tuple[tuple[int, ...], int]
-"""The signs of the interior vertices, 0 where the star is flat, and the side."""
+"""A ray: the signs of the interior vertices, 0 where the star is flat, and the side."""
 
 _TURNED = str.maketrans("MV", "VM")
 
 
 class HalfClaim(TypedDict):
-    """A half of a branch, by the signs of the interior vertices and its side of the flat state."""
+    """A ray, named by the signs of the interior vertices and its side of the flat state."""
 
     vertex_signs: list[int]
     side: int
 
 
 class LettersClaims(TypedDict):
-    """What a file claims (see `check`)."""
+    """The claims of a file (see `check`)."""
 
     letters: str
     halves: list[HalfClaim]
 
 
 class VerifiedLetters(LettersClaims):
-    """What is verified, with the number of interior vertices and the digest of the pattern."""
+    """The verified claims, with the number of interior vertices and the digest of the pattern."""
 
     interior: int
     sha256: str
@@ -52,8 +53,9 @@ class VerifiedLetters(LettersClaims):
 def check(data: dict[str, Any]) -> VerifiedLetters:
     """Verify every claim of a loaded certificate; raises `CertificateError` at the first failure.
 
-    Returns the claims and the SHA-256 of the pattern. The claims are: the halves of branches with
-    these letters, by fold in lexicographic order, "U" for any, are those listed and no others.
+    Returns the claims and the SHA-256 of the pattern. The claim is: `halves` lists exactly the rays
+    of branches with these `letters`. There is one letter for each fold, in lexicographic order of
+    the folds; "U" stands for any letter.
     """
     given, digest = read_sheet(data["pattern"])
     claims, evidence = data["claims"], data["evidence"]
@@ -61,22 +63,22 @@ def check(data: dict[str, Any]) -> VerifiedLetters:
     keys(evidence, "emptied refuted tree leaves", "evidence")
     place = Place(given, evidence["emptied"])
     if len(place.sheet.boundary) == 4:
-        place.fix_boundary()  # the boundary is convex then
+        place.fix_boundary()  # the notch is closed, so that the boundary is convex
     text = claims["letters"]
     fits = isinstance(text, str) and len(text) == len(given.folds) and set(text) <= set("MVFU")
-    require(fits, "letters do not fit")
+    require(fits, "the letters are not one of M, V, F, U for each fold")
     wanted = dict(zip(given.folds, text, strict=True))
     search = _LetterSearch(place, wanted)
-    found = search.rays(
+    matching = search.rays(
         items(evidence["refuted"], "refuted"),
         items(evidence["tree"], "tree"),
         items(evidence["leaves"], "leaves"),
     )
     listed = [_ray(entry, len(given.interior)) for entry in items(claims["halves"], "halves")]
-    require(len(set(listed)) == len(listed), "a half is listed twice")
+    require(len(set(listed)) == len(listed), "a half of a branch is listed twice")
     for ray in listed:
-        require(ray in found, "a half that is listed has not these letters")
-    require(len(listed) == len(found), "a half with these letters is not listed")
+        require(ray in matching, "a listed half of a branch does not have these letters")
+    require(len(listed) == len(matching), "a half of a branch with these letters is not listed")
     proved: LettersClaims = claims
     return {"sha256": digest, "interior": len(given.interior), **proved}
 
@@ -88,7 +90,7 @@ def _ray(entry: Any, size: int) -> Ray:
 
 
 class _LetterSearch:
-    """The walk over the tree, for one sheet and its letters."""
+    """The walk over the tree, for one sheet and the wanted letters."""
 
     def __init__(self, place: Place, wanted: dict[Edge, str]) -> None:
         self.place, self.wanted = place, wanted
@@ -98,19 +100,19 @@ class _LetterSearch:
         self.stars = Stars(place.open, own)
 
     def rays(self, refuted: list[Any], tree: list[Any], leaves: list[Any]) -> set[Ray]:
-        """The halves with the letters, once all that is refuted and the cover are verified."""
+        """The rays with the letters; raises unless the whole tree is verified."""
         sets = [self.stars.refuted(entry, f"refuted set {k}") for k, entry in enumerate(refuted)]
-        found: set[Ray] = set()
+        matching: set[Ray] = set()
         entries = iter(leaves)
         for signs in self._left(sets, tree):
             both = items(next(entries, None), "a leaf", 2)
             for side, ray in zip((1, -1), both, strict=True):
-                found |= self._matching(signs, side, ray)
-        require(next(entries, None) is None, "there are more leaves than the tree has")
-        return found
+                matching |= self._matching(signs, side, ray)
+        require(next(entries, None) is None, "the evidence has more leaves than the tree")
+        return matching
 
     def _left(self, sets: list[Signs], tree: list[Any]) -> Iterator[Signs]:
-        """The complete sign vectors that the tree leaves; raises if it does not cover all."""
+        """Yield the sign vectors at the leaves; raises if the tree does not cover all vectors."""
         stack: list[Signs] = [{}]
         for step in tree:
             signs = stack.pop()
@@ -118,7 +120,8 @@ class _LetterSearch:
             at = [natural(k, "a number of a step") for k in given]
             if kind == "leaf":
                 require(self.place.fixed, "a leaf needs a sheet with four corners")
-                require(signs.keys() == self.inside, "a leaf has not the signs of all vertices")
+                whole = signs.keys() == self.inside
+                require(whole, "a leaf does not have the signs of all interior vertices")
                 yield signs
             elif kind == "split":
                 (v,) = at
@@ -127,32 +130,34 @@ class _LetterSearch:
                 k, v = at
                 others = dict(sets[k])
                 sign = others.pop(v)
-                require(others.items() <= signs.items(), f"set {k} does not force vertex {v}")
+                forced = others.items() <= signs.items()
+                require(forced, f"set {k} does not force the sign of vertex {v}")
                 stack.append(signs | {v: -sign})
             elif kind == "refuted":
                 (k,) = at
                 contained = sets[k].items() <= signs.items()
-                require(contained, f"set {k} is not contained in the signs")
+                require(contained, f"the signs of set {k} are not among those of the case")
             else:
                 require(kind == "flat", f"a step of the tree is {kind!a}")
                 i, j = at
                 held = (i, j) in self.rigid and self.wanted[i, j] in "MV"
-                require(held, "no mountain or valley is asked for where the sheet is rigid")
+                require(held, f"fold {i}-{j} can fold, or no mountain or valley is asked for there")
         require(not stack, "the tree does not cover all sign vectors")
 
     def _matching(self, signs: Signs, side: int, entry: Any) -> set[Ray]:
-        """The half on one side of a leaf, if it has the letters."""
+        """The ray on one side of a leaf, if it has the letters, as a set of one or none."""
         keys(entry, "heights denominator", "half of a leaf")
         proof = self.place.proof(entry["heights"], entry["denominator"])
         for v, sign in signs.items():
-            # The heights are exact where a sign is 0: that star is flat, and in both closed nappes.
-            require(proof.signs[v] in (0, side * sign), f"vertex {v} of a leaf has another sign")
+            # Where a sign is 0, the heights are exact and the star is flat: in both closed nappes.
+            right = proof.signs[v] in (0, side * sign)
+            require(right, f"vertex {v} does not have the sign of its leaf, {sign}")
         letters = self._letters(proof, side)
         compared = list(zip(self.wanted.values(), letters, strict=True))
         if any(other not in ("U", letter) and letter != "U" for other, letter in compared):
             return set()
         known = all(letter != "U" for other, letter in compared if other != "U")
-        require(known, "a letter of a leaf is not known")
+        require(known, "a letter of a leaf that is asked for is not known")
         return {(tuple(side * sign for sign in self.place.signs(proof)), side)}
 
     def _letters(self, proof: Proof, side: int) -> list[str]:
@@ -161,11 +166,11 @@ class _LetterSearch:
 
 
 def summary(claims: VerifiedLetters) -> str:
-    """One line for verified claims."""
+    """One line that states the verified claims."""
     rays, text = len(claims["halves"]), claims["letters"]
     asked = counted(len(text) - text.count("U"), "letter", "letters")
-    found = counted(rays, "half of a branch has", "halves of branches have")
-    which = f"exactly {found}" if rays else "no branch has"
+    halves = counted(rays, "half of a branch has", "halves of branches have")
+    which = f"exactly {halves}" if rays else "no branch has"
     return f"VALID: {which} the {asked} asked for on {len(text)} folds; sha256 {claims['sha256']}"
 
 
@@ -177,4 +182,4 @@ LETTERS = DocumentKind(
     check=check,
     summary=summary,
 )
-"""All halves of branches with given mountains and valleys (docs/assignment.md)."""
+"""All rays of branches with given mountains and valleys (docs/assignment.md)."""

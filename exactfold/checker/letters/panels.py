@@ -1,8 +1,8 @@
 """Certificates of whether rigid panels start to fold with given letters (docs/assignment.md).
 
-That they do not is shown by case distinctions, each of which ends in a contradiction
-(`panel_letters_refuted`); that they do, by a motion of each part of the sheet
-(`panels_motion`). The flat closure and the parts are found again.
+If they do not, case distinctions show it; each case ends in a contradiction (`panels_refuted`). If
+they do, a motion of each part of the sheet shows it (`panels_motion`). The checker finds the flat
+closure and the parts again.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _TRULY = {
 
 
 class PanelLettersClaims(TypedDict):
-    """What a file claims (see `check`)."""
+    """The claims of a file (see `check`)."""
 
     letters: str
     starts: str
@@ -34,7 +34,7 @@ class PanelLettersClaims(TypedDict):
 
 
 class VerifiedPanelLetters(PanelLettersClaims):
-    """What is verified, with the number of interior vertices and the digest of the pattern."""
+    """The verified claims, with the number of interior vertices and the digest of the pattern."""
 
     interior: int
     sha256: str
@@ -44,56 +44,58 @@ class VerifiedPanelLetters(PanelLettersClaims):
 def check(data: dict[str, Any]) -> VerifiedPanelLetters:
     """Verify every claim of a loaded certificate; raises `CertificateError` at the first failure.
 
-    Returns the claims and the SHA-256 of the pattern. The claims are: whether there is a motion to
-    second order with these letters, by fold in lexicographic order, "U" for any; whether true
-    motions begin like this, "undecided" if nothing is claimed; and the folds with a letter of which
-    the evidence shows that they can go their way together to first order where none goes against
-    its letter, and that they never do; nothing of these if both lists are empty.
+    Returns the claims and the SHA-256 of the pattern. The `letters` have one letter for each fold,
+    in lexicographic order of the folds; "U" stands for any letter. `starts` says whether there is a
+    motion to second order with these letters. `truly` says whether true motions begin like this;
+    "undecided" claims nothing. The last two claims are about first-order motions in which no fold
+    goes against its letter. The folds in `together` all follow their letters in one such motion,
+    and the folds in `never` stay flat in every such motion. These are all folds with a letter for
+    which the evidence shows it. If both lists are empty, they claim nothing.
     """
     claims, evidence = data["claims"], data["evidence"]
     keys(claims, keys_of(PanelLettersClaims), "claims")
     starts, truly, text = claims["starts"], claims["truly"], claims["letters"]
-    require(starts in ("proved", "refuted"), f"starts is {starts!a}")
-    require(truly in _TRULY, f"truly is {truly!a}")
+    require(starts in ("proved", "refuted"), f'"starts" is {starts!a}, not "proved" or "refuted"')
+    require(truly in _TRULY, f'"truly" is {truly!a}, not "proved", "refuted" or "undecided"')
     names = ["flat", "densities", *(["motion"] if starts == "proved" else [])]
     if "refuted" in (starts, truly):
         names += ["refuted", "tree"]
     keys(evidence, " ".join(names), "evidence")
     sheet, digest = read_panels(data["pattern"])
     fits = isinstance(text, str) and len(text) == len(sheet.folds) and set(text) <= set("MVFU")
-    require(fits, "letters do not fit")
+    require(fits, "the letters are not one of M, V, F, U for each fold")
     wanted = dict(zip(sheet.folds, text, strict=True))
     near = sheet.live(fold for fold, letter in wanted.items() if letter == "F")
     if starts == "proved":
         check_motion(sheet, near, wanted, evidence["motion"], true=truly == "proved")
     else:
-        require(truly != "proved", "true motions have letters that no motion has")
+        require(truly != "proved", "true motions are claimed, but no motion to second order")
     if "refuted" in (starts, truly):
         cases = Cases(sheet, near, wanted, true=starts == "proved")
         few = cases.cover(items(evidence["refuted"], "refuted"), items(evidence["tree"], "tree"))
-        require(truly == "undecided" or few, "that says nothing of true motions")
+        decided = truly == "undecided" or few
+        require(decided, "the cases name a vertex with more than four folds: true motions are open")
     steps, densities = (items(evidence[key], key) for key in ("flat", "densities"))
     whole = check_never(sheet, near, wanted, claims["never"], steps)
     whole = check_together(sheet, near, wanted, claims["together"], densities) and whole
     listed = claims["together"] or claims["never"]
-    require(
-        whole or not listed, "not all folds that are shown to go together, or never, are listed"
-    )
+    complete = whole or not listed
+    require(complete, "a fold that is shown to go together with others, or never, is not listed")
     proved: PanelLettersClaims = claims
     return {"sha256": digest, "interior": len(sheet.interior), **proved}
 
 
 def summary(claims: VerifiedPanelLetters) -> str:
-    """One line for verified claims."""
+    """One line that states the verified claims."""
     text = claims["letters"]
     asked = counted(len(text) - text.count("U"), "letter", "letters")
     folds = counted(len(text), "fold", "folds")
     if not {"M", "V"} & set(text):
-        return f"VALID: no fold of {folds} is asked to fold; sha256 {claims['sha256']}"
+        return f"VALID: none of {folds} is asked to fold; sha256 {claims['sha256']}"
     answer = "starts" if claims["starts"] == "proved" else "does not start"
     together, never = len(claims["together"]), len(claims["never"])
     first = (
-        f"; to first order {together} are shown to fold together, {never} never to fold"
+        f"; to first order {together} are proved to fold together, and {never} never to fold"
         if together + never
         else ""
     )

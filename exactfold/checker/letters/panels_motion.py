@@ -1,9 +1,10 @@
 """Motions of rigid panels to second order with given letters, verified part by part.
 
-A part in which no fold has a letter rests. Where all vertices have at most four folds, the sides of
-all folds name a line at each vertex, and the densities fit if they do round all loops. Elsewhere
-Krawczyk's test shows that all conditions have a zero near given densities, at which they are
-independent, so that true motions are tangent to it (docs/assignment.md, Theorem 6).
+A part in which no fold has a letter may rest. If all vertices of a part have at most four folds,
+the sides of its folds determine a line at each vertex, and the densities fit if they fit round all
+loops. In other parts Krawczyk's test shows that all conditions have a common zero near given
+densities, and that they are independent there. So true motions are tangent to this zero
+(docs/assignment.md, Theorem 6).
 """
 
 from __future__ import annotations
@@ -26,23 +27,26 @@ MOST_CONDITIONS = limits.MOST_CONDITIONS
 MOST_SHIFT = limits.MOST_SHIFT
 
 Row = dict[int, Interval]
-"""The entries of a row that are not 0, by the place of the fold."""
+"""A row of the Jacobian: {index of a fold: entry}; entries that are 0 are left out."""
 
 
 def check_motion(
     sheet: PanelSheet, near: Near, wanted: Mapping[Edge, str], given: Any, *, true: bool
 ) -> None:
-    """Verify a motion with the letters for each part; with `true`, that true ones begin like it."""
+    """Verify that each part has a motion with the letters.
+
+    If `true`, verify as well that true motions begin like it.
+    """
     live = {pair(v, u) for v, around in near.items() for u in around}
     for fold, letter in wanted.items():
         able = letter not in SIDES or fold in live or sheet.boundary_set.issuperset(fold)
-        require(able, f"fold {fold[0]}-{fold[1]} has a letter and stays flat")
+        require(able, f"fold {fold[0]}-{fold[1]} has a letter, but stays flat in every motion")
     groups = connected(near)
     for group, entry in zip(groups, items(given, "motion", len(groups)), strict=True):
         folds = sorted({pair(v, u) for v, around in group.items() for u in around})
         if entry is None:
             rests = all(wanted[fold] not in SIDES for fold in folds)
-            require(rests, f"the part of vertex {min(group)} has letters and rests")
+            require(rests, f"the part of vertex {min(group)} has letters, but is given no motion")
         elif "sides" in entry:
             keys(entry, "sides", "a motion")
             _check_lines(sheet, group, wanted, dict(zip(folds, entry["sides"], strict=True)), true)
@@ -58,11 +62,11 @@ def _check_lines(
 ) -> None:
     sides = {fold: SIDES.get(letter, 0) for fold, letter in text.items()}
     for (i, j), side in sides.items():
-        require(fits(wanted[i, j], side), f"fold {i}-{j} has another letter")
+        require(fits(wanted[i, j], side), f"fold {i}-{j} does not have the letter asked for")
     modes, lines = Modes(sheet, group), dict[int, int]()
     for v, around in group.items():
         own = {u: sides[pair(v, u)] for u in around}
-        known = [line for line, found in ways(modes.lines[v], around) if found == own]
+        known = [line for line, way in ways(modes.lines[v], around) if way == own]
         require(known, f"vertex {v} has no motion with these sides")
         for line in known:
             if line is not None:
@@ -73,7 +77,7 @@ def _check_lines(
         for loop in loops_of(sheet, part):
             require(modes.closes(loop, lines), f"the loop {name(loop)} does not close")
             truly = not true or loops.closes(lines, loop)
-            require(truly, f"the loop {name(loop)} does not truly fold")
+            require(truly, f"the loop {name(loop)} does not close for true motions")
 
 
 # --- vertices with more folds --------------------------------------------------------------------
@@ -82,16 +86,18 @@ def _check_lines(
 def _check_regular(
     sheet: PanelSheet, group: Near, letters: list[str], folds: list[Edge], entry: Any
 ) -> None:
-    """The test |Y F(c)| + |1 - Y J| r + |Y| H r^2 < r, row by row, for c, Y and r of the file.
+    """Raise unless |Y F(c)| + |1 - Y J| r + |Y| H r^2 < r holds in every row.
 
-    H bounds how much J changes. Folds that are no unknowns have exactly the densities given. The
-    test implies that Y J is not singular at the zero: the conditions are independent.
+    The file gives c, Y and r. H bounds how much the Jacobian J changes. A fold that is not an
+    unknown has exactly the density given. The test implies that Y J is not singular at the zero, so
+    that the conditions are independent.
     """
     keys(entry, "densities bits unit unknowns inverse shift radius", "a motion")
     bits, shift = natural(entry["bits"], "bits"), natural(entry["shift"], "shift")
     unit = integer(entry["unit"])
-    require(bits <= BITS, "numbers are too long")
-    at_most(max(shift, abs(unit)), MOST_SHIFT, "the bits by which numbers are moved", "MOST_SHIFT")
+    require(bits <= BITS, f"the densities have more than {BITS} bits")
+    what = "the bits by which numbers are shifted"
+    at_most(max(shift, abs(unit)), MOST_SHIFT, what, "MOST_SHIFT")
     scaled = [integer(c) for c in items(entry["densities"], "densities", len(folds))]
     unknowns = [natural(k, "an unknown") for k in items(entry["unknowns"], "unknowns")]
     radius = natural(entry["radius"], "radius")
@@ -102,7 +108,7 @@ def _check_regular(
         side = SIDES.get(letter, 0)
         margin = radius if k in place else 0
         goes = not side or side * scaled[k] > margin
-        require(goes, f"fold {folds[k][0]}-{folds[k][1]} is not shown to go its way")
+        require(goes, f"fold {folds[k][0]}-{folds[k][1]} is not proved to follow its letter")
     densities = [Interval.of(Fraction(c, 1 << bits), BITS) for c in scaled]
     stars = [_spokes(sheet, v, group[v], unit) for v in group]
     values, rows, changes = _conditions(stars, folds, densities, place)
@@ -126,23 +132,24 @@ def _check_regular(
         value = sum((_scaled(v, w) for w, v in zip(y, values, strict=True)), Interval(0, 0, BITS))
         start = 2 * max(-value.low, value.high)
         change = sum(abs(w) * h for w, h in zip(y, changes, strict=True))
-        # all multiplied by 2^(shift + BITS + 1), and the radius by 2^bits
+        # Both sides are multiplied by 2^(shift + BITS + 1), and the radius by 2^bits.
         left = (start << 2 * bits) + (off * radius << bits) + 2 * change * radius**2
         require(left < one * radius << bits, f"Krawczyk's test fails in row {n}")
 
 
 def _spokes(sheet: PanelSheet, v: int, around: list[int], unit: int) -> list[tuple[Edge, Vector]]:
-    """The folds at a vertex with their vectors over 2^unit, the neighbour of least number first.
+    """The folds at a vertex, with their vectors over 2^unit.
 
-    Where no sum of w_k d_k vanishes, the form depends on which fold is the first.
+    The first fold leads to the neighbour with the smallest number, and the others follow in order.
+    Where sum_k w_k d_k does not vanish, the value of the form depends on which fold is the first.
     """
     first = around.index(min(around))
     scale = sheet.tower.number(Fraction(2) ** -unit)
-    found = []
+    spokes = []
     for u in around[first:] + around[:first]:
         x, y = sheet.vector(v, u)
-        found.append((pair(v, u), (scale * x, scale * y)))
-    return found
+        spokes.append((pair(v, u), (scale * x, scale * y)))
+    return spokes
 
 
 def _conditions(
@@ -151,10 +158,11 @@ def _conditions(
     densities: list[Interval],
     place: Mapping[int, int],
 ) -> tuple[list[Interval], list[Row], list[int]]:
-    """At each vertex in turn x, y and the form, or one of x and y for a straight pair.
+    """The closing conditions of all vertices: their values, their derivatives, and bounds.
 
-    The values at the densities; the derivatives; and for each condition a bound of the sum of how
-    much its derivatives by unknowns change if all unknowns change by 1, times 2^BITS.
+    A vertex has three conditions, x, y and the form; a straight pair has only one, x or y. The
+    values are those at the densities. The bound of a condition, times 2^BITS, is for the sum of the
+    changes of its derivatives by the unknowns if all unknowns change by 1.
     """
     number = {fold: k for k, fold in enumerate(folds)}
     values, rows, changes = [], list[Row](), []

@@ -1,10 +1,10 @@
 """Case distinctions that show that no motion of rigid panels has given letters.
 
-Motions to second order lie at each vertex in one of the two closed nappes of its form, and at a
-vertex with at most four folds on one of its lines. Each case ends in one of these contradictions
-(docs/assignment.md, Theorem 4 and Theorem 5): heights of stars whose sums are on the wrong side, a
-star that is curved, a loop round which densities do not fit, or a fold with a letter that stays
-flat.
+At each vertex a motion to second order lies in one of the two closed nappes of the form, and on one
+of its lines if the vertex has at most four folds. Each case ends in one of these contradictions
+(docs/assignment.md, Theorem 4 and Theorem 5): heights of stars whose sums contradict the letters; a
+star that is curved; a loop round which the densities do not fit; or a fold that has a letter but
+stays flat.
 """
 
 from __future__ import annotations
@@ -23,12 +23,15 @@ from ..sheets.panels import Edge, Near, PanelSheet, Vector, cross, pair
 SIDES = {"V": 1, "M": -1}
 Signs = dict[int, int]
 Way = tuple[int | None, dict[int, int]]
-"""A line of motions of a vertex, None if it rests, and the side of the fold to each neighbour."""
+"""The number of a line of motions of a vertex, None if it rests, and the sides of its folds.
+
+The sides are {neighbour: 1 for a valley, -1 for a mountain, 0 for flat}.
+"""
 
 
 @dataclass
 class State:
-    """One case: signs of vertices, lines of vertices, and the sides to which folds go."""
+    """One case: the signs of some vertices, the lines of some vertices, the sides of some folds."""
 
     signs: Signs = field(default_factory=dict)
     lines: dict[int, Any] = field(default_factory=dict)
@@ -36,7 +39,10 @@ class State:
 
 
 class Cases:
-    """The case distinctions for one sheet and its letters; for true motions alone if `true`."""
+    """The case distinctions for one sheet and its letters.
+
+    If `true`, they refute only true motions.
+    """
 
     def __init__(
         self, sheet: PanelSheet, near: Near, wanted: Mapping[Edge, str], *, true: bool
@@ -46,10 +52,10 @@ class Cases:
         self._lines: dict[int, list[Line]] = {}
 
     def cover(self, refuted: list[Any], tree: list[Any]) -> bool:
-        """Verify that all cases end; whether true motions with the letters are excluded as well.
+        """Verify that all cases end in contradictions; say whether this excludes true motions too.
 
-        That is so if all vertices that are named have at most four folds, or a fold that stays
-        flat has a letter.
+        It does if all vertices that the steps name have at most four folds. A step about a fold
+        that stays flat names no vertex.
         """
         sets = [self._refuted(entry, f"refuted set {k}") for k, entry in enumerate(refuted)]
         stack = [State()]
@@ -64,13 +70,13 @@ class Cases:
                 (k,) = at
                 signs, vertices = sets[natural(k, "a set")]
                 contained = signs.items() <= state.signs.items()
-                require(contained, f"set {k} is not contained in the signs")
+                require(contained, f"the signs of set {k} are not among those of the case")
                 named |= vertices
             elif kind == "curved":
                 (v,) = (natural(v, "a vertex") for v in at)
                 own = {self.wanted[pair(v, u)] for u in self.near[v]}
                 curved = len(self.near[v]) > 3 and own in ({"M"}, {"V"})
-                require(curved, f"the star of {v} may be on a motion")
+                require(curved, f"the letters round vertex {v} do not show that its star is curved")
                 named.add(v)
             elif kind == "at":
                 (v,) = (natural(v, "a vertex") for v in at)
@@ -83,7 +89,7 @@ class Cases:
                 i, j = (natural(v, "a vertex") for v in at)
                 flat = (i, j) not in self.live and not self.sheet.boundary_set.issuperset((i, j))
                 held = flat and self.wanted[i, j] in SIDES
-                require(held, f"fold {i}-{j} may fold, or has no letter")
+                require(held, f"fold {i}-{j} may fold, or is not asked to fold")
         require(not stack, "the tree does not cover all cases")
         few = all(len(self.near[v]) <= 4 for v in named)
         return few
@@ -96,11 +102,12 @@ class Cases:
         return self._lines[v]
 
     def _chosen(self, state: State, v: int) -> list[State]:
-        """The cases of a vertex, one for each of its ways that fit; the last is the first to do.
+        """The cases of a vertex, one for each of its ways that agree with the case and the letters.
 
-        There are lines of motions only where there are two or four folds.
+        They are in reverse order, because the next step takes the last one. A vertex has lines of
+        motions only if it has two or four folds.
         """
-        found = []
+        cases = []
         for line, sides in ways(self._at(v), self.near[v]):
             folds = {pair(v, u): side for u, side in sides.items()}
             if all(
@@ -108,11 +115,14 @@ class Cases:
                 for fold, side in folds.items()
             ):
                 lines = {**state.lines, v: line}
-                found.append(State(state.signs, lines, {**state.sides, **folds}))
-        return found[::-1]
+                cases.append(State(state.signs, lines, {**state.sides, **folds}))
+        return cases[::-1]
 
     def _check_loop(self, state: State, value: Any, order: Any = None) -> None:
-        """Densities do not fit round a loop; or fold angles do not, at this order of them."""
+        """Raise unless densities do not fit round a loop.
+
+        If an order is given: unless the fold angles do not fit at this order.
+        """
         loop = tuple(natural(v, "a vertex") for v in items(value, "a loop"))
         lines: dict[int, int] = {v: state.lines[v] for v in loop}
         modes = Modes(self.sheet, {v: self.near[v] for v in lines})
@@ -121,19 +131,22 @@ class Cases:
             return
         for _, before, after in corners_of(loop):
             require(before != after, f"the loop {name(loop)} turns back")
-        require(self.true, "a loop that fails at a higher order refutes true motions alone")
+        require(self.true, "a loop that fails at a higher order refutes only true motions")
         require(3 <= natural(order, "order") <= MOST_ORDER, f"there is no order {order}")
         fails = Loops(modes).fails(lines, loop, order)
-        require(fails, f"the loop {name(loop)} is not seen to fail at order {order}")
+        require(fails, f"the loop {name(loop)} is not proved to fail at order {order}")
 
     # --- heights of stars ------------------------------------------------------------------------
 
     def _refuted(self, entry: Any, what: str) -> tuple[Signs, set[int]]:
-        """The signs of an entry that no motion with the letters has, and all its vertices."""
+        """Verify that no motion with the letters has the signs of an entry.
+
+        Returns the signs, and all vertices whose stars the proof uses.
+        """
         keys(entry, "signs planes heights", what)
         signs: Signs = {}
         for v, sign in items(entry["signs"], "signs"):
-            signs[natural(v, "a vertex")] = integer(sign)  # those of a case are 1 and -1 only
+            signs[natural(v, "a vertex")] = integer(sign)  # a case only has the signs 1 and -1
         heights: dict[int, dict[int, Number]] = {}
         for v, values in items(entry["planes"], "planes"):
             y, near = numbers(self.sheet, values, 2), self.near[natural(v, "a vertex")]
@@ -148,17 +161,17 @@ class Cases:
             total = heights.get(i, {}).get(j, zero) + heights.get(j, {}).get(i, zero)
             side, letter = total.sign(), self.wanted[i, j]
             agrees = side in (0, -SIDES.get(letter, 0))
-            require(agrees, f"{what}: the sum at fold {i}-{j} is on the wrong side")
+            require(agrees, f"{what}: the sum at fold {i}-{j} has the wrong sign")
             strict = strict or side != 0
         require(strict, f"{what}: no fold contradicts its letter")
         return signs, {*heights}
 
     def _check_nappe(self, v: int, sign: int, star: Mapping[int, Number], what: str) -> None:
-        """The form is not negative, and the star is on the side of its sign.
+        """Raise unless the form of a star is not negative, and its nappe has the right sign.
 
-        The gradient is constant between two folds, and twice the signed area of the polygon of
-        gradients is the form. Positive weights of the folds without a sum are the densities of a
-        star that is pushed down, turned round.
+        The gradient is constant between two folds, and the form is twice the signed area of the
+        polygon of gradients. Positive weights of the folds with sum_k weight_k d_k = 0 are the
+        densities of a star that is pushed down, with the opposite sign.
         """
         around = self.near[v]
         spokes = [(self.sheet.vector(v, u), star[u]) for u in around]
@@ -172,11 +185,11 @@ class Cases:
         side = self.sheet.tower.number(0)
         for (_, height), weight in zip(spokes, _weights([d for d, _ in spokes]), strict=True):
             side = side + weight * height
-        require(sign * side.sign() <= 0, f"{what}: the star of {v} is on the other side")
+        require(sign * side.sign() <= 0, f"{what}: the star of {v} does not have the sign {sign}")
 
 
 def numbers(sheet: PanelSheet, values: Any, length: int) -> list[Number]:
-    """Numbers in the field of the sheet, from their coefficients."""
+    """Read numbers in the field of the sheet, given by their coefficients."""
     return [
         Number(sheet.tower, tuple(map(parse_rational, items(x, "a number", sheet.tower.size))))
         for x in items(values, "numbers", length)
@@ -184,20 +197,20 @@ def numbers(sheet: PanelSheet, values: Any, length: int) -> list[Number]:
 
 
 def ways(lines: Sequence[Line], near: Iterable[int]) -> list[Way]:
-    """All ways of a vertex to move: at rest, and both sides of each line, by the sides of folds.
+    """All ways in which a vertex can move: at rest, or along one of its lines in either direction.
 
-    Their order is that of these sides, the neighbours taken by number.
+    They are sorted by the sides of the folds, with the neighbours in increasing order.
     """
     around = sorted(near)
-    found: list[Way] = [(None, dict.fromkeys(around, 0))]
+    moves: list[Way] = [(None, dict.fromkeys(around, 0))]
     for k, line in enumerate(lines):
         sides = {u: line.densities[u].sign() if u in line.densities else 0 for u in around}
-        found += [(k, sides), (k, {u: -side for u, side in sides.items()})]
-    return sorted(found, key=lambda way: tuple(way[1].values()))
+        moves += [(k, sides), (k, {u: -side for u, side in sides.items()})]
+    return sorted(moves, key=lambda way: tuple(way[1].values()))
 
 
 def fits(letter: str, side: int) -> bool:
-    """Whether a fold that goes to this side, or not at all, has the letter."""
+    """Whether a fold with this side (0 if it is flat) agrees with the letter."""
     return letter == "U" or side == SIDES.get(letter, 0)
 
 
@@ -206,17 +219,18 @@ def _product(y: list[Number], d: Vector) -> Number:
 
 
 def _gradient(a: Vector, at_a: Number, b: Vector, at_b: Number) -> Vector:
-    """g with g . a and g . b given."""
+    """The vector g with the given products g . a and g . b."""
     size = cross(a, b)
     return (at_a * b[1] - at_b * a[1]) / size, (at_b * a[0] - at_a * b[0]) / size
 
 
 def _weights(d: list[Vector]) -> list[Number]:
-    """Positive weights with sum_k weight_k d_k = 0, all sectors being less than pi.
+    """Positive weights with sum_k weight_k d_k = 0, if all sectors are less than pi.
 
-    Each -d_k lies between two neighbouring directions: it is added with these.
+    Each -d_k is a sum of the two neighbouring directions between which it lies, with weights >= 0.
+    All these equations are added up.
     """
-    found = [x.tower.number(1) for x, _ in d]
+    weights = [x.tower.number(1) for x, _ in d]
     for x, y in d:
         back = (-x, -y)
         for i in range(len(d)):
@@ -224,6 +238,6 @@ def _weights(d: list[Vector]) -> list[Number]:
             first, second = cross(back, d[j]), cross(d[i], back)
             if first.sign() >= 0 and second.sign() > 0:
                 size = cross(d[i], d[j])
-                found[i], found[j] = found[i] + first / size, found[j] + second / size
+                weights[i], weights[j] = weights[i] + first / size, weights[j] + second / size
                 break
-    return found
+    return weights

@@ -1,1 +1,1 @@
-"""Certificates of motions and of loops."""
+"""Certificates of motions along branches, of loops, and of motions of rigid panels."""

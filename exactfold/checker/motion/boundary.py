@@ -1,7 +1,8 @@
-"""Given boundary heights, in the ratio of which it stays: the rim path (docs/motion.md, 9).
+"""Motions on which the boundary keeps the ratio of given heights (docs/motion.md, 9).
 
-The heights z of the boundary vertices v are in the ratio of b iff z_v = l b_v + an affine function
-of the flat vertex for some number l, the factor: Ve - 4 linear equations.
+The heights z_v of the boundary vertices are in the ratio of b if and only if, for some number l
+called the factor, z_v = l b_v + an affine function of the flat vertex. These are Ve - 4 linear
+equations for Ve boundary vertices.
 """
 
 from __future__ import annotations
@@ -20,35 +21,36 @@ from .restriction import Restriction, Sign, Tie
 
 Row = dict[int, Fraction]
 
-_MOST_HEIGHTS = 8  # of a boundary in a summary or a message
+_MOST_HEIGHTS = 8  # boundary heights that a summary or a message shows
 
 
 class BoundaryClaim(BranchClaim):
-    """The boundary heights vertices of a convex boundary stay in the ratio of those given.
+    """The boundary is convex, and the heights of its vertices stay in the ratio of given heights.
 
-    They are given in the order of the vertices, and taken above the face `pinned` that is held,
-    which is returned. The side of the ray is the sign of the factor near the flat state.
+    The given heights are in increasing order of the vertices. Heights are measured above the held
+    face `pinned`, which the check returns. The side of the ray is the sign of the factor near the
+    flat state.
     """
 
     names = ("rim",)
 
     def restriction(self, given: Sheet, sheet: Sheet) -> BoundaryHeights:
-        """The ties of the heights."""
+        """The linear equations of the ratio."""
         return BoundaryHeights(given, self.claims["rim"])
 
     def check(self, chain: Chain) -> None:
-        """The ties hold all along; it remains to say above which face."""
+        """Say above which face the heights are measured; the equations already hold all along."""
         chain.facts["pinned"] = chain.equations.pinned
 
     @staticmethod
     def said(claims: Document) -> str:
-        """The heights, and the face."""
+        """The given heights, and the face above which they are measured."""
         face = "-".join(map(str, claims["pinned"]))
         return f", with the boundary in the ratio of {_shown(claims['rim'])} above the face {face}"
 
 
 class BoundaryHeights(Restriction):
-    """The equations `ties` of given heights, and the factor l as a functional of the heights."""
+    """The equations `ties` that keep the ratio; the functional `factor` of the heights is l."""
 
     def __init__(self, sheet: Sheet, texts: Any) -> None:
         super().__init__(sheet)
@@ -59,7 +61,8 @@ class BoundaryHeights(Restriction):
         base = _base(sheet, boundary)
         levels = {v: _level(sheet, base, v) for v in boundary if v not in base}
         above = {v: _value(row, heights) for v, row in levels.items()}
-        require(any(above.values()), f"the rim {_shown(texts)} is in one plane: no ratio to keep")
+        bent = any(above.values())
+        require(bent, f"the given heights {_shown(texts)} lie in one plane: there is no ratio")
         highest = max(levels, key=lambda v: abs(above[v]))
         self.factor = {v: c / above[highest] for v, c in levels[highest].items()}
         self.ties = [
@@ -70,12 +73,12 @@ class BoundaryHeights(Restriction):
         self.tie_bits = max(sizes, default=0)
 
     def side(self, sign: Sign) -> int:
-        """The sign of the factor."""
+        """The sign of the factor at the flat state."""
         return sign(self.factor)
 
 
 def _base(sheet: Sheet, boundary: list[int]) -> tuple[int, int, int]:
-    """Three boundary vertices that are not on one line, far apart."""
+    """Three boundary vertices that are far apart and not on one line."""
     points = sheet.points
     a = boundary[0]
     x, y = points[a]

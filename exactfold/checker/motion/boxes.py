@@ -1,7 +1,8 @@
-"""Where the vertices of a moving sheet are on a stretch of a piece, and tests that part them.
+"""Boxes with the vertices of a moving sheet during a stretch of the motion, and tests on them.
 
-All in integers over 2^GRID. On the stretch the vertex v is at (1 - y) a + y b + e for some
-0 <= y <= 1, the same for all vertices, and |e| <= error in each place: `boxes[v]` = (a, b, error).
+All numbers are integers over 2^GRID. At each moment of the stretch there is a number y with
+0 <= y <= 1, the same for all vertices, such that the vertex v is at (1 - y) a + y b + e, where
+|e| <= error in each coordinate. `boxes[v]` is (a, b, error).
 """
 
 from __future__ import annotations
@@ -26,21 +27,24 @@ _DIRECTION_BITS = 30
 
 
 class Curved(Protocol):
-    """Positions as polynomials q(x) + e for |x| <= 1, as `motion_lengths.Path` has them."""
+    """Positions as polynomials q(x) + e for |x| <= 1, as in `lengths.Path`."""
 
     columns: list[Vector]
     errors: Vector
     degree: int
 
     def below(self, s: Fraction) -> int:
-        """x for a parameter, over 2^GRID, rounded down."""
+        """The x of a parameter s, over 2^GRID, rounded down."""
 
     def above(self, s: Fraction) -> int:
-        """x for a parameter, over 2^GRID, rounded up."""
+        """The x of a parameter s, over 2^GRID, rounded up."""
 
 
 def flat_of(equations: LengthEquations) -> dict[int, Vector]:
-    """The flat vertices, over 2^GRID in the unit of the equations, rounded down."""
+    """The positions of the vertices in the flat sheet, over 2^GRID, rounded down.
+
+    They are in the unit of the equations.
+    """
     points, unit = equations.sheet.points, equations.unit
     x, y = points[equations.pinned[0]]
     return {
@@ -52,17 +56,18 @@ def flat_of(equations: LengthEquations) -> dict[int, Vector]:
 def boxes_on(
     path: Curved, flat: dict[int, Vector], place: dict[int, int], low: int, high: int, planar: bool
 ) -> Boxes:
-    """The boxes of all vertices for low <= x <= high, over 2^GRID; in the plane z = 0 if `planar`.
+    """The boxes of all vertices for low <= x <= high, over 2^GRID.
 
-    The polynomials are expanded at the middle by repeated division, each step of which is rounded
-    by at most a unit: all together change them by at most degree (degree + 1) / 2.
+    If `planar`, they are the boxes of the projections to the plane z = 0. The polynomials are
+    expanded about the middle by repeated division. Each step is rounded by at most a unit, so that
+    all steps together change a value by at most degree (degree + 1) / 2.
     """
     middle = (low + high) >> 1
     half, degree = high - middle, path.degree
-    found: Boxes = {}
+    boxes: Boxes = {}
     for v, (x, y, z) in flat.items():
         if v not in place:
-            found[v] = [x, y, z], [x, y, z], 1
+            boxes[v] = [x, y, z], [x, y, z], 1
             continue
         k = place[v]
         starts, ends, error = [], [], 0
@@ -83,14 +88,14 @@ def boxes_on(
             starts.append(rest + row[0] - slope)
             ends.append(rest + row[0] + slope)
             error = max(error, path.errors[k + axis] + beyond)
-        found[v] = starts, ends, error + degree * (degree + 1) // 2 + 4
-    return found
+        boxes[v] = starts, ends, error + degree * (degree + 1) // 2 + 4
+    return boxes
 
 
 def parted(boxes: Boxes, one: Sequence[int], two: Sequence[int], n: Direction) -> bool:
-    """Whether n.(x - y) > 0 for all corners x of one face and y of another, all along.
+    """Whether n.(x - y) > 0 for all corners x of one face and y of the other, all along.
 
-    Both sides are linear in y up to the errors, so that the two ends decide.
+    Along the stretch the left side is linear up to the errors, so that its two ends decide.
     """
     size = sum(map(abs, n))
     for end in (False, True):
@@ -102,14 +107,15 @@ def parted(boxes: Boxes, one: Sequence[int], two: Sequence[int], n: Direction) -
 
 
 def parted_at(boxes: Boxes, v: int, one: Sequence[int], two: Sequence[int], n: Direction) -> bool:
-    """Whether n.(x - v) > 0 > n.(y - v) for the corners x of one face, y of another, all along."""
+    """Whether n.(x - v) > 0 > n.(y - v) all along for corners x of one face and y of the other."""
     return parted(boxes, one, [v], n) and parted(boxes, [v], two, n)
 
 
 def open_by_distance(boxes: Boxes, left: int, right: int, closed: int) -> bool:
-    """Whether two vertices are farther apart all along than the root of `closed` / 2^(2 GRID).
+    """Whether the distance of two vertices exceeds the root of `closed` / 2^(2 GRID), all along.
 
-    |g + d|^2 >= |g|^2 + 2 g.d, for the gap g in the middle; everything is doubled.
+    If g is the gap in the middle of the stretch and d its change, |g + d|^2 >= |g|^2 + 2 g.d. All
+    lengths are doubled here.
     """
     (a, b, e), (c, d, f) = boxes[left], boxes[right]
     gap = [p + q - r - s for p, q, r, s in zip(a, b, c, d, strict=True)]
@@ -119,7 +125,7 @@ def open_by_distance(boxes: Boxes, left: int, right: int, closed: int) -> bool:
 
 
 def upright(boxes: Boxes, i: int, j: int, k: int) -> bool:
-    """Whether the projection of the face ijk to the plane stays counter-clockwise all along."""
+    """Whether the projection of the face ijk to the plane z = 0 stays counter-clockwise."""
     (o, p, e), arms = boxes[i], []
     for v in (j, k):
         a, b, f = boxes[v]
@@ -134,8 +140,8 @@ def upright(boxes: Boxes, i: int, j: int, k: int) -> bool:
 def volume_sign(boxes: Boxes, i: int, j: int, k: int, m: int) -> int:
     """The sign of det(x_j - x_i, x_k - x_i, x_m - x_i) all along, 0 if it is not certain.
 
-    |det(a + d, ...) - det(a, ...)| is at most the product of all |a| + |d| less that of all |a|,
-    which grows with each |a|.
+    If each arm a changes by d, the determinant changes by at most the product of all |a| + |d|
+    minus the product of all |a|. This bound grows with each |a|.
     """
     o, p, e = boxes[i]
     arms, most, sizes = [], 1, 1
@@ -152,24 +158,25 @@ def volume_sign(boxes: Boxes, i: int, j: int, k: int, m: int) -> int:
 
 
 def nearer(boxes: Boxes, left: int, right: int, mean: int) -> bool:
-    """Whether two vertices are nearer all along than the root of `mean` / 2^(2 GRID)."""
+    """Whether the distance of two vertices is below the root of `mean` / 2^(2 GRID), all along."""
     (a, b, e), (c, d, f) = boxes[left], boxes[right]
     gap = [max(abs(p - r), abs(q - s)) + e + f for p, q, r, s in zip(a, b, c, d, strict=True)]
     return dot(gap, gap) < mean
 
 
-# --- directions, in floats: any would do, as they are tested --------------------------------------
+# --- directions, chosen in floats: the tests are valid with any direction -------------------------
 
 
 def middle_of(box: Box) -> Point:
-    """The middle of a box in floats."""
+    """The middle of a box, in floats."""
     return [(a + b) / (2 << GRID) for a, b in zip(box[0], box[1], strict=True)]
 
 
 def best_apart(boxes: Boxes, one: Sequence[int], two: Sequence[int], planar: bool) -> Direction:
-    """The direction with the widest gap between two triangles, of those among which one parts them.
+    """The direction with the widest gap between two triangles.
 
-    Those are the normals, the products of two sides, and those across the sides in the plane.
+    If the triangles are disjoint, one of these directions parts them: the normals, the cross
+    products of a side of each, and the normals of the sides within the planes of the triangles.
     """
     p, q = ([middle_of(boxes[v]) for v in face] for face in (one, two))
     sides = [[_minus(t[(k + 1) % 3], t[k]) for k in range(3)] for t in (p, q)]
@@ -197,9 +204,11 @@ def best_apart(boxes: Boxes, one: Sequence[int], two: Sequence[int], planar: boo
 def best_corner(
     boxes: Boxes, v: int, one: Sequence[int], two: Sequence[int], planar: bool
 ) -> Direction:
-    """The direction n with the largest least n.p for the unit vectors p of four arms.
+    """The direction n that maximises the least of the products n.p with four unit vectors p.
 
-    It is that of the point next to 0 of their convex hull: on a vertex, a side or a face of it.
+    The p are the directions of the arms. n points to the point of their convex hull that is nearest
+    to 0. This point lies on a vertex, an edge or a face of the hull, and each of these gives one
+    direction to try.
     """
     at = middle_of(boxes[v])
     p = [_unit(_minus(middle_of(boxes[w]), at)) for w in one]

@@ -1,11 +1,12 @@
-"""Arcs through branch points: there a patch is flat, and curves cross (docs/motions.md).
+"""Arcs through branch points, where the stars of some vertices are flat (docs/motions.md, Nodes).
 
-Why it is a proof: let x* be a configuration whose patch is flat, X_e its edge vectors, and w_v the
+Why it is a proof: let x* be a configuration with a flat patch, X_e its edge vectors, and w_v the
 wheel stresses of the flat vertices. They are in equilibrium in x*, as they are in the flat sheet.
-So for s not 0 the equations X_e . y_e + (s / 2) |y_e|^2 = 0 of all edges, which say that x* + s y
-is a configuration, follow from those of all edges but one for each flat vertex, and from
-sum_e w_v,e |y_e|^2 / 2 = 0, where the stresses on the edges left out are independent. With
-T . y = 1 these have one analytic curve y(s) of zeros near a polynomial, whatever x* in its box is.
+Let s be not 0. Then x* + s y is a configuration if X_e . y_e + (s / 2) |y_e|^2 = 0 for all edges e.
+One edge for each flat vertex may be left out, if the stresses on these edges are independent: the
+equations of the other edges, and sum_e w_v,e |y_e|^2 / 2 = 0 for each flat vertex v, imply those
+of the edges left out. Together with T . y = 1 these equations have one analytic curve y(s) of zeros
+near a polynomial, for every x* in its box.
 """
 
 from __future__ import annotations
@@ -32,9 +33,10 @@ from .tubes import ROW_BITS, Ball, Piece, slopes
 
 
 class Stresses:
-    """The wheel stresses of some vertices, by number of the edge: integers over 2^`bits`.
+    """The wheel stresses of some vertices, as integers over 2^`bits`.
 
-    The k-th takes the place of the equation of edge `replaced[k]`.
+    `rows[k]` is {number of an edge: stress} for the k-th vertex. Its equation replaces that of the
+    edge `replaced[k]`.
     """
 
     def __init__(self, equations: LengthEquations, flat: list[int]) -> None:
@@ -54,7 +56,10 @@ class Stresses:
 
 
 def independent(rows: list[dict[int, int]]) -> list[int]:
-    """Columns, one for each row, on which the rows are independent; raises where they are not."""
+    """One column for each row such that the rows are independent on these columns.
+
+    Raises if the rows are not independent.
+    """
     left = [{k: Fraction(x) for k, x in row.items()} for row in rows]
     chosen: list[int] = []
     for n, row in enumerate(left):
@@ -69,9 +74,9 @@ def independent(rows: list[dict[int, int]]) -> list[int]:
 
 
 class BranchPointTube(Piece):
-    """Configurations x* + s y(s), T . y(s) = 1, of an arc through the branch point x* in a box.
+    """An arc of configurations x* + s y(s) through a branch point x*, of which a box is known.
 
-    T = row / 2^ROW_BITS. The pieces of `Piece` are those of y.
+    T . y(s) = 1 with T = row / 2^ROW_BITS. The curve of the base class `Piece` is y.
     """
 
     def __init__(
@@ -95,13 +100,13 @@ class BranchPointTube(Piece):
             for edge, stress in zip(replaced, stresses.rows, strict=True):
                 terms = parts[k] if k < len(parts) else [(0, 0, 0)] * len(x)
                 here = [[a * stress.get(e, 0) for a in y] for e, y in enumerate(terms)]
-                for column, found in zip(columns, equations.columns(here), strict=True):
-                    if total := sum(value for _, value in found):
+                for column, added in zip(columns, equations.columns(here), strict=True):
+                    if total := sum(value for _, value in added):
                         column.append((edge, total))
             return columns
 
         def coefficient(curve: Curve, parts: Parts, k: int) -> Vector:
-            """That of s^k of H, over 2^(2 bits + more + 1)."""
+            """The coefficient of s^k of H, over 2^(2 bits + more + 1)."""
             total = [0] * len(x)
             if k < len(curve):
                 total = [2 * dot(a, y) for a, y in zip(x, parts[k], strict=True)]
@@ -137,12 +142,12 @@ class BranchPointTube(Piece):
             [stressed, [a * m for a, m in zip(square, kept, strict=True)]],
             weights,
         )
-        # How far X_e may be from x_e, and what that does to the equations and their derivatives.
+        # X_e lies in a box about x_e: how much that changes the equations and their derivatives.
         spread = equations.weight_sums(branch_point.radii)
         sizes = [[abs(a) * m for a, m in zip(line, kept, strict=False)] for line in p]
 
         def off(rows: list[tuple[int, ...]], places: int) -> Fraction:
-            """A bound of |P v| with v_e = spread_e . rows_e where the equation of e is kept."""
+            """A bound of |P v|: v_e = spread_e . rows_e if the equation of e is kept, else 0."""
             most = [dot(r, map(abs, a)) for r, a in zip(spread, rows, strict=True)]
             return norm([dot(line, most) for line in sizes], weights, INVERSE_BITS + places)
 

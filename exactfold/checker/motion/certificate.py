@@ -1,7 +1,7 @@
 """Certificates of motions: a branch followed from the flat state, without a gap (docs/motion.md).
 
-The evidence is a chain of verified pieces of one curve (`chain`). What is claimed of this curve is
-in `CLAIMS`, an object for each claim in the module that knows why it holds.
+The evidence is a chain of verified pieces of one curve (`chain`). `CLAIMS` lists the claims that a
+file may make about this curve. Each claim is a class in the module that knows why it holds.
 """
 
 from __future__ import annotations
@@ -31,9 +31,9 @@ CLAIMS: tuple[type[BranchClaim], ...] = (
     DriveClaim,
     Contacts,
 )
-"""All claims that there are, in the order in which a summary has them."""
+"""All claims, in the order in which a summary states them."""
 
-_Return = TypedDict("_Return", {"return": NamedHalf}, total=False)  # a keyword of Python
+_Return = TypedDict("_Return", {"return": NamedHalf}, total=False)  # "return" is a keyword
 
 
 class _Optional(_Return, total=False):
@@ -47,10 +47,10 @@ class _Optional(_Return, total=False):
 
 
 class VerifiedMotion(NamedHalf, _Optional):
-    """What is verified of a motion along a branch: the keys of its `CLAIMS`.
+    """The verified claims of a motion along a branch: the keys of its `CLAIMS`.
 
-    To these the checker adds the digest of the pattern, the number of `tubes` and, with a
-    `boundary_heights`, the vertices of the face that is held, `pinned`.
+    The checker adds the digest of the pattern, the number of `tubes` and, if there is a `rim`, the
+    vertices of the face that is held, `pinned`.
     """
 
     length: str
@@ -65,9 +65,9 @@ _EVIDENCE = ("emptied", "pinned", "bits", "start", "tubes")
 def check(data: dict[str, Any]) -> VerifiedMotion:
     """Verify every claim of a loaded certificate; raises `CertificateError` at the first failure.
 
-    What is claimed is that of the classes in `CLAIMS`. Returns the claims, the SHA-256 of the
-    pattern, and how many `tubes` there are between the first piece and the end, arcs through branch
-    points not counted; with boundary heights also the face `pinned` above which they are.
+    The classes in `CLAIMS` say what is claimed. Returns the claims, the SHA-256 of the pattern, and
+    the number of `tubes` between the first piece and the end, without arcs through branch points.
+    If boundary heights are claimed, the face `pinned` above which they are measured is added.
     """
     given, digest = read_sheet(data["pattern"])
     evidence = data["evidence"]
@@ -89,7 +89,7 @@ def check(data: dict[str, Any]) -> VerifiedMotion:
 
 
 def summary(claims: VerifiedMotion) -> str:
-    """One line for verified claims."""
+    """One line that states the verified claims."""
     tubes = counted(claims["tubes"], "tube", "tubes")
     return f"VALID: {words(CLAIMS, dict(claims))}; {tubes}; sha256 {claims['sha256']}"
 
@@ -102,4 +102,4 @@ MOTION = DocumentKind(
     check=check,
     summary=summary,
 )
-"""The motion along a ray, as a chain of tubes (docs/motion.md)."""
+"""The motion along a ray of a branch, as a chain of tubes (docs/motion.md)."""

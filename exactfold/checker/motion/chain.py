@@ -1,10 +1,11 @@
-"""Chains: the pieces of a motion along a branch, each verified to go on from the one before.
+"""Chains: the pieces of a motion along a branch, each verified to continue the piece before it.
 
 Why a chain is one curve: the first piece is a curve of zeros of the equations in blown-up
-coordinates, which at the flat state solve the second-order equations with certain vertex signs: it
-belongs to the one branch with these signs (docs/theorem.md, 3 and 4). Every tube holds one curve of
-configurations; where it begins, the piece before ends on it and goes the same way. So does an arc
-through a branch point, a point of which lies on the tube before.
+coordinates. At the flat state it solves the second-order equations with certain vertex signs, so
+that it belongs to the one branch with these signs (docs/theorem.md, 3 and 4). Every tube holds one
+curve of configurations. The piece before a tube ends on this curve, and both go in the same
+direction there. An arc through a branch point has a point on the tube before it, and both go in the
+same direction there.
 """
 
 from __future__ import annotations
@@ -25,12 +26,13 @@ from .stretches import Arc, Link, Step
 
 
 class Chain:
-    """A motion as far as it is verified.
+    """A motion, as far as it is verified.
 
-    `given` is the sheet, of which the vertices `removed` cannot fold. The motion leaves the flat
-    state on `start` and goes over to `steps` at `tau`; `end` is a box with the configuration at
-    which the last tube is left, or entered if it is not left. `passed`: which vertices are flat at
-    the branch points on the way. `facts` are what else a check says of the motion.
+    `given` is the sheet; its vertices `removed` cannot fold. The motion leaves the flat state on
+    the piece `start`, and goes over to `steps` at the parameter `tau`. `end` is a box with the
+    configuration at which the motion leaves the last tube, or enters it if it does not leave it.
+    `passed` lists for each branch point on the way the vertices that are flat there. `facts` are
+    further results that the check returns.
     """
 
     def __init__(
@@ -47,7 +49,8 @@ class Chain:
     def walk(self, entries: list[Any], leaves: bool) -> None:
         """Verify the tubes of a file, and the arcs through branch points between them.
 
-        A tube is left at its exit unless an arc follows; after the last one if it `leaves`.
+        The motion leaves a tube at its exit, unless an arc follows. It leaves the last tube if
+        `leaves`.
         """
         for entry, after in zip_longest(entries, entries[1:]):
             if is_arc(entry):
@@ -67,11 +70,11 @@ class Chain:
 
 
 def through(equations: LengthEquations, path: Path, entry: Any) -> Arc:
-    """An arc through a branch point, from before it until after it."""
+    """Verify an arc that goes from before a branch point to behind it."""
     keys(entry, "flat node centre row reach entry exit", "node")
     arc = arc_of(equations, entry["flat"], entry)
     begin, end = parameter_of(entry["entry"]), parameter_of(entry["exit"])
-    require(begin < 0 < end, "an arc does not go through its node")
+    require(begin < 0 < end, "an arc does not go through its branch point")
     path.meet(*arc.configuration(begin))
     path.go(*arc.configuration(Fraction(0)))
     path.go(*arc.configuration(end))
@@ -79,19 +82,19 @@ def through(equations: LengthEquations, path: Path, entry: Any) -> Arc:
 
 
 def is_arc(entry: Any) -> bool:
-    """Whether a step of a file is an arc through a branch point, not a tube."""
+    """Whether a step of a file is an arc through a branch point; otherwise it is a tube."""
     return isinstance(entry, dict) and "flat" in entry
 
 
 def equations_of(
     sheet: Sheet, pinned: Any, bits: Any, restrictions: Sequence[Restriction] = ()
 ) -> LengthEquations:
-    """The equations of a sheet that can fold, with `pinned` and `bits` as a file has them."""
+    """The equations of a sheet that can fold, with `pinned` and `bits` as they are in a file."""
     four = len(sheet.boundary) == 4
     require(four or restrictions, "there are not four boundary vertices")
     one = len(restrictions) < 2
-    require(one, "a motion keeps the ratio of its boundary or that of driven folds, not both")
-    require(sheet.interior, "nothing can fold")
+    require(one, "a motion keeps the ratio of its boundary heights or of driven folds, not both")
+    require(sheet.interior, "no vertex of the sheet can fold")
     bits = natural(bits, "bits")
     at_most(bits, MOTION_BITS, "the bits", "MOTION_BITS")
     corners = [natural(v, "pinned vertex") for v in items(pinned, "pinned", 3)]
@@ -99,10 +102,10 @@ def equations_of(
 
 
 def check_work(equations: LengthEquations, entries: list[Any], arcs: int = 0) -> None:
-    """Raise if the tubes and arcs of a file, and so many `arcs` more, are too much work."""
+    """Raise if the tubes and arcs of a file, with `arcs` further arcs, are too much work."""
     among = sum(map(is_arc, entries))
     tubes = len(entries) - among + NODE_WORK * (among + arcs)
     at_most(tubes, MOST_TUBES, "the tubes", "MOST_TUBES")
     size, digits = equations.size, 1 + (equations.bits + equations.more) // 256
     work = (tubes + 1) * size**2 * (size + 200) * digits
-    at_most(work, MOST_WORK, "the products of numbers that are needed", "MOST_WORK")
+    at_most(work, MOST_WORK, "the products of numbers that the check needs", "MOST_WORK")

@@ -1,7 +1,7 @@
-"""Claims of motions: what each one needs in a file, how it is checked, and its words.
+"""Claims of motions: what each claim needs in a file, how it is checked, and how it is worded.
 
-A kind of motion has a table of its claims. A certificate makes those of them whose keys it has;
-to check it is to go through them.
+Each kind of motion has a table of its claims. A certificate makes the claims whose keys it has, and
+the check goes through them.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ Document = dict[str, Any]
 
 
 class Claim:
-    """A claim of a motion, made of the claims and the evidence of a file.
+    """A claim of a motion, constructed from the claims and the evidence of a file.
 
-    `names` are its keys among the claims, `needs` those in the evidence. A claim that is made
-    `always` is one that every motion makes, perhaps by leaving out a key.
+    `names` are its keys among the claims, and `needs` its keys in the evidence. If `always` is
+    true, every motion makes this claim, even if its keys are absent.
     """
 
     names: ClassVar[tuple[str, ...]]
@@ -33,67 +33,72 @@ class Claim:
 
     @classmethod
     def keys_in(cls, claims: Document) -> tuple[str, ...]:
-        """The keys that a file has for it, to go by those that are there; none: not claimed."""
+        """The keys that a file must have for this claim, in view of the keys that it has.
+
+        They are none if the file does not make the claim.
+        """
         return cls.names if cls.always or any(name in claims for name in cls.names) else ()
 
     @classmethod
     def needed_by(cls, claims: Document) -> tuple[str, ...]:
-        """The keys that a file with these claims has for it in the evidence."""
+        """The keys that the evidence of a file with these claims must have for this claim."""
         return cls.needs
 
     @staticmethod
     def said(claims: Document) -> str:
-        """Its words in the line about verified claims."""
+        """The words for this claim in the line that states the verified claims."""
         return ""
 
 
 class BranchClaim(Claim):
     """A claim of a motion along a branch.
 
-    It sees the chain of verified pieces three times: when it has its first piece, when it has all
-    tubes, and when it is whole. If it `continues` the chain, the last tube is not left at an exit.
-    `arcs`: how many arcs through branch points it adds.
+    The check passes the chain of verified pieces to each claim three times: to `begin` when the
+    chain has its first piece, to `go_on` when it has all tubes, and to `check` when it is complete.
+    If `continues` is true, the claim adds a piece, and the motion does not leave the last tube at
+    an exit. `arcs` is the number of arcs through branch points that the claim adds.
     """
 
     continues: ClassVar[bool] = False
     arcs: ClassVar[int] = 0
 
     def restriction(self, given: Sheet, sheet: Sheet) -> Restriction | None:
-        """What it adds to the equations; `sheet` is what can fold of the one that is given."""
+        """The equations that the claim adds, or None; `sheet` is what can fold of `given`."""
         return None
 
     def begin(self, chain: Chain) -> None:
-        """Refuse a chain that begins otherwise than claimed."""
+        """Refuse a chain whose first piece contradicts the claim."""
 
     def go_on(self, chain: Chain) -> None:
         """Verify the piece after the last tube."""
 
     def check(self, chain: Chain) -> None:
-        """Refuse a whole chain of which the claim does not hold."""
+        """Refuse a complete chain for which the claim does not hold."""
 
 
 C = TypeVar("C", bound=Claim)
 
 
 def made(kinds: Sequence[type[C]], claims: Document) -> list[type[C]]:
-    """The claims that a file makes, of those in a table."""
+    """The claims of a table that a file makes."""
     return [kind for kind in kinds if kind.always or kind.keys_in(claims)]
 
 
 def read_claims(
     kinds: Sequence[type[C]], claims: Document, evidence: Document, always: Sequence[str] = ()
 ) -> list[C]:
-    """The claims of a file. Refuses keys that belong to none, and evidence without some.
+    """Read the claims of a file.
 
-    `always`: the keys of the evidence of every motion.
+    Raises if a key belongs to no claim, or if the evidence does not have exactly the keys that the
+    claims need. `always` are the keys that the evidence of every motion has.
     """
-    found = made(kinds, claims)
-    keys(claims, " ".join(key for kind in found for key in kind.keys_in(claims)), "claims")
-    needed = (key for kind in found for key in kind.needed_by(claims))
+    classes = made(kinds, claims)
+    keys(claims, " ".join(key for kind in classes for key in kind.keys_in(claims)), "claims")
+    needed = (key for kind in classes for key in kind.needed_by(claims))
     keys(evidence, " ".join([*always, *needed]), "evidence")
-    return [kind(claims, evidence) for kind in found]
+    return [kind(claims, evidence) for kind in classes]
 
 
 def words(kinds: Sequence[type[C]], claims: Document) -> str:
-    """What a line about verified claims says of them, in the order of the table."""
+    """The words for the verified claims, in the order of the table."""
     return "".join(kind.said(claims) for kind in made(kinds, claims))

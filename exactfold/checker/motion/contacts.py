@@ -1,8 +1,9 @@
-"""The first contact of a motion: how long no faces touch, and by when some do (docs/contacts.md).
+"""The first contact of a motion: until when no faces touch, and by when some do (docs/contacts.md).
 
-Two faces without a common vertex do not touch if a plane parts them; two with one common vertex
-touch only there if a plane through it does; two at a fold touch only there unless it is closed.
-Near the flat state the same is shown of the projections to the plane of the face that is held.
+Two faces without a common vertex do not touch if a plane parts them. Two faces with one common
+vertex touch only there if a plane through this vertex parts them. Two faces at a fold touch only
+there unless the fold is closed. Near the flat state the same is shown for the projections to the
+plane of the held face.
 """
 
 from __future__ import annotations
@@ -28,7 +29,10 @@ _PARAMETER_BITS = 40
 
 
 class TouchingFaces(TypedDict):
-    """A contact between two bounds, of two faces or of the faces of folds that are closed."""
+    """A contact of two faces, or of the faces at folds that are closed.
+
+    `time` has a lower and an upper bound of when it happens.
+    """
 
     kind: str
     time: list[str]
@@ -37,9 +41,9 @@ class TouchingFaces(TypedDict):
 
 
 class Contacts(BranchClaim):
-    """No two faces touch beyond what they share before the length `clear` of the motion.
+    """Before the length `clear` of the motion no two faces touch beyond what they share.
 
-    With `contact`, some do between two lengths, the first of which is that one.
+    If there is a `contact`, some faces touch between two lengths, the first of which is `clear`.
     """
 
     names = ("clear", "contact")
@@ -47,16 +51,16 @@ class Contacts(BranchClaim):
 
     @classmethod
     def keys_in(cls, claims: Document) -> tuple[str, ...]:
-        """A contact is claimed together with what is clear before."""
+        """A file that claims a contact also claims until when the motion is clear."""
         return cls.names if "contact" in claims else cls.names[:1] if "clear" in claims else ()
 
     def check(self, chain: Chain) -> None:
-        """On the stretches of the pieces that the motion passes."""
+        """Test the stretches of the pieces that the motion passes."""
         check_contacts(chain.start, chain.tau, chain.steps, self.claims, self.evidence["contacts"])
 
     @staticmethod
     def said(claims: Document) -> str:
-        """How long no faces touch, and by when some do."""
+        """Until when no faces touch, and by when some do."""
         text = f"; no two faces touch before {shown(claims['clear'])}"
         if "node" in claims and claims["node"]["clear"]:
             clear = shown(claims["clear"])
@@ -74,7 +78,7 @@ class Contacts(BranchClaim):
 
 
 class Faces(FacePairs):
-    """The pairs of faces of a triangulated sheet, and the test that a fold closes."""
+    """The pairs of faces of a triangulated sheet, and the test whether a fold closes."""
 
     def __init__(self, equations: LengthEquations) -> None:
         sheet = equations.sheet
@@ -91,10 +95,11 @@ class Faces(FacePairs):
         super().__init__(faces, faces, bodies, folds, places, equations.place, MOST_TESTS)
 
     def closes(self, path: Path, first: Fraction, last: Fraction, fold: Edge) -> bool:
-        """Whether a fold is closed between two parameters.
+        """Whether a fold is proved to be closed at some moment between two parameters.
 
-        It is a valley at one of them and a mountain at the other; between, its two faces lie in
-        one plane, and near each other: nearer than at 90 degrees.
+        It is a valley at one of them and a mountain at the other, so that its two faces lie in one
+        plane at some moment between. All along the two opposite corners are nearer to each other
+        than at a fold of 90 degrees, so that the fold is closed at this moment, not flat.
         """
         left, right, _ = self.folds[fold]
         signs = [volume_sign(self.at(path, s, s), *fold, left, right) for s in (first, last)]
@@ -106,9 +111,10 @@ class Faces(FacePairs):
 def folded_over(
     equations: LengthEquations, fold: Edge, left: int, right: int
 ) -> tuple[Fraction, Fraction]:
-    """The squared distance of two corners at a fold that is closed, and flat, over unit^2.
+    """The squared distances, over unit^2, of the corners opposite to a fold, if closed and if flat.
 
-    Along the fold the corners keep their places; across it the distances are subtracted or added.
+    Along the fold the corners keep their places. Across it their distances from the fold are
+    subtracted if it is closed, and added if it is flat.
     """
     (ix, iy), (jx, jy), (lx, ly), (rx, ry) = (
         equations.sheet.points[v] for v in (*fold, left, right)
@@ -127,33 +133,34 @@ def check_contacts(
     claims: Any,
     given: Any,
 ) -> None:
-    """Refuse unless the claims `clear` and, if there is one, `contact` hold.
+    """Raise unless the claim `clear` holds, and the claim `contact` if there is one.
 
-    `given`: the step, by its number from 1 on, in which what is clear ends at the parameter
-    `clear`, and in which a contact is proved at `to`, or a fold closes between `from` and `to`. The
-    arc to a branch point at the end comes after the last tube.
+    `given` names a step by its number, from 1 on. In this step the clear part of the motion ends at
+    the parameter `clear`. A contact is proved at the parameter `to`, or a fold closes between
+    `from` and `to`. If the motion ends at a branch point, the arc to it is the step after the last
+    tube.
     """
     keys(given, "tube clear from to" if "contact" in claims else "tube clear", "contacts")
     number = natural(given["tube"], "tube")
-    require(1 <= number <= len(steps), "there is no such tube")
+    require(1 <= number <= len(steps), "the contacts name a tube that does not exist")
     stretches = stretches_of(start, tau, steps[:number])
     last = stretches[-1]
 
     def parameter(key: str, least: Fraction) -> Fraction:
-        found = Fraction(integer(given[key]), 1 << _PARAMETER_BITS)
-        require(least <= found <= last.most, f'the parameter "{key}" is out of range')
-        return found
+        value = Fraction(integer(given[key]), 1 << _PARAMETER_BITS)
+        require(least <= value <= last.most, f'the parameter "{key}" is out of range')
+        return value
 
     lengths = [stretch.length() for stretch in stretches[:-1]]
     last.end_at(parameter("clear", last.least))
     clear, unit = parse_rational(claims["clear"]), start.equations.unit
     shortest = sum((low for low, _ in lengths), last.length()[0])
-    require(clear <= shortest * unit, "what is clear is shorter than claimed")
+    require(clear <= shortest * unit, "the clear part of the motion is shorter than claimed")
     faces = Faces(start.equations)
     if "contact" in claims:
         keys(claims["contact"], "kind time faces folds", "contact")
         first, latest = map(parse_rational, items(claims["contact"]["time"], "time", 2))
-        require(first == clear, "a contact is not claimed from where the motion is clear")
+        require(first == clear, 'the first "time" of a contact differs from "clear"')
         begin = parameter("from", last.high)
         end = parameter("to", begin)
         longest = last.path.longest(last.path.below(last.low), last.path.above(end))
@@ -166,25 +173,30 @@ def check_contacts(
 
 
 def _check_contact(faces: Faces, path: Path, begin: Fraction, end: Fraction, claim: Any) -> None:
-    """The faces claimed touch by the parameter `end`."""
+    """Raise unless the claimed faces touch by the parameter `end`."""
     require(claim["kind"] in _KINDS, "the contact is of no known kind")
     pair = [
         tuple(natural(v, "corner") for v in items(face, "face", 3))
         for face in items(claim["faces"], "faces", 2)
     ]
     known = {frozenset(face) for face in faces.faces}
-    require(known.issuperset(map(frozenset, pair)), "what touches is no face")
+    there = known.issuperset(map(frozenset, pair))
+    require(there, "a face of the contact is not a face of the sheet")
     folds = [
         tuple(natural(v, "vertex") for v in items(fold, "fold", 2))
         for fold in items(claim["folds"], "folds")
     ]
     one, two = pair
     if claim["kind"] == "contact":
-        require(not folds, "a contact has no folds")
-        require(faces.crossing(path, end, one, two), "no side runs through the other face")
+        require(not folds, "a contact of two faces names folds")
+        through = faces.crossing(path, end, one, two)
+        require(through, "no side of one face is proved to run through the other face")
         return
-    require(len(folds) == 1 and folds[0] in faces.folds, "what closes is no fold")
+    known_fold = len(folds) == 1 and folds[0] in faces.folds
+    require(known_fold, "the contact does not name one fold of the sheet that closes")
     [(i, j)] = folds
     left, right = faces.folds[i, j][:2]
-    require([set(one), set(two)] == [{i, j, left}, {i, j, right}], "the faces are not at the fold")
-    require(faces.closes(path, begin, end, (i, j)), "the fold does not close")
+    beside = [set(one), set(two)] == [{i, j, left}, {i, j, right}]
+    require(beside, "the faces of the contact are not those at its fold")
+    closes = faces.closes(path, begin, end, (i, j))
+    require(closes, "the fold of the contact is not proved to close")

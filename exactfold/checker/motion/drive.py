@@ -1,8 +1,8 @@
 """Driven folds, whose angles keep a ratio: equations between distances (docs/motion.md, 10).
 
-Half the change g_k of the square of the distance between the two vertices opposite to fold k is
--8 (A B / l^2) sin(a_k / 2)^2, with the areas A, B of its faces, its length l and its angle a_k.
-The angles reach given sizes if they are larger at the end.
+Let g_k be half the change of the squared distance between the two vertices opposite to fold k. Then
+g_k = -8 (A B / l^2) sin(a_k / 2)^2, where A and B are the areas of its faces, l is its length and
+a_k is its angle. The angles reach given sizes on the way if they are at least as large at the end.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from .tubes import Ball
 
 
 class DrivenFolds(TypedDict):
-    """Folds in a given ratio, and whether they are said to reach their angles."""
+    """Driven folds, the ratio that they keep, and whether it is claimed that they reach angles."""
 
     folds: list[list[int]]
     squares: list[str]
@@ -31,30 +31,32 @@ class DrivenFolds(TypedDict):
 
 
 class DriveClaim(BranchClaim):
-    """The curve leaves the flat state along a simple solution on which its folds go as claimed.
+    """The curve leaves the flat state along a simple solution, with its driven folds as claimed.
 
-    They are valleys or mountains by the signs of the `squares` q, and all along sin(a / 2)^2 of
-    their angles a is in the ratio of |q|. If they are `reached`, these are |q| or more at the end.
-    The side of the ray is 1.
+    A driven fold is a valley or a mountain by the sign of its entry q of `squares`. All along, the
+    values sin(a / 2)^2 of the angles a are in the ratio of |q|. If `reached` is true, these values
+    are |q| or more at the end. The side of the ray is 1.
     """
 
     names = ("drive",)
 
     def restriction(self, given: Sheet, sheet: Sheet) -> PrescribedAngles:
-        """The equations of the ratio."""
+        """The equations that keep the ratio."""
         self.drive = PrescribedAngles(sheet, self.claims["drive"])
         return self.drive
 
     def check(self, chain: Chain) -> None:
-        """Whether they are reached, where that is claimed."""
+        """Refuse a motion that does not reach the angles, if it is claimed to reach them."""
         if self.drive.reached:
             back = "return" in self.claims
-            require(not back, "a motion that returns ends with its driven folds flat")
+            require(
+                not back, "a motion that returns to the flat state does not end at given angles"
+            )
             check_reached(chain.equations, self.drive, chain.end)
 
     @staticmethod
     def said(claims: Document) -> str:
-        """The folds, and their ratio."""
+        """The driven folds and their ratio."""
         drive = claims["drive"]
         names = ", ".join(f"{i}-{j}" for i, j in drive["folds"])
         ratio = " : ".join(q.removeprefix("-") for q in drive["squares"])
@@ -66,10 +68,11 @@ class DriveClaim(BranchClaim):
 
 
 class PrescribedAngles(Restriction):
-    """The folds and the numbers q_k of a claim, and the equations w_m g_k = w_k g_m of their ratio.
+    """The driven folds and numbers q_k of a claim, and the equations that keep their ratio.
 
-    sin(a_k / 2)^2 is in the ratio of |q_k| iff they hold for w_k = |q_k| A B / l^2. `rows` are
-    integers on the `diagonals` k, over 2^row_bits.
+    The values sin(a_k / 2)^2 are in the ratio of |q_k| if and only if w_m g_k = w_k g_m with
+    w_k = |q_k| A B / l^2. Each of `rows` is one equation: integers over 2^row_bits, one for each of
+    the `diagonals` k.
     """
 
     def __init__(self, sheet: Sheet, claim: Any) -> None:
@@ -78,11 +81,12 @@ class PrescribedAngles(Restriction):
         require(type(claim["reached"]) is bool, "reached is not true or false")
         self.reached: bool = claim["reached"]
         number = len(sheet.boundary) - 3
-        require(number > 1, "one fold alone has no ratio that could be claimed")
+        require(number > 1, "a single driven fold has no ratio")
         self.folds = _folds(sheet, items(claim["folds"], "driven folds", number))
         texts = items(claim["squares"], "squares", number)
         self.squares = [parse_rational(text) for text in texts]
-        require(all(0 < abs(q) <= 1 for q in self.squares), "a driven fold has no angle to go to")
+        possible = all(0 < abs(q) <= 1 for q in self.squares)
+        require(possible, "each of the squares must be from -1 to 1, and not 0")
         self.diagonals = [(sheet.next[i][j], sheet.next[j][i]) for i, j in self.folds]
         weights = [
             abs(q) * _areas_over_length(sheet, fold)
@@ -95,26 +99,26 @@ class PrescribedAngles(Restriction):
         self.rows = [[c << self.row_bits - _length(row) for c in row] for row in rows]
 
     def side(self, sign: Sign) -> int:
-        """1, if all folds go the way claimed."""
+        """1; raises unless all driven folds start as valleys or mountains as claimed."""
         for fold, q in zip(self.folds, self.squares, strict=True):
             right = sign(self.sheet.bend(fold)) * q > 0
-            require(right, f"the driven fold {fold} may start the other way")
+            require(right, f"the driven fold {fold} may start to the other side")
         return 1
 
 
 def _folds(sheet: Sheet, given: list[Any]) -> list[Edge]:
-    """Folds of a sheet, none of them twice."""
-    found: list[Edge] = []
+    """Read folds of a sheet; raises if one of them is named twice."""
+    folds: list[Edge] = []
     for fold in given:
         i, j = (natural(v, "vertex") for v in items(fold, "fold", 2))
-        found.append((i, j))
-    there = set(found) <= set(sheet.folds) and len(set(found)) == len(found)
-    require(there, "what is driven is no fold, or one is driven twice")
-    return found
+        folds.append((i, j))
+    there = set(folds) <= set(sheet.folds) and len(set(folds)) == len(folds)
+    require(there, "a driven fold is not a fold of the sheet, or is named twice")
+    return folds
 
 
 def _areas_over_length(sheet: Sheet, fold: Edge) -> Fraction:
-    """A B / l^2, with twice the areas of the two faces at a fold."""
+    """4 A B / l^2 for a fold of length l between faces with the areas A and B."""
     i, j = fold
     a, b, c, d = (sheet.points[v] for v in (i, j, sheet.next[i][j], sheet.next[j][i]))
     square = (b[0] - a[0]) ** 2 + (b[1] - a[1]) ** 2
@@ -134,11 +138,11 @@ def _length(row: Vector) -> int:
 
 
 def check_reached(equations: LengthEquations, drive: PrescribedAngles, here: Ball) -> None:
-    """Raise unless all driven folds are bent as far as claimed, or farther, in a box at the end.
+    """Raise unless all driven folds are bent at least as far as claimed in the box `here`, the end.
 
-    There g <= -2 w for one of them, and so for all, and they are valleys or mountains as claimed.
-    So at some time before all of these angles have exactly the sizes claimed. Nothing is said of
-    the side to which the folds are bent at that time.
+    There g <= -2 w for one of them, and so for all of them, and they are valleys or mountains as
+    claimed. So at some earlier time all these angles have exactly the claimed sizes. Nothing is
+    said of the side to which the folds are bent at that time.
     """
     bits, k = equations.bits, len(equations.edges) + drive.most
     u, e = equations.flat[k], equations.along(here.centre)[k]
@@ -154,15 +158,15 @@ def check_reached(equations: LengthEquations, drive: PrescribedAngles, here: Bal
 
 
 def _boxes(equations: LengthEquations, here: Ball) -> Boxes:
-    """The places of all vertices, over 2^bits."""
+    """Boxes with the positions of all vertices, over 2^bits."""
     one = Fraction(1 << equations.bits) / equations.unit
     points, error = equations.sheet.points, max(here.radii) + 1
     x, y = points[equations.pinned[0]]
-    found: Boxes = {}
+    boxes: Boxes = {}
     for v, (a, b) in points.items():
         at = [int((a - x) * one), int((b - y) * one), 0]
         if v in equations.place:
             k = equations.place[v]
             at = [p + d for p, d in zip(at, here.centre[k : k + 3], strict=True)]
-        found[v] = at, at, error
-    return found
+        boxes[v] = at, at, error
+    return boxes

@@ -1,7 +1,8 @@
 """Pairs of faces of a sheet in motion, and the tests that they do not touch (docs/contacts.md, 1).
 
-Two faces without a common vertex do not touch if a plane parts them; two with one common vertex
-touch only there if a plane through it does; two at a fold touch only there unless it is closed.
+Two faces without a common vertex do not touch if a plane parts them. Two faces with one common
+vertex touch only there if a plane through this vertex parts them. Two faces at a fold touch only
+there unless the fold is closed.
 """
 
 from __future__ import annotations
@@ -27,19 +28,20 @@ from .boxes import (
     volume_sign,
 )
 
-_NARROWEST = 1 << 16  # of an interval of x, over 2^GRID
-_KEPT = 1 << 10  # stretches whose boxes are kept for the next pairs
+_NARROWEST = 1 << 16  # width of the narrowest interval of x, over 2^GRID
+_KEPT = 1 << 10  # stretches whose boxes are kept for the next pairs of faces
 
 Hinge = tuple[int, int, int]
-"""Of a fold: the corners left and right of it, and how near they are where it is closed, squared,
+"""The corners left and right of a fold, and the square of their distance where the fold is closed,
 rounded up, over 2^(2 GRID)."""
 
 
 class FacePairs:
-    """All pairs of triangles of a sheet by what they share; those of one body are left out.
+    """All pairs of triangles of a sheet, sorted by what they share.
 
-    `bodies[k]` is the same for faces that move as one; `names[k]` is what the face k is called.
-    `flat` and `place` as `boxes_on` takes them; `work` is how many tests may be made.
+    `bodies[k]` is the same for faces that move as one body; pairs in one body are left out.
+    `names[k]` is the name of face k in messages. `flat` and `place` are as in `boxes_on`. `work` is
+    the largest number of tests.
     """
 
     def __init__(
@@ -64,21 +66,21 @@ class FacePairs:
         self.known: dict[tuple[int, int], Direction] = {}
 
     def spend(self, tests: int) -> None:
-        """Count tests; raises `LimitError` if they are too many."""
+        """Count tests; raises `LimitError` if there are too many."""
         self.spent += tests
         at_most(self.spent, self.work, "the tests of contacts", "MOST_TESTS")
 
     def clear(self, path: Curved, low: int, high: int, planar: bool = False) -> None:
-        """Refuse unless no two faces touch for low <= x <= high beyond what they share."""
+        """Raise unless for low <= x <= high no two faces touch beyond what they share."""
         may = self.may_touch(path, low, high, _NARROWEST, planar)
         require(not may, f"{may} may touch where the motion is claimed to be clear")
 
     def may_touch(
         self, path: Curved, low: int, high: int, narrowest: int, planar: bool = False
     ) -> str:
-        """Two faces that are not shown to stay apart for low <= x <= high, in words; else nothing.
+        """The names of two faces that are not proved to stay apart for low <= x <= high, or "".
 
-        Where two are not parted the interval is halved, down to `narrowest`.
+        If a test fails on an interval, the interval is halved, down to the width `narrowest`.
         """
         boxes: dict[tuple[int, int], Boxes] = {}
 
@@ -112,28 +114,28 @@ class FacePairs:
         return ""
 
     def _apart(self, boxes: Boxes, i: int, j: int, planar: bool) -> bool:
-        """Whether a plane parts two faces: with the direction that did last, or a new one."""
+        """Whether a plane parts two faces. The direction that parted them last is tried first."""
         one, two = self.faces[i], self.faces[j]
         known = self.known.get((i, j))
         if known and not (planar and known[2]) and parted(boxes, one, two, known):
             return True
         self.spend(3)
-        found = self.known[i, j] = best_apart(boxes, one, two, planar)
-        return parted(boxes, one, two, found)
+        best = self.known[i, j] = best_apart(boxes, one, two, planar)
+        return parted(boxes, one, two, best)
 
     def _at_corner(self, boxes: Boxes, i: int, j: int, planar: bool) -> bool:
-        """Whether a plane through their common vertex parts two faces."""
+        """Whether a plane through the common vertex of two faces parts them."""
         [v] = set(self.faces[i]) & set(self.faces[j])
         one, two = ([w for w in self.faces[k] if w != v] for k in (i, j))
         known = self.known.get((i, j))
         if known and not (planar and known[2]) and parted_at(boxes, v, one, two, known):
             return True
         self.spend(3)
-        found = self.known[i, j] = best_corner(boxes, v, one, two, planar)
-        return parted_at(boxes, v, one, two, found)
+        best = self.known[i, j] = best_corner(boxes, v, one, two, planar)
+        return parted_at(boxes, v, one, two, best)
 
     def _open(self, boxes: Boxes, i: int, j: int, planar: bool) -> bool:
-        """Whether the fold between two vertices is not closed."""
+        """Whether the fold between two vertices is proved not to be closed."""
         left, right, closed = self.folds[i, j]
         if open_by_distance(boxes, left, right, closed):
             return True
@@ -142,7 +144,7 @@ class FacePairs:
         return volume_sign(boxes, i, j, left, right) != 0
 
     def crossing(self, path: Curved, s: Fraction, one: Sequence[int], two: Sequence[int]) -> bool:
-        """Whether a side of one face runs through the other at a parameter."""
+        """Whether at a parameter a side of one of two faces is proved to run through the other."""
         boxes = self.at(path, s, s)
         for first, second in ((one, two), (two, one)):
             a, b, c = second

@@ -1,4 +1,4 @@
-"""Positions along a piece of a motion as polynomials on |x| <= 1, and bounds of its length."""
+"""Positions along a piece of a motion, as polynomials on |x| <= 1, and bounds of its length."""
 
 from __future__ import annotations
 
@@ -12,16 +12,17 @@ from .bounds import Vector, dot
 from .equations import Curve
 from .tubes import ROW_BITS, Ball, Tube
 
-GRID = 60  # places after the point of positions and of x
-PIECES = 32  # of a link, for bounds of its length
+GRID = 60  # binary places after the point, for positions and for x
+PIECES = 32  # parts into which a stretch is cut to bound its length
 ONE = 1 << GRID
 
 
 class Path:
-    """Unknowns q(x) + e for |x| <= 1, |e_i| <= `errors[i]`, where |dq/dx + e'| has |e'| <= `off`.
+    """The unknowns on a piece: q(x) + e(x) for |x| <= 1.
 
-    `columns[i]` are the coefficients of q_i, integers over 2^GRID as the errors; x = s / `scale`
-    for the parameter s of the piece.
+    The errors have the bounds |e_i| <= `errors[i]` and |de/dx| <= `off`. `columns[i]` has the
+    coefficients of the polynomial q_i. These and the errors are integers over 2^GRID. The parameter
+    s of the piece gives x = s / `scale`.
     """
 
     def __init__(
@@ -34,7 +35,7 @@ class Path:
         self.columns = [[floor(c * ONE) for c in column] for column in zip(*rows, strict=True)]
         degree = len(rows) - 1
         self.degree = degree
-        # The coefficients were rounded down: q by at most a unit each, dq/dx by its degree.
+        # Rounding down a coefficient changes q by at most a unit, and dq/dx by at most its degree.
         self.errors = [floor(r * ONE) + degree + 2 for r in radii]
         self.off = off + Fraction(len(radii) * degree * (degree + 1), 2 * ONE)
         self.scale = scale
@@ -43,9 +44,10 @@ class Path:
     def of_start(
         cls, curve: Curve, bits: int, halvings: int, tau: Fraction, radii: Vector, rates: Vector
     ) -> Path:
-        """d = (t^2 u, t h) for 0 <= tau' <= tau, x = tau' / tau, from (u, h) near a curve.
+        """The path d = (t^2 u, t h) for 0 <= tau' <= tau, with x = tau' / tau.
 
-        `radii` and `rates`: bounds of the distance from it, and of the derivatives by tau'^2.
+        (u, h) lies near a curve. `radii` bound the distance from the curve, and `rates` the
+        derivative of the difference by tau'^2.
         """
         powers = [1 if i % 3 == 2 else 2 for i in range(len(radii))]
         ends = [(tau / (1 << halvings)) ** p / (1 << bits) for p in powers]
@@ -64,37 +66,40 @@ class Path:
     def of_tube(
         cls, curve: Curve, bits: int, reach: Fraction, radii: Vector, rates: Vector
     ) -> Path:
-        """A whole tube, x = s / reach; `radii` and `rates` as above."""
+        """The path along a whole tube, with x = s / reach.
+
+        `radii` bound the distance from the curve, and `rates` the derivative of this difference.
+        """
         one = 1 << bits
         rows = [[a * reach**k / one for a in row] for k, row in enumerate(curve)]
         fast = norm([Fraction(r, one) * reach for r in rates])
         return cls(rows, [Fraction(r, one) for r in radii], fast, reach)
 
     def below(self, s: Fraction) -> int:
-        """x for a parameter, over 2^GRID, rounded down."""
+        """The x of a parameter s, over 2^GRID, rounded down."""
         return floor(s / self.scale * ONE)
 
     def above(self, s: Fraction) -> int:
-        """x for a parameter, over 2^GRID, rounded up."""
+        """The x of a parameter s, over 2^GRID, rounded up."""
         return -floor(-s / self.scale * ONE)
 
     def shortest(self, low: int, high: int) -> Fraction:
-        """A lower bound of the length from `low` to `high`, over 2^GRID: by chords of q."""
+        """A lower bound of the length from x = `low` to `high` (over 2^GRID), by chords of q."""
         if high <= low:
             return Fraction(0)
         points = [[_at(column, x) for column in self.columns] for x in nodes(low, high)]
         total = 0
         for a, b in itertools.pairwise(points):
             total += isqrt(sum((y - x) ** 2 for x, y in zip(a, b, strict=True)))
-        # Every coordinate of a point is off by less than a unit for each step of Horner's scheme.
+        # Each step of Horner's scheme changes a coordinate by less than a unit.
         total -= PIECES * (2 * len(self.columns) * self.degree + 1)
         return max(Fraction(0), Fraction(total, ONE) - self.off * Fraction(high - low, ONE))
 
     def longest(self, low: int, high: int) -> Fraction:
-        """An upper bound of the length from `low` to `high`.
+        """An upper bound of the length from x = `low` to `high` (over 2^GRID).
 
-        On each part the integral of |q'| is at most the root of its width times that of |q'|^2,
-        which is a polynomial.
+        On each part the integral of |q'| is at most the root of its width times the integral of
+        |q'|^2, and |q'|^2 is a polynomial.
         """
         if high <= low:
             return Fraction(0)
@@ -106,7 +111,7 @@ class Path:
                     for k, d in enumerate(speed, j):
                         square[k] += c * d
         whole = [0, *(c // k for k, c in enumerate(square, 1))]  # over 2^(2 GRID)
-        off = 4 * len(whole)  # the roundings of both ends of a part
+        off = 4 * len(whole)  # bounds the rounding at both ends of a part
         total, ends = 0, nodes(low, high)
         values = [_at(whole, x) for x in ends]
         for k in range(PIECES):
@@ -123,12 +128,12 @@ def norm(values: Sequence[Fraction]) -> Fraction:
 
 
 def nodes(low: int, high: int) -> list[int]:
-    """The ends of the parts of an interval."""
+    """The ends of the `PIECES` parts of an interval."""
     return [low + (high - low) * k // PIECES for k in range(PIECES + 1)]
 
 
 def entry(tube: Tube, ball: Ball) -> tuple[Fraction, Fraction]:
-    """Between which parameters of the tube a configuration lies that is in a box."""
+    """Two parameters of the tube between which every configuration of a box lies."""
     gaps = [x - c for x, c in zip(ball.centre, tube.curve[0], strict=True)]
     unit = Fraction(1, 1 << tube.bits + ROW_BITS)
     middle, spread = dot(tube.row, gaps), sum(map(mul, map(abs, tube.row), ball.radii))
@@ -136,7 +141,7 @@ def entry(tube: Tube, ball: Ball) -> tuple[Fraction, Fraction]:
 
 
 def _at(column: Vector, x: int) -> int:
-    """A polynomial at x, by Horner's scheme: rounded down by less than its degree in units."""
+    """A polynomial at x by Horner's scheme, rounded down by less than its degree in units."""
     total = 0
     for c in reversed(column):
         total = (total * x >> GRID) + c

@@ -1,10 +1,10 @@
 """Certificates of loops, line by line: motions from the flat state back to it (docs/motions.md).
 
-Why it is a proof: a loop leaves the flat state as the motions of `motion` do. It passes from tube
-to tube, and through branch points on arcs that are analytic there (`branch_points`). On its last
-tube lies a point of the start tube of another ray, which passes it in the opposite direction: so it
-ends in the flat state along this one. Every ray is the beginning of one curve only, which makes
-loops that are given a matching, complete if all 2^(n + 1) names occur in it.
+Why it is a proof: a loop leaves the flat state like any motion along a branch. It passes from tube
+to tube, and through branch points on arcs that are analytic there (`branch_points`). A point of the
+start tube of another ray lies on the last tube, and the two go in opposite directions there. So the
+loop ends in the flat state along this other ray. Only one curve begins along each ray. So the loops
+match rays in pairs, and the matching is complete if all 2^(n + 1) rays occur in it.
 """
 
 from __future__ import annotations
@@ -37,11 +37,11 @@ from .returns import land
 from .tubes import Start
 
 Ray = tuple[tuple[int, ...], int]
-"""The signs of the interior vertices, 0 for those that cannot fold, and the side."""
+"""A ray: the signs of the interior vertices, 0 if a vertex cannot fold, and the side."""
 
 
 class LoopSheet:
-    """The sheet of a file, and what checks its loops."""
+    """The verified sheet of a file, and the check of its loops."""
 
     def __init__(self, header: dict[str, Any]) -> None:
         self.given, self.sha256 = read_sheet(header["pattern"])
@@ -51,33 +51,36 @@ class LoopSheet:
 
     @property
     def rays(self) -> int:
-        """How many there are."""
+        """The number of rays of the sheet."""
         return 2 << len(self.equations.sheet.interior)
 
     def ray(self, entry: Any) -> Ray:
-        """A ray of its keys."""
-        keys(entry, "vertex_signs side", "half-branch")
+        """Read a ray."""
+        keys(entry, "vertex_signs side", "ray")
         signs = items(entry["vertex_signs"], "vertex_signs", len(self.given.interior))
         return tuple(map(integer, signs)), integer(entry["side"])
 
     def check_loop(self, entry: dict[str, Any]) -> None:
-        """Raise unless a loop, which has the keys of one, is proved by its evidence.
+        """Raise unless the evidence of a loop proves its claims; its keys are verified already.
 
-        The claims are: from the flat state on, the ray `from` is followed by one analytic
-        curve of configurations that ends in the flat state along the ray `to`. All of them
-        are regular but the branch points it passes. It is at least `length` long, as in `motion`.
+        The claims are: one analytic curve of configurations begins in the flat state along the ray
+        `from`, and ends in the flat state along the ray `to`. All its configurations are regular
+        except the branch points that it passes. Its length is at least `length`, as for motions.
         """
         evidence = entry["evidence"]
         keys(evidence, "start steps landing", "evidence")
         steps = items(evidence["steps"], "steps")
         check_work(self.equations, steps)
         chain = Chain(self.given, self.removed, self.equations, evidence["start"])
-        require(self._named(chain.start) == self.ray(entry["from"]), "it begins along another")
+        require(
+            self._named(chain.start) == self.ray(entry["from"]),
+            'it does not begin along the ray "from"',
+        )
         chain.walk(steps, leaves=False)
         end, side = land(chain, evidence["landing"])
         signs, saddle = self._named(end)
         target = tuple(side * s for s in signs), side * saddle
-        require(target == self.ray(entry["to"]), "it ends along another")
+        require(target == self.ray(entry["to"]), 'it does not end along the ray "to"')
         claimed = parse_rational(entry["length"])
         require(claimed <= chain.path.length * self.equations.unit, "it is shorter than claimed")
 
@@ -90,13 +93,13 @@ class LoopSheet:
 
 
 class LoopVerifier:
-    """Verifies the loops of one file."""
+    """The verifier of the loops of one file."""
 
     def __init__(self, header: str) -> None:
         self.sheet = LoopSheet(LOOPS.header(header))
 
     def refusal(self, text: str, number: int) -> str | None:
-        """Verify one loop: None, or why it does not hold."""
+        """Verify one loop; say why it does not hold, or None if it holds."""
         try:
             with refusing():
                 self.sheet.check_loop(read_object(text, "a loop"))
@@ -106,13 +109,13 @@ class LoopVerifier:
 
 
 class Matching:
-    """Which rays are matched: there and back, and in the mirror image."""
+    """The rays that loops match: the two ends of each loop, and those of its mirror image."""
 
     def __init__(self) -> None:
         self.loops, self.matched = 0, set[Ray]()
 
     def add(self, source: Ray, target: Ray) -> None:
-        """A loop; raises if one of its rays is matched already, or with itself."""
+        """Add a loop; raises if it matches a ray with itself, or a ray that is matched already."""
         require(source != target, f"loop {self.loops}: a ray is matched with itself")
         ends = {source, target}
         ends |= {(tuple(-s for s in signs), -side) for signs, side in ends}
@@ -123,7 +126,7 @@ class Matching:
 
 
 class LoopsClaims(TypedDict):
-    """How many loops there are, and how many of the rays they match."""
+    """The numbers of loops, of the rays that they match, and of all rays."""
 
     sha256: str
     loops: int
@@ -133,17 +136,17 @@ class LoopsClaims(TypedDict):
 
 
 BY_TUBES = Engine(LoopVerifier, 1, on_processes)
-"""Loops are followed from tube to tube."""
+"""The engine that follows loops from tube to tube."""
 
 
-def check_lines(found: Iterator[str], workers: int = 1, engine: Engine = BY_TUBES) -> LoopsClaims:
+def check_lines(texts: Iterator[str], workers: int = 1, engine: Engine = BY_TUBES) -> LoopsClaims:
     """Verify every claim, given the lines of a file; returns the claims.
 
-    With several workers, loops are checked in that many processes. The claims are: so many loops,
-    as `LoopSheet.check_loop` says, which match so many of the rays, none twice, none with
-    itself; and whether these are all.
+    If `workers` is more than 1, that many processes share the loops. The claims are: the file has
+    `loops` loops, each as `LoopSheet.check_loop` says. They match `matched` of the `half_branches`
+    rays, none twice and none with itself. `complete` says whether these are all rays.
     """
-    first = next(found, None)
+    first = next(texts, None)
     if first is None:
         raise FormatError("the file is empty")
     header = LOOPS.header(first)
@@ -153,9 +156,9 @@ def check_lines(found: Iterator[str], workers: int = 1, engine: Engine = BY_TUBE
 
     def loops() -> Iterator[tuple[str, int]]:
         try:
-            for text in found:
+            for text in texts:
                 entry = read_object(text, "a line")
-                require(not last, "something follows the claims")
+                require(not last, "a line follows the claims")
                 if "claims" in entry:
                     keys(entry, "claims", "the last line")
                     last.append(entry["claims"])
@@ -175,7 +178,7 @@ def check_lines(found: Iterator[str], workers: int = 1, engine: Engine = BY_TUBE
         for reason in said:
             if reason is not None:
                 raise CertificateError(reason)
-    if late:  # a loop before it that does not hold comes first
+    if late:  # a loop that does not hold has already been refused above
         raise late[0]
     if not last:
         number = counted(matching.loops, "loop holds", "loops hold")
@@ -191,12 +194,13 @@ def check_lines(found: Iterator[str], workers: int = 1, engine: Engine = BY_TUBE
     keys(claims, keys_of(LoopsClaims), "claims")
     for key, fact in facts.items():
         claim = claims[key]
-        require(type(claim) is type(fact) and claim == fact, f"{key} = {claim!a} is {fact!a}")
+        right = type(claim) is type(fact) and claim == fact
+        require(right, f"claim {key} = {claim!a}, but it is {fact!a}")
     return facts
 
 
 def summary(claims: LoopsClaims) -> str:
-    """One line for verified claims."""
+    """One line that states the verified claims."""
     loops = counted(claims["loops"], "loop", "loops")
     matched, all_of_them = claims["matched"], claims["half_branches"]
     how = f"all {all_of_them}" if claims["complete"] else f"{matched} of {all_of_them}"

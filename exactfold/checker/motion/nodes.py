@@ -1,7 +1,8 @@
-"""Branch points on a motion: that it goes through them, or ends at one.
+"""Claims about branch points: a motion goes through them, or ends at one.
 
-At a branch point the stars of some vertices are flat and other curves may cross. The motion passes
-it on an arc of one analytic curve, a point of which lies on the tube before (docs/motions.md).
+At a branch point the stars of some vertices are flat, and other curves may cross the motion. The
+motion passes it on an arc of one analytic curve; a point of the arc lies on the tube before
+(docs/motions.md).
 """
 
 from __future__ import annotations
@@ -17,16 +18,20 @@ from .stretches import Arc
 
 
 class FlatStars(TypedDict):
-    """A branch point, by the vertices whose stars are flat; whether it is clear of contacts."""
+    """A branch point, named by the vertices whose stars are flat.
+
+    `clear` says whether no faces touch up to this point and at it.
+    """
 
     flat: list[int]
     clear: bool
 
 
 class Through(BranchClaim):
-    """The curve goes through branch points where the vertices listed are flat, in this order.
+    """The curve goes through these branch points in this order, and is regular everywhere else.
 
-    It is regular but for them. A motion without this key is claimed to be regular throughout.
+    For each branch point the vertices that are flat there are listed. A motion without this key is
+    claimed to be regular throughout.
     """
 
     names = ("through",)
@@ -34,32 +39,31 @@ class Through(BranchClaim):
 
     @classmethod
     def keys_in(cls, claims: Document) -> tuple[str, ...]:
-        """Its key, if it is there."""
+        """The key of this claim, if the file has it."""
         return cls.names if "through" in claims else ()
 
     def check(self, chain: Chain) -> None:
-        """The branch points that are passed are those claimed."""
-        claimed, message = (
-            "through" in self.claims,
-            "a motion passes branch points that it does not claim",
-        )
-        require(claimed == bool(chain.passed), f"{message}, or none")
+        """Refuse a motion that passes other branch points than those claimed."""
+        claimed = "through" in self.claims
+        message = "a motion passes branch points and claims none, or the other way round"
+        require(claimed == bool(chain.passed), message)
         lists = items(self.claims["through"], "through") if claimed else []
         listed = [[natural(v, "flat vertex") for v in items(flat, "flat")] for flat in lists]
-        require(listed == chain.passed, "the branch points that are passed are others")
+        require(listed == chain.passed, "the motion passes other branch points than those claimed")
 
     @staticmethod
     def said(claims: Document) -> str:
-        """Each of them."""
+        """The branch points, one after the other."""
         return "".join(
             f", through a branch point where {_flat(flat)}" for flat in claims.get("through", [])
         )
 
 
 class Node(BranchClaim):
-    """The motion ends at a branch point where the vertices `flat` are flat; before, all is regular.
+    """The motion ends at a branch point at which the vertices `flat` are flat.
 
-    If `clear` is true, no two faces touch up to it, nor in it.
+    It is regular up to there, except at the branch points that it goes through. If `clear` is true,
+    no two faces touch up to this branch point, nor at it.
     """
 
     names = ("node",)
@@ -73,34 +77,36 @@ class Node(BranchClaim):
         require(type(claims["node"]["clear"]) is bool, "clear is not true or false")
 
     def go_on(self, chain: Chain) -> None:
-        """The arc on which the motion comes to its end, and where it meets the last tube."""
+        """Verify the arc to the branch point, and that it begins on the last tube."""
         entry, path = self.evidence["node"], chain.path
         keys(entry, "node centre row reach entry", "node")
         arc = arc_of(chain.equations, self.claims["node"]["flat"], entry)
         begin, end = parameter_of(entry["entry"]), Fraction(0)
         path.meet(*arc.configuration(begin))
-        # Only after another branch point or with a rim can it be otherwise: docs/motion.md, Theorem
-        # 6.
-        require(begin < end, "an arc does not lead to its node")
+        # This can fail only after another branch point, or with a rim: docs/motion.md, Theorem 6.
+        require(begin < end, "an arc does not lead to its branch point")
         path.go(*arc.configuration(end))
         chain.steps.append(Arc(arc, begin, end))
 
     def check(self, chain: Chain) -> None:
-        """What is clear, which is verified as a claim of its own, goes on to the branch point."""
+        """Refuse "clear" unless the clear part of the motion extends to the branch point.
+
+        The claim `Contacts` verifies the clear part.
+        """
         if not self.claims["node"]["clear"]:
             return
         given = self.evidence.get("contacts", {})
         to_the_end = (given.get("tube"), given.get("clear")) == (len(chain.steps), 0)
-        require(to_the_end, "the motion is not shown to be clear up to its node")
+        require(to_the_end, "the motion is not shown to be clear up to its branch point")
 
     @staticmethod
     def said(claims: Document) -> str:
-        """Where it is."""
+        """The branch point."""
         return f", to a branch point where {_flat(claims['node']['flat'])}"
 
 
 def _flat(flat: list[int]) -> str:
-    """That vertices are flat."""
+    """The words that say which vertices are flat."""
     several = len(flat) > 1
     names = " and ".join(map(str, flat))
     return f"{'vertices' if several else 'vertex'} {names} {'are' if several else 'is'} flat"

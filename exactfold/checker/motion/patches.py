@@ -1,8 +1,9 @@
-"""Configurations in which the faces at some vertices are flat, as one rigid panel: they exist.
+"""A proof that configurations exist in which the faces at some vertices form one flat panel.
 
-Why it is a proof: the corners of the panel are affine combinations of three of them, its base. A
-zero of the equations of its bars keeps the sides of the base, so that the affine map from the flat
-panel is an isometry: all edges keep their lengths (docs/motions.md, Nodes).
+Why it is a proof: three corners of the panel are its base, and all its other corners are affine
+combinations of these. A zero of the equations of the bars keeps the lengths of the sides of the
+base. So the affine map from the flat panel is an isometry, and all edges keep their lengths
+(docs/motions.md, Nodes).
 """
 
 from __future__ import annotations
@@ -19,18 +20,20 @@ from .tubes import Ball
 
 
 class Patch:
-    """The faces at the vertices `flat`, kept flat.
+    """The faces at the vertices `flat`, which are kept flat as one panel.
 
-    `moving` are the vertices whose displacements are the unknowns z of the framework in which the
-    patch is one panel; `rows[v]` gives the displacement of v as integers over `denominator`, by
-    place in `moving`; `bars` are the pairs of vertices whose distances are the equations: edges
-    that are not in the panel, and the sides of its base.
+    The unknowns z are the displacements of the vertices `moving`. `rows[v]` gives the displacement
+    of any vertex v in terms of z: integers over `denominator`, by index in `moving`. `bars` are the
+    pairs of vertices whose distances give the equations: the edges that are not in the panel, and
+    the sides of its base.
     """
 
     def __init__(self, equations: LengthEquations, flat: list[int]) -> None:
         sheet, pinned = equations.sheet, equations.pinned
         inner = bool(flat) and flat == sorted(set(flat)) and set(flat) <= set(sheet.interior)
-        require(inner, "a branch point has no vertices that are flat, or none that fold")
+        require(
+            inner, "the flat vertices of a branch point are none, or not sorted interior vertices"
+        )
         self.equations, self.flat = equations, flat
         self.vertices = set[int]().union(*(t for t in sheet.triangles if not t.isdisjoint(flat)))
         self.base = _base(sheet, [v for v in pinned if v in self.vertices], self.vertices)
@@ -49,13 +52,15 @@ class Patch:
         self.bars += [e for e in combinations(self.base, 2) if not set(pinned).issuperset(e)]
         number = len(self.bars) + len(equations.ties)
         square = bool(self.moving) and number == 3 * len(self.moving)
-        require(square, "a flat patch leaves no unknowns, or not as many equations")
+        require(
+            square, "with a flat patch there are no unknowns, or not as many equations as these"
+        )
 
     def branch_point(self, near: Vector) -> Ball:
-        """A box that holds a configuration with a flat patch, from unknowns near to it.
+        """A box that holds a configuration with a flat patch; `near` is an approximation of it.
 
-        Newton's test for the equations D^2 (|X_i - X_j|^2 - |U_i - U_j|^2) / 2^(k + 1), with the
-        denominator D, and D^2 about 2^k, and those of the ties times D / 2^(k / 2).
+        Newton's test is applied to the equations D^2 (|X_i - X_j|^2 - |U_i - U_j|^2) / 2^(k + 1)
+        with the denominator D and D^2 about 2^k, and to those of the ties times D / 2^(k / 2).
         """
         equations, bits, size = self.equations, self.equations.bits, 3 * len(self.moving)
         k = 2 * (self.denominator.bit_length() - 1)
@@ -92,7 +97,7 @@ class Patch:
         return self._all(z, proof.radius(Fraction(0)))
 
     def _all(self, z: Vector, radius: Fraction) -> Ball:
-        """The box of all free vertices for that of the unknowns."""
+        """The box of the displacements of all free vertices, from the box of the unknowns."""
         centre, radii, whole = [], [], self.denominator
         for v in self.equations.free:
             row = self.rows[v]
@@ -103,30 +108,30 @@ class Patch:
         return Ball(centre, radii)
 
     def _tie(self, tie: Vector) -> dict[int, int]:
-        """A tie as a row on the heights of `moving`, over 2^bits times the denominator."""
-        found: dict[int, int] = {}
+        """A tie as {index in `moving`: coefficient}, over 2^bits times `denominator`."""
+        row: dict[int, int] = {}
         for v, k in self.equations.place.items():
             for m, c in self.rows[v].items() if tie[k + 2] else ():
-                found[m] = found.get(m, 0) + tie[k + 2] * c
-        return found
+                row[m] = row.get(m, 0) + tie[k + 2] * c
+        return row
 
     def _side(self, i: int, j: int) -> Vector:
-        """U_i - U_j over 2^bits."""
+        """The flat edge vector U_i - U_j, over 2^bits."""
         equations = self.equations
         one = Fraction(1 << equations.bits) / equations.unit
         (ax, ay), (bx, by) = (equations.sheet.points[v] for v in (i, j))
         return [int((ax - bx) * one), int((ay - by) * one), 0]
 
     def _difference(self, i: int, j: int) -> dict[int, int]:
-        """The row of the displacement of i less that of j."""
-        found = dict(self.rows[i])
+        """The row of the displacement of i minus the row of the displacement of j."""
+        row = dict(self.rows[i])
         for m, c in self.rows[j].items():
-            found[m] = found.get(m, 0) - c
-        return {m: c for m, c in found.items() if c}
+            row[m] = row.get(m, 0) - c
+        return {m: c for m, c in row.items() if c}
 
 
 def _base(sheet: Sheet, pinned: list[int], vertices: set[int]) -> list[int]:
-    """Three corners of a panel that are not in one line, all that are pinned among them."""
+    """Three corners of a panel that are not on one line; its pinned corners are among them."""
     base, others = list(pinned), sorted(vertices)
     if not base:
         base.append(others[0])
@@ -142,38 +147,38 @@ def _base(sheet: Sheet, pinned: list[int], vertices: set[int]) -> list[int]:
 
 
 def _weights(sheet: Sheet, base: list[int], vertices: set[int]) -> dict[int, list[Fraction]]:
-    """The affine coordinates of the other corners of a panel."""
+    """The affine coordinates, with respect to the base, of the other corners of a panel."""
     a, b, c = (sheet.points[v] for v in base)
     whole = turn(a, b, c)
-    found = {}
+    weights = {}
     for v in sorted(vertices.difference(base)):
         p = sheet.points[v]
-        found[v] = [turn(p, b, c) / whole, turn(a, p, c) / whole, turn(a, b, p) / whole]
-    return found
+        weights[v] = [turn(p, b, c) / whole, turn(a, p, c) / whole, turn(a, b, p) / whole]
+    return weights
 
 
 def wheel_stress(sheet: Sheet, vertex: int) -> dict[Edge, Fraction]:
-    """Stress densities in equilibrium on the wheel of an interior vertex.
+    """The stress densities of an equilibrium on the wheel of an interior vertex.
 
-    With the spokes a_j counter-clockwise those of the rim are 1 / (a_j x a_{j+1}): at a corner the
-    forces along both rim edges have moments about the hub that cancel. The spoke takes what is
-    left, which is along it.
+    Let a_j be the spokes, counter-clockwise. The rim edge from j to j + 1 has the stress
+    1 / (a_j x a_{j+1}). At each corner of the rim the forces along its two rim edges have opposite
+    moments about the hub. So their sum is along the spoke, and the stress of the spoke balances it.
     """
     ring, (x, y) = sheet.star(vertex), sheet.points[vertex]
     spokes = [(sheet.points[j][0] - x, sheet.points[j][1] - y) for j in ring]
-    found: dict[Edge, Fraction] = {}
+    stress: dict[Edge, Fraction] = {}
     boundary = [
         1 / Fraction(ax * by - ay * bx)
         for (ax, ay), (bx, by) in zip(spokes, spokes[1:] + spokes[:1], strict=True)
     ]
     for k, (j, (ax, ay)) in enumerate(zip(ring, spokes, strict=True)):
         after = (k + 1) % len(ring)
-        found[_pair(j, ring[after])] = boundary[k]
+        stress[_pair(j, ring[after])] = boundary[k]
         force = [Fraction(0), Fraction(0)]
         for w, (bx, by) in ((boundary[k], spokes[after]), (boundary[k - 1], spokes[k - 1])):
             force = [force[0] + w * (bx - ax), force[1] + w * (by - ay)]
-        found[_pair(vertex, j)] = (force[0] * ax + force[1] * ay) / (ax * ax + ay * ay)
-    return found
+        stress[_pair(vertex, j)] = (force[0] * ax + force[1] * ay) / (ax * ax + ay * ay)
+    return stress
 
 
 def _pair(i: int, j: int) -> Edge:

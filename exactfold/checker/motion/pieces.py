@@ -1,4 +1,4 @@
-"""Pieces of a motion, of their keys in a file: start tubes, tubes, arcs through branch points."""
+"""Reading the pieces of a motion from a file: start tubes, tubes, arcs through branch points."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ ROOT_BITS = 20
 
 
 def tube_of(equations: LengthEquations, entry: Any) -> Tube:
-    """A tube of its keys."""
+    """Read a tube, and prove that it holds a curve."""
     size = equations.size
     return Tube(
         equations,
@@ -29,9 +29,9 @@ def tube_of(equations: LengthEquations, entry: Any) -> Tube:
 
 
 def arc_of(equations: LengthEquations, flat: Any, entry: Any) -> BranchPointTube:
-    """An arc through a branch point at which some vertices are flat, of its keys."""
+    """Read an arc through a branch point with these flat vertices, and prove that it exists."""
     size, bits = equations.size, equations.bits
-    require(not equations.mixed, "a driven motion has a node")
+    require(not equations.mixed, "a motion with driven folds cannot have a branch point")
     patch = Patch(equations, [natural(v, "flat vertex") for v in items(flat, "flat")])
     return BranchPointTube(
         patch,
@@ -43,22 +43,22 @@ def arc_of(equations: LengthEquations, flat: Any, entry: Any) -> BranchPointTube
 
 
 def vector(value: Any, what: str, size: int, bits: int) -> list[int]:
-    """Integers over 2^bits that are not too large."""
-    found = [integer(x) for x in items(value, what, size)]
-    small = all(abs(x) >> bits + SPARE == 0 for x in found)
+    """Read a vector of integers over 2^bits; raises if one is too large."""
+    numbers = [integer(x) for x in items(value, what, size)]
+    small = all(abs(x) >> bits + SPARE == 0 for x in numbers)
     require(small, f"a number of the {what} is out of range")
-    return found
+    return numbers
 
 
 def reach_of(value: Any) -> Fraction:
-    """How far a piece reaches."""
+    """Read the reach of a piece: it holds the curve for parameters |s| <= reach."""
     reach = Fraction(natural(value, "reach"), 1 << REACH_BITS)
     require(0 < reach <= 16, "the reach is out of range")
     return reach
 
 
 def first_piece(equations: LengthEquations, entry: Any) -> tuple[Start, Fraction]:
-    """The first piece, and where the motion leaves it."""
+    """Read the first piece of a motion, and the parameter at which the motion leaves it."""
     keys(entry, "centre halvings held reach exit", "start")
     start = start_of(equations, entry)
     tau = Fraction(natural(entry["exit"], "exit"), 1 << ROOT_BITS)
@@ -67,16 +67,16 @@ def first_piece(equations: LengthEquations, entry: Any) -> tuple[Start, Fraction
 
 
 def start_of(equations: LengthEquations, entry: Any) -> Start:
-    """A start tube of its keys."""
+    """Read a start tube, and prove that it holds a curve."""
     centre = vector(entry["centre"], "centre", equations.size, equations.bits)
     halvings = natural(entry["halvings"], "halvings")
     require(halvings <= MOTION_BITS, "halvings are out of range")
     held = natural(entry["held"], "held vertex")
-    require(held in equations.place, "the vertex held at its height is pinned, or none")
+    require(held in equations.place, "the vertex held at its height is not one that can move")
     place = equations.place[held] + 2
     return Start(equations, centre, halvings, place, reach_of(entry["reach"]))
 
 
 def parameter_of(value: Any) -> Fraction:
-    """A parameter within a piece."""
+    """Read a parameter within a piece."""
     return Fraction(integer(value), 1 << PARAMETER_BITS)

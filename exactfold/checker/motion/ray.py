@@ -1,4 +1,4 @@
-"""Which ray a motion follows, by signs of the heights at the flat state, and how far."""
+"""Which ray a motion follows, named by signs of the heights at the flat state, and how far."""
 
 from __future__ import annotations
 
@@ -12,49 +12,50 @@ from .chain import Chain
 from .claims import BranchClaim, Document
 from .tubes import Start
 
-_SIGNS = 60  # in a summary
+_SIGNS = 60  # signs that a summary shows
 
 
 class NamedHalf(TypedDict):
-    """A half of a branch, by the signs of the interior vertices and its side of the flat state."""
+    """A ray, named by the signs of the interior vertices and its side of the flat state."""
 
     vertex_signs: list[int]
     side: int
 
 
 class Ray(BranchClaim):
-    """The ray with these vertex signs and this side, 1 or -1, is that of one simple branch.
+    """The ray with these vertex signs and this side, 1 or -1, belongs to exactly one simple branch.
 
-    From the flat state on it is followed by one analytic curve of configurations. `side` is the
-    sign of the boundary saddle or, with a reflex corner, of this corner in the sheet with its notch
-    closed; with more than four corners it is what the claim about these says.
+    From the flat state one analytic curve of configurations follows the ray. `side` is the sign of
+    the boundary saddle; if there is a reflex corner, it is the sign of this corner in the sheet
+    with its notch closed. With more than four corners, the claim about the boundary or about driven
+    folds defines it.
     """
 
     names = ("vertex_signs", "side")
     always = True
 
     def begin(self, chain: Chain) -> None:
-        """The first piece has these signs."""
+        """Refuse a chain whose first piece has other signs."""
         check_half_branch(chain, chain.start, self.claims)
 
     @staticmethod
     def said(claims: Document) -> str:
-        """That the curve begins along it."""
+        """The ray along which the curve begins."""
         name = text_of(claims)
         return f"the motion along the ray {name}, is one curve without a gap"
 
 
 class Length(BranchClaim):
-    """The curve is at least so long in the space of the vertices, with one triangle held.
+    """The curve has at least this length in the space of all vertex positions, with one face held.
 
-    In the unit of the sheet. Chords between configurations on the way show it.
+    The length is in the unit of the sheet. Chords between configurations on the way prove it.
     """
 
     names = ("length",)
     always = True
 
     def check(self, chain: Chain) -> None:
-        """The chords are as long."""
+        """Refuse a motion whose chords add up to less than the claimed length."""
         claimed, unit = parse_rational(self.claims["length"]), chain.equations.unit
         require(claimed <= chain.path.length * unit, "the motion is shorter than claimed")
 
@@ -65,23 +66,24 @@ class Length(BranchClaim):
 
 
 def check_half_branch(chain: Chain, start: Start, claim: Document, way: int = 1) -> None:
-    """Refuse unless the heights of a start tube have the vertex signs and the side of a claim.
+    """Raise unless the heights of a start tube have the vertex signs and the side of a claim.
 
-    For a `way` of -1 those of the mirror image.
+    If `way` is -1, the claim is about the mirror image.
     """
     given = chain.given
     signs, side = names(given, chain.removed, start)
     values = items(claim["vertex_signs"], "vertex_signs", len(given.interior))
     for v, value, expected in zip(given.interior, values, signs, strict=True):
-        require(type(value) is int and value == way * expected, f"vertex {v} has another sign")
+        right = type(value) is int and value == way * expected
+        require(right, f"vertex {v} does not have the claimed sign")
     right = type(claim["side"]) is int and claim["side"] == way * side
-    require(right, "the side is another")
+    require(right, "the side is not the claimed one")
 
 
 def names(given: Sheet, removed: set[int], start: Start) -> tuple[list[int], int]:
-    """The vertex signs, 0 for vertices that were removed, and the side of a ray.
+    """The vertex signs and the side of a ray, from its heights at the flat state.
 
-    They are those of the heights at the flat state.
+    The sign of a vertex that was removed is 0.
     """
     box, place = start.enclosure(Fraction(0)), start.equations.place
 
@@ -94,15 +96,15 @@ def names(given: Sheet, removed: set[int], start: Start) -> tuple[list[int], int
 
     sheet = start.equations.sheet
     signs = [0 if v in removed else sign(sheet.sign_of_vertex(v)) for v in given.interior]
-    for v, found in zip(given.interior, signs, strict=True):
-        require(found or v in removed, f"vertex {v} may be flat")
+    for v, known in zip(given.interior, signs, strict=True):
+        require(known or v in removed, f"vertex {v} may be flat")
     side = start.equations.restriction.side(sign)
     require(side, "the side of the branch is not certain")
     return signs, side
 
 
 def text_of(claim: Document, count: bool = True) -> str:
-    """The signs and the side of a ray, and with `count` how many signs there are."""
+    """The signs and the side of a ray in words; if `count`, also the number of signs."""
     signs = "".join("-0+"[s + 1] for s in claim["vertex_signs"])
     number = f" ({len(signs)})" if count else ""
     side = "+" if claim["side"] > 0 else "-"
@@ -110,5 +112,5 @@ def text_of(claim: Document, count: bool = True) -> str:
 
 
 def shortened(signs: str) -> str:
-    """Signs, cut where there are many."""
+    """A text of signs, cut if it is long."""
     return signs if len(signs) <= _SIGNS else signs[:_SIGNS] + "..."

@@ -1,4 +1,4 @@
-"""What leaves one curve of configurations: four boundary vertices, or equations in their place."""
+"""What singles out one curve of configurations: four boundary vertices, or further equations."""
 
 from __future__ import annotations
 
@@ -10,18 +10,19 @@ from ..sheets.sheet import Edge, Sheet, turn
 from .bounds import Vector
 
 Tie = dict[int, int]
-"""Integers c_v, without a common divisor, of an equation sum c_v z_v = 0."""
+"""An equation sum c_v z_v = 0 of the heights, as integers c_v without a common divisor."""
 
 Sign = Callable[[Mapping[int, Fraction]], int]
-"""The sign of a functional of the heights at the flat state, 0 if it is not certain."""
+"""A function that gives the sign of a functional of the heights at the flat state, 0 if uncertain.
+"""
 
 
 class Restriction:
-    """The equations beside those of the lengths, and which side of the flat state a curve is on.
+    """The equations beside those of the lengths, and on which side of the flat state a curve is.
 
-    With four boundary vertices there are none. A claim about more of them adds some: `ties`,
-    linear equations of the heights whose integers are less than 2^`tie_bits`; or `rows`, integers
-    over 2^`row_bits`, of equations between the values of `diagonals`, which are further bars.
+    With four boundary vertices there are no further equations. With more, a claim adds some. `ties`
+    are linear equations of the heights, with integers below 2^`tie_bits`. `rows` are equations
+    between the values of the `diagonals`, which are further bars, with integers over 2^`row_bits`.
     """
 
     ties: Sequence[Tie] = ()
@@ -34,17 +35,20 @@ class Restriction:
         self.sheet = sheet
 
     def side(self, sign: Sign) -> int:
-        """Of the heights at the flat state the sign of the boundary saddle.
+        """The sign of the boundary saddle of the heights at the flat state.
 
         With a reflex corner it is the vertex sign of this corner in the sheet with its notch
-        closed. 0 if it is not certain.
+        closed. It is 0 if the sign is not certain.
         """
         whole, corner = closed(self.sheet)
         return sign(saddle_of(self.sheet) if corner is None else whole.sign_of_vertex(corner))
 
 
 def saddle_of(sheet: Sheet) -> dict[int, Fraction]:
-    """The functional of the boundary heights that vanishes on planes, as docs/conventions.md."""
+    """The boundary saddle: the functional of boundary heights that vanishes on planes.
+
+    Its scale is that of docs/conventions.md.
+    """
     p, q, r, s = (sheet.points[v] for v in sheet.boundary)
     weights = (turn(q, r, s), -turn(p, r, s), turn(p, q, s), -turn(p, q, r))
     first = next(w for w in weights if w)

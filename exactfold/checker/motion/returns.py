@@ -1,7 +1,7 @@
-"""Motions that come back to the flat state, along another ray (docs/motions.md).
+"""Motions that come back to the flat state along another ray (docs/motions.md).
 
-On the last tube lies a point of the start tube of the other ray, or of its mirror image,
-which passes it in the opposite direction: so the motion ends in the flat state along this one.
+A point of the start tube of the other ray, or of its mirror image, lies on the last tube, and the
+two tubes go in opposite directions there. So the motion ends in the flat state along this ray.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from .tubes import Ball, Start
 
 
 class Return(BranchClaim):
-    """The motion ends in the flat state, along the ray with these vertex signs and side."""
+    """The motion ends in the flat state, along the ray with these vertex signs and this side."""
 
     names = ("return",)
     needs = ("landing",)
@@ -27,29 +27,30 @@ class Return(BranchClaim):
     def __init__(self, claims: Document, evidence: Document) -> None:
         super().__init__(claims, evidence)
         apart = claims.keys().isdisjoint(("node", "clear", "contact"))
-        require(apart, "a motion that returns claims a branch point, or contacts")
+        require(apart, "a motion that returns may not claim a branch point at its end, or contacts")
         keys(claims["return"], "vertex_signs side", "return")
 
     def go_on(self, chain: Chain) -> None:
-        """Where it lands, along which ray, and how long it is in all."""
+        """Verify that the motion lands, and along which ray."""
         end, way = land(chain, self.evidence["landing"])
         check_half_branch(chain, end, self.claims["return"], way)
 
     @staticmethod
     def said(claims: Document) -> str:
-        """Along what."""
+        """The ray along which the motion comes back."""
         return f", and back to the flat state along {text_of(claims['return'], count=False)}"
 
 
 def land(chain: Chain, entry: Any) -> tuple[Start, int]:
-    """The start tube on which a motion comes back, against its direction, to the flat state.
+    """Verify that a motion comes back to the flat state along a start tube, against its direction.
 
-    A point of it, or of its mirror image for a way of -1, lies on the last tube.
+    Returns the start tube and a way. A point of the start tube lies on the last tube if the way is
+    1, a point of its mirror image if the way is -1.
     """
     keys(entry, "centre halvings held reach tau", "landing")
     end, way = start_of(chain.equations, entry), 1
     tau = Fraction(integer(entry["tau"]), 1 << ROOT_BITS)
-    require(tau, "a loop does not land before the flat state")
+    require(tau, "the last tube of a motion must meet the start tube before the flat state")
     point, velocity = end.configuration(tau)
     if tau > 0:
         velocity = Ball([-x for x in velocity.centre], velocity.radii)

@@ -1,4 +1,4 @@
-"""The parts of tubes, and of arcs through branch points, that a motion passes."""
+"""Stretches: the parts of tubes, and of arcs through branch points, that a motion passes."""
 
 from __future__ import annotations
 
@@ -12,9 +12,10 @@ from .tubes import Ball, Start, Tube
 
 
 class Link(NamedTuple):
-    """A tube, the box in which the motion enters it, and the parameter at which it leaves it.
+    """A tube, with the box `here` in which the motion enters it.
 
-    None if it goes over to an arc through a branch point.
+    `end` is the parameter at which the motion leaves the tube, or None if the motion goes over to
+    an arc through a branch point.
     """
 
     tube: Tube
@@ -23,9 +24,9 @@ class Link(NamedTuple):
 
 
 class Arc(NamedTuple):
-    """An arc through a branch point, and the parameters at which the motion enters and leaves it.
+    """An arc through a branch point, with the parameters at which the motion enters and leaves it.
 
-    The second is after the branch point or, where the motion ends there, at it.
+    `end` lies after the branch point; if the motion ends at the branch point, it is 0.
     """
 
     tube: BranchPointTube
@@ -39,9 +40,10 @@ _Interval = tuple[Fraction, Fraction]
 
 
 class Stretch:
-    """The part of a piece that the motion passes: it enters and leaves between two parameters.
+    """The part of a piece that the motion passes.
 
-    The piece goes from `least` to `most`.
+    The motion enters the piece at a parameter between `low` and `high`, and leaves it at one
+    between `first` and `last`. The piece goes from `least` to `most`.
     """
 
     def __init__(
@@ -51,11 +53,11 @@ class Stretch:
         (self.low, self.high), (self.first, self.last) = entered, left
 
     def end_at(self, s: Fraction) -> None:
-        """Leave it at this parameter."""
+        """Let the stretch end at this parameter."""
         self.first = self.last = s
 
     def length(self) -> tuple[Fraction, Fraction]:
-        """Bounds of its length."""
+        """A lower and an upper bound of the length of the stretch."""
         path = self.path
         return (
             path.shortest(path.above(self.high), path.below(self.first)),
@@ -64,14 +66,14 @@ class Stretch:
 
 
 def stretches_of(start: Start, tau: Fraction, steps: list[Step]) -> list[Stretch]:
-    """The parts of all pieces of a motion, in order."""
+    """The stretches of all pieces of a motion, in order."""
     zero = Fraction(0)
     radii, rates = start.enclosure(tau**2).radii, start.velocity(tau**2).radii
     path = Path.of_start(start.curve, start.bits, start.halvings, tau, radii, rates)
-    found = [Stretch(path, (zero, zero), (tau, tau), zero, tau)]
+    stretches = [Stretch(path, (zero, zero), (tau, tau), zero, tau)]
     for step, after in zip_longest(steps, steps[1:]):
         if isinstance(step, Arc):
-            found.append(_on_arc(step))
+            stretches.append(_on_arc(step))
             continue
         tube, reach = step.tube, step.tube.reach
         radii, rates = tube.enclosure(reach).radii, tube.velocity(reach).radii
@@ -79,12 +81,12 @@ def stretches_of(start: Start, tau: Fraction, steps: list[Step]) -> list[Stretch
         left = (step.end, step.end) if step.end is not None else (reach, reach)
         if isinstance(after, Arc):
             left = entry(tube, after.tube.configuration(after.begin)[0])
-        found.append(Stretch(path, entry(tube, step.here), left, -reach, reach))
-    return found
+        stretches.append(Stretch(path, entry(tube, step.here), left, -reach, reach))
+    return stretches
 
 
 def _on_arc(arc: Arc) -> Stretch:
-    """The part of an arc."""
+    """The stretch of an arc."""
     piece, begin, end = arc
     far = max(-begin, end)
     box, rate = piece.configuration(far)

@@ -1,4 +1,4 @@
-"""Tubes: for every parameter exactly one configuration near a polynomial curve; and their links."""
+"""Tubes: for every parameter exactly one configuration lies near a polynomial curve."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ ROW_BITS = 20
 
 
 class Ball(NamedTuple):
-    """A box of unknowns, integers over 2^bits."""
+    """A box of unknowns, given by integers over 2^bits."""
 
     centre: Vector
     radii: Vector
 
 
 class Piece:
-    """Zeros x(s) for all |s| <= reach, each within `radius` of p(s), and none other as near."""
+    """A curve of zeros x(s) for |s| <= reach: x(s) is the only zero within `radius` of p(s)."""
 
     def __init__(
         self,
@@ -60,10 +60,11 @@ class Piece:
 
 
 class Start(Piece):
-    """The curve near the flat state: d = (t^2 u, t h), t = tau / 2^halvings, s = tau^2.
+    """The curve near the flat state: d = (t^2 u, t h) with t = tau / 2^halvings and s = tau^2.
 
-    Its unknowns (u_x, u_y, h) solve U_e . u_e + h_e^2 / 2 + t^2 |u_e|^2 / 2 = 0, with the height
-    number `held` fixed, and with a rim its ties for h.
+    Its unknowns (u_x, u_y, h) solve U_e . u_e + h_e^2 / 2 + t^2 |u_e|^2 / 2 = 0 for every edge e.
+    The unknown with the index `held`, a height, is fixed. If boundary heights are claimed, h also
+    satisfies their ties.
     """
 
     def __init__(
@@ -79,7 +80,7 @@ class Start(Piece):
         p = equations.approximate_inverse(columns, bits + 2 * halvings)
 
         def coefficient(curve: Curve, parts: Parts, k: int) -> Vector:
-            """That of s^k, over 2^(2 bits + 2 halvings + more + 1)."""
+            """The coefficient of s^k of the equations, over 2^(2 bits + 2 halvings + more + 1)."""
             total = [0] * len(equations.bars)
             if k < len(curve):
                 total = [
@@ -121,7 +122,7 @@ class Start(Piece):
         Piece.__init__(self, equations, curve, weights, proof, reach)
 
     def configuration(self, tau: Fraction) -> tuple[Ball, Ball]:
-        """Boxes that hold d and its derivative by tau."""
+        """Two boxes, which hold the displacements d at tau and their derivative by tau."""
         ball, rate, half = self.enclosure(tau**2), self.velocity(tau**2), 1 << self.halvings
         points, rates = Ball([], []), Ball([], [])
         for i in range(self.equations.size):
@@ -139,7 +140,7 @@ class Start(Piece):
 
 
 class Tube(Piece):
-    """Configurations x(s) with T(x(s) - c) = s, c the centre and T = row / 2^ROW_BITS."""
+    """Configurations x(s) with T(x(s) - c) = s, where c is the centre and T = row / 2^ROW_BITS."""
 
     def __init__(
         self, equations: LengthEquations, centre: Vector, row: Vector, reach: Fraction
@@ -155,7 +156,7 @@ class Tube(Piece):
         p = equations.approximate_inverse(columns, bits)
 
         def coefficient(curve: Curve, parts: Parts, k: int) -> Vector:
-            """That of s^k, over 2^(2 bits + more + 1)."""
+            """The coefficient of s^k of the equations, over 2^(2 bits + more + 1)."""
             total = convolved(parts, slice(0, 3), k)
             last = 0
             if k < len(curve):
@@ -186,14 +187,18 @@ class Tube(Piece):
         self.apart = proof.uniqueness(reach)
 
     def entered(self, ball: Ball, velocity: Ball) -> Fraction:
-        """An upper bound of s where a motion enters: it lies on this tube, and s increases."""
+        """An upper bound of the parameter s at which a motion enters this tube.
+
+        Raises unless the motion lies on this tube there, and s increases along the motion.
+        """
         return self.met(ball, velocity)[1]
 
     def met(self, ball: Ball, velocity: Ball) -> tuple[Fraction, Fraction]:
-        """Bounds of s where a motion lies on this tube, which it follows in the same direction.
+        """Bounds of the parameter s at which a motion lies on this tube.
 
-        The box holds some configuration x, and another its velocity. s = T(x - c) lies in the
-        reach, and x as near to p(s) as only x(s) does.
+        `ball` holds a configuration x of the motion, and `velocity` its velocity. Raises unless
+        s = T(x - c) lies within the reach, x is so near to p(s) that it must be x(s), and the
+        motion and the tube go in the same direction.
         """
         one = 1 << self.bits + ROW_BITS
         gaps = [x - c for x, c in zip(ball.centre, self.curve[0], strict=True)]
@@ -213,7 +218,7 @@ class Tube(Piece):
 
 
 def slopes(matrices: list[list[Vector]], bits: int) -> list[list[float]]:
-    """|P M_1| + |P M_2| / 2 + |P M_3| / 4, in floats: only the weights depend on it."""
+    """|P M_1| + |P M_2| / 2 + |P M_3| / 4 in floats; only the choice of weights depends on it."""
     one = 1 << INVERSE_BITS + bits
     return [
         [(abs(x) + abs(y) / 2 + abs(z) / 4) / one for x, y, z in zip(*rows, strict=True)]

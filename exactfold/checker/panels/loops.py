@@ -63,9 +63,8 @@ class Loops:
         near = modes.near[v]
         first = near.index(start)
         ring = near[first:] + near[:first]
-        if (
-            ring[3] == end
-        ):  # seen in a mirror, which turns all brackets, of which even numbers occur
+        if ring[3] == end:
+            # Mirrored: all brackets change sign, but each product has an even number of them.
             ring = [start, *ring[:0:-1]]
         d = [modes.sheet.vector(v, u) for u in ring]
 

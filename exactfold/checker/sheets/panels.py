@@ -46,7 +46,7 @@ class PanelSheet:
         self.tower, self.points, self.edges = tower, points, edges
         self.around: dict[int, list[int]] = {v: [] for v in range(len(points))}
         for i, j in edges:
-            require(i < j < len(points), f"{i}-{j} is no edge")
+            require(i < j < len(points), f"{i}-{j} is not an edge")
             self.around[i].append(j)
             self.around[j].append(i)
         for v, near in self.around.items():

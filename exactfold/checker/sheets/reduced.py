@@ -20,7 +20,7 @@ def emptied_sheet(given: Sheet, points: dict[int, Any], evidence: Any) -> tuple[
         keys(entry, "corners inside", "3-cycle")
         a, b, c = (natural(v, "corner") for v in items(entry["corners"], "corners", 3))
         for i, j in ((a, b), (b, c), (a, c)):
-            require((min(i, j), max(i, j)) in edges, f"{i}-{j} is no edge")
+            require((min(i, j), max(i, j)) in edges, f"{i}-{j} is not an edge")
         for v in (natural(v, "vertex inside") for v in items(entry["inside"], "inside")):
             sides = [turn(points[i], points[j], points[v]) for i, j in ((a, b), (b, c), (c, a))]
             require(min(sides) > 0, f"vertex {v} is not inside {(a, b, c)}")

@@ -32,7 +32,7 @@ def turn(a: Point, b: Point, c: Point) -> Fraction:
 
 
 class Sheet:
-    """A flat triangulated disk, verified."""
+    """A flat triangulated disk; the constructor verifies that it is one."""
 
     def __init__(self, points: dict[int, Point], triangles: Iterable[tuple[int, ...]]) -> None:
         self.points = points

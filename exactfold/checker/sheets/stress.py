@@ -43,12 +43,12 @@ def check_triangles(sheet: Sheet, evidence: Any) -> Sheet:
         keys(entry, "corners inside multipliers", "triangle")
         corners, inside = items(entry["corners"], "corners", 3), items(entry["inside"], "inside")
         for v in corners + inside:
-            require(type(v) is int and v in emptied.points, f"{v!a} is no vertex")
+            require(type(v) is int and v in emptied.points, f"{v!a} is not a vertex")
         a, b, c = (emptied.points[v] for v in corners)
         require(turn(a, b, c) > 0, f"the 3-cycle {corners} is not counter-clockwise")
         for i, j in ((0, 1), (0, 2), (1, 2)):
             edge = (min(corners[i], corners[j]), max(corners[i], corners[j]))
-            require(edge in emptied.edges, f"{corners} is no 3-cycle of edges")
+            require(edge in emptied.edges, f"{corners} is not a 3-cycle of edges")
         within = [
             v
             for v in emptied.interior

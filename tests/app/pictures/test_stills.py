@@ -97,17 +97,15 @@ def test_a_long_face_lies_under_a_near_one_whatever_its_mean_depth(turn):
     """The long one comes nearer than the other, but not where they overlap."""
     long = [[0, 0, 0], [20, 0, 20], [20, 1, 20], [0, 1, 0]]
     short = [[0, 0.2, 3], [1, 0.2, 3], [1, 0.8, 3], [0, 0.8, 3]]
-    connected_components = [[(0, 1, 2), (0, 2, 3)], [(4, 5, 6), (4, 6, 7)]][::turn]
+    pieces = [[(0, 1, 2), (0, 2, 3)], [(4, 5, 6), (4, 6, 7)]][::turn]
     view = np.array(long + short, dtype=float)
-    order = back_to_front(view, connected_components)
+    order = back_to_front(view, pieces)
     assert order == ([0, 1] if turn > 0 else [1, 0])
     assert view[:4, 2].mean() > view[4:, 2].mean()
     shape = turned_to_the_eye(view)
     assert seen_from_above(shape) == pytest.approx(view)
     polygons = [(0, 1, 2, 3), (4, 5, 6, 7)][::turn]
-    drawn = faces_of(
-        stills([shape], polygons, [""], "t", connected_components=connected_components)
-    )
+    drawn = faces_of(stills([shape], polygons, [""], "t", pieces=pieces))
     places = [list(map(float, f["d"][1:-1].replace("L", " ").split()))[::2] for f in drawn]
     widths = [max(xs) - min(xs) for xs in places]
     assert widths[0] > 10 * widths[1]
@@ -116,13 +114,13 @@ def test_a_long_face_lies_under_a_near_one_whatever_its_mean_depth(turn):
 def test_three_faces_in_a_circle_are_all_drawn():
     """Each lies over the next, as the flaps of a box do."""
     turns = [np.exp(2j * np.pi * k / 3) for k in range(3)]
-    corners, connected_components = [], []
+    corners, pieces = [], []
     for t in turns:
         bar = [(-2 - 1j, 1), (2 - 1j, -1), (2 - 0.4j, -1), (-2 - 0.4j, 1)]
         corners += [[(t * z).real, (t * z).imag, depth] for z, depth in bar]
         k = len(corners) - 4
-        connected_components.append([(k, k + 1, k + 2), (k, k + 2, k + 3)])
-    assert sorted(back_to_front(np.array(corners), connected_components)) == [0, 1, 2]
+        pieces.append([(k, k + 1, k + 2), (k, k + 2, k + 3)])
+    assert sorted(back_to_front(np.array(corners), pieces)) == [0, 1, 2]
 
 
 @pytest.mark.parametrize("rate", [1, -1])

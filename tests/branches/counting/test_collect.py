@@ -5,7 +5,7 @@ import numpy as np
 from exactfold import PROVED, random_square
 from exactfold.branches import count_branches
 from exactfold.pattern.families import two_vertex
-from exactfold.solve.numeric.dense_newton import Ends, NappeSystem
+from exactfold.solve.numeric.dense_newton import NappeSystem, SweptPoints
 
 
 def test_progress_is_reported():
@@ -34,7 +34,7 @@ def test_auto_turns_to_the_exact_engine_where_newton_loses_a_zero(monkeypatch):
     def spoiled(system, first, count):
         ends = real(system, first, count)
         points = np.vstack([ends.points[:-1], ends.points[:1]])  # the last path is lost
-        return Ends(points, np.arange(count) < count - 1, ends.steps)
+        return SweptPoints(points, np.arange(count) < count - 1, ends.steps)
 
     monkeypatch.setattr(NappeSystem, "ends_of_block", spoiled)
     exactly = count_branches(random_square(2, seed=0))

@@ -220,7 +220,7 @@ LIES: dict[Callable[[Lines], None], str] = {
     true_for_one: "claim nonreal = False, but it is 0",
     missing_claim: "claims: expected an object",
     no_claims: "blocks hold, but the claims are missing",
-    more_lines: "something follows the claims",
+    more_lines: "a line follows the claims",
     moved_vertex: "Krawczyk|face|sign",
     other_blocks: "does not divide",
     other_kind: "unknown kind",
@@ -233,7 +233,7 @@ LIES: dict[Callable[[Lines], None], str] = {
     exact_long_center: "root 0 is out of range",
     exact_flat_fold: "root 0: folds are",
     chart_of_a_notch: "needs a reflex corner",
-    no_such_triangle: "is no 3-cycle",
+    no_such_triangle: "is not a 3-cycle",
 }
 
 

@@ -78,7 +78,7 @@ def test_finiteness_of_a_non_convex_sheet_closes_the_notch():
     closed = dart().with_notch_closed()
     assert len(closed.interior) == 2
     stress.check_finite(sheet, ["1", "1"])
-    with pytest.raises(checker.CertificateError, match="has not 2 entries"):
+    with pytest.raises(checker.CertificateError, match="does not have 2 entries"):
         stress.check_finite(sheet, ["1"])
 
 

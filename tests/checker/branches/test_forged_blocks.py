@@ -168,7 +168,7 @@ def test_letters_may_fill_their_bytes() -> None:
         ({"folds": ""}, "block 0: folds has another length"),
         ({"folds": "\u00e9"}, "block 0: folds is not base 64"),
         ({"open": [[2, "flat"]]}, "root 2 is open: 'flat'"),
-        ({"open": [[2]]}, "open root has not 2 entries"),
+        ({"open": [[2]]}, "open root does not have 2 entries"),
         ({"open": [2]}, "open root is not a list"),
         ({"open": {}}, "open is not a list"),
         ({"open": [["a", "b"]]}, "malformed: TypeError in block 0"),
@@ -221,7 +221,7 @@ EXACTLY: list[tuple[Document, str]] = [
     ({"bits": 4001}, "root 0 is out of range"),
     ({"radius": "0" * 3999 + "12"}, "root 0 is out of range"),
     ({"center": ["0", "0", "0", "1" * 4001]}, "root 0 is out of range"),
-    ({"center": ["0"]}, "center has not 4 entries"),
+    ({"center": ["0"]}, "center does not have 4 entries"),
     ({"assignment": 1}, "1 is not a number in quotes"),
     (
         {"more": 1},

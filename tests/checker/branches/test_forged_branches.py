@@ -56,7 +56,7 @@ def test_keys() -> None:
     refused(forged, "3-cycle: expected an object with the keys corners inside")
     for change, message in (
         ({"heights": {}}, "heights is not a list"),
-        ({"heights": []}, "heights has not 10 entries"),
+        ({"heights": []}, "heights does not have 10 entries"),
         ({"emptied": None}, "emptied is not a list"),
         ({"denominator": "0"}, "the denominator is not positive"),
         ({"denominator": "-5"}, "the denominator is not positive"),
@@ -109,7 +109,7 @@ def test_signs_and_letters_are_as_many_as_there_are() -> None:
         refused(forged, "the assignment does not have one letter for each fold")
     forged = given(CONVEX)
     forged["claims"]["vertex_signs"].append(1)
-    refused(forged, "vertex_signs has not 6 entries")
+    refused(forged, "vertex_signs does not have 6 entries")
     forged["claims"]["vertex_signs"] = "+-++-+"
     refused(forged, "vertex_signs is not a list")
 
@@ -380,7 +380,7 @@ def test_three_cycles_are_of_edges() -> None:
     for corners, i, j in (([far, b, c], far, b), ([a, far, c], a, far), ([a, b, far], b, far)):
         forged = given(TRIANGLES)
         forged["evidence"]["emptied"][0]["corners"] = corners
-        refused(forged, f"{i}-{j} is no edge")
+        refused(forged, f"{i}-{j} is not an edge")
     for corners in ([b, c, a], [c, a, b]):
         turned = given(TRIANGLES)
         turned["evidence"]["emptied"][0]["corners"] = corners
@@ -390,7 +390,7 @@ def test_three_cycles_are_of_edges() -> None:
         forged["evidence"]["emptied"][0]["corners"][0] = corner
         refused(forged, "corner is not a natural number")
     forged["evidence"]["emptied"][0]["corners"] = [a, b]
-    refused(forged, "corners has not 3 entries")
+    refused(forged, "corners does not have 3 entries")
 
 
 def test_only_the_third_side_is_missing() -> None:
@@ -407,7 +407,7 @@ def test_only_the_third_side_is_missing() -> None:
                     forged = given(TRIANGLES)
                     forged["evidence"]["emptied"][0]["corners"] = [x, y, z]
                     i, j = sides[missing[0]]
-                    refused(forged, f"{i}-{j} is no edge")
+                    refused(forged, f"{i}-{j} is not an edge")
                     found.add(missing[0])
     assert found == {0, 1, 2}
 

@@ -193,7 +193,7 @@ def test_numerators_of_high_degree_could_cost_as_much_as_one_likes() -> None:
     refused(forged, "a numerator has too high a degree")
 
 
-FLAT_VERTICES = "the flat vertices are no inner vertices, or appear twice"
+FLAT_VERTICES = "a flat vertex is not an interior vertex, or appears twice"
 
 
 @pytest.mark.parametrize(
@@ -203,8 +203,8 @@ FLAT_VERTICES = "the flat vertices are no inner vertices, or appear twice"
         ([5, 0], FLAT_VERTICES),
         ([5, 9], FLAT_VERTICES),
         ([5, "4"], FLAT_VERTICES),
-        ([4, 5], "the quadric of vertex 4 has order 1"),
-        ([5, 4], "the quadric of vertex 4 has order 1"),
+        ([4, 5], "vertex 4 is listed as flat, but its quadric has order 1"),
+        ([5, 4], "vertex 4 is listed as flat, but its quadric has order 1"),
     ],
 )
 def test_flat_vertices_made_up(flat: list[Any], message: str) -> None:
@@ -231,7 +231,7 @@ def test_a_flat_vertex_is_a_number() -> None:
 def test_the_order_is_that_of_the_vertex() -> None:
     forged = given(VERTEX)
     forged["evidence"]["classes"][0]["flat"] = [4]
-    refused(forged, "the quadric of vertex 4 has order 1")
+    refused(forged, "vertex 4 is listed as flat, but its quadric has order 1")
 
 
 # --- how zeros are listed ------------------------------------------------------------------------
@@ -316,14 +316,14 @@ def test_a_zero_in_a_class_and_in_a_box_on_flat_sheets() -> None:
 @pytest.mark.parametrize(
     ("flat", "message"),
     [
-        ([], "flat vertices are no vertices"),
-        (["6"], "flat vertices are no vertices"),
-        ([True], "flat vertices are no vertices"),
+        ([], "a flat vertex is not a vertex of the sheet, or none is given"),
+        (["6"], "a flat vertex is not a vertex of the sheet, or none is given"),
+        ([True], "a flat vertex is not a vertex of the sheet, or none is given"),
         ([0], "the flat vertices are not sorted inner vertices"),
         ([9], "the flat vertices are not sorted inner vertices"),
         ([6, 6], "the flat vertices are not sorted inner vertices"),
         ([6, 5], "the flat vertices are not sorted inner vertices"),
-        ([4, 5, 6, 7], "no sheet is flat at the flat vertices"),
+        ([4, 5, 6, 7], "no heights in the chart are flat at the flat vertices"),
         ([4], "quadrics and unknowns on flat sheets differ in number"),
         ([5, 6], "quadrics and unknowns on flat sheets differ in number"),
     ],
@@ -357,7 +357,7 @@ def test_multipliers_show_that_zeros_are_finitely_many() -> None:
     forged["evidence"]["multipliers"] = ["1/1000000", "1", "1"]
     refused(forged, "a stress is not definite")
     forged["evidence"]["multipliers"].pop()
-    refused(forged, "multipliers has not 3 entries")
+    refused(forged, "multipliers does not have 3 entries")
 
 
 def test_multipliers_of_reflex_sheets_are_verified_too() -> None:
@@ -369,7 +369,7 @@ def test_multipliers_of_reflex_sheets_are_verified_too() -> None:
             refused(forged, "a multiplier is not positive")
         forged = given(name)
         forged["evidence"]["multipliers"].pop()
-        refused(forged, f"multipliers has not {count} entries")
+        refused(forged, f"multipliers does not have {count} entries")
 
 
 def test_only_reflex_corners_are_closed() -> None:
@@ -412,7 +412,7 @@ def test_keys_of_classes() -> None:
     refused(forged, "root: expected an object with the keys bits radius center")
     forged = given(FLAT)
     next(r for r in forged["evidence"]["roots"] if "flat" in r)["center"] += ["0"]
-    refused(forged, "center has not 2 entries")
+    refused(forged, "center does not have 2 entries")
 
 
 def test_a_class_that_shares_a_root_of_ten_digits_with_another() -> None:

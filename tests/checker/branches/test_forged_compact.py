@@ -172,7 +172,7 @@ def header(**evidence: Any) -> Lines:
         (header(chart={"0": "1"}), "a chart other than the saddle's needs a reflex corner"),
         (
             header(triangles=[{"corners": [0, 1, 2], "inside": [4], "multipliers": ["1"]}]),
-            "[0, 1, 2] is no 3-cycle of edges",
+            "[0, 1, 2] is not a 3-cycle of edges",
         ),
         (header(triangles=None), "triangles is not a list"),
     ],
@@ -234,7 +234,7 @@ def test_unknowns_are_at_most_forty() -> None:
     ("change", "message"),
     [
         (lambda parts: parts.pop(), "all 4 blocks hold, but the claims are missing"),
-        (lambda parts: parts.append(parts[-1]), "something follows the claims"),
+        (lambda parts: parts.append(parts[-1]), "a line follows the claims"),
         (lambda parts: parts.__delitem__(slice(3, None)), "only 2 of 4 blocks are there"),
         (
             lambda parts: parts[-1].update(more=1),

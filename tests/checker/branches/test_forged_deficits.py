@@ -68,7 +68,7 @@ def test_other_deficits(factor: Fraction) -> None:
 def test_one_deficit_for_each_vertex() -> None:
     forged = given(SHAPE)
     forged["claims"]["curvature"].append("0")
-    refused(forged, "curvature has not 3 entries")
+    refused(forged, "curvature does not have 3 entries")
     forged["claims"]["curvature"] = {}
     refused(forged, "curvature is not a list")
 

@@ -144,7 +144,7 @@ def test_finiteness_needs_positive_multipliers_for_every_vertex():
         refuse(forged, "multiplier")
     forged = document("bent-off-path")
     del forged["evidence"]["multipliers"][1]
-    refuse(forged, "multipliers has not 3 entries")
+    refuse(forged, "multipliers does not have 3 entries")
 
 
 def test_zeros_listed_in_two_ways_are_not_told_apart_by_an_open_fold(monkeypatch):

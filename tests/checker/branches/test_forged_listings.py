@@ -85,7 +85,7 @@ def test_other_kinds_are_unknown(kind: Any) -> None:
 def test_values_that_nothing_else_refuses_are_malformed() -> None:
     forged = given(TWO)
     forged["evidence"]["triangles"] = [{"corners": [], "inside": [], "multipliers": []}]
-    refused(forged, "corners has not 3 entries")
+    refused(forged, "corners does not have 3 entries")
     forged = given(TWO)
     del forged["evidence"]["roots"][0]["bits"]
     refused(forged, "root: expected an object with the keys bits radius center")
@@ -93,7 +93,7 @@ def test_values_that_nothing_else_refuses_are_malformed() -> None:
     forged["evidence"]["classes"][0]["flat"] = [[]]
     refused(forged, "malformed: TypeError while checking")
     forged["evidence"]["classes"][0] = {**forged["evidence"]["classes"][0], "flat": ["\ud800"]}
-    refused(forged, "the flat vertices are no inner vertices, or appear twice")
+    refused(forged, "a flat vertex is not an interior vertex, or appears twice")
 
 
 # --- branches ------------------------------------------------------------------------------------

@@ -263,9 +263,9 @@ def test_a_star_that_is_held_flat() -> None:
     for held in ([], [0]):
         document = piece("pentagon")
         document["evidence"]["flat"].append({"held": held, "complete": [], "parts": []})
-        refused(document, f"the vertices held flat, {held}, are none, or not all can pop")
+        refused(document, f"{held}, held flat, are not one or more vertices that can pop")
     document["evidence"]["flat"][-1]["held"] = []
-    stopped(document, "the vertices held flat, [], are none, or not all can pop")
+    stopped(document, "[], held flat, are not one or more vertices that can pop")
 
 
 def test_a_vertex_is_complete_by_what_can_bend_without_it_alone() -> None:

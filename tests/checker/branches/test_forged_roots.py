@@ -134,7 +134,7 @@ def exchanged(parts: Lines) -> None:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (moved, "block 0: roots has not 4 entries"),
+        (moved, "block 0: roots does not have 4 entries"),
         (exchanged, "block 0 is expected, but here is block 1"),
         (
             lambda parts: parts[1].update(block=False),
@@ -156,7 +156,7 @@ def exchanged(parts: Lines) -> None:
             lambda parts: parts.insert(-1, {"block": 7, "roots": []}),
             "the last line: expected an object with the keys claims",
         ),
-        (lambda parts: parts.append(parts[-1]), "something follows the claims"),
+        (lambda parts: parts.append(parts[-1]), "a line follows the claims"),
     ],
 )
 def test_forged_blocks(change: Callable[[Lines], object], message: str) -> None:

@@ -304,7 +304,7 @@ def test_lists_objects_and_naturals() -> None:
     reading.keys({"a": 1, "b": 2}, "b a", "x")
     for call, message in (
         (lambda: reading.items((1,), "x"), "x is not a list"),
-        (lambda: reading.items([1], "x", 0), "x has not 0 entries"),
+        (lambda: reading.items([1], "x", 0), "x does not have 0 entries"),
         (lambda: reading.natural(-1, "x"), "x is not a natural number"),
         (lambda: reading.natural(True, "x"), "x is not a natural number"),
         (lambda: reading.integer(True), "True is not an integer"),

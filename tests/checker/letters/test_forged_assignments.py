@@ -91,7 +91,7 @@ def test_keys(place: tuple[str | int, ...], message: str) -> None:
 
 
 def test_the_list_is_the_one_shown() -> None:
-    message = "the evidence shows 32 assignments, and not these"
+    message = "the evidence shows 32 assignments, not those listed"
     for change in (lambda t: t[1:], lambda t: [*t, "M" * 8], lambda t: [t[1], t[0], *t[2:]]):
         document = listed()
         texts = document["claims"]["assignments"]
@@ -128,7 +128,7 @@ def test_some_vertex_can_pop_and_not_too_many(monkeypatch: pytest.MonkeyPatch) -
 def test_there_are_circles_for_all_signs() -> None:
     document = listed()
     del document["evidence"]["circles"][1]
-    refused(document, "circles has not 2 entries")
+    refused(document, "circles does not have 2 entries")
 
 
 def test_a_point_is_inside_its_nappes() -> None:
@@ -140,7 +140,7 @@ def test_a_point_is_inside_its_nappes() -> None:
     document = listed("side")
     (circle,) = document["evidence"]["circles"]
     circle[:] = [[str(-int(z)) for z in point] for point in circle]
-    stopped(document, "circle 0: vertex 5 has another sign")
+    stopped(document, "circle 0: vertex 5 does not have the sign 1")
 
 
 def test_points_go_all_round_the_border() -> None:
@@ -148,7 +148,7 @@ def test_points_go_all_round_the_border() -> None:
     circle = document["evidence"]["circles"][0]
     near = next(k for k in range(1, len(circle)) if _is_known(document, circle[k - 1 : k + 1]))
     document["evidence"]["circles"][0] = circle[near - 1 : near + 1]
-    stopped(document, "circle 0: the boundary does not go round behind point 1")
+    stopped(document, "circle 0: the boundary heights do not turn on after point 1")
     assert len(document["claims"]["assignments"]) < 12
     document = listed()
     document["evidence"]["circles"][1] = []
@@ -160,7 +160,7 @@ def _is_known(document: Document, two: list[list[str]]) -> bool:
     """Whether a point has all the letters that are possible up to the next."""
     document["evidence"]["circles"][0] = two
     sheet, _ = read_sheet(document["pattern"])
-    with without("circle 0: the boundary does not go round behind point 1"):
+    with without("circle 0: the boundary heights do not turn on after point 1"):
         try:
             assignments._shown(sheet, document["evidence"])
         except checker.CertificateError:
@@ -172,7 +172,7 @@ def test_both_sides_of_a_border_with_four_corners() -> None:
     document = listed("chord")
     circle = document["evidence"]["circles"][0]
     circle[1] = circle[0]
-    stopped(document, "circle 0: the points are not on the two sides")
+    stopped(document, "circle 0: the two points are not on the two sides of the flat state")
     assert len(document["claims"]["assignments"]) == 4
 
 
@@ -184,14 +184,14 @@ def test_all_letters_between_two_points_occur() -> None:
     with pytest.raises(checker.CertificateError) as caught:
         assignments._shown(sheet, document["evidence"])
     message = str(caught.value)
-    assert message.startswith("circle 0: other letters are possible behind point ")
+    assert message.startswith("circle 0: other letters are possible after point ")
     with without(message), pytest.raises(checker.CertificateError):
         verified(document)
 
 
 def test_what_is_open_is_not_too_much(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(arcs, "MOST_OPEN", 1)
-    stopped(listed(), beyond("the words that open letters may become", 3, 1, "MOST_OPEN"))
+    stopped(listed(), beyond("the ways to complete open letters", 3, 1, "MOST_OPEN"))
 
 
 def test_an_ear_is_one_face() -> None:
@@ -203,7 +203,7 @@ def test_an_ear_is_one_face() -> None:
     refused(document, "malformed: ValueError while checking")
     document["evidence"]["emptied"] = [{"corners": [2, 3, 4], "inside": [6]}]
     texts = document["claims"]["assignments"]
-    refused(document, "the evidence shows 8 assignments, and not these")
+    refused(document, "the evidence shows 8 assignments, not those listed")
     sheet, _ = read_sheet(document["pattern"])
     shown = assignments._shown(sheet, document["evidence"])
     assert sorted(text.replace("F", "") for text in shown) == texts

@@ -37,7 +37,7 @@ def claimed(document: Document) -> None:
     place = Place(sheet, evidence["emptied"])
     place.fix_boundary()
     wanted = dict(zip(sheet.folds, document["claims"]["letters"], strict=True))
-    found = letters._Search(place, wanted).halves(
+    found = letters._LetterSearch(place, wanted).rays(
         evidence["refuted"], evidence["tree"], evidence["leaves"]
     )
     document["claims"]["halves"] = [
@@ -129,7 +129,7 @@ def test_keys(place: tuple[str | int, ...], message: str) -> None:
         ("tree", [["split", [4]]], "a number of a step is not a natural number"),
         ("tree", [["refuted", True]], "a number of a step is not a natural number"),
         ("refuted", [{"signs": [[True, 1]], "heights": None}], "a vertex is not a natural number"),
-        ("refuted", [{"signs": [[4, True]], "heights": None}], "refuted set 0: True is no sign"),
+        ("refuted", [{"signs": [[4, True]], "heights": None}], "refuted set 0: True is not a sign"),
         (
             "refuted",
             [{"signs": [[4, 1]], "heights": [[True, []]]}],
@@ -150,14 +150,14 @@ def test_letters_fit_the_folds() -> None:
     document = given(RANDOM)
     for text in ("", document["claims"]["letters"] + "U", list(document["claims"]["letters"])):
         document["claims"]["letters"] = text
-        refused(document, "letters do not fit")
+        refused(document, "the letters are not one of M, V, F, U for each fold")
     document = given(RIGID)
     assert document["claims"]["letters"] == "UUUUUMUUUU"
     document["claims"]["letters"] = "UVFUUMUUUU"
     verified(document)
     document = given(REFLEX)
     document["claims"]["letters"] = "X" * 10
-    stopped(document, "letters do not fit")
+    stopped(document, "the letters are not one of M, V, F, U for each fold")
 
 
 # --- the halves that are claimed -----------------------------------------------------------------
@@ -167,9 +167,9 @@ def test_halves_are_those_found() -> None:
     first, second = given(RANDOM)["claims"]["halves"]
     other = {**first, "side": -1}
     for halves, message in (
-        ([first, first], "a half is listed twice"),
-        ([first, other], "a half that is listed has not these letters"),
-        ([first], "a half with these letters is not listed"),
+        ([first, first], "a half of a branch is listed twice"),
+        ([first, other], "a listed half of a branch does not have these letters"),
+        ([first], "a half of a branch with these letters is not listed"),
     ):
         document = given(RANDOM)
         document["claims"]["halves"] = halves
@@ -191,7 +191,7 @@ def test_a_leaf_has_all_signs() -> None:
     evidence = document["evidence"]
     evidence["tree"] = [*evidence["tree"][:4], ["leaf"]]
     del evidence["leaves"][1]
-    stopped(document, "a leaf has not the signs of all vertices")
+    stopped(document, "a leaf does not have the signs of all interior vertices")
 
 
 def test_a_sign_is_forced_by_all_others() -> None:
@@ -199,14 +199,14 @@ def test_a_sign_is_forced_by_all_others() -> None:
     tree = document["evidence"]["tree"]
     assert tree[3] == ["force", 3, 7]
     tree[0], tree[3] = tree[3], tree[0]
-    stopped(document, "set 3 does not force vertex 7")
+    stopped(document, "set 3 does not force the sign of vertex 7")
 
 
 def test_a_refuted_set_is_contained() -> None:
     document = given(RANDOM)
     document["evidence"]["tree"][-2] = ["refuted", 3]
     del document["evidence"]["leaves"][0]
-    stopped(document, "set 3 is not contained in the signs")
+    stopped(document, "the signs of set 3 are not among those of the case")
 
 
 def test_a_step_has_a_known_kind() -> None:
@@ -216,15 +216,16 @@ def test_a_step_has_a_known_kind() -> None:
 
 
 def test_what_stays_flat_is_rigid_and_has_a_letter() -> None:
-    message = "no mountain or valley is asked for where the sheet is rigid"
+    message = "can fold, or no mountain or valley is asked for there"
     document = given(RANDOM)
     other = lettered(document, 4, "M")
     assert other is not None
-    stopped(none_left(document, [], [["flat", min(4, other), max(4, other)]]), message)
+    i, j = min(4, other), max(4, other)
+    stopped(none_left(document, [], [["flat", i, j]]), f"fold {i}-{j} {message}")
     for letter in "UF":
         document = none_left(given(RIGID), [], [["flat", 2, 5]])
         document["claims"]["letters"] = letter * 10
-        stopped(document, message)
+        stopped(document, f"fold 2-5 {message}")
 
 
 def test_the_tree_covers_all_signs() -> None:
@@ -238,7 +239,7 @@ def test_there_are_as_many_leaves_as_in_the_tree() -> None:
     document = given(RANDOM)
     leaves = document["evidence"]["leaves"]
     leaves.append(leaves[0])
-    stopped(document, "there are more leaves than the tree has")
+    stopped(document, "the evidence has more leaves than the tree")
     del leaves[1:]
     refused(document, "a leaf is not a list")
     document["evidence"]["tree"].append(["leaf"])
@@ -253,10 +254,10 @@ def test_the_halves_of_a_leaf_have_its_signs() -> None:
     document = given(RANDOM)
     leaves = document["evidence"]["leaves"]
     leaves[0] = leaves[1]
-    stopped(document, "vertex 5 of a leaf has another sign")
+    stopped(document, "vertex 5 does not have the sign of its leaf, 1")
     document = given(RANDOM)
     document["evidence"]["leaves"][0].reverse()
-    refused(document, "vertex 4 of a leaf has another sign")
+    refused(document, "vertex 4 does not have the sign of its leaf, 1")
 
 
 def test_a_letter_that_is_not_known_is_not_taken_for_the_one_asked_for(
@@ -272,7 +273,7 @@ def test_a_letter_that_is_not_known_is_not_taken_for_the_one_asked_for(
     heights, denominator = heights_evidence(rough, [])
     (leaf,) = document["evidence"]["leaves"]
     leaf[0] = {"heights": heights, "denominator": denominator}
-    stopped(document, "a letter of a leaf is not known")
+    stopped(document, "a letter of a leaf that is asked for is not known")
 
 
 def test_letters_are_turned_round_on_the_other_side() -> None:
@@ -303,7 +304,7 @@ def test_signs_are_up_or_down() -> None:
     [entry, *_] = document["evidence"]["refuted"]
     entry["signs"] = [[4, 0]]
     none_left(document, [entry], [["force", 0, 4], ["refuted", 0]])
-    stopped(document, "refuted set 0: 0 is no sign")
+    stopped(document, "refuted set 0: 0 is not a sign")
 
 
 CROSS = {
@@ -322,7 +323,7 @@ def test_a_star_is_a_reason_only_if_it_is_curved(text: str, sign: int) -> None:
     bowl = {"signs": [[4, sign]], "heights": None}
     true = {"signs": [[4, -sign]], "heights": [star(4, {0: sign}, document)]}
     none_left(document, [bowl, true], [["force", 0, 4], ["refuted", 1]])
-    stopped(document, "refuted set 0: the star may be on a solution")
+    stopped(document, "refuted set 0: the letters round vertex 4 do not contradict its sign")
 
 
 def test_a_star_is_the_reason_for_one_sign() -> None:
@@ -357,7 +358,7 @@ def test_a_star_without_a_sign_is_in_one_plane() -> None:
             break
     else:
         raise AssertionError
-    stopped(document, "refuted set 3: the star of 5 has no sign and is not flat")
+    stopped(document, "refuted set 3: the star of 5 has no sign, but is not flat")
 
 
 def test_forms_are_those_of_the_other_formula() -> None:
@@ -390,7 +391,7 @@ def test_a_star_is_on_its_own_side() -> None:
     entry = document["evidence"]["refuted"][0]
     turned = {**entry, "signs": [[4, 1]]}
     none_left(document, [entry, turned], [["force", 0, 4], ["refuted", 1]])
-    stopped(document, "refuted set 1: the star of 4 is on the other side")
+    stopped(document, "refuted set 1: the star of 4 does not have the sign 1")
     for second in ([], [star(4, {}, document)]):
         document["evidence"]["refuted"][1] = {"signs": [[4, 1]], "heights": second}
         stopped(document, "refuted set 1: no fold contradicts its letter")
@@ -423,7 +424,7 @@ def test_sums_are_on_the_side_of_their_letters() -> None:
                 )
             ]
             if len(where) == 1:
-                message = f"refuted set {where[0]}: the sum at fold {fold} is on the wrong side"
+                message = f"refuted set {where[0]}: the sum at fold {fold} has the wrong sign"
                 stopped(document, message)
                 seen.add(letter + wrong)
     assert seen == {"MV", "MU", "VM", "VU"}

@@ -74,11 +74,11 @@ def test_what_is_said(name: str, text: str) -> None:
 def test_what_is_said_of_the_first_order_and_of_no_letter() -> None:
     claims = verified(given("starting-part"))
     assert (
-        "; to first order 2 are shown to fold together, 2 never to fold; sha256"
+        "; to first order 2 are proved to fold together, and 2 never to fold; sha256"
         in checker.summary(claims)
     )
     claims = verified(moving("flat", [None], "UFU"))
-    assert checker.summary(claims).startswith("VALID: no fold of 3 folds is asked to fold; sha256")
+    assert checker.summary(claims).startswith("VALID: none of 3 folds is asked to fold; sha256")
 
 
 @pytest.mark.parametrize(
@@ -136,14 +136,14 @@ def test_steps_of_another_kind(tree: list[Any], error: str) -> None:
 def test_claims_are_known_words() -> None:
     document = sheet("twist")
     document["claims"]["starts"] = "undecided"
-    stopped(document, "starts is 'undecided'")
+    stopped(document, '"starts" is \'undecided\', not "proved" or "refuted"')
     document = sheet("twist")
     document["claims"]["truly"] = "no"
-    stopped(document, "truly is 'no'")
+    stopped(document, '"truly" is \'no\', not "proved", "refuted" or "undecided"')
 
 
 def test_letters_fit_the_folds() -> None:
-    message = "letters do not fit"
+    message = "the letters are not one of M, V, F, U for each fold"
     document = sheet("flat")
     assert document["claims"]["letters"] == "UMU"
     document["claims"]["letters"] = "XMX"
@@ -156,13 +156,13 @@ def test_letters_fit_the_folds() -> None:
 def test_true_motions_are_motions() -> None:
     document = sheet("twist")
     document["claims"]["truly"] = "proved"
-    stopped(document, "true motions have letters that no motion has")
+    stopped(document, "true motions are claimed, but no motion to second order")
 
 
 def test_vertices_with_more_than_four_folds_say_nothing_of_true_motions() -> None:
     document = sheet("curved")
     document["claims"]["truly"] = "refuted"
-    stopped(document, "that says nothing of true motions")
+    stopped(document, "the cases name a vertex with more than four folds: true motions are open")
 
 
 # --- cases ---------------------------------------------------------------------------------------
@@ -175,24 +175,32 @@ def test_all_cases_end() -> None:
 
 
 def test_a_set_is_contained_in_the_signs() -> None:
-    stopped(refuting("zigzags", [["refuted", 0]]), "set 0 is not contained in the signs")
+    stopped(
+        refuting("zigzags", [["refuted", 0]]), "the signs of set 0 are not among those of the case"
+    )
     document = refuting("zigzags", [["split", 9], ["refuted", 1], ["refuted", 0]])
-    refused(document, "set 1 is not contained in the signs")
+    refused(document, "the signs of set 1 are not among those of the case")
 
 
 @pytest.mark.parametrize("letters", ["MMMMV", "MMMMU", "VVVVM"])
 def test_a_star_is_curved_if_all_letters_are_one(letters: str) -> None:
-    stopped(refuting("curved", [["curved", 5]], letters), "the star of 5 may be on a motion")
+    stopped(
+        refuting("curved", [["curved", 5]], letters),
+        "the letters round vertex 5 do not show that its star is curved",
+    )
 
 
 def test_valleys_alone_are_curved_and_a_straight_crease_is_not() -> None:
     verified(refuting("curved", [["curved", 5]], "VVVVV"))
-    stopped(refuting("flat", [["curved", 4]], "MUM"), "the star of 4 may be on a motion")
+    stopped(
+        refuting("flat", [["curved", 4]], "MUM"),
+        "the letters round vertex 4 do not show that its star is curved",
+    )
 
 
 @pytest.mark.parametrize(("letters", "fold"), [("UUU", [1, 4]), ("MUM", [0, 4])])
 def test_a_fold_stays_flat_and_has_a_letter(letters: str, fold: list[int]) -> None:
-    message = f"fold {fold[0]}-{fold[1]} may fold, or has no letter"
+    message = f"fold {fold[0]}-{fold[1]} may fold, or is not asked to fold"
     stopped(refuting("flat", [["flat", *fold]], letters), message)
 
 
@@ -203,7 +211,7 @@ def test_a_fold_from_border_to_border_may_fold() -> None:
         "vertices": [[["0"], ["0"]], [["1"], ["0"]], [["1"], ["1"]], [["0"], ["1"]]],
         "edges": [[0, 1], [0, 2], [0, 3], [1, 2], [2, 3]],
     }
-    stopped(document, "fold 0-2 may fold, or has no letter")
+    stopped(document, "fold 0-2 may fold, or is not asked to fold")
 
 
 def test_a_loop_does_not_close() -> None:
@@ -233,14 +241,14 @@ def truly(name: str, loop: list[int], order: int) -> Document:
 def test_a_loop_fails_at_an_order() -> None:
     loop = LOOP[-1][1]
     verified(truly("order", loop, 3))
-    stopped(truly("sides", loop, 3), "the loop 10-9-5-6 is not seen to fail at order 3")
+    stopped(truly("sides", loop, 3), "the loop 10-9-5-6 is not proved to fail at order 3")
     stopped(truly("sides", loop, 1), "there is no order 1")
     stopped(truly("order", [10, 9, 10, 9], 3), "the loop 10-9-10-9 turns back")
 
 
 def test_a_loop_that_fails_at_a_higher_order_says_nothing_of_the_second() -> None:
     document = refuting("order", [*LOOP[:-1], [*LOOP[-1], 3]])
-    stopped(document, "a loop that fails at a higher order refutes true motions alone")
+    stopped(document, "a loop that fails at a higher order refutes only true motions")
 
 
 # --- heights of stars ----------------------------------------------------------------------------
@@ -250,7 +258,7 @@ def test_a_loop_that_fails_at_a_higher_order_says_nothing_of_the_second() -> Non
 def test_sums_are_on_the_side_of_no_letter(letters: str) -> None:
     document = sheet("part")
     document["claims"]["letters"] = letters
-    stopped(document, "refuted set 0: the sum at fold 2-4 is on the wrong side")
+    stopped(document, "refuted set 0: the sum at fold 2-4 has the wrong sign")
 
 
 def test_some_fold_contradicts_its_letter() -> None:
@@ -282,7 +290,7 @@ def lifted(letters: str, heights: list[int], sign: int) -> Document:
 @pytest.mark.parametrize("sign", [1, -1])
 def test_a_star_is_on_its_own_side(sign: int) -> None:
     document = lifted("MMMMM" if sign < 0 else "VVVVV", [-sign] * 5, sign)
-    stopped(document, "refuted set 1: the star of 5 is on the other side")
+    stopped(document, f"refuted set 1: the star of 5 does not have the sign {-sign}")
 
 
 def test_a_star_is_in_a_closed_nappe() -> None:
@@ -297,19 +305,19 @@ def test_a_star_is_in_a_closed_nappe() -> None:
 
 
 def test_a_fold_with_a_letter_does_not_stay_flat() -> None:
-    stopped(moving("flat", [None]), "fold 1-4 has a letter and stays flat")
+    stopped(moving("flat", [None]), "fold 1-4 has a letter, but stays flat in every motion")
 
 
 def test_a_part_with_letters_does_not_rest() -> None:
-    stopped(moving("twist", [None]), "the part of vertex 4 has letters and rests")
-    refused(moving("twist", []), "motion has not 1 entries")
+    stopped(moving("twist", [None]), "the part of vertex 4 has letters, but is given no motion")
+    refused(moving("twist", []), "motion does not have 1 entries")
 
 
 def test_sides_are_those_of_the_letters() -> None:
     document = sheet("sides")
     text = document["claims"]["letters"]
     document["claims"]["letters"] = ("V" if text[0] == "M" else "M") + text[1:]
-    stopped(document, "fold 1-5 has another letter")
+    stopped(document, "fold 1-5 does not have the letter asked for")
 
 
 def test_a_vertex_has_a_line_with_its_sides() -> None:
@@ -325,7 +333,7 @@ def test_sides_fit_round_all_loops() -> None:
 
 def test_a_mode_truly_folds() -> None:
     document = moving("order", sheet("order")["evidence"]["motion"])
-    stopped(document, "the loop 5-9-10-6 does not truly fold")
+    stopped(document, "the loop 5-9-10-6 does not close for true motions")
 
 
 def regular(**changes: Any) -> Document:
@@ -337,13 +345,13 @@ def regular(**changes: Any) -> Document:
 
 def test_numbers_of_a_motion_are_not_too_long() -> None:
     [motion] = sheet("regular")["evidence"]["motion"]
-    message = "numbers are too long"
+    message = "the densities have more than 128 bits"
     longer = 129 - motion["bits"]
     densities = [c << longer for c in motion["densities"]]
     stopped(regular(bits=129, densities=densities, radius=motion["radius"] << longer), message)
     inverse = [[x << 1100 for x in row] for row in motion["inverse"]]
     shift = motion["shift"] + 1100
-    message = beyond("the bits by which numbers are moved", shift, 1024, "MOST_SHIFT")
+    message = beyond("the bits by which numbers are shifted", shift, 1024, "MOST_SHIFT")
     stopped(regular(shift=shift, inverse=inverse), message)
 
 
@@ -355,10 +363,10 @@ def test_conditions_are_not_too_many(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_fold_is_shown_to_go_its_way() -> None:
     document = regular()
     document["claims"]["letters"] = "V" + document["claims"]["letters"][1:]
-    stopped(document, "fold 0-5 is not shown to go its way")
+    stopped(document, "fold 0-5 is not proved to follow its letter")
     [motion] = sheet("regular")["evidence"]["motion"]
     wide = min(map(abs, motion["densities"])) * 17 // 16
-    refused(regular(radius=wide), "fold 1-5 is not shown to go its way")
+    refused(regular(radius=wide), "fold 1-5 is not proved to follow its letter")
 
 
 def test_there_are_as_many_unknowns_as_conditions() -> None:
@@ -366,7 +374,9 @@ def test_there_are_as_many_unknowns_as_conditions() -> None:
     stopped(regular(unknowns=[], inverse=[]), message)
     refused(regular(unknowns=[1, 1, 4]), "Krawczyk's test fails in row 0")
     refused(regular(unknowns=[1, 2, 99]), "Krawczyk's test fails in row 2")
-    refused(regular(inverse=[[1, 0], [0, 1], [0, 0]]), "a row of the inverse has not 3 entries")
+    refused(
+        regular(inverse=[[1, 0], [0, 1], [0, 0]]), "a row of the inverse does not have 3 entries"
+    )
 
 
 def test_krawczyk() -> None:
@@ -398,18 +408,18 @@ def part(**changes: Any) -> Document:
 def test_folds_that_never_fold_are_shown_to_stay_flat() -> None:
     claims = part()["claims"]
     assert (claims["together"], claims["never"]) == ([[1, 4], [3, 4]], [[0, 4], [2, 4]])
-    stopped(part(never=[[0, 4], [1, 4], [2, 4]]), "fold 1-4 is not shown to stay flat")
-    stopped(part(flat=[], never=[[0, 4]]), "fold 0-4 is not shown to stay flat")
+    stopped(part(never=[[0, 4], [1, 4], [2, 4]]), "fold 1-4 is not proved to stay flat")
+    stopped(part(flat=[], never=[[0, 4]]), "fold 0-4 is not proved to stay flat")
     flat = [[[4, [["0"], ["1"]]]]]
     document = part(flat=flat, never=[[1, 4], [3, 4]], together=[], densities=[])
-    stopped(document, "step 0: the sum at fold 1-4 is on the wrong side")
+    stopped(document, "step 0: the sum at fold 1-4 has the wrong sign")
 
 
 @pytest.mark.parametrize("letters", ["UFU", "UUU"])
 def test_folds_that_are_not_asked_to_fold_are_none_that_never_do(letters: str) -> None:
     document = moving("flat", [None], letters)
     document["claims"]["never"] = [[1, 4]]
-    stopped(document, "fold 1-4 is no mountain or valley")
+    stopped(document, "fold 1-4 is not asked to be a mountain or a valley")
 
 
 @pytest.mark.parametrize(
@@ -422,7 +432,9 @@ def test_folds_that_are_not_asked_to_fold_are_none_that_never_do(letters: str) -
     ],
 )
 def test_all_folds_are_listed_that_are_shown_to_go_together_or_never(claims: Document) -> None:
-    stopped(part(**claims), "not all folds that are shown to go together, or never, are listed")
+    stopped(
+        part(**claims), "a fold that is shown to go together with others, or never, is not listed"
+    )
     verified(part(**NOTHING))
 
 
@@ -435,11 +447,11 @@ def test_a_motion_shows_that_folds_go_together() -> None:
     [i, j, [x]] = densities[0]
     longer = [[i, j, [str(2 * int(x))]], *densities[1:]]
     stopped(part(densities=longer), "the folds at vertex 4 do not close")
-    stopped(part(densities=[], together=[[1, 4]]), "fold 1-4 does not go its way")
-    stopped(part(together=[[0, 4], [1, 4], [3, 4]]), "fold 0-4 does not go its way")
+    stopped(part(densities=[], together=[[1, 4]]), "fold 1-4 does not follow its letter")
+    stopped(part(together=[[0, 4], [1, 4], [3, 4]]), "fold 0-4 does not follow its letter")
     document = part(together=[[1, 4]])
     document["claims"]["letters"] = "MUVU"
-    stopped(document, "fold 1-4 does not go its way")
+    stopped(document, "fold 1-4 does not follow its letter")
 
 
 def test_a_fold_that_stays_flat_has_no_density() -> None:
@@ -447,7 +459,7 @@ def test_a_fold_that_stays_flat_has_no_density() -> None:
     assert document["claims"]["never"] == [[1, 4]]
     document["claims"]["together"] = [[1, 4]]
     document["evidence"]["densities"] = [[1, 4, ["-1"]]]
-    stopped(document, "fold 1-4 has a density and is flat or free")
+    stopped(document, "fold 1-4 has a density, but is flat or in no condition")
 
 
 def test_folds_are_sorted() -> None:

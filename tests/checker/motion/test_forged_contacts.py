@@ -167,7 +167,7 @@ def test_a_whole_certificate_with_a_false_contact_is_refused() -> None:
     document = given("contact")
     document["claims"]["clear"] = longer(document["claims"]["clear"], "1.00001")
     document["claims"]["contact"]["time"][0] = document["claims"]["clear"]
-    refused(document, "what is clear is shorter than claimed")
+    refused(document, "the clear part of the motion is shorter than claimed")
     document = given("contact")
     latest = document["claims"]["contact"]["time"]
     latest[1] = longer(latest[1], "0.99998")
@@ -190,9 +190,9 @@ def test_times_that_are_too_late_or_too_early() -> None:
         claims["contact"]["time"][0] = longer(claims["clear"], "1.00001")
 
     for name in BRANCHES:
-        stopped(name, "what is clear is shorter than claimed", later)
+        stopped(name, "the clear part of the motion is shorter than claimed", later)
         stopped(name, "the contact may be later than claimed", earlier)
-        message = "a contact is not claimed from where the motion is clear"
+        message = 'the first "time" of a contact differs from "clear"'
         stopped(name, message, not_from_there)
 
 
@@ -280,7 +280,7 @@ def test_tubes_that_are_not_there() -> None:
         def moved(claims: Document, contacts: Document, other: int = other) -> None:
             contacts["tube"] = other
 
-        refused_alone("corner", "there is no such tube", moved)
+        refused_alone("corner", "the contacts name a tube that does not exist", moved)
 
 
 def test_keys() -> None:
@@ -308,7 +308,7 @@ def test_other_tubes_hold_no_contact() -> None:
     document["claims"]["clear"] = document["claims"]["contact"]["time"][0] = "0"
     with pytest.raises(CertificateError) as caught:
         judged(document, "contact")
-    assert str(caught.value) == "no side runs through the other face"
+    assert str(caught.value) == "no side of one face is proved to run through the other face"
     for first in (0, 4):
         document = given("corner")
         tubes = document["evidence"]["tubes"]
@@ -352,7 +352,7 @@ def test_faces_that_do_not_touch() -> None:
     def other(claims: Document, contacts: Document) -> None:
         claims["contact"]["faces"] = [list(faces.faces[0])] * 2
 
-    stopped("contact", "no side runs through the other face", other)
+    stopped("contact", "no side of one face is proved to run through the other face", other)
 
 
 def crossing(x: dict[int, list[Fraction]], one: Any, two: Any) -> bool:
@@ -377,7 +377,7 @@ def test_a_contact_must_have_happened() -> None:
     def not_yet(claims: Document, contacts: Document) -> None:
         contacts["to"] = contacts["from"] = contacts["clear"]
 
-    stopped("contact", "no side runs through the other face", not_yet)
+    stopped("contact", "no side of one face is proved to run through the other face", not_yet)
 
 
 def test_what_is_no_face_or_fold() -> None:
@@ -389,7 +389,7 @@ def test_what_is_no_face_or_fold() -> None:
     def with_folds(claims: Document, contacts: Document) -> None:
         claims["contact"]["folds"] = [[0, 4]]
 
-    stopped("corner", "a contact has no folds", with_folds)
+    stopped("corner", "a contact of two faces names folds", with_folds)
     triangles = given("corner")["pattern"]["triangles"]
     others = [[0, 1, 2], [0, 0, 4], [0, 1, 9]]
     assert not set(map(frozenset, others)) & set(map(frozenset, triangles))
@@ -398,12 +398,12 @@ def test_what_is_no_face_or_fold() -> None:
         def no_face(claims: Document, contacts: Document, face: Any = face) -> None:
             claims["contact"]["faces"][0] = face
 
-        refused_alone("corner", "what touches is no face", no_face)
+        refused_alone("corner", "a face of the contact is not a face of the sheet", no_face)
 
     def of_a_fold(claims: Document, contacts: Document) -> None:
         claims["contact"]["faces"].reverse()
 
-    stopped("fold", "the faces are not at the fold", of_a_fold)
+    stopped("fold", "the faces of the contact are not those at its fold", of_a_fold)
 
 
 def test_folds_that_do_not_close() -> None:
@@ -414,7 +414,9 @@ def test_folds_that_do_not_close() -> None:
         def no_fold(claims: Document, contacts: Document, folds: Any = folds) -> None:
             claims["contact"]["folds"] = folds
 
-        refused_alone("fold", "what closes is no fold", no_fold)
+        refused_alone(
+            "fold", "the contact does not name one fold of the sheet that closes", no_fold
+        )
     sheet = pieces("fold")[0].equations.sheet
     for other in sheet.folds:
         if other == (i, j):
@@ -425,17 +427,17 @@ def test_folds_that_do_not_close() -> None:
             faces = [[a, b, sheet.next[a][b]], [a, b, sheet.next[b][a]]]
             claims["contact"] |= {"folds": [list(fold)], "faces": faces}
 
-        stopped("fold", "the fold does not close", another)
+        stopped("fold", "the fold of the contact is not proved to close", another)
 
     def not_yet(claims: Document, contacts: Document) -> None:
         contacts["to"] = contacts["clear"]
 
-    stopped("fold", "the fold does not close", not_yet)
+    stopped("fold", "the fold of the contact is not proved to close", not_yet)
 
     def too_late(claims: Document, contacts: Document) -> None:
         contacts["from"] = contacts["to"]
 
-    stopped("fold", "the fold does not close", too_late)
+    stopped("fold", "the fold of the contact is not proved to close", too_late)
 
 
 # --- the arithmetic, against rationals -----------------------------------------------------------

@@ -14,7 +14,7 @@ from forge import FIXTURES, Document, refused, verified, with_one_key_more, with
 from exactfold.checker.core.reading import CertificateError
 from exactfold.checker.motion import certificate as motion
 from exactfold.checker.motion.certificate import MOTION
-from exactfold.checker.motion.drive import Drive, check_reached
+from exactfold.checker.motion.drive import PrescribedAngles, check_reached
 from exactfold.checker.motion.equations import LengthEquations
 from exactfold.checker.motion.pieces import arc_of
 from exactfold.checker.motion.ray import shortened
@@ -83,7 +83,7 @@ def test_another_ratio() -> None:
 
 def test_folds_that_start_the_other_way() -> None:
     first, second = given()["claims"]["drive"]["squares"]
-    message = "the driven fold (1, 5) may start the other way"
+    message = "the driven fold (1, 5) may start to the other side"
     forged = _with(squares=[first, f"-{second}"], reached=False)
     with without(message):
         verified(forged)
@@ -98,15 +98,15 @@ def test_a_drive_of_another_shape() -> None:
     refused(_with(reached=1), "reached is not true or false")
     with without("reached is not true or false"):
         verified(_with(reached=1))
-    refused(_with(folds=[[0, 5]]), "driven folds has not 2 entries")
-    refused(_with(folds=[[0, 5], [1, 5], [2, 5]]), "driven folds has not 2 entries")
-    refused(_with(folds=[[0, 5], [1, 5, 2]]), "fold has not 2 entries")
+    refused(_with(folds=[[0, 5]]), "driven folds does not have 2 entries")
+    refused(_with(folds=[[0, 5], [1, 5], [2, 5]]), "driven folds does not have 2 entries")
+    refused(_with(folds=[[0, 5], [1, 5, 2]]), "fold does not have 2 entries")
     refused(_with(folds=[[0, 5], [1, -5]]), "vertex is not a natural number")
-    refused(_with(squares=["1/2"]), "squares has not 2 entries")
+    refused(_with(squares=["1/2"]), "squares does not have 2 entries")
 
 
 def test_what_is_driven_is_a_fold_and_no_two_are_the_same() -> None:
-    message = "what is driven is no fold, or one is driven twice"
+    message = "a driven fold is not a fold of the sheet, or is named twice"
     refused(_with(folds=[[0, 5], [0, 1]]), message)
     refused(_with(folds=[[0, 5], [5, 1]]), message)
     refused(_with(folds=[[0, 5], [0, 5]]), message)
@@ -114,7 +114,7 @@ def test_what_is_driven_is_a_fold_and_no_two_are_the_same() -> None:
 
 def test_squares_are_those_of_angles() -> None:
     squares = [Fraction(q) for q in given()["claims"]["drive"]["squares"]]
-    message = "a driven fold has no angle to go to"
+    message = "each of the squares must be from -1 to 1, and not 0"
     large = [str(q / max(squares) * 2) for q in squares]
     with without(message):
         verified(_with(squares=large, reached=False))
@@ -135,7 +135,7 @@ def test_with_four_corners_nothing_is_driven() -> None:
     document["evidence"]["tubes"] = []
     document["claims"] |= {"length": "0", "side": 1}
     [middle] = read_sheet(document["pattern"])[0].interior
-    message = "one fold alone has no ratio that could be claimed"
+    message = "a single driven fold has no ratio"
     for fold, reached in (([0, middle], False), ([98, 99], True)):
         drive = {"folds": [fold], "squares": ["1/2"], "reached": reached}
         refused(document | {"claims": document["claims"] | {"drive": drive}}, message)
@@ -156,7 +156,7 @@ def test_with_four_corners_nothing_is_driven() -> None:
 def test_with_a_rim_and_a_drive() -> None:
     document = given()
     document["claims"]["rim"] = ["0", "0", "1", "0", "1"]
-    message = "a motion keeps the ratio of its boundary or that of driven folds, not both"
+    message = "a motion keeps the ratio of its boundary heights or of driven folds, not both"
     with without(message):
         verified(document)
     refused(document, message)
@@ -165,7 +165,7 @@ def test_with_a_rim_and_a_drive() -> None:
 def test_the_side_of_a_driven_motion_is_that_of_its_folds() -> None:
     document = given()
     document["claims"]["side"] = -1
-    refused(document, "the side is another")
+    refused(document, "the side is not the claimed one")
 
 
 def test_folds_that_end_on_the_other_side() -> None:
@@ -173,7 +173,7 @@ def test_folds_that_end_on_the_other_side() -> None:
     sheet = read_sheet(given()["pattern"])[0]
     square = str(Fraction(math.sin(0.1) ** 2))
     claim = {"folds": [[0, 5], [1, 5]], "squares": [square, f"-{square}"], "reached": True}
-    equations = LengthEquations(sheet, [0, 1, 5], 64, Drive(sheet, claim))
+    equations = LengthEquations(sheet, [0, 1, 5], 64, PrescribedAngles(sheet, claim))
     scale = float((1 << 64) / equations.unit)
     centre = [0] * equations.size
     for v, fold, turn in ((4, (0, 5), 0.3), (2, (1, 5), -0.3)):
@@ -186,13 +186,13 @@ def test_folds_that_end_on_the_other_side() -> None:
         k = equations.place[v]
         centre[k : k + 3] = [int(c * scale) for c in moved]
     here = Ball(centre, [0] * equations.size)
-    check_reached(equations, Drive(sheet, claim), here)
+    check_reached(equations, PrescribedAngles(sheet, claim), here)
     claim["squares"] = [square, square]
     message = "the driven fold (1, 5) may end on the other side"
     with without(message):
-        check_reached(equations, Drive(sheet, claim), here)
+        check_reached(equations, PrescribedAngles(sheet, claim), here)
     with pytest.raises(CertificateError) as caught:
-        check_reached(equations, Drive(sheet, claim), here)
+        check_reached(equations, PrescribedAngles(sheet, claim), here)
     assert str(caught.value) == message
 
 
@@ -233,7 +233,7 @@ def test_driven_folds_that_come_back_are_flat_at_the_end() -> None:
     drive = document["claims"]["drive"]
     drive["squares"] = [str(Fraction(q) / 1000) for q in drive["squares"]]
     drive["reached"] = True
-    message = "a motion that returns ends with its driven folds flat"
+    message = "a motion that returns to the flat state does not end at given angles"
     with without(message):
         verified(document)
     refused(document, message)
@@ -243,11 +243,11 @@ def test_a_driven_motion_has_no_node() -> None:
     """The patch of a branch point knows nothing of the equations of a drive."""
     document = given()
     sheet = read_sheet(document["pattern"])[0]
-    drive = Drive(sheet, document["claims"]["drive"])
+    drive = PrescribedAngles(sheet, document["claims"]["drive"])
     equations = LengthEquations(sheet, document["evidence"]["pinned"], 64, drive)
     with pytest.raises(CertificateError) as caught:
         arc_of(equations, [5], {})
-    assert str(caught.value) == "a driven motion has a node"
+    assert str(caught.value) == "a motion with driven folds cannot have a branch point"
 
 
 # --- back to the flat state ----------------------------------------------------------------------
@@ -289,8 +289,8 @@ def test_a_motion_that_comes_back() -> None:
 
 def test_it_comes_back_along_another_half_branch() -> None:
     for key, message in (
-        ("vertex_signs", "vertex 4 has another sign"),
-        ("side", "the side is another"),
+        ("vertex_signs", "vertex 4 does not have the claimed sign"),
+        ("side", "the side is not the claimed one"),
     ):
         document = back()
         claim = document["claims"]["return"]
@@ -318,7 +318,7 @@ def test_a_motion_that_comes_back_claims_no_contact() -> None:
     document = back()
     document["claims"]["clear"] = "1/1000"
     document["evidence"]["contacts"] = {"tube": 1, "clear": 0}
-    refused(document, "a motion that returns claims a branch point, or contacts")
+    refused(document, "a motion that returns may not claim a branch point at its end, or contacts")
 
 
 def test_a_motion_that_comes_back_is_shorter_than_claimed() -> None:

@@ -108,8 +108,8 @@ def test_the_claims_come_last_and_once() -> None:
     header, loop, claims = given_lines(ONE)
     refused([header, loop], "1 loop holds, but the claims are missing", UnfinishedError)
     refused([header], "0 loops hold, but the claims are missing", UnfinishedError)
-    refused([header, claims, loop], "something follows the claims")
-    refused([header, loop, claims, claims], "something follows the claims")
+    refused([header, claims, loop], "a line follows the claims")
+    refused([header, loop, claims, claims], "a line follows the claims")
     refused(
         [header, loop, claims | {"more": 1}],
         "the last line: expected an object with the keys claims",
@@ -134,7 +134,7 @@ def test_every_claim_is_compared() -> None:
                 with pytest.raises(FormatError):
                     verified(forged)
             else:
-                refused(forged, f"{key} = {other!a} is {true[key]!a}")
+                refused(forged, f"claim {key} = {other!a}, but it is {true[key]!a}")
     forged = given_lines(ONE)
     forged[-1]["claims"]["more"] = 1
     refused(
@@ -148,7 +148,7 @@ def test_what_is_not_complete_is_not_claimed_complete() -> None:
     forged = given_lines(ONE)
     del forged[1]
     forged[-1]["claims"] |= {"loops": 0, "matched": 0}
-    refused(forged, "complete = True is False")
+    refused(forged, "claim complete = True, but it is False")
     forged[-1]["claims"]["complete"] = False
     assert verified(forged)["matched"] == 0
     forged = given_lines(NODE)
@@ -260,7 +260,10 @@ def test_numbers_out_of_range() -> None:
 
 
 def test_other_names_are_refused() -> None:
-    for end, message in (("from", "it begins along another"), ("to", "it ends along another")):
+    for end, message in (
+        ("from", 'it does not begin along the ray "from"'),
+        ("to", 'it does not end along the ray "to"'),
+    ):
         for change in ({"side": -1}, {"side": 0}, {"vertex_signs": [0]}, {"vertex_signs": None}):
             forged = given_lines(ONE)
             entry = forged[1][end]
@@ -280,7 +283,7 @@ def test_other_names_are_refused() -> None:
                 verified(forged)
         forged = given_lines(ONE)
         forged[1][end]["vertex_signs"].append(1)
-        refused(forged, "vertex_signs has not 1 entries")
+        refused(forged, "vertex_signs does not have 1 entries")
 
 
 def test_a_landing_on_the_mirror_image_is_refused() -> None:
@@ -290,7 +293,9 @@ def test_a_landing_on_the_mirror_image_is_refused() -> None:
         verified(forged)
     forged = given_lines(ONE)
     forged[1]["evidence"]["landing"]["tau"] = 0
-    refused(forged, "loop 0: a loop does not land before the flat state")
+    refused(
+        forged, "loop 0: the last tube of a motion must meet the start tube before the flat state"
+    )
 
 
 def test_a_landing_may_be_described_by_its_mirror_image() -> None:
@@ -301,7 +306,7 @@ def test_a_landing_may_be_described_by_its_mirror_image() -> None:
     landing["tau"] *= -1
     assert verified(forged) == forged[-1]["claims"]
     forged[1]["to"]["side"] *= -1
-    refused(forged, "loop 0: it ends along another")
+    refused(forged, 'loop 0: it does not end along the ray "to"')
 
 
 def test_a_landing_in_the_same_direction_is_refused() -> None:
@@ -324,7 +329,7 @@ def test_a_loop_lands_after_it_has_entered_the_last_tube() -> None:
     )
     path = Path(later, sheet.equations.bits)
     with pytest.raises(
-        CertificateError, match=r"^a motion meets a branch point, or lands, on no tube$"
+        CertificateError, match=r"^a motion meets a branch point, or lands, where it is on no tube$"
     ):
         path.meet(*later)
     path.enter(tube)
@@ -334,7 +339,7 @@ def test_a_loop_lands_after_it_has_entered_the_last_tube() -> None:
         path.leave(Fraction(-1, 1000))
     forged = given_lines(ONE)
     forged[1]["evidence"]["steps"] = []
-    refused(forged, "loop 0: a motion meets a branch point, or lands, on no tube")
+    refused(forged, "loop 0: a motion meets a branch point, or lands, where it is on no tube")
     forged = given_lines(ONE)
     steps_of(forged)[1]["exit"] = -steps_of(forged)[1]["exit"]
     refused(forged, "loop 0: a motion leaves a tube before it enters")
@@ -425,8 +430,8 @@ def test_keys_of_a_node() -> None:
     for key, value, message in (
         ("flat", None, "flat is not a list"),
         ("flat", ["9"], "flat vertex is not a natural number"),
-        ("node", [], f"node has not {_node()[0].equations.size} entries"),
-        ("centre", [1 << 200], f"centre has not {_node()[0].equations.size} entries"),
+        ("node", [], f"node does not have {_node()[0].equations.size} entries"),
+        ("centre", [1 << 200], f"centre does not have {_node()[0].equations.size} entries"),
         ("entry", None, "None is not an integer"),
         ("exit", True, "True is not an integer"),
         ("reach", 0, "the reach is out of range"),
@@ -441,10 +446,10 @@ def test_keys_of_a_node() -> None:
 def test_vertices_that_are_not_flat_are_refused() -> None:
     sheet = _node()[0]
     interior, flat = sheet.given.interior, node()["flat"]
-    inner = "a branch point has no vertices that are flat, or none that fold"
+    inner = "the flat vertices of a branch point are none, or not sorted interior vertices"
     for other in ([], [*flat, *flat], [sheet.given.boundary[0]], [99], [*reversed(interior)]):
         not_passed(node() | {"flat": other}, inner)
-    square = "a flat patch leaves no unknowns, or not as many equations"
+    square = "with a flat patch there are no unknowns, or not as many equations as these"
     not_passed(node() | {"flat": interior}, square)  # the flat state
     for v in interior:
         degree = len(sheet.given.star(v))
@@ -497,7 +502,7 @@ def test_a_node_must_be_passed_in_the_direction_of_the_loop() -> None:
     entry["row"] = [-t for t in entry["row"]]
     begin, end = entry["entry"], entry["exit"]
     entry["entry"], entry["exit"] = -begin, end
-    not_passed(entry, "an arc does not go through its node")
+    not_passed(entry, "an arc does not go through its branch point")
     # The same arc run through the other way: its point on the tube is now after the branch point.
     sheet, _, before = _node()
     tube = tube_of(sheet.equations, json.loads(before))
@@ -521,7 +526,7 @@ def test_an_arc_must_go_through_its_node() -> None:
         entry = node()
         entry["entry"] = entry["entry"] if begin is None else begin
         entry["exit"] = entry["exit"] if end is None else end
-        not_passed(entry, "an arc does not go through its node")
+        not_passed(entry, "an arc does not go through its branch point")
     for key in ("entry", "exit"):
         entry = node()
         entry[key] *= 1 << 20
@@ -533,7 +538,10 @@ def test_nodes_follow_tubes() -> None:
     steps = loop["evidence"]["steps"]
     k = next(k for k, step in enumerate(steps) if "flat" in step)
     loop["evidence"]["steps"] = steps[k : k + 1]
-    refused([header, loop, claims], "loop 0: a motion meets a branch point, or lands, on no tube")
+    refused(
+        [header, loop, claims],
+        "loop 0: a motion meets a branch point, or lands, where it is on no tube",
+    )
 
 
 def test_an_arc_holds_configurations() -> None:

@@ -104,14 +104,14 @@ def test_every_sign_is_compared(name: str) -> None:
         for other in [x for x in (-1, 0, 1) if x != sign] + [bool(sign), str(sign), None]:
             forged = given(name)
             forged["claims"]["vertex_signs"][k] = other
-            refused(forged, f"vertex {interior[k]} has another sign")
+            refused(forged, f"vertex {interior[k]} does not have the claimed sign")
     for other in (-1, 0, True, "1", None):
         forged = given(name)
         forged["claims"]["side"] = other
-        refused(forged, "the side is another")
+        refused(forged, "the side is not the claimed one")
     forged = given(name)
     forged["claims"]["vertex_signs"].append(1)
-    refused(forged, f"vertex_signs has not {len(interior)} entries")
+    refused(forged, f"vertex_signs does not have {len(interior)} entries")
 
 
 def test_signs_that_are_not_certain_are_refused() -> None:
@@ -149,7 +149,7 @@ def test_only_sheets_whose_branches_have_names() -> None:
         "vertices": [["0", "0"], ["2", "0"], ["2", "2"], ["0", "2"]],
         "triangles": [[0, 1, 2], [0, 2, 3]],
     }
-    refused(forged, "nothing can fold")
+    refused(forged, "no vertex of the sheet can fold")
 
 
 # --- numbers out of range ------------------------------------------------------------------------
@@ -162,9 +162,9 @@ def test_numbers_out_of_range() -> None:
         ({"bits": -1}, "bits is not a natural number"),
         ({"tubes": [None] * 4097}, beyond("the tubes", 4097, 4096, "MOST_TUBES")),
         ({"tubes": {}}, "tubes is not a list"),
-        ({"pinned": [0, 1, 2]}, "what is pinned is no face"),
-        ({"pinned": [0, 0, 1]}, "what is pinned is no face"),
-        ({"pinned": [0, 1]}, "pinned has not 3 entries"),
+        ({"pinned": [0, 1, 2]}, "the pinned vertices are not those of a face"),
+        ({"pinned": [0, 0, 1]}, "the pinned vertices are not those of a face"),
+        ({"pinned": [0, 1]}, "pinned does not have 3 entries"),
     ):
         forged = given()
         forged["evidence"] |= change
@@ -181,7 +181,7 @@ def test_numbers_out_of_range() -> None:
         ("start", {"halvings": 2049}, "halvings are out of range"),
         ("start", {"reach": 0}, "the reach is out of range"),
         ("start", {"reach": 16 * 64 + 1}, "the reach is out of range"),
-        ("start", {"held": 99}, "the vertex held at its height is pinned, or none"),
+        ("start", {"held": 99}, "the vertex held at its height is not one that can move"),
         ("start", {"exit": 0}, "the motion does not leave the flat state"),
         ("start", {"exit": -1}, "exit is not a natural number"),
         ("tube", {"reach": 0}, "the reach is out of range"),
@@ -211,10 +211,10 @@ def test_the_work_is_bounded() -> None:
         {"corners": list(corners), "inside": list(inside)}
         for corners, inside in pattern.triangulated_triangles
     ]
-    with pytest.raises(LimitError, match="the products of numbers that are needed, "):
+    with pytest.raises(LimitError, match="the products of numbers that the check needs, "):
         verified(forged)
     forged["evidence"] |= {"tubes": [None] * 100, "bits": 2048}
-    with pytest.raises(LimitError, match="the products of numbers that are needed, "):
+    with pytest.raises(LimitError, match="the products of numbers that the check needs, "):
         verified(forged)
 
 
@@ -413,7 +413,7 @@ def test_the_start_is_that_of_its_branch() -> None:
     )
     forged = given()
     forged["evidence"] = other["evidence"]
-    refused(forged, "vertex 5 has another sign")
+    refused(forged, "vertex 5 does not have the claimed sign")
     document = given()
     sheet = read_sheet(document["pattern"])[0]
     equations = LengthEquations(sheet, document["evidence"]["pinned"], 64)

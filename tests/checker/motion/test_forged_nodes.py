@@ -92,12 +92,12 @@ def test_keys() -> None:
     for place, message in (
         (
             ("claims",),
-            "claims: expected an object with the keys vertex_signs side length branch point clear",
+            "claims: expected an object with the keys vertex_signs side length node clear",
         ),
         (
             ("evidence",),
             "evidence: expected an object with the keys emptied pinned bits start tubes "
-            "branch point "
+            "node "
             "contacts",
         ),
         (("claims", "node"), "node: expected an object with the keys flat clear"),
@@ -118,14 +118,14 @@ def test_a_node_is_claimed_with_its_evidence() -> None:
     refused(forged, f"{names} contacts")
     forged = given()
     del forged["evidence"]["node"]
-    refused(forged, f"{names} branch point contacts")
+    refused(forged, f"{names} node contacts")
 
 
 @pytest.mark.slow
 def test_numbers() -> None:
     size = len(given()["evidence"]["node"]["node"])
     for key, value, message in (
-        ("node", [], f"node has not {size} entries"),
+        ("node", [], f"node does not have {size} entries"),
         ("centre", None, "centre is not a list"),
         ("row", [1 << 124] * size, "a number of the row is out of range"),
         ("reach", 0, "the reach is out of range"),
@@ -146,7 +146,7 @@ def test_numbers() -> None:
 
 
 def test_other_vertices_are_not_flat() -> None:
-    inner = "a branch point has no vertices that are flat, or none that fold"
+    inner = "the flat vertices of a branch point are none, or not sorted interior vertices"
     flat: Any
     for flat, message in (
         ([], inner),
@@ -203,7 +203,7 @@ def test_the_arc_begins_on_the_last_tube() -> None:
     with pytest.raises(CertificateError, match=r"^a motion (enters|does not enter)"):
         verified(forged)
     forged["evidence"]["tubes"] = []
-    refused(forged, "a motion meets a branch point, or lands, on no tube")
+    refused(forged, "a motion meets a branch point, or lands, where it is on no tube")
     forged = given()
     forged["evidence"]["node"]["entry"] += 1 << 36  # nearer to the branch point, beyond the tube
     with pytest.raises(CertificateError, match=r"^a motion (enters|does not enter)"):
@@ -232,7 +232,7 @@ def test_clear_is_true_or_false() -> None:
 
 
 def test_clear_up_to_the_node_is_shown() -> None:
-    message = "the motion is not shown to be clear up to its node"
+    message = "the motion is not shown to be clear up to its branch point"
 
     def before(forged: Document) -> None:
         forged["evidence"]["contacts"]["clear"] = -1
@@ -253,7 +253,7 @@ def test_the_time_that_is_clear_is_at_most_that_of_the_node() -> None:
     def later(forged: Document) -> None:
         forged["claims"]["clear"] = longer(forged["claims"]["clear"], "1.00001")
 
-    stopped("what is clear is shorter than claimed", later)
+    stopped("the clear part of the motion is shorter than claimed", later)
 
 
 @pytest.mark.slow
@@ -261,14 +261,14 @@ def test_there_is_nothing_beyond_the_node() -> None:
     for parameter in (1, 1 << 30, given()["evidence"]["node"]["entry"] - 1):
         forged = given()
         forged["evidence"]["contacts"]["clear"] = parameter
-        refused(forged, "the motion is not shown to be clear up to its node")
+        refused(forged, "the motion is not shown to be clear up to its branch point")
         forged["claims"]["node"]["clear"] = False
         refused(forged, 'the parameter "clear" is out of range')
     forged = given()
     forged["evidence"]["contacts"]["tube"] += 1
-    refused(forged, "the motion is not shown to be clear up to its node")
+    refused(forged, "the motion is not shown to be clear up to its branch point")
     forged["claims"]["node"]["clear"] = False
-    refused(forged, "there is no such tube")
+    refused(forged, "the contacts name a tube that does not exist")
 
 
 def pieces() -> tuple[Any, ...]:
@@ -285,7 +285,8 @@ def test_faces_that_may_touch_on_the_arc() -> None:
     start, tau, steps, claims, contacts = pieces()
     check_contacts(start, tau, steps, claims, contacts)
     arc, begin, end = steps[-1]
-    vague = type("Vague", (), {"node": arc.branch_point, "curve": arc.curve, "bits": arc.bits})()
+    known = {"branch_point": arc.branch_point, "curve": arc.curve, "bits": arc.bits}
+    vague = type("Vague", (), known)()
     box, rate = arc.configuration(begin)
     wide = Ball(box.centre, [r + (1 << arc.bits - 2) for r in box.radii])
     vague.configuration = lambda s: (wide, rate)
@@ -347,4 +348,6 @@ def test_a_motion_through_the_paper_is_not_clear_up_to_its_node() -> None:
     with pytest.raises(CertificateError, match=MAY_TOUCH):
         verified(document)
     document["claims"]["node"]["flat"] = [7, 5]
-    refused(document, "a branch point has no vertices that are flat, or none that fold")
+    refused(
+        document, "the flat vertices of a branch point are none, or not sorted interior vertices"
+    )

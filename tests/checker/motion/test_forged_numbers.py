@@ -143,8 +143,8 @@ def test_empty_lists_prove_nothing() -> None:
         (("evidence", "pinned"), "pinned", 3),
         (("claims", "vertex_signs"), "vertex_signs", 1),
     ):
-        refused(changed(place, []), f"{what} has not {length} entries")
-        refused(changed(place, [1] * (length + 1)), f"{what} has not {length} entries")
+        refused(changed(place, []), f"{what} does not have {length} entries")
+        refused(changed(place, [1] * (length + 1)), f"{what} does not have {length} entries")
     for value in ({}, "", None, 0):
         refused(changed(("evidence", "tubes"), value), "tubes is not a list")
     refused(
@@ -153,7 +153,7 @@ def test_empty_lists_prove_nothing() -> None:
     )
     forged = given_lines(ONE)
     forged[1]["evidence"]["steps"] = []
-    refused_loops(forged, "loop 0: a motion meets a branch point, or lands, on no tube")
+    refused_loops(forged, "loop 0: a motion meets a branch point, or lands, where it is on no tube")
 
 
 def test_a_direction_of_zero_is_refused() -> None:
@@ -193,8 +193,8 @@ def test_numbers_of_thousands_of_digits() -> None:
         (("evidence", "bits"), beyond("the bits", huge, 2048, "MOTION_BITS")),
         ((*FIRST, "halvings"), "halvings are out of range"),
         ((*FIRST, "reach"), "the reach is out of range"),
-        ((*FIRST, "held"), "the vertex held at its height is pinned, or none"),
-        (("evidence", "pinned", 0), "what is pinned is no face"),
+        ((*FIRST, "held"), "the vertex held at its height is not one that can move"),
+        (("evidence", "pinned", 0), "the pinned vertices are not those of a face"),
         ((*CENTRE, 0), "a number of the centre is out of range"),
     ):
         refused(changed(place, huge), message)

@@ -77,10 +77,10 @@ def test_what_is_claimed_is_proved() -> None:
 @pytest.mark.slow
 def test_the_nodes_that_are_passed_are_claimed() -> None:
     for through, message in (
-        (None, "a motion passes branch points that it does not claim, or none"),
-        ([], "the branch points that are passed are others"),
-        ([[5]], "the branch points that are passed are others"),
-        ([[FLAT], [FLAT]], "the branch points that are passed are others"),
+        (None, "a motion passes branch points and claims none, or the other way round"),
+        ([], "the motion passes other branch points than those claimed"),
+        ([[5]], "the motion passes other branch points than those claimed"),
+        ([[FLAT], [FLAT]], "the motion passes other branch points than those claimed"),
         ([[str(FLAT)]], "flat vertex is not a natural number"),
     ):
         forged = given()
@@ -99,13 +99,13 @@ def test_the_nodes_that_are_passed_are_claimed() -> None:
     forged["claims"]["length"] = "0"
     for through in ([], [[FLAT]]):
         forged["claims"]["through"] = through
-        refused(forged, "a motion passes branch points that it does not claim, or none")
+        refused(forged, "a motion passes branch points and claims none, or the other way round")
 
 
 @pytest.mark.slow
 def test_an_arc_goes_through_its_node() -> None:
     """Else the motion might turn back before the branch point, or not reach it."""
-    message = "an arc does not go through its node"
+    message = "an arc does not go through its branch point"
     forged = given()
     arc = next(step for step in forged["evidence"]["tubes"] if "flat" in step)
     k = forged["evidence"]["tubes"].index(arc)
@@ -123,7 +123,7 @@ def test_an_arc_goes_through_its_node() -> None:
 @pytest.mark.slow
 def test_a_motion_does_not_end_at_a_node_that_it_has_passed() -> None:
     """Its arc, met after the branch point, leads away from it (docs/motion.md, Theorem 6)."""
-    message = "an arc does not lead to its node"
+    message = "an arc does not lead to its branch point"
     forged = given()
     steps = forged["evidence"]["tubes"]
     k = next(k for k, step in enumerate(steps) if "flat" in step)

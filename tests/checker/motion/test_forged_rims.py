@@ -76,9 +76,9 @@ def test_the_same_rim_in_other_words() -> None:
     document["claims"]["rim"] = [str(h) for h in heights]
     assert verified(document)["side"] == 1
     document["claims"]["rim"] = [str(-h) for h in heights]
-    with without("the side is another"):
+    with without("the side is not the claimed one"):
         verified(document)
-    refused(document, "the side is another")
+    refused(document, "the side is not the claimed one")
     document["claims"]["side"] = -1
     assert verified(document)["side"] == -1
 
@@ -93,18 +93,18 @@ def test_another_rim() -> None:
 
 def test_heights_that_are_no_rim() -> None:
     for rim in (["0", "1", "0", "1/2"], ["0", "1", "0", "1/2", "3", "0"]):
-        refused(_with(boundary_heights=rim), "rim has not 5 entries")
-    refused(_with(boundary_heights="01023"), "rim is not a list")
-    refused(
-        _with(boundary_heights=["0", "1", "0", "1/2", 3]), "3 is not a rational number in quotes"
-    )
+        refused(_with(rim=rim), "rim does not have 5 entries")
+    refused(_with(rim="01023"), "rim is not a list")
+    refused(_with(rim=["0", "1", "0", "1/2", 3]), "3 is not a rational number in quotes")
 
 
 def test_a_rim_in_one_plane() -> None:
     """It has no ratio, by which the checker would divide; nothing else says so."""
     for heights in ([x + 2 * y - 3 for x, y in STAR.vertices[:5]], [0] * 5):
-        forged = _with(boundary_heights=[str(h) for h in heights])
-        said = f"the rim {', '.join(map(str, heights))} is in one plane: no ratio to keep"
+        forged = _with(rim=[str(h) for h in heights])
+        said = (
+            f"the given heights {', '.join(map(str, heights))} lie in one plane: there is no ratio"
+        )
         with without(said):
             refused(forged, "malformed: ZeroDivisionError while checking")
         refused(forged, said)
@@ -118,7 +118,7 @@ def _with(**claims: object) -> Document:
 
 def test_bits_of_the_rim() -> None:
     """Rows of integers that do not fit are refused, not rounded."""
-    document = _with(boundary_heights=["0", "1", "0", "1/2", f"{10**40 + 1}/{10**40}"])
+    document = _with(rim=["0", "1", "0", "1/2", f"{10**40 + 1}/{10**40}"])
     refused(document, "the coordinates need more bits")
 
 
@@ -207,7 +207,7 @@ def test_the_flat_state_is_no_node_to_come_to() -> None:
         "reach": arc.reach,
         "entry": entry,
     }
-    message = "an arc does not lead to its node"
+    message = "an arc does not lead to its branch point"
     with without(message):
         verified(document)
     refused(document, message)

@@ -238,7 +238,7 @@ def test_parts() -> None:
             "a leaf: expected an object with the keys folds dimension cones number extending",
         ),
         ({"folds": {}}, "folds is not a list"),
-        ({"folds": [[0]]}, "a fold has not 2 entries"),
+        ({"folds": [[0]]}, "a fold does not have 2 entries"),
         ({"dimension": -1}, "dimension is not a natural number"),
         ({"cones": ["6"]}, "a vertex is not a natural number"),
         ({"cones": 6}, "cones is not a list"),

@@ -105,7 +105,7 @@ SIDES = [(0, 1), (1, 2), (2, 3), (0, 3)]
 @pytest.mark.parametrize(
     ("points", "edges", "message"),
     [
-        ([], [(1, 0), (1, 2), (2, 3), (0, 3)], "1-0 is no edge"),
+        ([], [(1, 0), (1, 2), (2, 3), (0, 3)], "1-0 is not an edge"),
         ([(1, 1)], [], "vertex 4 is on no edge"),
         (
             [(1, 1), (2, 1), (1, 2)],
@@ -248,7 +248,8 @@ def test_numbers_that_extend() -> None:
     [support] = supports_of(made)
     where = "-".join(map(str, support["vertices"]))
     support["extending"] = None
-    stopped(made, f"all modes of the support of vertices {where} extend")
+    open_number = "extend, but their number is left open"
+    stopped(made, f"all modes of the support of vertices {where} {open_number}")
     support["extending"] = 31
     stopped(made, f"32 modes of the support of vertices {where} extend, not 31")
     support["modes"] = None

@@ -26,7 +26,7 @@ NESTED = "listing-nested-triangles"
 def test_triangles_that_are_left_out_are_missed() -> None:
     forged = given(NESTED)
     forged["evidence"]["triangles"] = []
-    with pytest.raises(CertificateError, match="center has not 6 entries"):
+    with pytest.raises(CertificateError, match="center does not have 6 entries"):
         verified(forged)
 
 
@@ -35,7 +35,7 @@ def test_corners_are_vertices() -> None:
         for key in ("corners", "inside"):
             forged = given(NESTED)
             forged["evidence"]["triangles"][0][key][0] = corner
-            refused(forged, f"{corner!a} is no vertex")
+            refused(forged, f"{corner!a} is not a vertex")
 
 
 def test_corners_go_round_counter_clockwise() -> None:
@@ -68,7 +68,7 @@ def test_all_three_sides_are_edges() -> None:
             continue
         forged = given(NESTED)
         forged["evidence"]["triangles"][0]["corners"] = list(corners)
-        refused(forged, f"{list(corners)} is no 3-cycle of edges")
+        refused(forged, f"{list(corners)} is not a 3-cycle of edges")
         found += 1
     assert found > 30
     assert entry["corners"]
@@ -108,7 +108,7 @@ def test_multipliers_are_positive_and_definite() -> None:
                 refused(forged, "a multiplier is not positive")
         forged = given(name)
         forged["evidence"]["triangles"][0]["multipliers"].pop()
-        refused(forged, f"multipliers has not {count} entries")
+        refused(forged, f"multipliers does not have {count} entries")
         for key in ("corners", "inside", "multipliers"):
             forged = given(name)
             del forged["evidence"]["triangles"][0][key]

@@ -91,7 +91,7 @@ def test_folds_that_may_fold(around: list[Point], kept: list[int]) -> None:
 @pytest.mark.parametrize("edge", [(1, 1), (2, 1), (1, 4)])
 def test_edges_have_two_points(edge: tuple[int, int]) -> None:
     points = [(RATIONAL.number(x), RATIONAL.number(y)) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
-    with pytest.raises(CertificateError, match=f"^{edge[0]}-{edge[1]} is no edge$"):
+    with pytest.raises(CertificateError, match=f"^{edge[0]}-{edge[1]} is not an edge$"):
         PanelSheet(RATIONAL, points, [edge])
 
 

@@ -53,13 +53,13 @@ def compared(pattern, letters):
     if near.status is PROVED:
         assert near.distance == least
     expected = sorted(letters for distance, letters in known if distance == near.distance)
-    found = sorted(text(half.assignment) for half in near.halves)
+    found = sorted(text(ray.assignment) for ray in near.rays)
     assert found == expected if near.complete else set(found) <= set(expected)
-    for half in near.halves:
-        other = near.differences(half)
+    for ray in near.rays:
+        other = near.differences(ray)
         assert len(other) == near.distance
         assert all(wanted == letters[fold] != actual for fold, (wanted, actual) in other.items())
-        assert all(actual == half.assignment[fold] for fold, (_, actual) in other.items())
+        assert all(actual == ray.assignment[fold] for fold, (_, actual) in other.items())
     return near
 
 
@@ -119,14 +119,14 @@ def test_one_or_two_letters_of_a_large_sheet_are_corrected(n):
         assert not found.matches
         near = nearest_branches(found)
         assert (near.status, near.distance, near.by) == (PROVED, number, "search")
-        assert branch.sign_text in {half.sign_text for half in near.halves}
+        assert branch.sign_text in {ray.sign_text for ray in near.rays}
 
 
 def test_letters_of_a_branch_are_their_own_nearest():
     found = match("two-vertex", "MVVVMVM")
     near = nearest_branches(found)
     assert (near.distance, near.status, near.complete, near.by) == (0, PROVED, True, "match")
-    assert near.halves == found.matches
+    assert near.rays == found.matches
 
 
 @pytest.mark.usefixtures("unlisted")

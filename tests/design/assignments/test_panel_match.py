@@ -117,7 +117,7 @@ def test_twists_are_refuted_by_vectors_that_forgeries_do_not_have():
         {**good.planes, v: (float(x), float(y))},
         {**good.planes, v: (x + Fraction(1, 10**9), y)},
         {u: (Fraction(0), Fraction(0)) for u in good.planes},
-        {**good.planes, max(pattern.border): (x, y)},
+        {**good.planes, max(pattern.boundary_set): (x, y)},
     ):
         assert not PanelRefutation(planes).holds(pattern, letters)
     free = dict.fromkeys(letters, "U")

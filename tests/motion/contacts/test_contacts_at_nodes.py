@@ -66,7 +66,7 @@ def test_the_contact_on_the_arc_is_that_on_tubes():
     [
         ({"to": 1}, 'the parameter "to" is out of range'),
         ({"from": "before"}, 'the parameter "from" is out of range'),
-        ({"to": "from"}, "the fold does not close"),
+        ({"to": "from"}, "the fold of the contact is not proved to close"),
         ({"time": "99999/100000"}, "the contact may be later than claimed"),
     ],
 )

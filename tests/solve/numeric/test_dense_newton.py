@@ -15,8 +15,8 @@ from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.equations.branch_system import chamber_chart
 from exactfold.rigidity.timelike import round_cone
 from exactfold.solve.numeric.dense_newton import (
-    Ends,
     NappeSystem,
+    SweptPoints,
     sign_vectors,
     solve_each,
 )
@@ -33,7 +33,7 @@ PATTERNS = {
 }
 
 
-def every_end(pattern: CreasePattern) -> Ends:
+def every_end(pattern: CreasePattern) -> SweptPoints:
     return NappeSystem(chamber_chart(pattern)).ends(sign_vectors(0, 1 << pattern.Vi, pattern.Vi))
 
 

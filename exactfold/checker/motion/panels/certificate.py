@@ -1,8 +1,8 @@
-"""Certificates of motions of rigid panels: how they fold, and what touches first.
+"""Certificates of motions of rigid panels: how the panels fold, and which touch first.
 
-All positions are analytic functions of a parameter x of the time (`times`). The evidence is enough
-to verify that the panels fold (`folding`); what is claimed of this motion is in `CLAIMS`, an object
-for each claim (docs/panel_motion.md, 5 and 6).
+All positions are analytic functions of a parameter x, which determines the time (`times`). The
+evidence proves that the panels fold (`folding`). `CLAIMS` lists the claims that a file may make
+about this motion, one class for each (docs/panel_motion.md, 5 and 6).
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from .contacts import Clear, Contact
 from .folding import Driven, Folding, OwnRates, PanelClaim
 
 CLAIMS: tuple[type[PanelClaim], ...] = (Driven, OwnRates, Clear, Contact)
-"""All claims that there are, in the order in which a summary has them."""
+"""All claims, in the order in which a summary states them."""
 
 
 class _Optional(TypedDict, total=False):
@@ -27,7 +27,7 @@ class _Optional(TypedDict, total=False):
 
 
 class VerifiedPanelMotion(_Optional):
-    """What is verified of a motion of rigid panels: its claims, and the digest of the pattern."""
+    """The verified claims of a motion of rigid panels, and the digest of the pattern."""
 
     assignment: str
     drivers: list[list[int]]
@@ -36,15 +36,14 @@ class VerifiedPanelMotion(_Optional):
 
 
 PLAIN, RATED = 1, 2
-"""The versions: of folds that are driven alike, and of folds that move at rates of their own."""
+"""The versions: in 1 all drivers move at the same rate, in 2 each driver has a rate of its own."""
 
 
 @refusing()
 def check(data: dict[str, Any]) -> VerifiedPanelMotion:
     """Verify every claim of a loaded certificate; raises `CertificateError` at the first failure.
 
-    What is claimed is that of the classes in `CLAIMS`. Returns the claims and the SHA-256 of the
-    pattern.
+    The classes in `CLAIMS` say what is claimed. Returns the claims and the SHA-256 of the pattern.
     """
     sheet, digest = read_panels(data["pattern"])
     rated = data["version"] == RATED
@@ -57,7 +56,7 @@ def check(data: dict[str, Any]) -> VerifiedPanelMotion:
 
 
 def summary(claims: VerifiedPanelMotion) -> str:
-    """One line for verified claims."""
+    """One line that states the verified claims."""
     return f"VALID: {words(CLAIMS, dict(claims))}; sha256 {claims['sha256']}"
 
 
@@ -69,4 +68,4 @@ PANEL_MOTION = DocumentKind(
     check=check,
     summary=summary,
 )
-"""A motion of rigid panels, and what touches first (docs/panel_motion.md)."""
+"""A motion of rigid panels, and which panels touch first (docs/panel_motion.md)."""

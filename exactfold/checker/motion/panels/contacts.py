@@ -1,7 +1,7 @@
-"""The first contact of a motion of panels: how long none touch, and by when some do.
+"""The first contact of a motion of panels: until when none touch, and by when some do.
 
-Planes are found that part all panels until a parameter. At a later one an edge of a panel runs
-through another, or folds are closed (docs/panel_motion.md, 6).
+Up to some parameter planes part all panels. At a later parameter an edge of one panel runs through
+another panel, or folds are closed (docs/panel_motion.md, 6).
 """
 
 from __future__ import annotations
@@ -21,17 +21,18 @@ _KINDS = "contact", "flat-fold"
 
 
 class Clear(PanelClaim):
-    """No two panels touch beyond what they share at any time from 0 until before `clear`."""
+    """From the time 0 until before the time `clear`, no two panels touch beyond what they share."""
 
     names = ("clear",)
     needs = ("clear",)
     always = True
 
     def check(self, folding: Folding) -> None:
-        """Planes part them."""
+        """Refuse a motion unless planes part the panels until then."""
         last = folding.parameter(self.evidence["clear"])
         clear = parse_rational(self.claims["clear"])
-        require(clear <= folding.clock.time(last)[0], "what is clear is shorter than claimed")
+        long = clear <= folding.clock.time(last)[0]
+        require(long, "the clear part of the motion is shorter than claimed")
         places, panels = folding.places, folding.panels
 
         def touching(piece: Piece | None) -> str:
@@ -44,32 +45,32 @@ class Clear(PanelClaim):
 
     @staticmethod
     def said(claims: Document) -> str:
-        """Until when."""
+        """The time until which no panels touch."""
         return f"; no two panels touch before the time {_times(claims)[0]}"
 
 
 class Contact(PanelClaim):
-    """Some panels touch at or before the second `time`, and none before the first.
+    """Some panels touch at or before the second `time`, and none touch before the first.
 
-    An edge of one of the two `faces` runs through the other, or the `folds` are closed.
+    Either an edge of one of the two `faces` runs through the other face, or the `folds` are closed.
     """
 
     names = ("contact",)
 
     @classmethod
     def needed_by(cls, claims: Document) -> tuple[str, ...]:
-        """The parameter at which an edge runs through a panel."""
+        """The key of the parameter at which an edge runs through a panel, if one does."""
         through = "contact" in claims and claims["contact"]["kind"] == "contact"
         return ("contact",) if through else ()
 
     def check(self, folding: Folding) -> None:
-        """By then they touch."""
+        """Refuse a motion in which the panels are not proved to touch by then."""
         contact, clock = self.claims["contact"], folding.clock
         keys(contact, "kind time faces folds", "contact")
         require(contact["kind"] in _KINDS, "the contact is of no known kind")
         first, latest = map(parse_rational, items(contact["time"], "time", 2))
         clear = parse_rational(self.claims["clear"])
-        require(first == clear, "a contact is not claimed from where the motion is clear")
+        require(first == clear, 'the first "time" of a contact differs from "clear"')
         if contact["kind"] == "contact":
             end = folding.parameter(self.evidence["contact"])
             by = clock.time(end)[1]
@@ -81,7 +82,7 @@ class Contact(PanelClaim):
 
     @staticmethod
     def said(claims: Document) -> str:
-        """What touches, and by when."""
+        """Which panels touch or which folds close, and by when."""
         contact = claims["contact"]
         what = "the folds are closed" if contact["folds"] else "a fold is closed"
         if contact["kind"] == "contact":
@@ -90,7 +91,7 @@ class Contact(PanelClaim):
 
 
 def _times(claims: Document) -> list[str]:
-    """The times claimed, each also in degrees."""
+    """The claimed times, each also in degrees."""
     contact = claims.get("contact")
     times = [parse_rational(t) for t in ([claims["clear"]] if contact is None else contact["time"])]
     pi = time_of(Fraction(1))
@@ -103,23 +104,24 @@ def _times(claims: Document) -> list[str]:
 
 
 def _told_apart(values: list[Fraction]) -> list[str]:
-    """Numbers with six digits, or as many as make them different: the first rounded down, then up.
+    """A lower bound, and an upper bound if there is one, in six digits or more.
 
-    They are bounds, from below and from above.
+    The lower bound is rounded down and the upper bound up. They have as many digits, up to 16, as
+    are needed to tell them apart.
     """
     for digits in range(6, 17):
-        found = [rounded(value, digits, up=k > 0) for k, value in enumerate(values)]
-        if len(set(found)) == len(found):
+        texts = [rounded(value, digits, up=k > 0) for k, value in enumerate(values)]
+        if len(set(texts)) == len(texts):
             break
-    return found
+    return texts
 
 
 def _check_crossing(folding: Folding, end: Fraction, claim: Document) -> None:
-    """An edge of one of two panels runs through the other at the parameter `end`.
+    """Raise unless an edge of one of two panels runs through the other at the parameter `end`.
 
-    Each has its corners, counter-clockwise from any of them.
+    Each panel is given by its corners, counter-clockwise from any of them.
     """
-    require(claim["folds"] == [], "a contact has no folds")
+    require(claim["folds"] == [], "a contact of two faces names folds")
     places, panels = folding.places, folding.panels
     touching = []
     for face in items(claim["faces"], "faces", 2):
@@ -129,12 +131,16 @@ def _check_crossing(folding: Folding, end: Fraction, claim: Document) -> None:
     through = piece is not None and any(
         panels.crossing(piece, end, a, b) for a in touching[0] for b in touching[1]
     )
-    require(through, "no side runs through the other panel")
+    require(through, "no side of one panel is proved to run through the other panel")
 
 
 def _check_closing(drive: DrivenModes, clock: Clock, claim: Document) -> None:
-    """The folds named are closed when the drivers are; some fold is by then, in any motion."""
-    require(claim["faces"] == [], "folds that close have no faces")
+    """Raise unless the named folds are closed at the time pi, at which their driver is closed.
+
+    If no fold is named, the claim only says that some fold is closed by then. This holds in every
+    motion.
+    """
+    require(claim["faces"] == [], "a contact at folds that close names faces")
     folds = [
         tuple(natural(v, "vertex") for v in items(fold, "fold", 2))
         for fold in items(claim["folds"], "folds")
@@ -142,4 +148,4 @@ def _check_closing(drive: DrivenModes, clock: Clock, claim: Document) -> None:
     require(len(set(folds)) == len(folds), "a fold that closes is named twice")
     modes = [mode for mode in drive.modes if mode.linear and clock.closes(mode.driver)]
     closed = {fold for mode in modes for fold in mode.folds}
-    require(closed.issuperset(folds), "a fold is not known to close")
+    require(closed.issuperset(folds), "a named fold is not proved to close")

@@ -1,4 +1,4 @@
-"""Panels cut into triangles, so that what is proved of triangles can be proved of panels."""
+"""Cutting panels into triangles, so that the tests for triangles can be used for panels."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ Triangle = tuple[int, int, int]
 
 
 def cut(sheet: PanelSheet, panel: tuple[int, ...]) -> list[Triangle]:
-    """Triangles that make up a panel, counter-clockwise, with no other corners than its own.
+    """Triangles that make up a panel, counter-clockwise; their corners are corners of the panel.
 
-    Ears are cut off: a corner that turns left, with its neighbours, and no other corner of what is
-    left inside the triangle or on its sides. Every simple polygon has one
-    (docs/panel_motion.md, 6).
+    Ears are cut off one after the other. An ear is a corner that turns left, with its two
+    neighbours, such that no other remaining corner lies inside this triangle or on its sides. Every
+    simple polygon has an ear (docs/panel_motion.md, 6).
     """
     require(len(set(panel)) == len(panel), f"the panel {panel} passes a corner twice")
-    left, found = list(panel), []
+    left, triangles = list(panel), []
     while len(left) > 3:
         k = next(k for k in range(len(left)) if _is_ear(sheet, left, k))
-        found.append(_corner(left, k))
+        triangles.append(_corner(left, k))
         del left[k]
-    found.append(_corner(left, 1))
-    return found
+    triangles.append(_corner(left, 1))
+    return triangles
 
 
 def _corner(walk: list[int], k: int) -> Triangle:

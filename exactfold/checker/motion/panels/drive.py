@@ -1,10 +1,11 @@
-"""Which motion of a sheet of panels a certificate is about, and its fold angles.
+"""The motion of panels that a certificate is about, and its fold angles.
 
-At each vertex whose folds are active the file gives their densities, angle / length at first order.
-With tau = tan(angle / 2) / length a vertex closes iff the vector part of the product of the
-quaternions 1 + tau_j d_j is 0. Modes in which it is 0 for tau = T w, for all T, fold so until all
-their folds are closed. Modes of vertices with at most four active folds, whose transmissions close
-all loops, fold until the first fold is closed (docs/panel_motion.md, 1 and 2).
+For each vertex with active folds the file gives the densities of these folds: angle / length, to
+first order. Let tau = tan(angle / 2) / length. A vertex closes if and only if the vector part of
+the product of the quaternions 1 + tau_j d_j is 0. If it is 0 for tau = T w and all T, at all
+vertices of a mode, the mode folds in this way until all its folds are closed. If the vertices of a
+mode have at most four active folds and its transmissions close all loops, the mode folds until its
+first fold is closed (docs/panel_motion.md, 1 and 2).
 """
 
 from __future__ import annotations
@@ -27,9 +28,11 @@ _Step = tuple[Interval, tuple[Interval, ...] | None]
 
 
 class Mode:
-    """Folds that move together: those at the vertices `near`, or one from boundary to boundary.
+    """Folds that move together: the folds at the vertices `near`, or one between boundary vertices.
 
-    `linear`: whether all vertices close for all T. `way`: vertices with a fold known by then.
+    `linear` says whether all its vertices close for tau = T w and all T. `way` lists the vertices
+    in an order in which fold angles can be computed, each with a neighbour: the fold between the
+    two is known when the vertex is reached.
     """
 
     def __init__(self, driver: Edge, near: Near, linear: bool) -> None:
@@ -44,12 +47,12 @@ class Mode:
 
     @property
     def folds(self) -> set[Edge]:
-        """All of its folds."""
+        """All folds of the mode."""
         return {self.driver} | {pair(v, u) for v, around in self.near.items() for u in around}
 
 
 class DrivenModes:
-    """The modes that fold, verified; all their fold angles follow from those of the drivers."""
+    """The verified modes that fold; the angles of the drivers determine all their fold angles."""
 
     def __init__(self, sheet: PanelSheet, letters: Any, drivers: Any, vertices: Any) -> None:
         self.sheet = sheet
@@ -71,13 +74,13 @@ class DrivenModes:
 
     @property
     def active(self) -> set[Edge]:
-        """All folds that fold."""
+        """All folds that move."""
         return {fold for mode in self.modes for fold in mode.folds}
 
     # --- what is verified ------------------------------------------------------------------------
 
     def _lines(self, near: Near, given: Any) -> dict[int, Line]:
-        found: dict[int, Line] = {}
+        lines: dict[int, Line] = {}
         chosen = []
         for entry in items(given, "vertices"):
             keys(entry, "vertex radicand densities", "a vertex")
@@ -99,15 +102,17 @@ class DrivenModes:
                 densities[u].sign() * (1 if self.letters[pair(v, u)] == "V" else -1)
                 for u in near[v]
             }
-            require(len(turns) == 1 and 0 not in turns, f"the letters at {v} are others")
-            found[v] = Line(densities, radicand)
-        return found
+            agree = len(turns) == 1 and 0 not in turns
+            require(agree, f"the densities at {v} do not have the signs of the letters")
+            lines[v] = Line(densities, radicand)
+        return lines
 
     def _driven(self, near: Near, active: list[Edge], drivers: list[Edge]) -> list[Mode]:
-        """The modes, each with its one driver, all of them verified."""
-        found, left = [], set(active)
+        """The verified modes, each with its one driver."""
+        modes, left = [], set(active)
         for driver in drivers:
-            require(driver in left, f"{driver} drives nothing, or what another fold drives")
+            free = driver in left
+            require(free, f"the driver {driver} is not active, or another driver moves it already")
             part: Near = {}
             waiting = [v for v in driver if v in near]
             while waiting:
@@ -118,9 +123,9 @@ class DrivenModes:
             mode = Mode(driver, dict(sorted(part.items())), all(map(self._closes, part)))
             left -= mode.folds
             self._verify(mode)
-            found.append(mode)
-        require(not left, f"nothing drives {sorted(left)[:1]}")
-        return found
+            modes.append(mode)
+        require(not left, f"no driver moves the fold {sorted(left)[:1]}")
+        return modes
 
     def _verify(self, mode: Mode) -> None:
         """Refuse a mode that is not proved to fold."""
@@ -133,7 +138,7 @@ class DrivenModes:
             require(folds, f"the loop {name(loop)} does not stay closed")
 
     def _closes(self, v: int) -> bool:
-        """Whether a vertex closes with tau = T w for all T."""
+        """Whether a vertex closes for tau = T w and all T."""
         densities = self._modes.lines[v][0].densities
         zero = next(iter(densities.values())).tower.number(0)
         one = zero.tower.number(1)
@@ -151,12 +156,12 @@ class DrivenModes:
         return not any(part.sign() for row in whole for part in row[1:])
 
     def _verify_line(self, v: int) -> None:
-        """Refuse a vertex unless the transmissions of its densities are known."""
+        """Refuse a vertex unless its densities are a line of motions with known transmissions."""
         near, densities = self._modes.near[v], self._modes.lines[v][0].densities
         if len(near) == 2 and self._closes(v):
             return
-        require(len(near) == 4, f"the vertex {v} does not close, and has not four active folds")
-        # That all sectors are less than pi follows: else the form is definite (docs/panels.md, 1).
+        require(len(near) == 4, f"vertex {v} does not close, and does not have four active folds")
+        # All sectors are less than pi, since otherwise the form is definite (docs/panels.md, 1).
         d = [self.sheet.vector(v, u) for u in near]
         w = [densities[u] for u in near]
         zero = w[0].tower.number(0)
@@ -164,17 +169,18 @@ class DrivenModes:
         sums.append(
             sum((w[k] * w[j] * cross(d[k], d[j]) for j in range(4) for k in range(j)), zero)
         )
-        require(not any(s.sign() for s in sums), f"the vertex {v} does not move so")
+        moves = not any(s.sign() for s in sums)
+        require(moves, f"the densities at {v} are not those of a motion to second order")
 
     # --- fold angles -----------------------------------------------------------------------------
 
     def tangents(self, driven: Callable[[Edge], _Pair]) -> dict[Edge, _Pair]:
-        """For each active fold (C, S) with S / C = tan(angle / 2), from those of the drivers.
+        """For each active fold a pair (C, S) with S / C = tan(angle / 2).
 
-        Raises `ZeroDivisionError` where that is not certain: in modes that are not linear, where a
-        fold may be closed.
+        `driven` gives the pairs of the drivers. Raises `ZeroDivisionError` if the pairs are not
+        certain, because a fold of a mode that is not linear may be closed.
         """
-        found: dict[Edge, _Pair] = {}
+        pairs: dict[Edge, _Pair] = {}
         for mode in self.modes:
             c, s = driven(mode.driver)
             start = s if self.letters[mode.driver] == "V" else Series([]) - s
@@ -187,21 +193,22 @@ class DrivenModes:
             if not mode.linear and any(map(may_be_closed, taus.values())):
                 raise ZeroDivisionError("a fold may be closed")
             for fold, (below, above) in taus.items():
-                found[fold] = below, above.times(self._lengths[fold])
-        return found
+                pairs[fold] = below, above.times(self._lengths[fold])
+        return pairs
 
     def _passed(self, mode: Mode, known: _Pair, v: int, start: int, end: int) -> _Pair:
-        """The pair of one fold at a vertex from that of another.
+        """The pair of one fold at a vertex, computed from the pair of another fold.
 
-        With tau = N / C the other has the quotient N u / C, where (p + q tau^2) u^2 + b u + a = 0.
-        So u = C z with A z^2 + b C z + a = 0, A = p C^2 + q N^2, and the quotient is N z.
+        If tau = N / C at the known fold, the other has tau = N u / C, where
+        (p + q tau^2) u^2 + b u + a = 0. So u = C z with A z^2 + b C z + a = 0 and
+        A = p C^2 + q N^2, and the other tau is N z.
         """
         c, n = known
         gain, quadratic = self._step(mode, v, start, end)
         if quadratic is None:
             return c, n.times(gain)
         p, q, b = quadratic
-        # Of the two roots that which is the gain where the fold is flat.
+        # Of the two roots, take the one that equals the gain where the fold is flat.
         side = (p * gain + p * gain + b).sign()
         last = -(gain * (p * gain + b))
         twice = last + last
@@ -218,7 +225,7 @@ class DrivenModes:
         return below.times(factor), above.times(factor)
 
     def _step(self, mode: Mode, v: int, start: int, end: int) -> _Step:
-        """The gain from one fold at a vertex to another, and (p, q, b) if it is not linear."""
+        """The gain from one fold at a vertex to another, and (p, q, b), None if it is linear."""
         key = (v, start, end)
         if key not in self._steps:
             if mode.linear:
@@ -231,29 +238,29 @@ class DrivenModes:
 
 
 def may_be_closed(tangent: _Pair) -> bool:
-    """Whether C of a tangent S / C may be 0 or negative, as it is from where the fold is closed."""
+    """Whether C of a tangent S / C may be 0 or negative, as at a fold that is closed or beyond."""
     return tangent[0].coefficients[0].sign() <= 0
 
 
 def length(sheet: PanelSheet, v: int, u: int) -> Interval:
-    """The distance of two vertices."""
+    """The distance between two vertices."""
     d = sheet.vector(v, u)
     return thin(dot(d, d)).root()
 
 
 def _letters(sheet: PanelSheet, given: Any) -> dict[Edge, str]:
-    """The letter of every fold."""
+    """Read the letter of every fold."""
     right = isinstance(given, str) and len(given) == len(sheet.folds) and set(given) <= set("MVF")
-    require(right, "the assignment has not a letter M, V or F for each fold")
+    require(right, "the assignment does not have a letter M, V or F for each fold")
     return dict(zip(sheet.folds, given, strict=True))
 
 
 def _edges(value: Any) -> list[Edge]:
-    found = []
+    edges = []
     for edge in items(value, "drivers"):
         i, j = (natural(v, "a vertex") for v in items(edge, "an edge", 2))
-        found.append((i, j))
-    return found
+        edges.append((i, j))
+    return edges
 
 
 def _number(tower: Tower, value: Any) -> Number:

@@ -1,4 +1,4 @@
-"""Sheets of panels that fold as claimed: their motion, verified, and the claims that say which."""
+"""The verified motion of a sheet of panels, and the claims that say which motion it is."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ _PARAMETER_BITS = 40
 
 
 class Folding:
-    """A motion of panels that is verified to exist, until its clock ends.
+    """A motion of panels that is verified to exist until its clock ends.
 
-    `drive` has its fold angles, `clock` the time at a parameter, `places` where the panels are, and
-    `panels` which of them may touch.
+    `drive` gives its fold angles, `clock` the time at a parameter, and `places` the positions of
+    the panels. `panels` tests which panels may touch.
     """
 
     def __init__(self, sheet: PanelSheet, claims: Document, evidence: Document) -> None:
@@ -37,16 +37,16 @@ class Folding:
         self.panels = Panels(self.drive, self.places)
 
     def parameter(self, value: Any) -> Fraction:
-        """A parameter as a file has it."""
-        found = Fraction(natural(value, "a parameter"), 1 << _PARAMETER_BITS)
-        require(found < self.clock.last, "a parameter is out of range")
-        return found
+        """Read a parameter of the motion."""
+        x = Fraction(natural(value, "a parameter"), 1 << _PARAMETER_BITS)
+        require(x < self.clock.last, "a parameter is out of range")
+        return x
 
 
 class Panels(FacePairs):
-    """The pairs of triangles of different panels, and which triangles a panel has.
+    """The pairs of triangles of different panels, and the triangles of each panel.
 
-    Folds need no test: before the time pi none is closed.
+    Folds need no test, because no fold is closed before the time pi.
     """
 
     def __init__(self, drive: DrivenModes, places: Places) -> None:
@@ -67,23 +67,23 @@ class Panels(FacePairs):
 
 
 def from_least(corners: tuple[int, ...]) -> tuple[int, ...]:
-    """The same corners in the same order round a panel, the one with the smallest number first."""
+    """The corners of a panel in the same cyclic order, beginning with the smallest number."""
     first = corners.index(min(corners))
     return corners[first:] + corners[:first]
 
 
 class PanelClaim(Claim):
-    """A claim of a motion of panels, checked on the motion that is verified to exist."""
+    """A claim of a motion of panels; the motion itself is already verified to exist."""
 
     def check(self, folding: Folding) -> None:
-        """Refuse a motion of which it does not hold; that it exists is verified already."""
+        """Refuse a motion for which the claim does not hold."""
 
 
 class Driven(PanelClaim):
-    """From the flat sheet on the panels fold with the mountains and valleys of `assignment`.
+    """From the flat sheet on, the panels fold with the mountains and valleys of `assignment`.
 
-    No other fold moves. Until a fold is closed the folds `drivers` have the angle t at the time t,
-    or t times their rate. `DrivenModes` verifies it.
+    No other fold moves. Until some fold is closed, each fold of `drivers` has the angle t at the
+    time t, or t times its rate. `DrivenModes` verifies this claim.
     """
 
     names = ("assignment", "drivers")
@@ -92,7 +92,7 @@ class Driven(PanelClaim):
 
     @staticmethod
     def said(claims: Document) -> str:
-        """How many folds move, and what drives them."""
+        """The number of folds that move, and their drivers."""
         letters, drivers = claims["assignment"], claims["drivers"]
         number = counted(len(letters) - letters.count("F"), "fold moves", "folds move")
         names = ", ".join(f"{i}-{j}" for i, j in drivers[:_NAMED])
@@ -101,9 +101,9 @@ class Driven(PanelClaim):
 
 
 class OwnRates(PanelClaim):
-    """The drivers have these `rates`, of which the largest is 1; without this key all have 1.
+    """The drivers move at these `rates`, the largest of which is 1.
 
-    `Rates` verifies it.
+    Without this key all rates are 1. `Rates` verifies this claim.
     """
 
     names = ("rates",)
@@ -111,5 +111,5 @@ class OwnRates(PanelClaim):
 
     @staticmethod
     def said(claims: Document) -> str:
-        """That there are some."""
+        """The words that say that there are rates."""
         return " at rates of their own" if "rates" in claims else ""

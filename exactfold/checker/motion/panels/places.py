@@ -1,7 +1,8 @@
-"""Where the vertices of a sheet of panels are while it folds: polynomials with proved errors.
+"""The positions of the vertices while a sheet of panels folds: polynomials with proved errors.
 
-The panels are placed one after the other, each turned about the fold to the one before. Rotations
-have the norm 1, so that the errors of a product add up (docs/panel_motion.md, 6).
+The panels are placed one after the other. Each panel is turned about the fold to the panel before
+it. Rotations have norm 1, so that the error of a product is at most the sum of the errors
+(docs/panel_motion.md, 6).
 """
 
 from __future__ import annotations
@@ -28,12 +29,12 @@ _NARROWEST = Fraction(1, 1 << 40)
 _STILL: Polynomial = [0] * (DEGREE + 1)
 _UNIT: Polynomial = [ONE, *_STILL[1:]]
 _TRIES = 4
-_ROUNDED = DEGREE + 1  # what one rounded product with a number is off at most
+_ROUNDED = DEGREE + 1  # the largest error of one rounded product with a number
 Row = tuple[Polynomial, Polynomial, Polynomial]
 
 
 class Piece:
-    """Positions for `low` <= x <= `high`: a `motion_boxes.Curved` with 3 places for each vertex."""
+    """Positions for `low` <= x <= `high`: a `boxes.Curved` with 3 coordinates for each vertex."""
 
     degree = DEGREE
 
@@ -43,20 +44,20 @@ class Piece:
         self.low, self.high, self.columns, self.errors = low, high, columns, errors
 
     def below(self, s: Fraction) -> int:
-        """The place of a parameter between -1 and 1, over 2^GRID, rounded down."""
+        """A parameter mapped to the interval from -1 to 1, over 2^GRID, rounded down."""
         return floor((2 * s - self.low - self.high) / (self.high - self.low) * (1 << GRID))
 
     def above(self, s: Fraction) -> int:
-        """The same, rounded up."""
+        """A parameter mapped to the interval from -1 to 1, over 2^GRID, rounded up."""
         return -floor(-(2 * s - self.low - self.high) / (self.high - self.low) * (1 << GRID))
 
 
 def shrunk(sheet: PanelSheet) -> None:
-    """Move a corner of the sheet to 0, and bring all coordinates below 1 by a power of two."""
+    """Move a corner of the sheet to 0, and scale it by a power of 2: all coordinates below 1."""
     x, y = sheet.points[sheet.panels[0][0]]
     moved = [(a - x, b - y) for a, b in sheet.points]
     bits, most = 32, 0
-    while most < 1 << 16:  # until the largest is known to some digits
+    while most < 1 << 16:  # until the largest coordinate is known to some digits
         bits += bits
         ends = [c.enclosed(bits) for point in moved for c in point]
         most = max(max(abs(c.low), abs(c.high)) for c in ends)
@@ -65,9 +66,10 @@ def shrunk(sheet: PanelSheet) -> None:
 
 
 class Places:
-    """The positions of the vertices of a sheet that was shrunk, a panel in its middle being held.
+    """The positions of the vertices of a shrunk sheet; a panel in its middle is held.
 
-    So errors grow over half the sheet only, and what folds onto that panel is not turned with it.
+    So errors grow over half of the sheet only, and panels that fold onto the held panel are not
+    turned along with it.
     """
 
     def __init__(self, drive: DrivenModes, clock: Clock) -> None:
@@ -91,25 +93,26 @@ class Places:
 
     @property
     def work(self) -> int:
-        """How many tests of two faces a piece is as much work as."""
+        """The work of computing one piece, in tests of two faces."""
         return 64 * len(self._steps)
 
     @property
     def bodies(self) -> list[int]:
-        """For each panel a number, the same for those between which folds are flat."""
-        sheet, found = self.drive.sheet, list(range(len(self.drive.sheet.panels)))
+        """A number for each panel; panels that are joined by flat folds have the same number."""
+        sheet, numbers = self.drive.sheet, list(range(len(self.drive.sheet.panels)))
         sides = panels_of(sheet)
         for i, j in sheet.folds:
             if (i, j) not in self.drive.active:
-                one, two = found[sides[i, j]], found[sides[j, i]]
-                found = [one if body == two else body for body in found]
-        return found
+                one, two = numbers[sides[i, j]], numbers[sides[j, i]]
+                numbers = [one if body == two else body for body in numbers]
+        return numbers
 
     def each(self, first: Fraction, last: Fraction, said: Callable[[Piece | None], str]) -> None:
-        """Refuse unless `said` has nothing to say against pieces that reach from `first` to `last`.
+        """Raise unless `said` accepts pieces that reach from the parameter `first` to `last`.
 
-        It names what may touch, and is given None where positions are not known well. Where it says
-        something the piece is halved.
+        `said` gets a piece, or None where the positions are not known well enough. It returns "" to
+        accept, or names what may touch. Then the piece is halved and both halves are tried, down to
+        a smallest width.
         """
         count = int((last - first) / _WIDEST) + 1
         ends = [first + (last - first) * k / count for k in range(count + 1)]
@@ -124,7 +127,7 @@ class Places:
                 require(not what, f"{what} may touch where the motion is claimed to be clear")
 
     def piece(self, low: Fraction, high: Fraction) -> Piece | None:
-        """The positions for low <= x <= high, None if they are not known well."""
+        """The positions for low <= x <= high; None if they are not known well enough."""
         half = Interval.of((high - low) / 2, BITS)
         try:
             there = self._turns(Interval.of((low + high) / 2, BITS))
@@ -144,9 +147,9 @@ class Places:
         return Piece(low, high, columns, [error] * len(columns))
 
     def _turns(self, x: Interval) -> dict[Edge, tuple[Series, Series]]:
-        """Sine and 1 - cosine of all fold angles, as series about a number or an interval."""
+        """For each fold the sine and 1 - cosine of its angle, as series about x."""
         one = Interval(ONE, ONE, BITS)
-        found = {}
+        series = {}
         known: dict[tuple[int, ...], tuple[Series, Series]] = {}
         driven = partial(self.clock.driven, x)
         for fold, (c, s) in self.drive.tangents(driven).items():
@@ -155,15 +158,15 @@ class Places:
                 square = s * s
                 over = Series([one + one]) / (c * c + square)
                 known[key] = c * s * over, square * over
-            found[fold] = known[key]
-        return found
+            series[fold] = known[key]
+        return series
 
     def _placed(
         self, turns: dict[Edge, list[tuple[Polynomial, int]]]
     ) -> tuple[list[Polynomial], int]:
-        """The coordinates of all vertices over 2^GRID, and how far a vertex is off over 2^BITS."""
+        """The coordinates of all vertices over 2^GRID, and a bound of their errors over 2^BITS."""
         rows = [(_UNIT, _STILL, _STILL), (_STILL, _UNIT, _STILL), (_STILL, _STILL, _UNIT)]
-        # Of each panel its rotation and its shift, and how far they are off.
+        # For each panel: its rotation and a bound of the error, its shift and a bound of the error.
         placed: dict[int, tuple[list[Row], int, list[Polynomial], int]] = {
             self.held: (rows, 0, [_STILL] * 3, 0)
         }
@@ -198,7 +201,7 @@ class Places:
 
 
 def panels_of(sheet: PanelSheet) -> dict[Edge, int]:
-    """For each edge, in either direction, the panel to its left."""
+    """For each edge, in each of its two directions, the panel to its left."""
     return {
         side: k
         for k, panel in enumerate(sheet.panels)
@@ -207,7 +210,10 @@ def panels_of(sheet: PanelSheet) -> dict[Edge, int]:
 
 
 def _middle(sheet: PanelSheet) -> int:
-    """The largest of the panels from which others are few folds away: few from those tried."""
+    """The panel to hold: the largest of those from which no other panel is many folds away.
+
+    The distances are measured from a few panels only.
+    """
     most = [0] * len(sheet.panels)
     for _ in range(_TRIES):
         last = max(enumerate(_depths(sheet, most.index(min(most)))), key=itemgetter(1))[0]
@@ -222,15 +228,18 @@ def _middle(sheet: PanelSheet) -> int:
 
 
 def _depths(sheet: PanelSheet, held: int) -> list[int]:
-    found = [0] * len(sheet.panels)
+    depths = [0] * len(sheet.panels)
     for after, before, _, _ in _order(sheet, held):
-        found[after] = found[before] + 1
-    return found
+        depths[after] = depths[before] + 1
+    return depths
 
 
 def _order(sheet: PanelSheet, held: int) -> Iterator[tuple[int, int, int, int]]:
-    """The panels in the order in which they are placed: each with the one before, and the fold
-    i to j between them that it is left of."""
+    """Yield the panels in the order in which they are placed, except the held one.
+
+    Each comes with the panel before it, and with i and j: it lies to the left of the fold i to j
+    between the two.
+    """
     sides = panels_of(sheet)
     seen, waiting = {held}, [held]
     for before in waiting:
@@ -246,13 +255,13 @@ def _order(sheet: PanelSheet, held: int) -> Iterator[tuple[int, int, int, int]]:
 def _turned(
     rows: list[Row], sine: Polynomial, versine: Polynomial, axis: tuple[int, int, int]
 ) -> tuple[list[Row], int]:
-    """Rows times the rotation about an axis (x, y, 0), and how far they are off by rounding.
+    """The rows times the rotation about an axis (x, y, 0), and a bound of the rounding errors.
 
-    A row (a, b, c) becomes (a - y q, b + x q, c + z), where w = y a - x b, q = c sine + w versine
-    and z = w sine - c versine.
+    `versine` is 1 - cosine. A row (a, b, c) becomes (a - y q, b + x q, c + z), where
+    w = y a - x b, q = c sine + w versine and z = w sine - c versine.
     """
     x, y, _ = axis
-    found, off = [], 0
+    turned, off = [], 0
     for a, b, c in rows:
         w = [p - q for p, q in zip(scaled(a, y), scaled(b, x), strict=True)]
         (cs, e), (wv, f), (ws, g), (cv, h) = (
@@ -262,13 +271,13 @@ def _turned(
             times(c, versine),
         )
         q = [r + s for r, s in zip(cs, wv, strict=True)]
-        found.append(
+        turned.append(
             (
                 [r - s for r, s in zip(a, scaled(q, y), strict=True)],
                 [r + s for r, s in zip(b, scaled(q, x), strict=True)],
                 [p + r - s for p, r, s in zip(c, ws, cv, strict=True)],
             )
         )
-        # w is off by less than 2 _ROUNDED, and sine and versine are at most 2 in size.
+        # The error of w is less than 2 _ROUNDED, and sine and versine are at most 2 in size.
         off += 2 * (e + f) + g + h + 16 * _ROUNDED
-    return found, off
+    return turned, off

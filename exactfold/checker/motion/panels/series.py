@@ -1,4 +1,4 @@
-"""Power series with interval coefficients, and polynomials with an error that they bound."""
+"""Power series with intervals as coefficients, and polynomials with a bound of their error."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ from ...core.intervals import Interval
 from ...core.towers import Number
 
 BITS = 96
-"""After the point, of the coefficients of series and of polynomials in motions of panels."""
+"""Binary places after the point, for the coefficients of series and of polynomials."""
 DEGREE = 8
 ONE = 1 << BITS
 TERMS = DEGREE + 2
 Polynomial = list[int]
-"""Coefficients over 2^BITS of a polynomial of degree `DEGREE` on |y| <= 1."""
+"""A polynomial of degree `DEGREE` on |y| <= 1, as its coefficients over 2^BITS."""
 
 
 def thin(value: Number) -> Interval:
-    """A narrow interval that holds a number, whose terms may be large."""
+    """A narrow interval that holds a number; the terms of the number may be large."""
     bits = BITS
     while True:
         bits += bits
@@ -27,7 +27,7 @@ def thin(value: Number) -> Interval:
 
 
 class Series:
-    """A power series up to the order `DEGREE` + 1, its coefficients in intervals."""
+    """A power series up to the order `DEGREE` + 1, with intervals as coefficients."""
 
     def __init__(self, coefficients: Sequence[Interval]) -> None:
         missing = TERMS - len(coefficients)
@@ -35,7 +35,7 @@ class Series:
 
     @property
     def ends(self) -> list[int]:
-        """The ends of all intervals: the same for the same series."""
+        """The ends of all intervals; equal series have equal ends."""
         return [x for c in self.coefficients for x in (c.low, c.high)]
 
     def __add__(self, other: Series) -> Series:
@@ -45,75 +45,75 @@ class Series:
         return Series([a - b for a, b in zip(self.coefficients, other.coefficients, strict=True)])
 
     def __mul__(self, other: Series) -> Series:
-        found = [Interval(0, 0, BITS)] * TERMS
+        product = [Interval(0, 0, BITS)] * TERMS
         terms = other._terms
         for k, a in self._terms:
             for m, b in terms:
                 if k + m < TERMS:
-                    found[k + m] = found[k + m] + a * b
-        return Series(found)
+                    product[k + m] = product[k + m] + a * b
+        return Series(product)
 
     @property
     def _terms(self) -> list[tuple[int, Interval]]:
-        """The coefficients that are not 0: there are few in most series here."""
+        """The coefficients that are not 0, with their orders; most series here have only few."""
         return [(k, c) for k, c in enumerate(self.coefficients) if c.low or c.high]
 
     def times(self, factor: Interval) -> Series:
-        """The product with a number."""
+        """The product with a number, given as an interval."""
         return Series([c * factor for c in self.coefficients])
 
     def __truediv__(self, other: Series) -> Series:
-        """q with q b = a; raises `ZeroDivisionError` if the divisor may be 0."""
+        """The series q with q b = a; raises `ZeroDivisionError` if b may be 0."""
         inverse = Interval(ONE, ONE, BITS) / other.coefficients[0]
         terms = other._terms[1:]
-        found: list[Interval] = []
+        quotient: list[Interval] = []
         for n, rest in enumerate(self.coefficients):
             for k, b in terms:
                 if k <= n:
-                    rest = rest - found[n - k] * b
-            found.append(rest * inverse)
-        return Series(found)
+                    rest = rest - quotient[n - k] * b
+            quotient.append(rest * inverse)
+        return Series(quotient)
 
     def root(self) -> Series:
-        """The positive r with r^2 = a; raises `ZeroDivisionError` if a may be 0 or negative."""
+        """The positive series r with r^2 = a; raises `ZeroDivisionError` if a may be <= 0."""
         a = self.coefficients
-        found = [a[0].root()]  # from 0 on if a may be 0 or negative
-        half = Interval(ONE, ONE, BITS) / (found[0] + found[0])
+        r = [a[0].root()]  # this interval begins at 0 if a may be 0 or negative
+        half = Interval(ONE, ONE, BITS) / (r[0] + r[0])
         for n in range(1, TERMS):
             rest = a[n]
             for k in range(1, n):
-                rest = rest - found[k] * found[n - k]
-            found.append(rest * half)
-        return Series(found)
+                rest = rest - r[k] * r[n - k]
+            r.append(rest * half)
+        return Series(r)
 
 
 def polynomial(there: Series, around: Series, half: Interval) -> tuple[Polynomial, int]:
-    """A function f(m + half y) for |y| <= 1 as a polynomial in y, and how far it is off at most.
+    """A polynomial in y near f(m + half y) for |y| <= 1, and a bound of its error.
 
-    `there` is the series of f at m, and `around` that at all points of the interval: its
-    coefficient after the last bounds what is left out, by Taylor's theorem.
+    `there` is the series of f at m. `around` holds the series of f at every point of the interval;
+    by Taylor's theorem its last coefficient bounds the remainder.
     """
     power = Interval(ONE, ONE, BITS)
-    found, error = [], 0
+    coefficients, error = [], 0
     for k in range(DEGREE + 1):
         c = there.coefficients[k] * power
-        found.append((c.low + c.high) >> 1)
+        coefficients.append((c.low + c.high) >> 1)
         error += c.high - c.low + 1
         power = power * half
     rest = around.coefficients[DEGREE + 1] * power
-    return found, error + max(abs(rest.low), abs(rest.high))
+    return coefficients, error + max(abs(rest.low), abs(rest.high))
 
 
 def times(a: Polynomial, b: Polynomial) -> tuple[Polynomial, int]:
-    """The product of two polynomials up to `DEGREE`, and how far it is off at most."""
-    found = [sum([a[k] * b[n - k] for k in range(n + 1)]) >> BITS for n in range(DEGREE + 1)]
+    """The product of two polynomials, cut after the degree `DEGREE`, and a bound of its error."""
+    product = [sum([a[k] * b[n - k] for k in range(n + 1)]) >> BITS for n in range(DEGREE + 1)]
     tail, dropped = 0, 0
     for k in range(1, DEGREE + 1):
         tail += abs(b[DEGREE + 1 - k])
         dropped += abs(a[k]) * tail
-    return found, (dropped >> BITS) + DEGREE + 2
+    return product, (dropped >> BITS) + DEGREE + 2
 
 
 def scaled(a: Polynomial, factor: int) -> Polynomial:
-    """The product with a number over 2^BITS; off by at most `DEGREE` + 1."""
+    """The product of a polynomial and a number over 2^BITS; its error is at most `DEGREE` + 1."""
     return [c * factor >> BITS for c in a]

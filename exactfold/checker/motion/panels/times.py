@@ -1,7 +1,7 @@
-"""The parameter of a motion of panels: its time, and the angles of the drivers.
+"""The parameter x of a motion of panels: it determines the time and the angles of the drivers.
 
-Drivers that all have the same angle have the half-angle tangent x / (1 - x). Where they move at
-rates of their own x is a quarter of the time, and half an angle is 2 x times the rate.
+If all drivers have the same angle, the tangent of half this angle is x / (1 - x). If the drivers
+move at rates of their own, x is a quarter of the time, and half an angle is 2 x times the rate.
 """
 
 from __future__ import annotations
@@ -22,18 +22,18 @@ _POINT = Interval(ONE, ONE, BITS)
 
 
 class Clock(Protocol):
-    """Which angles the drivers have at a parameter x, and at which time; `last` is before pi."""
+    """The time and the angles of the drivers at a parameter x; at `last` the time is below pi."""
 
     last: Fraction
 
     def time(self, x: Fraction) -> tuple[Fraction, Fraction]:
-        """Bounds of the time."""
+        """A lower and an upper bound of the time."""
 
     def closes(self, driver: Edge) -> bool:
         """Whether the driver is closed at the time pi."""
 
     def driven(self, x: Interval, driver: Edge) -> tuple[Series, Series]:
-        """(C, S) with S / C = tan(angle / 2), as series about a number or an interval."""
+        """A pair (C, S) with S / C = tan(angle / 2) for a driver, as series about x."""
 
 
 class OneRate:
@@ -42,15 +42,15 @@ class OneRate:
     last = Fraction(1)
 
     def time(self, x: Fraction) -> tuple[Fraction, Fraction]:
-        """Bounds of 2 arctan(x / (1 - x))."""
+        """A lower and an upper bound of 2 arctan(x / (1 - x))."""
         return time_of(x)
 
     def closes(self, driver: Edge) -> bool:
-        """All do."""
+        """All drivers are closed at the time pi."""
         return True
 
     def driven(self, x: Interval, driver: Edge) -> tuple[Series, Series]:
-        """1 - x and x."""
+        """The pair (1 - x, x)."""
         return Series([_POINT - x, -_POINT]), Series([x, _POINT])
 
 
@@ -58,24 +58,24 @@ class Rates:
     """At the time t = 4 x each driver has the angle t times its rate; the largest rate is 1."""
 
     def __init__(self, drivers: list[Any], given: Any) -> None:
-        found = [parse_rational(rate) for rate in items(given, "rates", len(drivers))]
-        right = found and min(found) > 0 and max(found) == 1
-        require(right, "the rates are not positive with the largest 1")
+        values = [parse_rational(rate) for rate in items(given, "rates", len(drivers))]
+        right = values and min(values) > 0 and max(values) == 1
+        require(right, "a rate is not positive, or the largest rate is not 1")
         self.rates: Mapping[Edge, Fraction] = {
-            (i, j): rate for (i, j), rate in zip(drivers, found, strict=True)
+            (i, j): rate for (i, j), rate in zip(drivers, values, strict=True)
         }
         self.last = time_of(Fraction(1))[0] / 4
 
     def time(self, x: Fraction) -> tuple[Fraction, Fraction]:
-        """4 x."""
+        """The time 4 x, as both bounds."""
         return 4 * x, 4 * x
 
     def closes(self, driver: Edge) -> bool:
-        """Those of rate 1 do."""
+        """The drivers of rate 1 are closed at the time pi."""
         return self.rates[driver] == 1
 
     def driven(self, x: Interval, driver: Edge) -> tuple[Series, Series]:
-        """Cosine and sine of half the angle, with f^(k) / k! for the coefficients."""
+        """The cosine and sine of half the angle; coefficient k is the k-th derivative over k!."""
         rate = Interval.of(2 * self.rates[driver], BITS)
         c, s = cosine_and_sine(rate * x)
         power = _POINT
@@ -88,7 +88,7 @@ class Rates:
 
 
 def time_of(x: Fraction) -> tuple[Fraction, Fraction]:
-    """Bounds of the angle 2 arctan(x / (1 - x)), which is pi / 2 + 2 arctan(2 x - 1)."""
+    """Bounds of the angle 2 arctan(x / (1 - x)) = pi / 2 + 2 arctan(2 x - 1)."""
     half = arctan(_POINT) + arctan(Interval.of(2 * x - 1, BITS))
     total = half + half
     return Fraction(max(total.low, 0), 1 << BITS), Fraction(total.high, 1 << BITS)
@@ -97,8 +97,8 @@ def time_of(x: Fraction) -> tuple[Fraction, Fraction]:
 def arctan(z: Interval) -> Interval:
     """The arc tangent of a number of size at most 1.
 
-    arctan z = 2 arctan(z / (1 + sqrt(1 + z^2))), four times, and then its series, the rest of
-    which is at most the first term left out.
+    The identity arctan z = 2 arctan(z / (1 + sqrt(1 + z^2))) is used four times, and then the
+    series. The remainder of the series is at most the first term left out.
     """
     for _ in range(_HALVINGS):
         z = z / (_POINT + (_POINT + z * z).root())
@@ -111,7 +111,10 @@ def arctan(z: Interval) -> Interval:
 
 
 def cosine_and_sine(angle: Interval) -> tuple[Interval, Interval]:
-    """Of an angle of size at most 2: their series, the rest of which is less than 2^41 / 40!."""
+    """The cosine and the sine of an angle of size at most 2, by their series.
+
+    The remainder of each series is less than 2^41 / 40!.
+    """
     sums = [Interval(-1, 1, BITS), Interval(-1, 1, BITS)]
     term = _POINT
     for n in range(_POWERS):

@@ -15,7 +15,7 @@ from exactfold.pattern.panel_pattern import PanelPattern
 
 
 def test_letters() -> None:
-    message = "the assignment has not a letter M, V or F for each fold"
+    message = "the assignment does not have a letter M, V or F for each fold"
     for wrong in ("VVM", "VVVVV", 5):
         document = at_rest(given("vertex"))
         document["claims"]["assignment"] = wrong
@@ -26,7 +26,7 @@ def test_letters() -> None:
     document = at_rest(given("vertex"))
     letters = document["claims"]["assignment"]
     document["claims"]["assignment"] = letters[:3] + ("M" if letters[3] == "V" else "V")
-    stopped(document, "the letters at 4 are others")
+    stopped(document, "the densities at 4 do not have the signs of the letters")
     document = at_rest(given("vertex"))
     document["claims"] |= {"assignment": "FFFF", "drivers": []}
     document["evidence"]["vertices"] = []
@@ -69,7 +69,7 @@ def test_a_radicand_that_is_a_square() -> None:
     row["radicand"] = ["4"]
     verified(document)
     row["densities"] = [[u, [c, "0"]] for u, [c] in row["densities"]]
-    refused(document, "a number has not 1 entries")
+    refused(document, "a number does not have 1 entries")
     row["radicand"] = ["-2"]
     refused(document, "a square root is taken of a number that is not positive")
     row["radicand"] = ["2"]
@@ -80,13 +80,12 @@ def test_densities_that_do_not_close_a_vertex() -> None:
     document = at_rest(given("vertex"))
     row = document["evidence"]["vertices"][0]["densities"][3]
     row[1] = [str(Fraction(row[1][0]) * 2)]
-    stopped(document, "the vertex 4 does not move so")
+    stopped(document, "the densities at 4 are not those of a motion to second order")
     document = at_rest(given("bent"))
     row = document["evidence"]["vertices"][0]["densities"][3]
     row[1] = [str(Fraction(c) * Fraction(1001, 1000)) for c in row[1]]
-    stopped(
-        document, f"the vertex {document['evidence']['vertices'][0]['vertex']} does not move so"
-    )
+    vertex = document["evidence"]["vertices"][0]["vertex"]
+    stopped(document, f"the densities at {vertex} are not those of a motion to second order")
 
 
 def test_more_folds_at_a_vertex_must_be_in_proportion() -> None:
@@ -102,20 +101,20 @@ def test_more_folds_at_a_vertex_must_be_in_proportion() -> None:
     made["evidence"]["vertices"] = [
         {"vertex": 5, "radicand": None, "densities": [[u, [str(c)]] for u, c in enumerate(w)]}
     ]
-    stopped(made, "the vertex 5 does not close, and has not four active folds")
+    stopped(made, "vertex 5 does not close, and does not have four active folds")
 
 
 def test_drivers() -> None:
     document = at_rest(given("vertex"))
     document["claims"]["drivers"] *= 2
     [fold] = given("vertex")["claims"]["drivers"]
-    message = f"{tuple(fold)} drives nothing, or what another fold drives"
+    message = f"the driver {tuple(fold)} is not active, or another driver moves it already"
     stopped(document, message)
     document["claims"]["drivers"] = []
-    stopped(document, "nothing drives [(0, 4)]")
+    stopped(document, "no driver moves the fold [(0, 4)]")
     document = at_rest(given("flaps"))
     document["claims"]["drivers"] = [[2, 3]]
-    stopped(document, "nothing drives [(4, 5)]")
+    stopped(document, "no driver moves the fold [(4, 5)]")
 
 
 def pinwheel(*arms: complex) -> PanelPattern:

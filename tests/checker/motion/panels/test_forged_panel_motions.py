@@ -20,7 +20,7 @@ from exactfold.checker.motion.panels import drive as panel_drive
 from exactfold.checker.motion.panels import folding as panel_folding
 from exactfold.checker.motion.panels import times as panel_times
 from exactfold.checker.motion.panels.cut import cut
-from exactfold.checker.motion.panels.drive import Drive
+from exactfold.checker.motion.panels.drive import DrivenModes
 from exactfold.checker.motion.panels.places import Places, shrunk
 from exactfold.checker.motion.panels.series import BITS
 from exactfold.checker.motion.panels.times import OneRate, Rates
@@ -74,7 +74,7 @@ def test_a_fold_that_is_not_named_closes_in_modes_that_are_not_linear() -> None:
     }
     assert ", a fold is closed by 3.1416 (180.001 degrees)" in checker.summary(verified(document))
     document["claims"]["contact"]["folds"] = document["claims"]["drivers"]
-    stopped(document, "a fold is not known to close")
+    stopped(document, "a named fold is not proved to close")
 
 
 # --- rates of their own --------------------------------------------------------------------------
@@ -93,13 +93,13 @@ def test_flaps_at_two_rates_meet_where_the_end_of_one_is_on_the_other() -> None:
 
 
 def test_rates() -> None:
-    message = "the rates are not positive with the largest 1"
+    message = "a rate is not positive, or the largest rate is not 1"
     for rates in (["1", "2"], ["1", "0"], ["1", "-1/2"], ["1/2", "1/2"]):
         document = at_rest(given("rated"))
         document["claims"]["rates"] = rates
         stopped(document, message)
     document["claims"]["rates"] = ["1"]
-    refused(document, "rates has not 2 entries")
+    refused(document, "rates does not have 2 entries")
     document = at_rest(given("rated"))
     del document["claims"]["rates"]
     message = "claims: expected an object with the keys assignment drivers"
@@ -115,7 +115,7 @@ def test_slower_folds_are_not_closed() -> None:
     document["claims"]["contact"] = closing
     verified(document)
     closing["folds"] = [[4, 5]]
-    stopped(document, "a fold is not known to close")
+    stopped(document, "a named fold is not proved to close")
     closing |= {"folds": [], "time": ["0", "314/100"]}
     stopped(document, "the contact may be later than claimed")
 
@@ -160,9 +160,9 @@ def test_times_that_are_too_late_or_too_early() -> None:
         def not_from_there(claims: Document, _: Document) -> None:
             claims["contact"]["time"][0] = "126/1000"
 
-        stopped(forged(name, later), "what is clear is shorter than claimed")
+        stopped(forged(name, later), "the clear part of the motion is shorter than claimed")
         stopped(forged(name, earlier), "the contact may be later than claimed")
-        message = "a contact is not claimed from where the motion is clear"
+        message = 'the first "time" of a contact differs from "clear"'
         stopped(forged(name, not_from_there), message)
 
 
@@ -197,7 +197,7 @@ def test_a_mode_that_ends_before_is_not_followed(monkeypatch: pytest.MonkeyPatch
         "folds": [],
     }
     document["evidence"]["contact"] = 15 << 36
-    refused(document, "no side runs through the other panel")
+    refused(document, "no side of one panel is proved to run through the other panel")
     monkeypatch.setattr(panel_drive, "may_be_closed", lambda _: False)
     verified(document)
 
@@ -229,7 +229,7 @@ def test_what_does_not_touch() -> None:
     def not_yet(claims: Document, evidence: Document) -> None:
         evidence["contact"] -= 1 << 20
 
-    message = "no side runs through the other panel"
+    message = "no side of one panel is proved to run through the other panel"
     stopped(forged("flaps", not_yet), message)
 
     def others(claims: Document, evidence: Document) -> None:
@@ -252,22 +252,23 @@ def test_what_is_no_panel_or_fold() -> None:
     def with_folds(claims: Document, evidence: Document) -> None:
         claims["contact"]["folds"] = [[2, 3]]
 
-    stopped(forged("flaps", with_folds), "a contact has no folds")
+    stopped(forged("flaps", with_folds), "a contact of two faces names folds")
 
     def no_panel(claims: Document, evidence: Document) -> None:
         claims["contact"]["faces"][0] = [0, 2, 3]
 
-    refused(forged("flaps", no_panel), "no side runs through the other panel")
+    message = "no side of one panel is proved to run through the other panel"
+    refused(forged("flaps", no_panel), message)
 
     def with_faces(claims: Document, evidence: Document) -> None:
         claims["contact"]["faces"] = [[0, 2, 3, 1]]
 
-    stopped(forged("closing", with_faces), "folds that close have no faces")
+    stopped(forged("closing", with_faces), "a contact at folds that close names faces")
 
     def other_fold(claims: Document, evidence: Document) -> None:
         claims["contact"]["folds"] = [[0, 2]]
 
-    stopped(forged("closing", other_fold), "a fold is not known to close")
+    stopped(forged("closing", other_fold), "a named fold is not proved to close")
 
     def fold_twice(claims: Document, evidence: Document) -> None:
         claims["contact"]["folds"] = claims["contact"]["folds"][:1] * 2
@@ -281,7 +282,7 @@ def test_a_panel_that_touches_has_each_corner_once_and_in_order(corners: list[in
         claims["contact"]["faces"][0] = corners
 
     document = forged("flaps", changed)
-    stopped(document, "no side runs through the other panel")
+    stopped(document, "no side of one panel is proved to run through the other panel")
     document["claims"]["contact"]["faces"][0] = [3, 1, 0, 2]
     assert "3-1-0-2 and 4-6-7-5 do by" in checker.summary(verified(document))
 
@@ -338,7 +339,9 @@ def test_positions_are_those_of_the_frames(name: str) -> None:
     ]
     factor = sizes[0] / sizes[1]
     claims = document["claims"]
-    drive = Drive(sheet, claims["assignment"], claims["drivers"], document["evidence"]["vertices"])
+    drive = DrivenModes(
+        sheet, claims["assignment"], claims["drivers"], document["evidence"]["vertices"]
+    )
     rates = claims.get("rates")
     clock = Rates(claims["drivers"], rates) if rates else OneRate()
     places = Places(drive, clock)
