@@ -189,7 +189,7 @@ def _check_followable(branch: Branch) -> None:
     if branch.pattern.Ve > 4 and branch.boundary_heights is None:
         raise NotFollowedError(
             f"a sheet with {branch.pattern.Ve} boundary vertices can only be followed along a "
-            "branch with given boundary heights (`find_branch` with rim=)"
+            "branch with given boundary heights (`find_branch` with boundary_heights=)"
         )
 
 

@@ -17,7 +17,7 @@ from exactfold import random_square
 from exactfold._support.processes import worker_environment
 from exactfold.branches.certificates import check
 from exactfold.branches.certificates.check import check_compact
-from exactfold.branches.counting import conveyor
+from exactfold.branches.counting import branch_blocks
 from exactfold.branches.counting.stream import stream_branches
 from exactfold.checker import CertificateError
 from exactfold.checker.branches import compact
@@ -32,7 +32,7 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     folder = tmp_path_factory.mktemp("at once")
     paths = {name: folder / name for name in ("one", "forged", "other")}
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(conveyor, "BLOCK", 8)
+        patch.setattr(branch_blocks, "BLOCK", 8)
         for seed, name in enumerate(("one", "other")):
             stream_branches(random_square(5, seed=seed), paths[name])
     one, other = (bodies(paths[name].read_bytes()) for name in ("one", "other"))

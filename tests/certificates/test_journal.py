@@ -17,7 +17,7 @@ from typer.testing import CliRunner
 from exactfold import random_square
 from exactfold._support.verdict import PROVED
 from exactfold.app.cli.main import app
-from exactfold.branches.counting import conveyor as conveyor_module
+from exactfold.branches.counting import branch_blocks
 from exactfold.branches.counting.stream import stream_branches
 from exactfold.certificates import durable, journal
 from exactfold.certificates.journal import Journal
@@ -35,7 +35,7 @@ posix = pytest.mark.skipif(os.name != "posix", reason="locks of POSIX")
 
 @pytest.fixture(autouse=True)
 def _small_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(conveyor_module, "BLOCK", 8)
+    monkeypatch.setattr(branch_blocks, "BLOCK", 8)
 
 
 @pytest.fixture
@@ -94,7 +94,7 @@ KILLED = """
 import os, signal, sys
 from exactfold import random_square
 from exactfold.certificates import journal
-from exactfold.branches.counting import conveyor, engines, stream
+from exactfold.branches.counting import branch_blocks, engines, stream
 
 append = journal.Journal.append
 
@@ -104,7 +104,7 @@ def then_die(self, body):
         os.kill(os.getpid(), signal.SIGKILL)
 
 if __name__ == "__main__":
-    journal.Journal.append, conveyor.BLOCK, engines.LEAST = then_die, 8, 1
+    journal.Journal.append, branch_blocks.BLOCK, engines.LEAST = then_die, 8, 1
     stream.stream_branches(random_square(5, seed=1), sys.argv[1], workers=2)
 """
 

@@ -23,7 +23,7 @@ from forge import FIXTURES, given_lines
 import exactfold
 from exactfold import checker, random_square
 from exactfold.branches.certificates.check import FLOATS
-from exactfold.branches.counting import conveyor
+from exactfold.branches.counting import branch_blocks
 from exactfold.branches.counting.stream import stream_branches
 from exactfold.checker import CertificateError
 from exactfold.checker.branches import compact
@@ -40,7 +40,7 @@ ENGINES = {"integers": compact.INTEGERS, "floats": FLOATS}
 def of_blocks(folder: Path, seed: int) -> Lines:
     """A compact certificate of 16 branches in four blocks."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(conveyor, "BLOCK", 4)
+        patch.setattr(branch_blocks, "BLOCK", 4)
         stream_branches(random_square(4, seed=seed), folder / f"{seed}.txt")
     return bodies((folder / f"{seed}.txt").read_bytes())
 

@@ -103,20 +103,20 @@ def test_directions_are_those_of_the_fold_angles(name):
 
 
 def test_errors_of_directions_grow_with_the_boxes():
-    from exactfold.branches.counting.conveyor import Conveyor
+    from exactfold.branches.counting.branch_blocks import BranchBlocks
     from exactfold.studies.running.lines import _directions
 
-    conveyor = Conveyor.of(random_square(4, 0))
-    boxes = conveyor.prove(0).boxes
+    branch_blocks = BranchBlocks.of(random_square(4, 0))
+    boxes = branch_blocks.prove(0).boxes
     points = np.hstack([boxes.points, np.ones((len(boxes.points), 1))])
     radii = np.full(len(points), 1e-5)
-    exact, _ = _directions(conveyor.problem, points, radii)
-    _, errors = _directions(conveyor.problem, points, radii)
+    exact, _ = _directions(branch_blocks.problem, points, radii)
+    _, errors = _directions(branch_blocks.problem, points, radii)
     source = np.random.default_rng(0)
     for _ in range(20):
         moved = points.copy()
         moved[:, :-1] += source.choice([-1e-5, 1e-5], size=boxes.points.shape)
-        other, _ = _directions(conveyor.problem, moved, radii)
+        other, _ = _directions(branch_blocks.problem, moved, radii)
         assert (np.linalg.norm(other - exact, axis=1) <= errors).all()
     assert errors.max() < 1e-2
 

@@ -8,13 +8,13 @@ from functools import cached_property
 
 from exactfold._support.processes import in_order
 from exactfold.branches.certificates.blocks import block_line
-from exactfold.branches.counting.conveyor import Conveyor
+from exactfold.branches.counting.branch_blocks import BranchBlocks
 from exactfold.branches.values.blocks import ProvedBlock
 from exactfold.errors import WorkerDiedError
 from exactfold.pattern.crease_pattern import CreasePattern, Point, Triangle
 
-Engine = Callable[[Conveyor, range], Generator[tuple[ProvedBlock, str], None, None]]
-"""Given a conveyor and block numbers, yields each block with its line, in order. An interruption
+Engine = Callable[[BranchBlocks, range], Generator[tuple[ProvedBlock, str], None, None]]
+"""Given `BranchBlocks` and block numbers, yields each block with its line, in order. An interruption
 closes the generator."""
 
 LEAST = 8
@@ -27,28 +27,32 @@ _AHEAD = 2
 def processes(workers: int) -> Engine:
     """The engine that uses up to `workers` processes of this machine, fewer if little is left."""
 
-    def engine(conveyor: Conveyor, left: range) -> Generator[tuple[ProvedBlock, str], None, None]:
+    def engine(
+        branch_blocks: BranchBlocks, left: range
+    ) -> Generator[tuple[ProvedBlock, str], None, None]:
         most = min(workers, len(left) // LEAST)
-        return in_this_process(conveyor, left) if most < 2 else _pool(conveyor, left, most)
+        return (
+            in_this_process(branch_blocks, left) if most < 2 else _pool(branch_blocks, left, most)
+        )
 
     return engine
 
 
 def in_this_process(
-    conveyor: Conveyor, left: range
+    branch_blocks: BranchBlocks, left: range
 ) -> Generator[tuple[ProvedBlock, str], None, None]:
     """The engine that proves the blocks in this process."""
     for index in left:
-        block = conveyor.prove(index)
+        block = branch_blocks.prove(index)
         yield block, block_line(block)
 
 
 def _pool(
-    conveyor: Conveyor, left: range, workers: int
+    branch_blocks: BranchBlocks, left: range, workers: int
 ) -> Generator[tuple[ProvedBlock, str], None, None]:
     """The blocks numbered in `left` with their lines, in order, proved by worker processes."""
-    pattern = conveyor.problem.pattern
-    prover = _Prover(pattern.vertices, pattern.triangles, conveyor.block_size)
+    pattern = branch_blocks.problem.pattern
+    prover = _Prover(pattern.vertices, pattern.triangles, branch_blocks.block_size)
     try:
         yield from in_order(workers, prover, left, _AHEAD)
     except WorkerDiedError as error:
@@ -64,10 +68,10 @@ class _Prover:
     block_size: int
 
     @cached_property
-    def conveyor(self) -> Conveyor:
-        """The conveyor, which each process sets up for itself."""
-        return Conveyor.of(CreasePattern(self.vertices, self.triangles), self.block_size)
+    def branch_blocks(self) -> BranchBlocks:
+        """The `BranchBlocks`, which each process sets up for itself."""
+        return BranchBlocks.of(CreasePattern(self.vertices, self.triangles), self.block_size)
 
     def __call__(self, index: int) -> tuple[ProvedBlock, str]:
-        block = self.conveyor.prove(index)
+        block = self.branch_blocks.prove(index)
         return block, block_line(block)

@@ -2,7 +2,7 @@
 
 The following is tried, in this order, until all solutions are proved:
 
-1. The conveyor runs Newton's method from one start for each sign vector and proves the ends block
+1. `BranchBlocks` runs Newton's method from one start for each sign vector and proves the ends block
    by block. It gives up if two ends meet, or if a root or a letter stays open.
 2. Boxes isolate the same ends, or the candidates of the requested method, in the chart
    `saddle = 1`. Zeros with flat vertices are multiple, so they are solved for separately, on flat
@@ -27,7 +27,7 @@ from exactfold._support.plurals import counted
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.branches.certificates.blocks import compact_lines
-from exactfold.branches.counting.conveyor import Conveyor
+from exactfold.branches.counting.branch_blocks import BranchBlocks
 from exactfold.branches.counting.engines import in_this_process
 from exactfold.branches.counting.multiple_roots import (
     Zeros,
@@ -65,17 +65,17 @@ def count_lines(
 ) -> BranchCount:
     """The count for D = 1, where branches are isolated lines.
 
-    If the conveyor leaves something open, or with another method, zeros are proved in the chart
+    If `BranchBlocks` leaves something open, or with another method, zeros are proved in the chart
     `saddle = 1`. With a reflex corner some zeros may lie at infinity in that chart. If it proves
     too little, the chart of the closed notch is tried, in which no zero lies at infinity.
     """
     ends: Candidates | None = None
     if choice.method == NEWTON and 0 < problem.size <= MOST_UNKNOWNS:
-        conveyor = Conveyor.of(problem)
+        branch_blocks = BranchBlocks.of(problem)
         attempt = _Attempt(problem, problem.chart, choice, progress)
-        ends = _ends(conveyor, attempt)
+        ends = _ends(branch_blocks, attempt)
         if not (ends.lost or ends.agree_to(_MEET)):
-            result = _collected(conveyor, attempt, ends)
+            result = _collected(branch_blocks, attempt, ends)
             if result is not None:
                 return result
     attempt = _Attempt(problem, BranchSystem(problem.sheet).chart, choice, progress)
@@ -160,7 +160,7 @@ class _Attempt:
     ) -> BranchCount:
         """The count `found` as a proved one: 2^n disjoint boxes hold all zeros, by refined Bezout.
 
-        `lines` are the lines of the certificate, if the conveyor has written them.
+        `lines` are the lines of the certificate, if `BranchBlocks` has written them.
         """
         reason = (
             f"{counted(self.total, 'solution')} isolated; by refined Bezout there are no others"
@@ -192,28 +192,30 @@ class _Attempt:
         )
 
 
-# --- the conveyor --------------------------------------------------------------------------------
+# --- all branches, block by block ----------------------------------------------------------------
 
 
-def _ends(conveyor: Conveyor, attempt: _Attempt) -> Candidates:
+def _ends(branch_blocks: BranchBlocks, attempt: _Attempt) -> Candidates:
     """The ends of all blocks, in the chart of the problem."""
-    stage, count = attempt.stage("solving"), conveyor.block_size
+    stage, count = attempt.stage("solving"), branch_blocks.block_size
     ends = []
-    for index in range(conveyor.blocks):
-        ends.append(conveyor.ends(index))
+    for index in range(branch_blocks.blocks):
+        ends.append(branch_blocks.ends(index))
         stage((index + 1) * count, attempt.total)
-    return candidates_of(ends, conveyor.size).finite()
+    return candidates_of(ends, branch_blocks.size).finite()
 
 
-def _collected(conveyor: Conveyor, attempt: _Attempt, ends: Candidates) -> BranchCount | None:
+def _collected(
+    branch_blocks: BranchBlocks, attempt: _Attempt, ends: Candidates
+) -> BranchCount | None:
     """The proved count of all blocks; None if a root or a letter stays open."""
-    stage, count = attempt.stage("certifying"), conveyor.block_size
+    stage, count = attempt.stage("certifying"), branch_blocks.block_size
     branches: list[Branch] = []
     proved: list[str] = []
-    for block, line in in_this_process(conveyor, range(conveyor.blocks)):
+    for block, line in in_this_process(branch_blocks, range(branch_blocks.blocks)):
         if not block.is_decided:
             return None
-        branches += conveyor.branches(block)
+        branches += branch_blocks.branches(block)
         proved.append(line)
         stage(len(proved) * count, attempt.total)
     branches.sort(key=Branch.sort_key)
@@ -221,7 +223,7 @@ def _collected(conveyor: Conveyor, attempt: _Attempt, ends: Candidates) -> Branc
         attempt.undecided("", branches=tuple(branches), settings={**ends.settings, "lost": 0}),
         real=attempt.total,
         nonreal=0,
-        lines=compact_lines(conveyor.problem, count, proved),
+        lines=compact_lines(branch_blocks.problem, count, proved),
     )
 
 

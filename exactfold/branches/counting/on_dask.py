@@ -15,7 +15,7 @@ from typing import Any
 
 from exactfold._support.processes import available_cores, held_interrupts, worker_environment
 from exactfold.branches.certificates.blocks import block_line
-from exactfold.branches.counting.conveyor import Conveyor
+from exactfold.branches.counting.branch_blocks import BranchBlocks
 from exactfold.branches.counting.engines import Engine
 from exactfold.branches.values.blocks import ProvedBlock
 from exactfold.errors import ClusterError, PackageMissingError, WorkerDiedError
@@ -54,9 +54,9 @@ def dask_engine(
     with cluster_client(address, workers, timeout=timeout) as client:
 
         def engine(
-            conveyor: Conveyor, left: range
+            branch_blocks: BranchBlocks, left: range
         ) -> Generator[tuple[ProvedBlock, str], None, None]:
-            return _blocks(client, conveyor, left)
+            return _blocks(client, branch_blocks, left)
 
         yield engine
 
@@ -114,13 +114,13 @@ def _require_address(address: str) -> None:
 
 
 def _blocks(
-    client: Any, conveyor: Conveyor, left: range
+    client: Any, branch_blocks: BranchBlocks, left: range
 ) -> Generator[tuple[ProvedBlock, str], None, None]:
     """The blocks numbered in `left` with their lines, in order, proved by the cluster."""
     from distributed import KilledWorker
 
-    pattern = conveyor.problem.pattern
-    spec = (version("exactfold"), pattern.vertices, pattern.triangles, conveyor.block_size)
+    pattern = branch_blocks.problem.pattern
+    spec = (version("exactfold"), pattern.vertices, pattern.triangles, branch_blocks.block_size)
     waiting: deque[Any] = deque()
     most, asked = 0, 0.0
     indices = iter(left)
@@ -152,7 +152,7 @@ def _blocks(
             future.cancel()
 
 
-_worker = threading.local()  # each thread has a conveyor of its own
+_worker = threading.local()  # each thread has its own `BranchBlocks`
 
 
 def prove_block(spec: Spec, index: int) -> tuple[ProvedBlock, str]:
@@ -161,9 +161,9 @@ def prove_block(spec: Spec, index: int) -> tuple[ProvedBlock, str]:
         needed, vertices, triangles, block_size = spec
         if (found := version("exactfold")) != needed:
             raise ClusterError(f"a worker has exactfold {found}, not {needed}")
-        _worker.conveyor = Conveyor.of(CreasePattern(vertices, triangles), block_size)
+        _worker.branch_blocks = BranchBlocks.of(CreasePattern(vertices, triangles), block_size)
         _worker.spec = spec
-    block = _worker.conveyor.prove(index)
+    block = _worker.branch_blocks.prove(index)
     none = slice(0, 0)
     boxes = replace(
         block.boxes, centers=block.boxes.centers[none], exponents=block.boxes.exponents[none]

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 # Each solver imports its modules when it is called, so that the names alone load fast.
 
 NEWTON = "newton"
-"""Newton's method, one start for each sign vector: the solver of the conveyor."""
+"""Newton's method, one start for each sign vector: the solver of `BranchBlocks`."""
 
 ALIASES = {"nappes": NEWTON}
 """Earlier names of methods, still accepted."""

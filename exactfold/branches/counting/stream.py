@@ -16,8 +16,8 @@ from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.branches.certificates.blocks import chamber_counts, claims_line, header_line
 from exactfold.branches.certificates.check import FastChecker
+from exactfold.branches.counting.branch_blocks import BranchBlocks
 from exactfold.branches.counting.collect import check_countable, count_branches
-from exactfold.branches.counting.conveyor import Conveyor
 from exactfold.branches.counting.engines import Engine, processes
 from exactfold.branches.values.blocks import OpenEnd, ProvedBlock
 from exactfold.branches.values.result import BranchCount
@@ -117,7 +117,7 @@ def stream_branches(
     resume: bool = False,
     replace: bool = True,
     seed: int = 0,
-    hand_over: bool = True,
+    fallback: bool = True,
     progress: Progress | None = None,
     engine: Engine | None = None,
 ) -> StreamedCount:
@@ -128,7 +128,7 @@ def stream_branches(
     Bezout they are all (docs/mathematics.md, Completeness and Nappes). Memory does not grow with
     2^n: it holds a block of 1024 roots, and two blocks for each worker. If sign vectors stay open,
     as at multiple roots, and the pattern has at most 12 foldable vertices, `count_branches` counts
-    the pattern as a fallback, unless `hand_over` is False.
+    the pattern as a fallback, unless `fallback` is False.
 
     Up to `workers` processes share the blocks, fewer if little is left to do; a script that asks
     for several needs the usual `if __name__ == "__main__"`. An `engine`, such as `dask_engine`,
@@ -150,29 +150,29 @@ def stream_branches(
     """
     start, pattern = time.perf_counter(), as_pattern(pattern)
     check_countable(pattern)
-    conveyor = Conveyor.of(pattern)
-    problem, total = conveyor.problem, 1 << conveyor.size
-    header = header_line(problem, conveyor.block_size)
+    branch_blocks = BranchBlocks.of(pattern)
+    problem, total = branch_blocks.problem, 1 << branch_blocks.size
+    header = header_line(problem, branch_blocks.block_size)
     tally = Tally()
     if resume:
         known = FastChecker(CompactSheet(COMPACT.header(header)))
 
         def refusal(text: str, number: int) -> str | None:
             if progress is not None:
-                progress("verifying", number * conveyor.block_size, total)
+                progress("verifying", number * branch_blocks.block_size, total)
             return known.refusal(text, number)
 
         journal = Journal.resumed(path, header, refusal)
     else:
         journal = Journal(path, header, replace=replace)
     resumed = journal.blocks
-    left = range(resumed, conveyor.blocks)
-    with closing(journal), closing((engine or processes(workers))(conveyor, left)) as blocks:
+    left = range(resumed, branch_blocks.blocks)
+    with closing(journal), closing((engine or processes(workers))(branch_blocks, left)) as blocks:
         for block, line in blocks:
-            tally.add(conveyor, block)
+            tally.add(branch_blocks, block)
             journal.append(line)
             if progress is not None:
-                progress("proving", journal.blocks * conveyor.block_size, total)
+                progress("proving", journal.blocks * branch_blocks.block_size, total)
         if not tally.unproved:
             journal.finish(claims_line(pattern, chamber_counts(problem)))
         else:
@@ -180,8 +180,8 @@ def stream_branches(
     if journal.complete:
         count = _proved(pattern, total)
     else:
-        count = _open(pattern, conveyor, tally)
-        if hand_over and conveyor.size <= HANDED_OVER:
+        count = _open(pattern, branch_blocks, tally)
+        if fallback and branch_blocks.size <= HANDED_OVER:
             count = _handed_over(count, seed, progress)
     given = {f.name: getattr(count, f.name) for f in fields(BranchCount)}
     given["seconds"] = time.perf_counter() - start
@@ -191,7 +191,7 @@ def stream_branches(
         open_roots=tuple(tally.open_roots),
         unproved=tally.unproved,
         exact=tally.exact,
-        blocks=conveyor.blocks,
+        blocks=branch_blocks.blocks,
         resumed=resumed,
         steps=tally.steps,
         cpu_seconds=dict(tally.seconds),
@@ -217,10 +217,10 @@ def _proved(pattern: CreasePattern, total: int) -> BranchCount:
     )
 
 
-def _open(pattern: CreasePattern, conveyor: Conveyor, tally: Tally) -> BranchCount:
-    total = 1 << conveyor.size
-    culprits = tally.culprits(conveyor.problem.foldable)
-    if conveyor.size > HANDED_OVER and "flat" in culprits:
+def _open(pattern: CreasePattern, branch_blocks: BranchBlocks, tally: Tally) -> BranchCount:
+    total = 1 << branch_blocks.size
+    culprits = tally.culprits(branch_blocks.problem.foldable)
+    if branch_blocks.size > HANDED_OVER and "flat" in culprits:
         culprits += ": count without --stream also looks for multiple roots"
     return BranchCount(
         pattern,
@@ -244,9 +244,9 @@ def _handed_over(streamed: BranchCount, seed: int, progress: Progress | None) ->
 # --- sign vectors whose branch was not proved are collected, grouped, and put into words ---------
 
 
-def open_root(conveyor: Conveyor, number: int, end: OpenEnd) -> OpenRoot:
+def open_root(branch_blocks: BranchBlocks, number: int, end: OpenEnd) -> OpenRoot:
     """The open root of the sign vector with this number."""
-    signs = "".join("+-"[number >> k & 1] for k in range(conveyor.size))
+    signs = "".join("+-"[number >> k & 1] for k in range(branch_blocks.size))
     limit = "".join("0" if k in end.flat else sign for k, sign in enumerate(signs))
     return OpenRoot(signs, end.reason, limit)
 
@@ -268,7 +268,7 @@ class Tally:
         self.unproved = self.exact = self.steps = 0
         self.seconds: Counter[str] = Counter()
 
-    def add(self, conveyor: Conveyor, block: ProvedBlock) -> None:
+    def add(self, branch_blocks: BranchBlocks, block: ProvedBlock) -> None:
         """Add one block to the sums."""
         self.exact += len(block.exact)
         self.unproved += len(block.open)
@@ -276,8 +276,8 @@ class Tally:
         self.seconds.update(block.seconds)
         for j, end in block.open.items():
             if len(self.open_roots) < MOST_LISTED:
-                number = block.index * conveyor.block_size + j
-                self.open_roots.append(open_root(conveyor, number, end))
+                number = block.index * branch_blocks.block_size + j
+                self.open_roots.append(open_root(branch_blocks, number, end))
 
     def culprits(self, foldable: Sequence[int]) -> str:
         """Why sign vectors are open, in words; `foldable` names the vertices of their signs."""

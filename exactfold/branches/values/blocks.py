@@ -1,4 +1,4 @@
-"""What the conveyor carries: blocks of sign vectors, with what is proved of each vector."""
+"""Blocks of sign vectors, with what is proved of each vector."""
 
 from __future__ import annotations
 

@@ -12,9 +12,9 @@ import numpy.typing as npt
 
 from exactfold._support.arrays import FloatArray
 from exactfold._support.verdict import PROVED, Verdict
+from exactfold.branches.counting.branch_blocks import BranchBlocks
 from exactfold.branches.counting.by_theorem import IN_MEMORY, is_too_many
 from exactfold.branches.counting.collect import count_branches
-from exactfold.branches.counting.conveyor import Conveyor
 from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.letters import LETTERS
 from exactfold.branches.values.result import BranchCount
@@ -79,10 +79,10 @@ class Lines:
         if is_too_many(pattern, IN_MEMORY):
             return _one_by_one(count_branches(pattern))
         try:
-            conveyor = Conveyor.of(pattern)
+            branch_blocks = BranchBlocks.of(pattern)
         except NotCountedError:
             return _one_by_one(count_branches(pattern))
-        return _by_blocks(conveyor) or _one_by_one(count_branches(pattern))
+        return _by_blocks(branch_blocks) or _one_by_one(count_branches(pattern))
 
     def sharper(self, rows: Sequence[int]) -> tuple[FloatArray, FloatArray]:
         """Directions of some branches, up to sign, with errors in the last bits only; the errors.
@@ -107,14 +107,14 @@ class Lines:
         return sum(f for v, f in zip(interior, flat, strict=True) if v not in rigid)
 
 
-def _by_blocks(conveyor: Conveyor) -> Lines | None:
+def _by_blocks(branch_blocks: BranchBlocks) -> Lines | None:
     """The branches of all blocks; None unless each sign vector has a proved root with letters."""
-    problem, count = conveyor.problem, conveyor.block_size
+    problem, count = branch_blocks.problem, branch_blocks.block_size
     pattern = problem.pattern
-    total = 1 << conveyor.size
+    total = 1 << branch_blocks.size
     signs = np.zeros((total, pattern.Vi), dtype=np.int8)
     letters = np.zeros((total, len(pattern.folds)), dtype=np.int8)
-    points = np.empty((total, conveyor.size + 1))
+    points = np.empty((total, branch_blocks.size + 1))
     radii = np.empty(total)
     points[:, -1] = 1.0
     boxes: list[FloatBoxes] = []
@@ -123,8 +123,8 @@ def _by_blocks(conveyor: Conveyor) -> Lines | None:
     places = {fold: k for k, fold in enumerate(pattern.folds)}
     labels = problem.labels
     folds = [places[labels[i], labels[j]] for i, j in sorted(problem.sheet.folds)]
-    for index in range(conveyor.blocks):
-        block = conveyor.prove(index)
+    for index in range(branch_blocks.blocks):
+        block = branch_blocks.prove(index)
         if not block.is_decided:
             return None
         rows = slice(index * count, (index + 1) * count)
@@ -139,7 +139,7 @@ def _by_blocks(conveyor: Conveyor) -> Lines | None:
             radii[index * count + j] = (box.radius / (1 << box.bits)) * _UP
             radii[index * count + j] += _U * float(np.abs(points[index * count + j]).max())
         letters[rows, folds] = found
-        signs[rows, vertices] = sign_vectors(index * count, count, conveyor.size)
+        signs[rows, vertices] = sign_vectors(index * count, count, branch_blocks.size)
     directions, errors = _directions(problem, points, radii)
 
     def sharp(rows: Sequence[int]) -> tuple[FloatArray, FloatArray]:

@@ -15,8 +15,7 @@ from typer.testing import CliRunner, Result
 from exactfold import random_square
 from exactfold.app.cli.main import app
 from exactfold.app.commands import stream as stream_command
-from exactfold.branches.counting import by_theorem
-from exactfold.branches.counting import conveyor as conveyor_module
+from exactfold.branches.counting import branch_blocks, by_theorem
 from exactfold.branches.counting.stream import stream_branches
 from exactfold.certificates.journal import Journal
 from exactfold.errors import UnwritableFileError, WorkerDiedError
@@ -217,7 +216,7 @@ import os, signal, sys
 from contextlib import suppress
 from exactfold.app.cli.main import main
 from exactfold.certificates import journal
-from exactfold.branches.counting import conveyor, engines, stream
+from exactfold.branches.counting import branch_blocks, engines, stream
 
 append = journal.Journal.append
 
@@ -233,7 +232,7 @@ def then_signal(self, body):
             os.kill(os.getpid(), signal.SIGTERM)
 
 if __name__ == "__main__":
-    journal.Journal.append, conveyor.BLOCK, engines.LEAST = then_signal, 16, 1
+    journal.Journal.append, branch_blocks.BLOCK, engines.LEAST = then_signal, 16, 1
     main()
 """
 
@@ -272,7 +271,7 @@ def test_interruptions_leave_a_file_to_resume(
     kept = file.read_bytes()
     assert kept.count(b"\n") == 4
 
-    monkeypatch.setattr(conveyor_module, "BLOCK", 16)
+    monkeypatch.setattr(branch_blocks, "BLOCK", 16)
     words = shlex.split(again)
     assert (words[0], words[-2:]) == ("exactfold", engine.split())
     result = run(*words[1:-2], "--workers", 1, "--json")
@@ -311,7 +310,7 @@ def test_every_command_ends_with_130_on_ctrl_c(monkeypatch: pytest.MonkeyPatch) 
 def test_progress_names_what_is_verified_and_what_is_proved(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(conveyor_module, "BLOCK", 8)
+    monkeypatch.setattr(branch_blocks, "BLOCK", 8)
     square, file = random_square(5, seed=1), tmp_path / "c.txt"
 
     def stop(stage: str, done: int, total: int) -> None:

@@ -17,7 +17,7 @@ from exactfold.app.cli.main import app
 from exactfold.branches.certificates.blocks import block_line
 from exactfold.branches.counting import on_dask as engine_module
 from exactfold.branches.counting import pools
-from exactfold.branches.counting.conveyor import Conveyor
+from exactfold.branches.counting.branch_blocks import BranchBlocks
 from exactfold.branches.counting.on_dask import dask_engine, prove_block
 from exactfold.branches.counting.stream import stream_branches
 from exactfold.errors import ClusterError, PackageMissingError, WorkerDiedError
@@ -30,7 +30,7 @@ KILLED = """
 import logging, os, signal, sys
 from distributed import Client, LocalCluster
 from exactfold import random_square
-from exactfold.branches.counting import conveyor, engines, stream
+from exactfold.branches.counting import branch_blocks, engines, stream
 from exactfold.branches.counting.on_dask import dask_engine
 from exactfold._support.processes import worker_environment
 
@@ -40,7 +40,7 @@ def kill(stage, done, total):
         os.kill(next(iter(observer.run(os.getpid).values())), signal.SIGKILL)
 
 if __name__ == "__main__":
-    conveyor.BLOCK = 16
+    branch_blocks.BLOCK = 16
     pattern, dones = random_square(9, seed=1), []
     with worker_environment():
         local = stream.stream_branches(pattern, sys.argv[1])
@@ -61,12 +61,12 @@ import dask
 from distributed import Client, LocalCluster, WorkerPlugin
 from exactfold import random_square
 from exactfold.errors import WorkerDiedError
-from exactfold.branches.counting import conveyor, engines, stream
+from exactfold.branches.counting import branch_blocks, engines, stream
 from exactfold.branches.counting.on_dask import dask_engine
 
 class Deadly(WorkerPlugin):
     def setup(self, worker):
-        conveyor.Conveyor.prove = lambda conveyor, index: os._exit(1)
+        branch_blocks.BranchBlocks.prove = lambda self, index: os._exit(1)
 
 def failed(progress):
     try:
@@ -78,7 +78,7 @@ def failed(progress):
         print(str(error).partition(";")[0])
 
 if __name__ == "__main__":
-    conveyor.BLOCK = 16
+    branch_blocks.BLOCK = 16
     pattern = random_square(9, seed=1)
     with (
         dask.config.set({"distributed.scheduler.allowed-failures": 0}),
@@ -179,12 +179,12 @@ def test_without_dask_the_extra_is_named(tmp_path: Path, monkeypatch: pytest.Mon
 
 def test_a_task_is_a_block_and_knows_its_version(monkeypatch: pytest.MonkeyPatch) -> None:
     """Run here as a worker runs it: the tasks carry all they need, and no boxes go back."""
-    conveyor = Conveyor.of(random_square(5, seed=1), 8)
-    pattern = conveyor.problem.pattern
+    branch_blocks = BranchBlocks.of(random_square(5, seed=1), 8)
+    pattern = branch_blocks.problem.pattern
     spec = (engine_module.version("exactfold"), pattern.vertices, pattern.triangles, 8)
     for index in (3, 0):
         block, line = prove_block(spec, index)
-        expected = conveyor.prove(index)
+        expected = branch_blocks.prove(index)
         assert line == block_line(expected)
         assert (block.index, block.steps, block.boxes.centers.size) == (index, expected.steps, 0)
     with pytest.raises(ClusterError, match="not other"):

@@ -16,8 +16,8 @@ from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.branches import count_branches
 from exactfold.branches.certificates.check import CertificateError, check_compact
 from exactfold.branches.certificates.read import read_branches
-from exactfold.branches.counting import conveyor as conveyor_module
-from exactfold.branches.counting.conveyor import Conveyor
+from exactfold.branches.counting import branch_blocks
+from exactfold.branches.counting.branch_blocks import BranchBlocks
 from exactfold.branches.counting.stream import stream_branches
 from exactfold.branches.values import classify
 from exactfold.checker.branches import compact_blocks
@@ -51,7 +51,7 @@ PATTERNS = {
 
 @pytest.fixture(autouse=True)
 def _small_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(conveyor_module, "BLOCK", 8)
+    monkeypatch.setattr(branch_blocks, "BLOCK", 8)
 
 
 def described(branch: Branch) -> tuple[str, str, int, str]:
@@ -100,7 +100,7 @@ def test_multiple_roots_are_handed_on_by_name(tmp_path: Path) -> None:
     counted = stream_branches(gap(Fraction(0)), tmp_path / "c.txt")
     assert (counted.status, counted.distinct, counted.complete) == (PROVED, 3, False)
     assert counted.proof is not None
-    result = stream_branches(gap(Fraction(0)), tmp_path / "c.txt", hand_over=False)
+    result = stream_branches(gap(Fraction(0)), tmp_path / "c.txt", fallback=False)
     assert result.status is UNDECIDED
     assert result.distinct is None
     assert [root.signs for root in result.open_roots] == ["++", "+-"]
@@ -115,12 +115,12 @@ def test_multiple_roots_are_handed_on_by_name(tmp_path: Path) -> None:
 
 def test_paths_that_the_solver_loses_are_proved_exactly() -> None:
     """A solver that returns nonsense costs time, never a branch."""
-    conveyor = Conveyor.of(random_square(3, seed=1))
-    points = conveyor.ends(0).points
+    branch_blocks = BranchBlocks.of(random_square(3, seed=1))
+    points = branch_blocks.ends(0).points
     points[0] = np.nan
     points[1] = points[2]  # the branch of another sign vector
     points[3] += 0.4
-    block = conveyor.prove(0)
+    block = branch_blocks.prove(0)
     assert sorted(block.exact) == [0, 1, 3]
     assert not block.open
     assert block.boxes.proved.sum() == 5
@@ -197,7 +197,7 @@ def test_unwritable_files_and_other_patterns_are_refused(tmp_path: Path) -> None
     large = sample_random_square(41, 1, 1 << 20, redraw=True).pattern
     for sheet in (families.single_vertex(5), families.single_vertex(3), large):
         with pytest.raises(NotApplicableError):
-            Conveyor.of(sheet)
+            BranchBlocks.of(sheet)
 
 
 WORKERS = """
@@ -205,7 +205,7 @@ import multiprocessing, sys
 from exactfold import random_square
 from exactfold.errors import WorkerDiedError
 from exactfold.branches.certificates import check
-from exactfold.branches.counting import conveyor, engines, stream
+from exactfold.branches.counting import branch_blocks, engines, stream
 
 def seen(stage, done, total):
     dones.append(done)
@@ -215,7 +215,7 @@ def kill(stage, done, total):
         process.kill()
 
 if __name__ == "__main__":
-    check.LEAST, engines.LEAST, conveyor.BLOCK = 1, 1, 16
+    check.LEAST, engines.LEAST, branch_blocks.BLOCK = 1, 1, 16
     pattern, dones = random_square(8, seed=1), []
     one, two, three = sys.argv[1:]
     stream.stream_branches(pattern, one)

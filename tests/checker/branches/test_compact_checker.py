@@ -12,7 +12,7 @@ from sheets import nested_triangles, reflex_corners, scrambled
 from exactfold import random_square
 from exactfold.branches.certificates.check import check_compact
 from exactfold.branches.certificates.read import read_branches
-from exactfold.branches.counting import conveyor as conveyor_module
+from exactfold.branches.counting import branch_blocks
 from exactfold.branches.counting.stream import stream_branches
 from exactfold.checker import CertificateError, FormatError
 from exactfold.checker.branches.compact_blocks import UNPROVED
@@ -26,7 +26,7 @@ SIZE, BLOCK = 6, 16
 def written(tmp_path_factory: pytest.TempPathFactory) -> bytes:
     path = tmp_path_factory.mktemp("compact") / "c.txt"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(conveyor_module, "BLOCK", BLOCK)
+        patch.setattr(branch_blocks, "BLOCK", BLOCK)
         stream_branches(random_square(SIZE, seed=2), path)
     return path.read_bytes()
 

@@ -1,8 +1,8 @@
-"""The conveyor: it solves, proves and classifies all branches, a block of sign vectors at a time.
+"""`BranchBlocks` solves, proves and classifies branches, a block of sign vectors at a time.
 
     problem = Problem.of(pattern)        # reduced sheet, labels, gauge, chart
-    ends    = conveyor.ends(block)       # candidates, in floats
-    roots   = conveyor.prove(block)      # proved roots with letters, and reasons for open ones
+    ends    = branch_blocks.ends(block)       # candidates, in floats
+    roots   = branch_blocks.prove(block)      # proved roots with letters, and reasons for open ones
 
 Zeros with different vertex signs are different zeros in the chart of `Problem`. So if each of the
 2^n sign vectors has a proved zero with these signs, then these are all zeros (docs/mathematics.md,
@@ -42,7 +42,7 @@ _WIDEST = 52
 
 
 @dataclass(frozen=True)
-class Conveyor:
+class BranchBlocks:
     """All 2^n branches of a problem with four boundary vertices, in blocks of `block_size`."""
 
     problem: Problem
@@ -52,17 +52,17 @@ class Conveyor:
     )
 
     @classmethod
-    def of(cls, pattern: CreasePattern | Problem, block_size: int | None = None) -> Conveyor:
-        """The conveyor of a pattern; `block_size` is a power of two, 1024 by default.
+    def of(cls, pattern: CreasePattern | Problem, block_size: int | None = None) -> BranchBlocks:
+        """The branches of a pattern in blocks; `block_size` is a power of two, 1024 by default.
 
         Raises `NotApplicableError` unless D = 1 and some vertex is foldable, 40 at most.
 
         >>> from exactfold.pattern.random_squares import random_square
-        >>> conveyor = Conveyor.of(random_square(3, seed=0))
-        >>> block = conveyor.prove(0)
+        >>> branch_blocks = BranchBlocks.of(random_square(3, seed=0))
+        >>> block = branch_blocks.prove(0)
         >>> bool(block.boxes.proved.all()), len(block.open)
         (True, 0)
-        >>> [branch.sign_text for branch in conveyor.branches(block)][:3]
+        >>> [branch.sign_text for branch in branch_blocks.branches(block)][:3]
         ['+++', '-++', '+-+']
         """
         problem = pattern if isinstance(pattern, Problem) else Problem.of(pattern)
