@@ -60,7 +60,7 @@ _WORST = (0, 4, 1, 2, 3, NO_MEMORY, INTERNAL)
 """Exit codes from the best to the worst."""
 
 LINE: Final = "exactfold batch-line result"
-"""The format of a line."""
+"""The "format" of each line of results."""
 
 
 @dataclass(frozen=True)
@@ -113,7 +113,9 @@ class Batch(CountOptions):
                 "--jsonl"
             )
         if self.jobs is not None and self.dask not in (None, LOCAL):
-            raise UsageError("the cluster has its workers: --jobs goes with --dask local")
+            raise UsageError(
+                "a running cluster has its own workers: leave out --jobs, or use --dask local"
+            )
         apart(self.jsonl, *self.patterns)
         tally, shown = Tally(), []
         with ExitStack() as stack:

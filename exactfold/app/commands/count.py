@@ -30,7 +30,7 @@ class Asked(CountOptions):
 
     @property
     def pattern(self) -> Path:
-        """The one pattern."""
+        """The only pattern of the call."""
         return self.patterns[0]
 
     @property

@@ -248,7 +248,7 @@ class Wanted(FoldOptions):
 
 
 def _refuse(given: Mapping[str, object], why: str) -> None:
-    """Raise `UsageError` for the first option that was given."""
+    """Raise `UsageError` for the first of these options that was given, with the reason `why`."""
     for option, value in given.items():
         if value is not None:
             raise UsageError(f"{option} is for {why}")

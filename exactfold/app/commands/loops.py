@@ -41,7 +41,9 @@ class Wanted(MotionsOptions):
         from exactfold.app import report
 
         if self.workers is not None and self.dask not in (None, LOCAL):
-            raise UsageError("the cluster has its workers: --workers goes with --dask local")
+            raise UsageError(
+                "a running cluster has its own workers: leave out --workers, or use --dask local"
+            )
         if self.resume and self.certificate is None:
             raise UsageError("--resume continues a file: it goes with --certificate")
         apart(self.certificate, self.file)

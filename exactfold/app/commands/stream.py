@@ -36,7 +36,7 @@ class Streaming:
 
     @property
     def pattern(self) -> Path:
-        """The one pattern."""
+        """The only pattern of the call."""
         return self.asked.patterns[0]
 
     @property
@@ -55,7 +55,9 @@ class Streaming:
         `stream_branches` and `dask_engine`, and `UsageError` for a file that exists already.
         """
         if self.asked.workers is not None and self.asked.dask not in (None, LOCAL):
-            raise UsageError("the cluster has its workers: --workers goes with --dask local")
+            raise UsageError(
+                "a running cluster has its own workers: leave out --workers, or use --dask local"
+            )
         apart(self.file, self.pattern)
         require_file(self.file, resume=True)
         with Bar("reading") as bar:

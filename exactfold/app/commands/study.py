@@ -180,7 +180,9 @@ class Wanted(StudyOptions):
 
     def _run(self, study: Study) -> int:
         if self.workers is not None and self.dask not in (None, LOCAL):
-            raise UsageError("the cluster has its workers: --workers goes with --dask local")
+            raise UsageError(
+                "a running cluster has its own workers: leave out --workers, or use --dask local"
+            )
         self._check_files()
         given = None if self.number is None else read_numbers(self.number)
         numbers = study.chosen(self.sizes, given, extend=self.extend)

@@ -78,7 +78,7 @@ def degrees(text: object) -> float:
 
 
 def one_side(text: object) -> int:
-    """1 or -1, from "+" or "-"."""
+    """The side that a text names: 1 for "+", -1 for "-"."""
     if text not in ("+", "-", "+1", "-1", "1"):
         raise typer.BadParameter(f"{text!r} is neither + nor -")
     return -1 if str(text).startswith("-") else 1
@@ -139,7 +139,7 @@ def complete_method(incomplete: str) -> list[str]:
 
 
 def snapping(text: object) -> Snapping:
-    """A denominator, or "auto" or "exact"."""
+    """The value of --snap: a denominator, "auto" or "exact"."""
     if text == "auto":
         return "auto"
     return "exact" if text == "exact" else whole(1)(text)

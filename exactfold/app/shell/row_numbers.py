@@ -58,7 +58,7 @@ def _numbers(text: str) -> int | dict[int, int]:
             raise UsageError(f"{number} is less than 0")
         for size in read_sizes(sizes):
             if size in numbers:
-                raise UsageError(f"size {size} has two numbers: give one")
+                raise UsageError(f"size {size} has two numbers")
             numbers[size] = number
     return numbers
 

@@ -65,7 +65,7 @@ class Command(TyperCommand):
 
 
 class Group(TyperGroup):
-    """The program itself."""
+    """The program with all its commands."""
 
     def get_help_option(self, ctx: Any) -> Any:
         """The option --help, or None if the program has none."""

@@ -28,7 +28,7 @@ _NAMED = 4
 
 Letters = Mapping[Edge, str] | str
 Ray = tuple[Branch, int]
-"""A branch and its side: 1 for the ray that it shows, -1 for the opposite one."""
+"""A branch and a side: 1 for the ray that the branch describes, -1 for the opposite ray."""
 
 
 def the_branch(
@@ -106,7 +106,7 @@ def modes_with(
             return None
         return dict.fromkeys((wanted,) if isinstance(wanted, int) else tuple(wanted), 1.0)
     if wanted is not None:
-        raise UsageError("name the mode by one of letters and way, not letters and way")
+        raise UsageError("name the mode by letters or by way, not by both")
     from exactfold.motion.panels.followable import panel_modes
 
     rates: dict[int | Edge, float] = {}

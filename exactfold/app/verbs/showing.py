@@ -67,7 +67,7 @@ def draw(
     """
     named = [x for x in (way, signs, up, letters) if x is not None]
     if isinstance(sheet, Branch | Motion | PanelMotion) and named:
-        raise UsageError("way, signs, up and letters choose a way of a sheet or of a count")
+        raise UsageError("way, signs, up and letters choose a way of a sheet: leave them out here")
     if isinstance(sheet, Branch):
         text = branch_way(sheet).picture(title)
     elif isinstance(sheet, Motion | PanelMotion):

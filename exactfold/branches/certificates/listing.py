@@ -82,13 +82,13 @@ def _root_lines(result: BranchCount, proof: Proof) -> list[str]:
     longest = max(map(len, lines))
     if longest + _DIGEST > MOST_LINE:
         raise NotApplicableError(
-            f"no certificate: a line of it would have {longest} characters, more than is read"
+            f"no certificate: it would have a line of {longest} characters, which is too long"
         )
     return lines
 
 
 def _header(result: BranchCount, evidence: Document) -> str:
-    """The first line."""
+    """The first line of the certificate."""
     return line_text(
         {
             "format": COMPACT.format,

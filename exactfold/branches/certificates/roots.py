@@ -81,7 +81,7 @@ def _chart(problem: Problem, evidence: Any) -> Chart:
     for chart in charts:
         if read_chart(chart_evidence(chart, problem.labels)) == read_chart(evidence):
             return chart
-    raise CertificateError("the chart is not one in which branches are written")
+    raise CertificateError("exactfold writes no branches in the chart of this certificate")
 
 
 def _root_class(separating: list[int], entry: Document) -> RootClass:

@@ -21,7 +21,7 @@ _STRIDE: Final = 3
 class NappePoints:
     """Approximate solutions of K_v = 4^-depth on one convex sheet, scaled to size 1.
 
-    Heights are integers over 2^bits. The boundary heights vertices `free` come first, then
+    Heights are integers over 2^bits. The heights of the boundary vertices `free` come first, then
     those of the interior vertices; all other boundary vertices have height 0.
     """
 

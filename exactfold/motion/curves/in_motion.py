@@ -112,7 +112,7 @@ class SheetInMotion(Picture, ABC):
     @property
     @abstractmethod
     def status(self) -> Verdict:
-        """PROVED if the frames are proved, else UNDECIDED; `reason` says why."""
+        """PROVED if the frames are proved, else UNDECIDED; `reason` gives the reason."""
 
     @property
     @abstractmethod

@@ -30,7 +30,7 @@ from exactfold.rigidity.equations.problem import Problem
 
 _SAMPLES = 4
 _LONGEST: Final = 40
-"""Characters of signs in a name."""
+"""Most characters of signs in a name."""
 
 
 @dataclass(frozen=True, repr=False, eq=False)

@@ -116,7 +116,7 @@ def given_boundary_heights(
     *,
     may_be_flat: bool = False,
 ) -> dict[int, Fraction]:
-    """The given boundary heights vertices, checked, in the order of the boundary.
+    """The given heights of the boundary vertices, checked, in the order of the boundary.
 
     Raises `BoundaryHeightsError` if a height is missing, belongs to another vertex or is not a
     number, or if all heights lie in one plane; its `vertices` are to blame. Raises

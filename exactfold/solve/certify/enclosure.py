@@ -118,7 +118,7 @@ def check_hypotheses(sheet: VertexEquations, heights: BigArray, denominator: int
         heights[v] * sheet.boundary_denominator != height * denominator
         for v, height in sheet.boundary_heights.items()
     ):
-        raise ValueError("the boundary heights vertices are not those of the sheet")
+        raise ValueError("the heights of the boundary vertices are not those of the sheet")
 
 
 def nappes(sheet: VertexEquations, bends: BigArray) -> dict[int, int]:

@@ -209,7 +209,7 @@ def test_a_row_that_differs_is_said(here, done, monkeypatch):
             ("table1", "--dask", "tcp://127.0.0.1:1", "--workers", "2"),
             USAGE,
             "UsageError",
-            "has its workers",
+            "has its own workers",
         ),
         (
             ("table1", "--journal", "text"),

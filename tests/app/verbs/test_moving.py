@@ -77,7 +77,7 @@ def test_letters_that_no_mode_or_several_modes_have():
         exactfold.follow("zigzags", letters="MMMMMMMMMMMM")
     with pytest.raises(UsageError, match=r"5 modes have these letters: name one by way=1, 2, 3, 4"):
         exactfold.follow("zigzags", letters={})
-    with pytest.raises(UsageError, match="not letters and way"):
+    with pytest.raises(UsageError, match="not by both"):
         exactfold.follow("zigzags", 1, letters={})
 
 

@@ -72,7 +72,7 @@ def test_what_is_not_there_is_not_drawn(sheet, named, error, said):
 
 
 def test_what_was_found_is_not_named_again():
-    with pytest.raises(UsageError, match="choose a way of a sheet or of a count"):
+    with pytest.raises(UsageError, match="choose a way of a sheet: leave them out"):
         exactfold.draw(find_branch("two-vertex", "+-"), 3)
     with pytest.raises(UsageError, match="name a way of the count by its number"):
         exactfold.draw(exactfold.count("two-vertex"), signs="+-")

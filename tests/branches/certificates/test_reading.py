@@ -135,7 +135,7 @@ def _flat(lines: Any) -> None:
 @pytest.mark.parametrize(
     ("name", "change", "message"),
     [
-        ("compact-roots-classes", _chart, "the chart is not one in which branches are written"),
+        ("compact-roots-classes", _chart, "exactfold writes no branches in the chart"),
         ("compact-roots-blocks-of-4", _wide, "an interval holds more than one root"),
         ("compact-roots-blocks-of-4", _away, "an interval shows no root"),
         ("compact-roots-classes", _letters, "a branch has no letters"),
