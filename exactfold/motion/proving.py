@@ -153,7 +153,7 @@ class MotionProof:
         >>> import exactfold
         >>> proof = exactfold.prove(exactfold.follow("two-vertex", signs="+-", until="return"))
         >>> exactfold.check(proof.certificate()).text[:57]
-        'VALID: 1 loop of true motions, which match 4 of 8 half-br'
+        'VALID: 1 loop of true motions, which match 4 of 8 rays; s'
         """
         looped, boundary_heights = self.looped, self.motion.boundary_heights
         if looped is not None and looped.landing is not None:
@@ -177,7 +177,7 @@ class MotionProof:
         >>> with tempfile.TemporaryDirectory() as folder:
         ...     path = os.path.join(folder, "proof")
         ...     proof.write(path), summary(verify(path))[:57]
-        (True, 'VALID: 1 loop of true motions, which match 4 of 8 half-br')
+        (True, 'VALID: 1 loop of true motions, which match 4 of 8 rays; s')
         """
         try:
             write_certificate(self.certificate(), path)
