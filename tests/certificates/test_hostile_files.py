@@ -172,8 +172,8 @@ CHARTS: dict[str, tuple[Callable[[dict[str, str]], Any], str]] = {
     "upside down": (negated, "Krawczyk|sign|folds are"),
     "without its corner": (lambda chart: {v: c for v, c in chart.items() if v != "0"}, "corner"),
     "twice": (lambda chart: {**chart, "00": "1"}, "twice"),
-    "of a pinned corner": (lambda chart: {**chart, "1": "1"}, "bad chart"),
-    "of no vertex": (lambda chart: {**chart, "77": "1"}, "bad chart"),
+    "of a pinned corner": (lambda chart: {**chart, "1": "1"}, "neither its corner nor interior"),
+    "of no vertex": (lambda chart: {**chart, "77": "1"}, "neither its corner nor interior"),
     "list": (lambda chart: [1], "neither null"),
 }
 

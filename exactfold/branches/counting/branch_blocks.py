@@ -1,8 +1,8 @@
 """`BranchBlocks` solves, proves and classifies branches, a block of sign vectors at a time.
 
-    problem = Problem.of(pattern)        # reduced sheet, labels, gauge, chart
-    ends    = branch_blocks.ends(block)       # candidates, in floats
-    roots   = branch_blocks.prove(block)      # proved roots with letters, and reasons for open ones
+    problem = Problem.of(pattern)         # reduced sheet, labels, gauge, chart
+    ends    = branch_blocks.ends(block)   # candidates, in floats
+    roots   = branch_blocks.prove(block)  # proved roots with letters, and reasons for open ones
 
 Zeros with different vertex signs are different zeros in the chart of `Problem`. So if each of the
 2^n sign vectors has a proved zero with these signs, then these are all zeros (docs/mathematics.md,

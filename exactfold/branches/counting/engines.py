@@ -14,8 +14,10 @@ from exactfold.errors import WorkerDiedError
 from exactfold.pattern.crease_pattern import CreasePattern, Point, Triangle
 
 Engine = Callable[[BranchBlocks, range], Generator[tuple[ProvedBlock, str], None, None]]
-"""Given `BranchBlocks` and block numbers, yields each block with its line, in order. An interruption
-closes the generator."""
+"""Given `BranchBlocks` and block numbers, yields each block with its line, in order.
+
+An interruption closes the generator.
+"""
 
 LEAST = 8
 """A worker process is worth starting if at least this many blocks are left for it."""

@@ -64,7 +64,7 @@ def test_tampered_certificate_is_invalid(tmp_path, certificate):
     bad.write_bytes(chained(lines))
     result = run("check", bad)
     assert result.exit_code == INVALID
-    assert result.stdout == "INVALID: distinct = 5 is 4\n"
+    assert result.stdout == "INVALID: claim distinct = 5, but it is 4\n"
     as_json = run("check", bad, "--json")
     assert as_json.exit_code == INVALID
     assert json.loads(as_json.stdout)["valid"] is False

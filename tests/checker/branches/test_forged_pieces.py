@@ -383,7 +383,7 @@ def test_as_many_forms_as_the_chart_needs() -> None:
 @pytest.mark.slow
 def test_limits_and_open_signs(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(pieces_flat, "MOST_UNKNOWNS", 5)
-    needed(boxes(), "more than 5 unknowns", OPEN)
+    needed(boxes(), "a part has more than 5 unknowns", OPEN)
     found = find_connected_components(ANTIPRISM)
     with pytest.raises(NotApplicableError, match="refuses the proof: not all solutions"):
         components_certificate(ANTIPRISM, found)

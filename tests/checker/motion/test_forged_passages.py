@@ -146,7 +146,7 @@ def test_contacts_are_looked_for_on_the_arc() -> None:
     arc, begin, end = steps[k]
     assert begin < 0 < end
     vague: Any = type(
-        "Vague", (), {"node": arc.branch_point, "curve": arc.curve, "bits": arc.bits}
+        "Vague", (), {"branch_point": arc.branch_point, "curve": arc.curve, "bits": arc.bits}
     )()
     box, rate = arc.configuration(begin)
     wide = Ball(box.centre, [r + (1 << arc.bits - 2) for r in box.radii])

@@ -253,7 +253,7 @@ def test_a_forged_file_is_invalid_on_the_command_line(kept, tmp_path):
     journal.close()
     result = run("check", file)
     assert result.exit_code == 1
-    assert result.stdout.startswith("INVALID: loops = 1 is 0")
+    assert result.stdout.startswith("INVALID: claim loops = 1, but it is 0")
 
 
 def test_what_an_interrupted_run_leaves_is_unfinished(tmp_path, capsys):
