@@ -157,14 +157,14 @@ def _sorted(rows: Iterable[Row]) -> tuple[dict[int, _SizeTally], list[Row]]:
 def tables(rows: Iterable[Row]) -> list[StudyTable]:
     """Shares beside those of the paper, their decay, and all types."""
     tallies, every = _sorted(rows)
-    of_types = [_types(every)] if every else []
+    by_type = [_types(every)] if every else []
     if not tallies:
-        return of_types
+        return by_type
     return [
         _shares(tallies),
         _moves(tallies),
         _decay(tallies),
-        *of_types,
+        *by_type,
         _sentences(tallies, every),
     ]
 
