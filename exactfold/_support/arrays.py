@@ -26,11 +26,11 @@ def cross(a: FloatArray, b: FloatArray) -> FloatArray:
     array([[ 0.,  0.,  1.],
            [ 0., -1.,  0.]])
     """
-    found = np.empty(np.broadcast_shapes(a.shape, b.shape))
+    product = np.empty(np.broadcast_shapes(a.shape, b.shape))
     for k in range(3):
         i, j = (k + 1) % 3, (k + 2) % 3
-        found[..., k] = a[..., i] * b[..., j] - a[..., j] * b[..., i]
-    return found
+        product[..., k] = a[..., i] * b[..., j] - a[..., j] * b[..., i]
+    return product
 
 
 def inverses(matrices: A) -> A:
@@ -44,8 +44,8 @@ def inverses(matrices: A) -> A:
     try:
         return np.asarray(np.linalg.inv(matrices), dtype=matrices.dtype)
     except np.linalg.LinAlgError:
-        found = np.full_like(matrices, np.nan)
+        inverted = np.full_like(matrices, np.nan)
         for k, matrix in enumerate(matrices):
             with suppress(np.linalg.LinAlgError):
-                found[k] = np.linalg.inv(matrix)
-        return found
+                inverted[k] = np.linalg.inv(matrix)
+        return inverted

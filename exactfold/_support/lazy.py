@@ -74,5 +74,5 @@ def _missing(package: str, name: str, homes: dict[str, str]) -> str:
         return message
     inside = [import_module(f"{package}.{part}") for part, home in homes.items() if home == package]
     names = [(part.__name__, getattr(part, "__all__", vars(part))) for part in inside]
-    found = [f"{home}.{name}" for home, public in names if name in public]
-    return f"{message}: it is {' or '.join(found)}" if found else message
+    qualified_names = [f"{home}.{name}" for home, public in names if name in public]
+    return f"{message}: it is {' or '.join(qualified_names)}" if qualified_names else message

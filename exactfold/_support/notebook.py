@@ -34,8 +34,8 @@ def shown(value: object, kind: str) -> str | None:
     from importlib import import_module
 
     import_module(_FILLED_BY)
-    found = (_TABLE[kind].get(base) for base in type(value).__mro__)
-    function = next((one for one in found if one is not None), None)
+    functions = (_TABLE[kind].get(base) for base in type(value).__mro__)
+    function = next((one for one in functions if one is not None), None)
     return None if function is None else function(value)
 
 

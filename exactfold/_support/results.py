@@ -90,5 +90,5 @@ class Certified:
         <Verdict.PROVED: 'proved'>
         """
         module, _, name = self.WRITER.partition(":")
-        found: Certificate = getattr(import_module(module), name)(self)
-        return found
+        certificate: Certificate = getattr(import_module(module), name)(self)
+        return certificate

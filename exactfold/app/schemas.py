@@ -190,20 +190,20 @@ def _object(kind: type, parts: Parts) -> dict[str, Any]:
 def _described(kind: type) -> dict[str, str]:
     """For each key of a `TypedDict`, the string that follows it in the source."""
     module = import_module(kind.__module__)
-    found: dict[str, str] = {}
+    descriptions: dict[str, str] = {}
     if (definition := _classes(module).get(kind.__name__)) is None:
-        return found  # made by a call, which keys like "from" need
+        return descriptions  # made by a call, which keys like "from" need
     for base in definition.bases:
         if isinstance(base, ast.Name) and is_typeddict(vars(module)[base.id]):
-            found |= _described(vars(module)[base.id])
+            descriptions |= _described(vars(module)[base.id])
     for field, text in pairwise(definition.body):
         match field, text:
             case (
                 ast.AnnAssign(target=ast.Name(id=key)),
                 ast.Expr(value=ast.Constant(value=str() as words)),
             ):
-                found[key] = " ".join(inspect.cleandoc(words).split())
-    return found
+                descriptions[key] = " ".join(inspect.cleandoc(words).split())
+    return descriptions
 
 
 @cache

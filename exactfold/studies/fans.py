@@ -60,8 +60,8 @@ def fan(sheet: CreasePattern) -> Fan | None:
     """The sheet as a fan, if it is one; a sheet with one vertex is a fan in two ways.
 
     >>> from exactfold.pattern.families import two_vertex
-    >>> found = fan(two_vertex())
-    >>> found.poles, found.chain, found.flipped()
+    >>> sheet_as_fan = fan(two_vertex())
+    >>> sheet_as_fan.poles, sheet_as_fan.chain, sheet_as_fan.flipped()
     ((1, 3), (0, 4, 5, 2), 2)
     """
     inside = sheet.interior_set

@@ -117,16 +117,16 @@ def _heights(pattern: CreasePattern, axes: tuple[int, ...]) -> dict[str, Any]:
 
 
 def _unit(vector: FloatArray) -> FloatArray:
-    found: FloatArray = vector / np.linalg.norm(vector)
-    return found
+    unit_vector: FloatArray = vector / np.linalg.norm(vector)
+    return unit_vector
 
 
 def _above(pattern: CreasePattern, heights: Mapping[int, Any]) -> FloatArray:
     """The heights above the plane of vertices 0, 1 and 2."""
     points = np.array([[float(x), float(y), 1.0] for x, y in pattern.vertices])
     values = np.array([float(heights[v]) for v in range(len(points))])
-    found: FloatArray = values - points @ np.linalg.solve(points[:3], values[:3])
-    return found
+    above: FloatArray = values - points @ np.linalg.solve(points[:3], values[:3])
+    return above
 
 
 def _shared(figure: int) -> dict[str, Any]:
@@ -357,7 +357,7 @@ def figures(rows: Iterable[Row]) -> list[StudyFigure]:
         4: _LEGEND,
         5: _LEGEND,
     }
-    found = []
+    study_figures = []
     for row in filter(_has_picture, sorted(rows, key=lambda row: int(row["figure"]))):
         figure = int(row["figure"])
         name, title, draw = drawn[figure]
@@ -365,8 +365,10 @@ def figures(rows: Iterable[Row]) -> list[StudyFigure]:
         def drawing(axes: Any, draw: Any = draw, row: Row = row) -> None:
             draw(axes, row)
 
-        found.append(StudyFigure(name, title, captions[figure], drawing, width=3.6, height=3.4))
-    return found
+        study_figures.append(
+            StudyFigure(name, title, captions[figure], drawing, width=3.6, height=3.4)
+        )
+    return study_figures
 
 
 STUDY: Final = Study(

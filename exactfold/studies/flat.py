@@ -64,7 +64,7 @@ def row(recipe: Recipe) -> dict[str, Any]:
     pattern = square_of(recipe)
     lines = Lines.of(pattern)
     proved = lines.status is PROVED
-    found: dict[str, Any] = {
+    values: dict[str, Any] = {
         "status": str(lines.status),
         "distinct": lines.distinct,
         "flat": clusters(pattern, lines.signs) if proved else None,
@@ -74,12 +74,12 @@ def row(recipe: Recipe) -> dict[str, Any]:
         "distance_straight": None,
     }
     if recipe["measured"] and proved:
-        if found["flat"]:
-            found["distance"], found["distance_straight"] = 0.0, found["straight"]
+        if values["flat"]:
+            values["distance"], values["distance_straight"] = 0.0, values["straight"]
         elif near := nearest_exception(count_branches(pattern.without_rigid_parts()[0])):
-            found["distance"] = float(f"{near.distance * (1 + 1e-5):.5e}")
-            found["distance_straight"] = near.straight
-    return found
+            values["distance"] = float(f"{near.distance * (1 + 1e-5):.5e}")
+            values["distance_straight"] = near.straight
+    return values
 
 
 def has_straight_folds(pattern: CreasePattern) -> bool:
@@ -123,14 +123,14 @@ def clusters(pattern: CreasePattern, signs: SignArray) -> list[list[int]]:
     [[4]]
     """
     rigid = np.array([v in pattern.rigid_vertices for v in pattern.interior], dtype=bool)
-    found: set[frozenset[int]] = set()
+    parts: set[frozenset[int]] = set()
     for flat in np.unique((signs == 0) & ~rigid, axis=0).tolist():
         vertices = [v for v, is_flat in zip(pattern.interior, flat, strict=True) if is_flat]
         graph = to_networkx(pattern).subgraph(vertices)
-        found |= {frozenset(part) for part in nx.connected_components(graph)}
+        parts |= {frozenset(part) for part in nx.connected_components(graph)}
     reduced, labels = pattern.without_rigid_parts()
     degrees = {v: reduced.degree(k) for k, v in enumerate(labels)}
-    return sorted(sorted(degrees[v] for v in part) for part in found)
+    return sorted(sorted(degrees[v] for v in part) for part in parts)
 
 
 @dataclass
@@ -225,15 +225,15 @@ def tables(rows: Iterable[Row]) -> list[StudyTable]:
             tuple(
                 (
                     d,
-                    sum(t.proved for t in found),
-                    sum(t.exceptions for t in found),
-                    sum(t.paths for t in found),
-                    sum(t.exceptions_path for t in found),
-                    sum(t.straight for t in found),
-                    sum(t.exceptions_straight for t in found),
+                    sum(t.proved for t in on_grid),
+                    sum(t.exceptions for t in on_grid),
+                    sum(t.paths for t in on_grid),
+                    sum(t.exceptions_path for t in on_grid),
+                    sum(t.straight for t in on_grid),
+                    sum(t.exceptions_straight for t in on_grid),
                 )
                 for d in sorted({d for _, d in tallies})
-                for found in [[t for (_, e), t in tallies.items() if e == d]]
+                for on_grid in [[t for (_, e), t in tallies.items() if e == d]]
             ),
             (
                 "paths: with folds that make a straight path from corner to corner; straight: with "
@@ -317,11 +317,11 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
         axes.set_ylabel("squares with a nearer one (%)")
 
     def shares(axes: Any) -> None:
-        found = sorted({n for n, _ in tallies})
-        for place, n in enumerate(found):
+        sizes = sorted({n for n, _ in tallies})
+        for place, n in enumerate(sizes):
             points = [(d, t) for (m, d), t in tallies.items() if m == n]
             counts = [(t.exceptions, t.proved) for _, t in points]
-            places = [d * 2 ** (0.12 * (place - (len(found) - 1) / 2)) for d, _ in points]
+            places = [d * 2 ** (0.12 * (place - (len(sizes) - 1) / 2)) for d, _ in points]
             draw_rare(axes, places, counts, label=f"$V_i = {n}$", **of_size(n))
         axes.set_xscale("log", base=2)
         axes.set_yscale("log")
@@ -330,7 +330,7 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
         axes.set_xlabel("denominator of the grid")
         axes.set_ylabel("squares that are exceptions (%)")
 
-    found = [
+    study_figures = [
         StudyFigure(
             "exceptions",
             "Exceptions become rare on fine grids",
@@ -341,7 +341,7 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
         )
     ]
     if near:
-        found.append(
+        study_figures.append(
             StudyFigure(
                 "distances",
                 "How far the nearest exception is at most",
@@ -350,7 +350,7 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
                 distances,
             )
         )
-    return found
+    return study_figures
 
 
 STUDY: Final = Study(

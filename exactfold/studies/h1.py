@@ -146,21 +146,27 @@ class _SizeTally:
 def _sorted(rows: Iterable[Row]) -> tuple[dict[int, _SizeTally], list[Row]]:
     tallies: dict[int, _SizeTally] = defaultdict(_SizeTally)
     every = []
-    for found in rows:
-        if found["kind"] == _SQUARE:
-            tallies[found["interior"]].add(found)
+    for entry in rows:
+        if entry["kind"] == _SQUARE:
+            tallies[entry["interior"]].add(entry)
         else:
-            every.append(found)
+            every.append(entry)
     return dict(sorted(tallies.items())), every
 
 
 def tables(rows: Iterable[Row]) -> list[StudyTable]:
     """Shares beside those of the paper, their decay, and all types."""
     tallies, every = _sorted(rows)
-    found = [_types(every)] if every else []
+    by_type = [_types(every)] if every else []
     if not tallies:
-        return found
-    return [_shares(tallies), _moves(tallies), _decay(tallies), *found, _sentences(tallies, every)]
+        return by_type
+    return [
+        _shares(tallies),
+        _moves(tallies),
+        _decay(tallies),
+        *by_type,
+        _sentences(tallies, every),
+    ]
 
 
 def _shares(tallies: dict[int, _SizeTally]) -> StudyTable:
@@ -237,9 +243,9 @@ def _factors(values: Sequence[float]) -> str:
 def _sentences(tallies: dict[int, _SizeTally], every: list[Row]) -> StudyTable:
     """The sentences of Section IV on these numbers."""
     lines: list[tuple[Cell, ...]] = []
-    small = [found for found in every if found["interior"] <= 3]
+    small = [entry for entry in every if entry["interior"] <= 3]
     if small:
-        kept, h1 = (sum(found[key] for found in small) for key in ("kept", "kept_h1"))
+        kept, h1 = (sum(entry[key] for entry in small) for key in ("kept", "kept_h1"))
         sentence = "up to Vi = 3 all types without chords are H1"
         lines.append((sentence, f"{h1} of {kept}", verdict(h1 == kept)))
     sizes = [size for size in tallies if size >= 3]
@@ -293,14 +299,14 @@ def _sentences(tallies: dict[int, _SizeTally], every: list[Row]) -> StudyTable:
 
 def _types(every: list[Row]) -> StudyTable:
     lines = []
-    for found in every:
-        size = found["interior"]
-        counts = (found["types"], found["types_without_chords"])
+    for entry in every:
+        size = entry["interior"]
+        counts = (entry["types"], entry["types_without_chords"])
         same = {None: None, True: "yes", False: "no"}[
             counts == PLANTRI[size] if size in PLANTRI else None
         ]
         kept = ("kept", "kept_h1", "kept_with_chords", "kept_with_chords_h1")
-        lines.append((size, *counts, same, *(found[key] for key in kept)))
+        lines.append((size, *counts, same, *(entry[key] for key in kept)))
     return StudyTable(
         "types",
         "All types of triangulations of a quadrilateral",

@@ -48,10 +48,10 @@ def row(recipe: Recipe) -> dict[str, Any]:
     then (`time`), and how many corners the two faces that meet have in common (`shared`).
     """
     pattern = square_of(recipe)
-    found = find_loops(pattern)
+    loops = find_loops(pattern)
     foldable = pattern.foldable_vertices
     contacts = _contacts(pattern)
-    proved = found.status is PROVED and all(contact["end"] != "open" for contact in contacts)
+    proved = loops.status is PROVED and all(contact["end"] != "open" for contact in contacts)
     known = fan(pattern)
     return {
         "status": str(PROVED if proved else UNDECIDED),
@@ -59,7 +59,7 @@ def row(recipe: Recipe) -> dict[str, Any]:
         "rigid": pattern.Vt,
         "h1": reverse_moves(triangulation(pattern.triangles)) == pattern.Vi,
         "rule": None if known is None else known.flipped(),
-        "loops": [_described(loop, loop.target, foldable) for loop in found.loops if loop.target],
+        "loops": [_described(loop, loop.target, foldable) for loop in loops.loops if loop.target],
         "contacts": contacts,
     }
 
@@ -87,7 +87,7 @@ def _contacts(pattern: CreasePattern) -> list[dict[str, Any]]:
     """What ends the motion of each branch first, with proof."""
     finder = BranchFinder(pattern)
     size = len(pattern.foldable_vertices)
-    found = []
+    contacts = []
     for signs in sign_vectors(0, 1 << size, size).tolist():
         branch = finder.find(dict(zip(finder.poppable, signs, strict=True)))
         proof = _proof_of(branch) if branch.status is PROVED else None
@@ -99,8 +99,8 @@ def _contacts(pattern: CreasePattern) -> list[dict[str, Any]]:
                 shared = len(set.intersection(*map(set, event.faces)))
             elif proof.branch_point is not None:
                 end, time = "node", list(in_floats(proof.length))
-        found.append({"signs": branch.sign_text, "end": end, "time": time, "shared": shared})
-    return found
+        contacts.append({"signs": branch.sign_text, "end": end, "time": time, "shared": shared})
+    return contacts
 
 
 def _proof_of(branch: Branch) -> MotionProof | None:

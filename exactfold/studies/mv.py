@@ -35,7 +35,7 @@ def row(recipe: Recipe) -> dict[str, Any]:
     value is None if it is not decided or there is no such vertex.
     """
     lines = Lines.of(square_of(recipe))
-    found: dict[str, Any] = {
+    values: dict[str, Any] = {
         "status": str(lines.status),
         "rigid": lines.pattern.Vt,
         "folds": len(lines.pattern.without_rigid_parts()[0].folds),
@@ -48,23 +48,23 @@ def row(recipe: Recipe) -> dict[str, Any]:
         "least_degree": None,
     }
     if lines.status is not PROVED:
-        return found
-    found["separated"] = len(np.unique(lines.signs, axis=0)) == len(lines.signs)
+        return values
+    values["separated"] = len(np.unique(lines.signs, axis=0)) == len(lines.signs)
     if (lines.letters == UNKNOWN).any():
-        return found
+        return values
     letters, signs = same_side(lines.letters, lines.signs)
     for name, kinds in (("with_letters", letters), ("with_signs", np.hstack([letters, signs]))):
         counts = np.unique(kinds, axis=0, return_counts=True)[1]
-        found[name] = int(counts[counts > 1].sum())
-    found["assignments"] = len(np.unique(letters, axis=0))
+        values[name] = int(counts[counts > 1].sum())
+    values["assignments"] = len(np.unique(letters, axis=0))
     pairs = _differing(letters, signs)
     numbers = Counter(int(differ.sum()) for differ in pairs)
-    found["differing"] = [list(item) for item in sorted(numbers.items())]
+    values["differing"] = [list(item) for item in sorted(numbers.items())]
     reduced, labels = lines.pattern.without_rigid_parts()
     degrees = {v: reduced.degree(k) for k, v in enumerate(labels)}
     which: list[int] = np.flatnonzero(np.any(pairs, axis=0)).tolist() if pairs else []
-    found["least_degree"] = min((degrees[lines.pattern.interior[k]] for k in which), default=None)
-    return found
+    values["least_degree"] = min((degrees[lines.pattern.interior[k]] for k in which), default=None)
+    return values
 
 
 def _differing(letters: SignArray, signs: SignArray) -> list[npt.NDArray[np.bool_]]:

@@ -72,21 +72,21 @@ def nearest_exception(count: BranchCount) -> Nearest | None:
 
     >>> from exactfold.branches.counting.collect import count_branches
     >>> from exactfold.pattern.random_squares import random_square
-    >>> found = nearest_exception(count_branches(random_square(5, seed=4)))
-    >>> found.cycle, round(found.distance, 6), found.straight
+    >>> nearest = nearest_exception(count_branches(random_square(5, seed=4)))
+    >>> nearest.cycle, round(nearest.distance, 6), nearest.straight
     ((4, 5, 2, 3), 0.000402, False)
     """
     pattern = count.pattern
-    found = [_beside_a_path(pattern)]
+    exceptions = [_beside_a_path(pattern)]
     cycles = list(quadrilaterals(pattern))
     if cycles and count.branches:
         for signs, cycle, place in _SaddleSearch(count, cycles).nearest():
             moved = _moved(pattern, dict(zip(pattern.interior, place.tolist(), strict=True)))
             if moved is not None and proved_between(pattern, moved, cycle, signs):
-                found.append(_nearest(pattern, moved, cycle, signs))
+                exceptions.append(_nearest(pattern, moved, cycle, signs))
                 break
     return min(
-        (one for one in found if one is not None), key=lambda one: one.distance, default=None
+        (one for one in exceptions if one is not None), key=lambda one: one.distance, default=None
     )
 
 
@@ -137,7 +137,7 @@ def _beside_a_path(pattern: CreasePattern) -> Nearest | None:
 
     If the sheet is folded along this diagonal alone, all other interior vertices are flat.
     """
-    found = []
+    exceptions = []
     for v in pattern.interior if pattern.Vi > 1 else ():
         for a, b in zip(pattern.boundary[:2], pattern.boundary[2:], strict=True):
             if {a, b} <= set(pattern.star(v)):
@@ -146,8 +146,8 @@ def _beside_a_path(pattern: CreasePattern) -> Nearest | None:
                 t = ((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy)
                 moved = _moved(pattern, {v: (ax + t * dx, ay + t * dy)})
                 if moved is not None and _same_faces(pattern, moved):
-                    found.append(_nearest(pattern, moved, (a, v, b), ""))
-    return min(found, key=lambda one: one.distance, default=None)
+                    exceptions.append(_nearest(pattern, moved, (a, v, b), ""))
+    return min(exceptions, key=lambda one: one.distance, default=None)
 
 
 def _nearest(
@@ -286,14 +286,14 @@ class _SaddleSearch:
             for distance, cycle, place in self._first_order(heights):
                 candidates.append((distance, branch.sign_text, cycle, place, heights))
         candidates.sort(key=lambda candidate: candidate[0])
-        found = []
+        ends = []
         for _, signs, cycle, place, heights in candidates[:_TRIED]:
             end = self._followed(cycle, place, heights)
             if end is not None:
                 way = end - self.start[self.inside]
                 beyond = self.start[self.inside] + _BEYOND * way
-                found.append((float(np.linalg.norm(way)), signs, cycle, beyond))
-        return [end[1:] for end in sorted(found, key=lambda end: end[0])]
+                ends.append((float(np.linalg.norm(way)), signs, cycle, beyond))
+        return [end[1:] for end in sorted(ends, key=lambda end: end[0])]
 
     def _first_order(self, heights: FloatArray) -> Iterator[tuple[float, Cycle, FloatArray]]:
         """Yields, for each cycle, where its saddle vanishes to first order, and how far that is."""

@@ -60,13 +60,13 @@ def row(recipe: Recipe) -> dict[str, Any]:
     chart = BranchSystem(square_of(recipe)).chart
     seed = int(recipe["seed"])
     system = perturbed(chart.system, str(recipe["size"]), seed)
-    found = isolate(system, homotopy(system, seed=seed))
-    status = str(found.complete)
-    if found.complete is not PROVED:
+    isolation = isolate(system, homotopy(system, seed=seed))
+    status = str(isolation.complete)
+    if isolation.complete is not PROVED:
         return {"status": status, "zeros": None, "nonreal": None, "two_for_each_pair": None}
     functionals = Functionals(chart).vertices.values()
     pairs: Counter[tuple[int | None, ...]] = Counter()
-    for box in found.boxes:
+    for box in isolation.boxes:
         if box.is_real:
             signs = [BoxRoot(box).sign(functional) for functional in functionals]
             first = signs[0]
@@ -75,8 +75,8 @@ def row(recipe: Recipe) -> dict[str, Any]:
     two = len(pairs) == 1 << (len(functionals) - 1) and set(pairs.values()) == {2}
     return {
         "status": status,
-        "zeros": len(found.boxes),
-        "nonreal": found.nonreal,
+        "zeros": len(isolation.boxes),
+        "nonreal": isolation.nonreal,
         "two_for_each_pair": None if unclear else two,
     }
 
@@ -116,8 +116,8 @@ def _key(row: Row) -> tuple[int, int]:
 
 
 def _tallies(rows: Iterable[Row]) -> dict[tuple[int, str], _SystemTally]:
-    found = tallied(rows, _SystemTally, _key)
-    return {(n, SIZES[place]): tally for (n, place), tally in found.items()}
+    tallies = tallied(rows, _SystemTally, _key)
+    return {(n, SIZES[place]): tally for (n, place), tally in tallies.items()}
 
 
 def _share(part: int, whole: int) -> str | None:
@@ -161,14 +161,14 @@ def _sentences(tallies: Mapping[tuple[int, str], _SystemTally]) -> StudyTable:
     lines: list[tuple[Cell, ...]] = []
     for n, size in largest.items():
         t = tallies[n, size]
-        for sentence, found, number in (
+        for sentence, occurrences, number in (
             ("zeros in complex pairs", t.some, t.proved),
             ("not two zeros for each", t.proved - t.unclear - t.two, t.proved - t.unclear),
         ):
             if number:
-                low, high = interval(found, number)
+                low, high = interval(occurrences, number)
                 most = None if low <= 0.5 <= high else low > 0.5
-                share = (_share(found, number), interval_text(found, number))
+                share = (_share(occurrences, number), interval_text(occurrences, number))
                 lines.append((n, size, sentence, *share, verdict(most)))
     return StudyTable(
         "sentences",
@@ -190,11 +190,11 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
 
     def shares(axes: Any) -> None:
         places = dict(zip(SIZES, range(len(SIZES)), strict=True))
-        found = sorted({n for n, _ in tallies})
-        for place, n in enumerate(found):
+        vertex_counts = sorted({n for n, _ in tallies})
+        for place, n in enumerate(vertex_counts):
             points = [(places[s], t) for (m, s), t in tallies.items() if m == n]
             counts = [(t.some, t.proved) for _, t in points]
-            at = [x + 0.06 * (place - (len(found) - 1) / 2) for x, _ in points]
+            at = [x + 0.06 * (place - (len(vertex_counts) - 1) / 2) for x, _ in points]
             draw_shares(axes, at, counts, 100.0, label=f"$V_i = {n}$", **of_size(n))
         axes.set_xticks(range(len(SIZES)), SIZES)
         axes.set_xlabel("largest relative change of a coefficient")

@@ -46,7 +46,7 @@ def row(recipe: Recipe) -> dict[str, Any]:
     difference as a share of the bound. Both are rounded up to two digits.
     """
     pattern = square_of(recipe)
-    found: dict[str, Any] = {
+    values: dict[str, Any] = {
         "status": str(UNDECIDED),
         "folds": len(pattern.folds),
         "rigid": pattern.Vt,
@@ -59,13 +59,13 @@ def row(recipe: Recipe) -> dict[str, Any]:
     try:
         results = actuate_all(pattern)
     except UndecidedBranchError:
-        return found
+        return values
     if any(result.status is not PROVED for result in results):
-        return found
+        return values
     dimensions = Counter(result.orthogonal_dimension for result in results)
     gaps = [result.best - result.margin[0] for result in results]
     return {
-        **found,
+        **values,
         "status": str(PROVED),
         "dimensions": [[*bounds, number] for bounds, number in sorted(dimensions.items())],
         "margins": [_rounded(result.margin[0], _DOWN) for result in results],

@@ -58,7 +58,7 @@ def row(recipe: Recipe) -> dict[str, Any]:
     """
     lines = Lines.of(square_of(recipe))
     pattern = lines.pattern
-    found: dict[str, Any] = {
+    values: dict[str, Any] = {
         "status": str(lines.status),
         "rigid": pattern.Vt,
         "distinct": lines.distinct,
@@ -71,18 +71,18 @@ def row(recipe: Recipe) -> dict[str, Any]:
         "digits": None,
     }
     if lines.status is not PROVED:
-        return found
-    found["flat"] = lines.flat_vertices
-    found["pairs_of_signs"] = _two_for_each_pair(lines.signs)
+        return values
+    values["flat"] = lines.flat_vertices
+    values["pairs_of_signs"] = _two_for_each_pair(lines.signs)
     if not (lines.letters == UNKNOWN).any():
         letters, signs = same_side(lines.letters, lines.signs)
-        found["with_letters"] = _repeated(letters)
-        found["with_signs"] = _repeated(np.hstack([letters, signs]))
+        values["with_letters"] = _repeated(letters)
+        values["with_signs"] = _repeated(np.hstack([letters, signs]))
     pair = closest_lines(lines)
     if pair is not None and pair.digits is not None:
-        found["closest"] = float(f"{pair.low * (1 - 1e-5):.5e}")
-        found["digits"] = pair.digits
-    return found
+        values["closest"] = float(f"{pair.low * (1 - 1e-5):.5e}")
+        values["digits"] = pair.digits
+    return values
 
 
 def same_side(letters: SignArray, signs: SignArray) -> tuple[SignArray, SignArray]:
@@ -210,17 +210,17 @@ def _comparison(tallies: dict[int, _CountTally]) -> StudyTable:
             continue
         number, *counts = PAPER[size]
         for (kind, name), count in zip(_KINDS, counts, strict=True):
-            found = getattr(tally, name)
+            own_count = getattr(tally, name)
             ours = tally.number - tally.undecided - (tally.unclear if name != "rigid" else 0)
-            p = same_probability((count, number), (found, ours))
+            p = same_probability((count, number), (own_count, ours))
             lines.append(
                 (
                     size,
                     kind,
                     f"{count}/{number}",
                     interval_text(count, number),
-                    f"{found}/{ours}",
-                    interval_text(found, ours),
+                    f"{own_count}/{ours}",
+                    interval_text(own_count, ours),
                     f"{p:.2g}",
                     agreement(p),
                 )

@@ -37,8 +37,8 @@ def types(interior: int) -> list[Triangulation]:
     """
     level = [triangulation([(0, 1, 2), (0, 2, 3)])]
     for _ in range(interior):
-        found = {_code(larger): larger for smaller in level for larger in insertions(smaller)}
-        level = [found[code] for code in sorted(found)]
+        by_code = {_code(larger): larger for smaller in level for larger in insertions(smaller)}
+        level = [by_code[code] for code in sorted(by_code)]
     return level
 
 
@@ -66,7 +66,7 @@ def degrees(triangles: Triangulation) -> dict[int, int]:
     for t in triangles:
         for v in t:
             near.setdefault(v, set()).update(t)
-    return {v: len(found) - 1 for v, found in near.items()}
+    return {v: len(vertices) - 1 for v, vertices in near.items()}
 
 
 def low_corners(triangles: Triangulation) -> int:

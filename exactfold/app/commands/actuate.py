@@ -31,7 +31,7 @@ class Driven(ActuateOptions):
             pattern = read(self.file, self.snap, self.sheet, "actuate").pattern
             one_at_least("either --signs or --up", self.signs, self.up)
             torques = None if self.torques is None else torques_in(self.torques, pattern)
-            found = actuate(
+            actuation = actuate(
                 pattern,
                 given_signs(BranchFinder(pattern), self.signs, self.up),
                 creases=self.creases,
@@ -39,12 +39,12 @@ class Driven(ActuateOptions):
                 progress=bar,
             )
         if self.as_json:
-            print(json.dumps(found.to_dict(name_of(self.file))))
+            print(json.dumps(actuation.to_dict(name_of(self.file))))
         else:
             from exactfold.app import report
 
-            report.show(report.actuation_report(found, everything=self.everything))
-        return EXIT[found.status]
+            report.show(report.actuation_report(actuation, everything=self.everything))
+        return EXIT[actuation.status]
 
 
 def torques_in(path: Path, pattern: CreasePattern) -> dict[Edge, Fraction]:
@@ -55,12 +55,12 @@ def torques_in(path: Path, pattern: CreasePattern) -> dict[Edge, Fraction]:
     shape = 'write {"0-4": 0.5, ...}, with a torque for each crease'
     data = numbers_by_name(path, InputError, "crease", shape)
     names = {f"{i}-{j}": (i, j) for i, j in pattern.folds}
-    found: dict[Edge, Fraction] = {}
+    torques: dict[Edge, Fraction] = {}
     for name, value in data.items():
         if name not in names:
             raise InputError(f"{path}: {name} is not a fold i-j, i < j, of the pattern")
         try:
-            found[names[name]] = as_rational(value)
+            torques[names[name]] = as_rational(value)
         except NumberError as error:
             raise InputError(f"{path}: {name}: {error}") from None
-    return found
+    return torques

@@ -24,22 +24,22 @@ class Listed(AssignmentsOptions):
         """
         with Bar("reading") as bar:
             pattern = read(self.file, self.snap, self.sheet, "assignments").pattern
-            found = all_assignments(pattern, progress=bar)
-            self._write(found, bar)
+            assignments = all_assignments(pattern, progress=bar)
+            self._write(assignments, bar)
         if self.as_json:
-            print(json.dumps(found.to_dict(name_of(self.file))))
+            print(json.dumps(assignments.to_dict(name_of(self.file))))
         else:
             from exactfold.app import report
 
-            report.show(report.assignments_report(found, everything=self.everything))
-        return EXIT[found.status]
+            report.show(report.assignments_report(assignments, everything=self.everything))
+        return EXIT[assignments.status]
 
-    def _write(self, found: AllAssignments, bar: Bar) -> None:
+    def _write(self, assignments: AllAssignments, bar: Bar) -> None:
         if self.certificate is None:
             return
         bar("certificate")
         try:
-            document = assignments_certificate(found, progress=bar)
+            document = assignments_certificate(assignments, progress=bar)
         except NotApplicableError as error:
             say(f"no certificate was written: {error}")
         else:

@@ -155,12 +155,12 @@ class Batch(CountOptions):
         def jobs() -> Iterator[Job]:
             for path in self.patterns:
                 job = Job(str(path), _source(path), self.method, self.seed, self.snap, self.sheet)
-                found = known.take(job, names)
-                if found is None:
+                earlier_line = known.take(job, names)
+                if earlier_line is None:
                     yield job
                 else:
                     tally.skipped += 1
-                    tally.add(found)
+                    tally.add(earlier_line)
                     progress()
 
         def progress() -> None:
@@ -215,9 +215,9 @@ class Known:
     reason is printed again.
     """
 
-    def __init__(self, found: Iterator[dict[str, Any]] | list[dict[str, Any]]) -> None:
+    def __init__(self, documents: Iterator[dict[str, Any]] | list[dict[str, Any]]) -> None:
         self._lines: dict[str, list[Line]] = {}
-        for data in found:
+        for data in documents:
             if data["sha256"] is not None and data["status"] != FAILED:
                 result = data["result"] or {}
                 warned = bool(result.get("warnings") or result.get("near_misses"))

@@ -76,18 +76,18 @@ class Asked(BranchOptions):
                 None if self.given.boundary_heights is None else finder.boundary_heights
             )
             signs = given_signs(finder, self.signs, self.up)
-            found = find_driven(
+            driven = find_driven(
                 pattern, angles, signs, boundary_heights=boundary_heights, progress=bar
             )
-            status = found.status
-        if found.others:
-            say(also_found(found.others))
-        self._certify(found.branch)
+            status = driven.status
+        if driven.others:
+            say(also_found(driven.others))
+        self._certify(driven.branch)
         if self.as_json:
-            print(json.dumps(found.to_dict(self.name)))
+            print(json.dumps(driven.to_dict(self.name)))
         else:
-            report.show(report.branch_report(found.branch, found))
-        return found.branch.status is PROVED and status is PROVED
+            report.show(report.branch_report(driven.branch, driven))
+        return driven.branch.status is PROVED and status is PROVED
 
     def _read(self, bar: Bar) -> CreasePattern:
         pattern = read(self.pattern, self.snap, self.sheet, "branch").pattern
@@ -197,10 +197,10 @@ def _of_lines(finder: BranchFinder, path: Path, bar: Bar) -> Iterator[tuple[str,
     for k, (line, text) in enumerate(lines):
         bar("branches", k, len(lines))
         try:
-            found = finder.find(finder.signs(text, None))
+            branch = finder.find(finder.signs(text, None))
         except UsageError as error:  # a 0 where no branch is flat
             raise UsageError(f"{path}, line {line}: {error}") from None
-        yield f"line {line}", found
+        yield f"line {line}", branch
 
 
 def _indices(option: str, text: str) -> list[int]:

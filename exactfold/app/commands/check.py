@@ -34,20 +34,20 @@ def valid(
     many = workers or cores()
     with Bar("checking"):
         if listed or heights:
-            found, branches = verified_branches(path, many)
+            verdict, branches = verified_branches(path, many)
         else:
             with regular(path) as file:
-                found = judged(said(path), lambda: checker.verify(file, many, quickest))
+                verdict = judged(said(path), lambda: checker.verify(file, many, quickest))
     if as_json:
-        print(json.dumps(_document(path, found, branches, heights)))
-        return bool(found)
-    print(found.text)
+        print(json.dumps(_document(path, verdict, branches, heights)))
+        return bool(verdict)
+    print(verdict.text)
     if branches is not None:
         from exactfold.app.report.listing import listing_report
         from exactfold.app.report.terminal import show
 
         show(listing_report(branches, heights=heights))
-    return bool(found)
+    return bool(verdict)
 
 
 def verified_branches(path: Path, workers: int) -> tuple[Checked, list[Branch] | None]:
@@ -74,17 +74,17 @@ def verified_branches(path: Path, workers: int) -> tuple[Checked, list[Branch] |
         return claims
 
     with regular(path) as file:
-        found = judged(said(path), verify)
-    if not found:
-        return found, None
-    return found, sorted(branches_of(read[0]), key=Branch.sort_key)
+        verdict = judged(said(path), verify)
+    if not verdict:
+        return verdict, None
+    return verdict, sorted(branches_of(read[0]), key=Branch.sort_key)
 
 
 def _document(
-    path: Path, found: Checked, branches: list[Branch] | None, heights: bool
+    path: Path, verdict: Checked, branches: list[Branch] | None, heights: bool
 ) -> CheckDocument:
     """The object that `check --json` prints."""
-    document = found.to_dict(name_of(path))
+    document = verdict.to_dict(name_of(path))
     if branches is None:
         return document
     from exactfold.app.report.listing import angles_of

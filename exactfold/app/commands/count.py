@@ -154,10 +154,10 @@ class Asked(CountOptions):
             say(f"no certificate of the connected components was written: {error}")
         if result.families is not None and result.families.status is PROVED:
             more = file if written is None else self._components or file
-            found = self._certified_panels(result.families, more)
-            if found is not None:
+            panels_file = self._certified_panels(result.families, more)
+            if panels_file is not None:
                 say(f"the list of irreducible components has a certificate of its own: {more}")
-            written = written or found
+            written = written or panels_file
         return written
 
     def _certified_panels(self, ways: Decomposition, file: Path) -> str | None:

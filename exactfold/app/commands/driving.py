@@ -26,33 +26,33 @@ def driven_angles(text: str) -> Angles:
     """
     if text.endswith(".json"):
         return _of_file(Path(text))
-    found: Angles = {}
+    angles: Angles = {}
     for part in text.split(","):
         name, equals, value = part.strip().partition("=")
-        _add(found, name, value if equals else None, UsageError)
-    return found
+        _add(angles, name, value if equals else None, UsageError)
+    return angles
 
 
 def _of_file(path: Path) -> Angles:
     def error(message: str) -> BadDriveError:
         return BadDriveError(f"{path}: {message}")
 
-    found: Angles = {}
+    angles: Angles = {}
     for name, value in numbers_by_name(path, BadDriveError, "fold", _SHAPE).items():
         if not (value is None or isinstance(value, int | str)) or isinstance(value, bool):
             raise error(f"the angle of fold {name} is not a number: {_SHAPE}")
-        _add(found, name, None if value is None else str(value), error)
-    return found
+        _add(angles, name, None if value is None else str(value), error)
+    return angles
 
 
-def _add(found: Angles, name: str, value: str | None, error: Callable[[str], Exception]) -> None:
+def _add(angles: Angles, name: str, value: str | None, error: Callable[[str], Exception]) -> None:
     try:
         fold = fold_name(name)
     except typer.BadParameter as failure:
         raise error(str(failure)) from None
-    if fold in found:
+    if fold in angles:
         raise error(f"fold {name} is given twice")
     try:
-        found[fold] = None if value is None else approx_number(value.removesuffix("deg"))
+        angles[fold] = None if value is None else approx_number(value.removesuffix("deg"))
     except NumberError:
         raise error(f"fold {name}: {value!r} is not an angle such as 90deg") from None

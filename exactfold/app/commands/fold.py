@@ -80,8 +80,8 @@ class Wanted(FoldOptions):
             bar("writing")
             written = self._written(motion, proof)
         if self.as_json:
-            found = motion.to_dict(name_of(self.file), written)
-            print(json.dumps({**found, "proof": None if proof is None else proof.to_dict()}))
+            document = motion.to_dict(name_of(self.file), written)
+            print(json.dumps({**document, "proof": None if proof is None else proof.to_dict()}))
         else:
             report.show(report.motion_report(motion, written, proof))
         if isinstance(motion, Motion) and motion.branch.status is not PROVED:
@@ -128,17 +128,17 @@ class Wanted(FoldOptions):
         if (self.signs, self.up) != (None, None):
             signs = given_signs(finder, self.signs, self.up)
         boundary_heights = None if self.given.boundary_heights is None else finder.boundary_heights
-        found = find_driven(
+        driven = find_driven(
             pattern, angles, signs, boundary_heights=boundary_heights, side=self.side, progress=bar
         )
         if signs is None:
             say(
                 "no branch was named (--signs, --up): this is the first branch found on which the "
-                f"folds start in this ratio: {found.branch.sign_text}"
+                f"folds start in this ratio: {driven.branch.sign_text}"
             )
-        if found.others:
-            say(also_found(found.others))
-        return _Begin(found.branch, found.side, found.drive)
+        if driven.others:
+            say(also_found(driven.others))
+        return _Begin(driven.branch, driven.side, driven.drive)
 
     def _branch(self, pattern: CreasePattern, bar: Bar) -> Branch:
         given = {"--component": self.component, "--modes": self.modes}

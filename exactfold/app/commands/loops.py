@@ -58,7 +58,7 @@ class Wanted(MotionsOptions):
                 if self.dask is not None:
                     pool = stack.enter_context(dask_pool(self.dask, self.workers))
                 few = len(pattern.foldable_vertices) <= _FEW
-                found = find_loops(
+                loops = find_loops(
                     pattern,
                     processes=self.workers or (1 if few else os.cpu_count() or 1),
                     pool=pool,
@@ -68,7 +68,7 @@ class Wanted(MotionsOptions):
                     replace=False,
                 )
         if self.as_json:
-            print(json.dumps(found.to_dict(name_of(self.file))))
+            print(json.dumps(loops.to_dict(name_of(self.file))))
         else:
-            report.show(report.motions_report(found))
-        return EXIT[found.status]
+            report.show(report.motions_report(loops))
+        return EXIT[loops.status]

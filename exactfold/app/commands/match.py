@@ -70,55 +70,55 @@ class Asked(MatchOptions):
             if not has_branches(pattern):
                 warn(pattern)
             bar("signs")
-            found = match(pattern, letters, most=self.most or _HALVES, progress=bar)
-            if not found.matches:
+            matched = match(pattern, letters, most=self.most or _HALVES, progress=bar)
+            if not matched.matches:
                 bar("nearest branches")
-                nearest = nearest_branches(found, tries=self.tries, progress=bar)
-            self._write(found, bar)
+                nearest = nearest_branches(matched, tries=self.tries, progress=bar)
+            self._write(matched, bar)
         seconds = time.perf_counter() - begin
         if self.as_json:
             near = None if nearest is None else nearest.to_dict()
-            print(json.dumps(found.to_dict(name_of(self.file), nearest=near, seconds=seconds)))
+            print(json.dumps(matched.to_dict(name_of(self.file), nearest=near, seconds=seconds)))
         else:
             from exactfold.app import report
 
-            report.show(report.match_report(found, nearest, seconds, everything=self.everything))
-        refuted = found.status is PROVED and not found.matches
-        return EXIT[REFUTED if refuted else found.status]
+            report.show(report.match_report(matched, nearest, seconds, everything=self.everything))
+        refuted = matched.status is PROVED and not matched.matches
+        return EXIT[REFUTED if refuted else matched.status]
 
-    def _write(self, found: Match | BoundaryMatch | PanelMatch, bar: Bar) -> None:
+    def _write(self, answer: Match | BoundaryMatch | PanelMatch, bar: Bar) -> None:
         if self.certificate is None:
             return
-        if found.status is not PROVED:
+        if answer.status is not PROVED:
             say("no certificate was written: the answer is not proved")
             return
         bar("certificate")
         try:
-            certificate = match_certificate(found)
+            certificate = match_certificate(answer)
         except NotApplicableError as error:
             say(f"no certificate was written: {error}")
         else:
             write_certificate(certificate, self.certificate)
 
-    def _over_a_boundary(self, found: BoundaryMatch) -> int:
+    def _over_a_boundary(self, boundary_match: BoundaryMatch) -> int:
         """Print whether a sheet with more corners starts to fold; return the exit code."""
         if self.as_json:
-            print(json.dumps(found.to_dict(name_of(self.file))))
+            print(json.dumps(boundary_match.to_dict(name_of(self.file))))
         else:
             from exactfold.app import report
 
-            report.show(report.boundary_match_report(found, everything=self.everything))
-        return EXIT[found.starts]
+            report.show(report.boundary_match_report(boundary_match, everything=self.everything))
+        return EXIT[boundary_match.starts]
 
-    def _started(self, found: PanelMatch) -> int:
+    def _started(self, panel_match: PanelMatch) -> int:
         """Print whether rigid panels start to fold; return the exit code."""
         if self.as_json:
-            print(json.dumps(found.to_dict(name_of(self.file))))
+            print(json.dumps(panel_match.to_dict(name_of(self.file))))
         else:
             from exactfold.app import report
 
-            report.show(report.panel_match_report(found, everything=self.everything))
-        return EXIT[found.starts]
+            report.show(report.panel_match_report(panel_match, everything=self.everything))
+        return EXIT[panel_match.starts]
 
     def _letters(self, pattern: CreasePattern | PanelPattern, opened: Opened) -> Mapping[Edge, str]:
         if self.letters is None:
@@ -170,16 +170,16 @@ def _in_order(pattern: CreasePattern | PanelPattern, letters: str) -> dict[Edge,
 def _by_name(pattern: CreasePattern | PanelPattern, text: str) -> dict[Edge, str]:
     names = {f"{i}-{j}": (i, j) for i, j in pattern.folds}
     names |= {f"{j}-{i}": (i, j) for i, j in pattern.folds}
-    found: dict[Edge, str] = {}
+    letters: dict[Edge, str] = {}
     for part in filter(None, text.split(",")):
         name, _, letter = part.partition("=")
         if name not in names:
             raise UsageError(f"{part!r} names no fold of the sheet: write 0-4=M for fold 0-4")
         fold = names[name]
         _check(fold, letter)
-        if found.setdefault(fold, letter) != letter:
+        if letters.setdefault(fold, letter) != letter:
             raise UsageError(f"fold {fold[0]}-{fold[1]} has two letters: give one")
-    return found
+    return letters
 
 
 def _check(fold: Edge, letter: str) -> None:

@@ -158,25 +158,25 @@ class Wanted(StudyOptions):
     def _again(self, study: Study) -> int:
         if self._asks_for_rows:
             raise UsageError("--row goes with --journal and --json only")
-        found = recompute_row(study, self._journal, str(self.row))
+        recomputed = recompute_row(study, self._journal, str(self.row))
         if self.as_json:
             document: StudyRowDocument = {
                 "format": "exactfold study-row result",
                 "version": 1,
                 "study": study.name,
                 "journal": str(self._journal),
-                "row": found.stored.id,
-                "sha256": found.stored.sha256,
-                "recipe": dict(found.stored.recipe),
-                "stored": dict(found.stored.row),
-                "recomputed": dict(found.row),
-                "agrees": found.agrees,
-                "differing": list(found.differing),
+                "row": recomputed.stored.id,
+                "sha256": recomputed.stored.sha256,
+                "recipe": dict(recomputed.stored.recipe),
+                "stored": dict(recomputed.stored.row),
+                "recomputed": dict(recomputed.row),
+                "agrees": recomputed.agrees,
+                "differing": list(recomputed.differing),
             }
             print(json.dumps(document))
         else:
-            report.show(report.row_report(found))
-        return EXIT[PROVED if found.agrees else REFUTED]
+            report.show(report.row_report(recomputed))
+        return EXIT[PROVED if recomputed.agrees else REFUTED]
 
     def _run(self, study: Study) -> int:
         if self.workers is not None and self.dask not in (None, LOCAL):

@@ -185,11 +185,11 @@ class CreaseDrawing:
 
     def _each(self, letter: str, chosen: list[int]) -> str:
         usual = self.style.width(letter, None)
-        found = []
+        paths = []
         for k in chosen:
             edge = self.lines.edges[k]
             width = self.width(edge, letter)
-            found.append(
+            paths.append(
                 svg.element(
                     "path",
                     class_=letter,
@@ -199,7 +199,7 @@ class CreaseDrawing:
                     d=self._line(edge),
                 )
             )
-        return "\n".join(found)
+        return "\n".join(paths)
 
     def _few(self, letter: str, chosen: list[int]) -> str:
         """The same lines, where those of nearly the same width form one element."""
@@ -229,20 +229,20 @@ class CreaseDrawing:
         """
         marked = self._marked
         numbers = {label.vertex: label for label in self._numbers(marked)}
-        found = []
+        groups = []
         for v in self.lines.interior:
             content = mark(self.places[v], self.signs.get(v), marked[v]) if v in marked else ""
             if v in numbers:
                 content += self._number(numbers[v], svg.INK)
             if content:
-                found.append(svg.element("g", content, class_=self._class(v), data_vertex=str(v)))
+                groups.append(svg.element("g", content, class_=self._class(v), data_vertex=str(v)))
         inside = set(self.lines.interior)
-        found += [
+        groups += [
             svg.element("g", self._number(n, "#777777"), class_="rim", data_vertex=str(v))
             for v, n in sorted(numbers.items())
             if v not in inside
         ]
-        return "\n".join(found)
+        return "\n".join(groups)
 
     def _class(self, vertex: int) -> str:
         return {1: "up", -1: "down", 0: "flat"}.get(self.signs.get(vertex, 2), "vertex")
@@ -260,12 +260,12 @@ class CreaseDrawing:
         if not radius or not self.lines.interior or len(self.lines.edges) > MOST:
             return {}
         apart, _ = cKDTree(self.places).query(self.places, k=2)
-        found = {}
+        radii = {}
         for v in self.lines.interior:
             wanted = radius if v in self.signs else radius / 2
             if apart[v, 1] >= 2.2 * wanted:
-                found[v] = wanted
-        return found
+                radii[v] = wanted
+        return radii
 
     def _numbers(self, marked: Mapping[int, float]) -> list[Label]:
         """The numbers that find room: near interior vertices, and outside the sheet for boundary
@@ -287,12 +287,12 @@ class CreaseDrawing:
         """
         boundary = self._boundary
         around = gaps(self.places, vertex, near)
-        found = []
+        sectors = []
         for n, (k, wide, middle) in enumerate(around):
             after = near[around[(n + 1) % len(around)][0]]
             if {(vertex, near[k]), (vertex, after)} <= boundary:
-                found.append((wide, middle))
-        return max(found)[1]
+                sectors.append((wide, middle))
+        return max(sectors)[1]
 
     @cached_property
     def _boundary(self) -> frozenset[Edge]:

@@ -94,13 +94,13 @@ def labels(
 
 def _shortest(points: FloatArray, edges: Sequence[tuple[int, int]]) -> dict[int, float]:
     """The length of the shortest line at each point."""
-    found: dict[int, float] = {}
+    shortest: dict[int, float] = {}
     pairs = np.array(edges, dtype=np.intp)
     lengths = np.linalg.norm(points[pairs[:, 0]] - points[pairs[:, 1]], axis=1)
     for (i, j), length in zip(edges, lengths.tolist(), strict=True):
         for v in (i, j):
-            found[v] = min(length, found.get(v, length))
-    return found
+            shortest[v] = min(length, shortest.get(v, length))
+    return shortest
 
 
 def gaps(points: FloatArray, vertex: int, near: Sequence[int]) -> list[tuple[int, float, float]]:
@@ -112,13 +112,13 @@ def gaps(points: FloatArray, vertex: int, near: Sequence[int]) -> list[tuple[int
     x, y = _point(points[vertex])
     angles = [atan2(float(points[v][1]) - y, float(points[v][0]) - x) for v in near]
     order = sorted(range(len(near)), key=lambda k: angles[k])
-    found = []
+    sectors = []
     for n, k in enumerate(order):
         after = angles[order[(n + 1) % len(order)]]
         if n + 1 == len(order):
             after += 2 * pi
-        found.append((k, after - angles[k], (angles[k] + after) / 2))
-    return found
+        sectors.append((k, after - angles[k], (angles[k] + after) / 2))
+    return sectors
 
 
 def _ways(points: FloatArray, vertex: int, near: Sequence[int]) -> list[float]:

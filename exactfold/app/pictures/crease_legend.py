@@ -95,11 +95,11 @@ def legend(
     if by_angle and items:
         items.append(_Item(_wedge(), _SAMPLE, "wide: folds more"))
     if style.marker:
-        found = set(signs)
+        used_signs = set(signs)
         items += [
             _Item(mark(np.array([_SIGN, 0.0]), sign, _SIGN), 2 * _SIGN, name)
             for sign, name in _SIGNS.items()
-            if sign in found
+            if sign in used_signs
         ]
     return Legend(tuple(items))
 

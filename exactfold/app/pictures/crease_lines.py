@@ -111,7 +111,7 @@ def _unit(points: Sequence[tuple[Any, Any]]) -> FloatArray:
     else:  # the coordinates contain square roots
         first = points[0]
         rows = [[float(x - low) for x, low in zip(point, first, strict=True)] for point in points]
-    found = np.array(rows, dtype=np.float64)
-    found = found - found.min(axis=0)
-    size = float(found.max(initial=0.0))
-    return np.asarray(found / (size or 1.0))
+    coordinates = np.array(rows, dtype=np.float64)
+    coordinates = coordinates - coordinates.min(axis=0)
+    size = float(coordinates.max(initial=0.0))
+    return np.asarray(coordinates / (size or 1.0))

@@ -44,8 +44,8 @@ class DrawnWay:
     def text(self) -> str:
         """The letters in the order of the folds; a fold of panels that stays flat is a point."""
         flat = "F" if isinstance(self.pattern, CreasePattern) else "."
-        found = (self.letters.get(fold, "U") for fold in self.pattern.folds)
-        return "".join(flat if letter == "F" else letter for letter in found)
+        letters = (self.letters.get(fold, "U") for fold in self.pattern.folds)
+        return "".join(flat if letter == "F" else letter for letter in letters)
 
     @property
     def shared(self) -> str:

@@ -149,8 +149,8 @@ def _name(events: list[Event]) -> str:
     """A few words for events at about the same time."""
     words = []
     for kind, group in groupby(sorted(events, key=lambda e: e.kind == TURNING), lambda e: e.kind):
-        found = list(group)
-        folds = [f"{i}-{j}" for event in found for i, j in event.folds]
+        events_of_kind = list(group)
+        folds = [f"{i}-{j}" for event in events_of_kind for i, j in event.folds]
         if kind == TURNING:
             some = folds[0] if len(folds) == 1 else counted(len(folds), "fold")
             words.append(f"{some} {'turns' if len(folds) == 1 else 'turn'} back")

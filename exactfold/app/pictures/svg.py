@@ -139,11 +139,11 @@ def spread(places: Sequence[float], gap: float, low: float, high: float) -> list
             centre = sum(wanted) / len(members) + gap * (len(members) - 1) / 2
             half = gap * (len(members) - 1) / 2
             groups[-2:] = [(min(max(centre, low + half), high - half), members)]
-    found = [0.0] * len(places)
+    moved = [0.0] * len(places)
     for centre, members in groups:
         for n, k in enumerate(members):
-            found[k] = centre + gap * (n - (len(members) - 1) / 2) if len(members) > 1 else centre
-    return found
+            moved[k] = centre + gap * (n - (len(members) - 1) / 2) if len(members) > 1 else centre
+    return moved
 
 
 def _top(group: tuple[float, list[int]], gap: float) -> float:

@@ -19,21 +19,28 @@ _FIRST = 8
 """The number of branches of the ranking that are shown, unless all are asked for."""
 
 
-def actuation_report(found: Actuation, *, everything: bool = False) -> Group:
+def actuation_report(actuation: Actuation, *, everything: bool = False) -> Group:
     """The torques, what is proved of them, and the branches sorted by power."""
-    branch = found.branch
+    branch = actuation.branch
     rows: list[tuple[str, str | Text]] = [
-        ("status", Text.assemble(status_text(found.status), f" ({found.reason})")),
+        ("status", Text.assemble(status_text(actuation.status), f" ({actuation.reason})")),
         ("vertex signs", branch.sign_text),
         ("mountain-valley", letters_text(branch.assignment_text)),
-        ("margin", f"{_between(found.margin)}; {_best(found)}"),
-        ("power", f"{_between(found.power)}; on any other ray {_between(found.largest_rival)}"),
-        ("alone", _alone(found)),
+        ("margin", f"{_between(actuation.margin)}; {_best(actuation)}"),
+        (
+            "power",
+            f"{_between(actuation.power)}; on any other ray {_between(actuation.largest_rival)}",
+        ),
+        ("alone", _alone(actuation)),
     ]
-    if not found.driven:
+    if not actuation.driven:
         return Group(facts_table(list(rows)))
     return Group(
-        facts_table(list(rows)), Text(""), _torques(found), Text(""), *_ranking(found, everything)
+        facts_table(list(rows)),
+        Text(""),
+        _torques(actuation),
+        Text(""),
+        *_ranking(actuation, everything),
     )
 
 
@@ -42,19 +49,19 @@ def _between(bounds: Bounds) -> str:
     return low if low == high else f"from {low} to {high}"
 
 
-def _best(found: Actuation) -> str:
-    bound = f"{decimal_above(found.best, 6)} is the most that is possible"
-    if found.given:
-        return f"with torques of this size at most {decimal_above(found.best, 6)} is possible"
-    if found.creases is not None:
-        return f"on {counted(found.creases, 'crease')} at most {bound.split()[0]} is possible"
+def _best(actuation: Actuation) -> str:
+    bound = f"{decimal_above(actuation.best, 6)} is the most that is possible"
+    if actuation.given:
+        return f"with torques of this size at most {decimal_above(actuation.best, 6)} is possible"
+    if actuation.creases is not None:
+        return f"on {counted(actuation.creases, 'crease')} at most {bound.split()[0]} is possible"
     return f"at most {bound.split()[0]} is possible"
 
 
-def _alone(found: Actuation) -> str:
+def _alone(actuation: Actuation) -> str:
     """What is known of torques that do no work on any other branch."""
-    low, high = found.orthogonal_dimension
-    names = found.independent
+    low, high = actuation.orthogonal_dimension
+    names = actuation.independent
     if high == 0:
         listed = ", ".join(names[:3]) + (f" and {len(names) - 3} more" if len(names) > 3 else "")
         return (
@@ -67,36 +74,38 @@ def _alone(found: Actuation) -> str:
         )
     size = str(low) if low == high else f"{low} to {high}"
     share = ""
-    if found.orthogonal is not None:
-        share = f"; such torques to within {decimal_above(found.orthogonal.share, 1)} are listed"
+    if actuation.orthogonal is not None:
+        share = (
+            f"; such torques to within {decimal_above(actuation.orthogonal.share, 1)} are listed"
+        )
     return f"torques that do work on this branch only: dimension {size}{share}"
 
 
-def _torques(found: Actuation) -> Table:
+def _torques(actuation: Actuation) -> Table:
     table = Table(box=None, pad_edge=False)
     table.add_column("crease")
     table.add_column("letter")
     table.add_column("torque", justify="right")
-    alone = found.orthogonal.torques if found.orthogonal is not None else {}
+    alone = actuation.orthogonal.torques if actuation.orthogonal is not None else {}
     if alone:
         table.add_column("on this branch only", justify="right")
-    for fold in sorted({*found.driven, *(fold for fold, torque in alone.items() if torque)}):
-        letter = found.branch.assignment[fold]
+    for fold in sorted({*actuation.driven, *(fold for fold, torque in alone.items() if torque)}):
+        letter = actuation.branch.assignment[fold]
         row: list[str | Text] = [f"{fold[0]}-{fold[1]}", letters_text(letter)]
-        row.append(decimal_near(found.torques[fold], 12))
+        row.append(decimal_near(actuation.torques[fold], 12))
         if alone:
             row.append(decimal_near(alone[fold], 12))
         table.add_row(*row)
     return table
 
 
-def _ranking(found: Actuation, everything: bool) -> list[Text | Table]:
+def _ranking(actuation: Actuation, everything: bool) -> list[Text | Table]:
     table = Table(box=None, pad_edge=False)
     table.add_column("place", justify="right")
     table.add_column("branch", overflow="fold")
     table.add_column("power", justify="right")
     table.add_column("")
-    ranking = found.ranking()
+    ranking = actuation.ranking()
     shown = ranking if everything else ranking[:_FIRST]
     for place, row in enumerate(shown, 1):
         last = place == len(ranking)

@@ -18,24 +18,29 @@ if TYPE_CHECKING:
 _MOST = 64
 
 
-def assignments_report(found: AllAssignments, *, everything: bool = False) -> Group:
+def assignments_report(assignments: AllAssignments, *, everything: bool = False) -> Group:
     """How many assignments there are, the arcs of each circle, and the list."""
     rows: list[tuple[str, str | Text]] = [
         (
             "status",
-            Text.assemble(status_text(found.status), f" ({found.reason})" if found.reason else ""),
+            Text.assemble(
+                status_text(assignments.status),
+                f" ({assignments.reason})" if assignments.reason else "",
+            ),
         )
     ]
-    if found.status is not PROVED:
+    if assignments.status is not PROVED:
         return Group(facts_table(list(rows)))
-    texts = found.assignments
+    texts = assignments.assignments
     shown = texts if everything else texts[:_MOST]
-    rows.append(("assignments", f"{len(texts)}, one letter for each of the folds {_folds(found)}"))
-    if found.circles:
-        arcs = ", ".join(f"{circle.signs}: {len(circle.arcs)}" for circle in found.circles)
+    rows.append(
+        ("assignments", f"{len(texts)}, one letter for each of the folds {_folds(assignments)}")
+    )
+    if assignments.circles:
+        arcs = ", ".join(f"{circle.signs}: {len(circle.arcs)}" for circle in assignments.circles)
         rows.append(("arcs by vertex signs", arcs))
     table = Table(box=None, pad_edge=False, show_header=False)
-    width = max(1, min(6, 72 // (len(found.pattern.folds) + 2)))
+    width = max(1, min(6, 72 // (len(assignments.pattern.folds) + 2)))
     for k in range(0, len(shown), width):
         table.add_row(*(letters_text(text) for text in shown[k : k + width]))
     more = []
@@ -44,6 +49,6 @@ def assignments_report(found: AllAssignments, *, everything: bool = False) -> Gr
     return Group(facts_table(list(rows)), table, *more)
 
 
-def _folds(found: AllAssignments) -> str:
-    names = [f"{i}-{j}" for i, j in found.pattern.folds]
+def _folds(assignments: AllAssignments) -> str:
+    names = [f"{i}-{j}" for i, j in assignments.pattern.folds]
     return ", ".join(names if len(names) <= 12 else [*names[:11], "..."])

@@ -188,20 +188,20 @@ def _exception(result: BranchCount) -> str:
     )
 
 
-def _lettered(found: Lettered) -> str:
+def _lettered(lettered: Lettered) -> str:
     """A sentence that says which ways have the letters of the file."""
-    sure = found.status is PROVED
-    if not found.ways:
+    sure = lettered.status is PROVED
+    if not lettered.ways:
         if not sure:
             return "no way is proved to have the mountains and valleys of the file"
         return (
             "no way has the mountains and valleys of the file: `exactfold match` says why, and "
             "which are nearest"
         )
-    ways = [f"{way}{' (other side)' if side < 0 else ''}" for way, side in found.ways[:NAMED]]
-    more = f" and {len(found.ways) - NAMED} more" if len(found.ways) > NAMED else ""
-    has = "has" if len(found.ways) == 1 else "have"
-    word = "way" if len(found.ways) == 1 else "ways"
+    ways = [f"{way}{' (other side)' if side < 0 else ''}" for way, side in lettered.ways[:NAMED]]
+    more = f" and {len(lettered.ways) - NAMED} more" if len(lettered.ways) > NAMED else ""
+    has = "has" if len(lettered.ways) == 1 else "have"
+    word = "way" if len(lettered.ways) == 1 else "ways"
     rest = "" if sure else "; perhaps others have them, too"
     return f"{word} {', '.join(ways)}{more} {has} the mountains and valleys of the file{rest}"
 

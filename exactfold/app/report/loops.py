@@ -22,17 +22,17 @@ _LISTED = 40
 _REASONS = 10
 
 
-def motions_report(found: Loops) -> Group:
+def motions_report(loops: Loops) -> Group:
     """The matching of the rays, loop by loop."""
-    rays = 2 ** (len(found.pattern.foldable_vertices) + 1)
-    matched = f"{len(found.matching)} of {counted(rays, 'ray')}"
+    rays = 2 ** (len(loops.pattern.foldable_vertices) + 1)
+    matched = f"{len(loops.matching)} of {counted(rays, 'ray')}"
     rows: list[tuple[str, RenderableType]] = [
-        ("matched", Text.assemble(matched, ", ", status_text(found.status))),
+        ("matched", Text.assemble(matched, ", ", status_text(loops.status))),
     ]
-    if found.reason:
-        rows.append(("left", found.reason))
-    rows += _graph(found)
-    return Group(facts_table(rows), Text(""), _table(found.loops), *_notes(found))
+    if loops.reason:
+        rows.append(("left", loops.reason))
+    rows += _graph(loops)
+    return Group(facts_table(rows), Text(""), _table(loops.loops), *_notes(loops))
 
 
 def _graph(loops: Loops) -> list[tuple[str, RenderableType]]:
@@ -44,10 +44,10 @@ def _graph(loops: Loops) -> list[tuple[str, RenderableType]]:
     if graph.closed_curves:
         curves = counted(len(graph.closed_curves), "closed curve")
         parts.insert(1, f"{curves} beside the loops, ")
-    found: list[tuple[str, RenderableType]] = [("graph", Text.assemble(*parts))]
+    rows: list[tuple[str, RenderableType]] = [("graph", Text.assemble(*parts))]
     if graph.reason != loops.reason:
-        found.append(("", graph.reason))
-    return found
+        rows.append(("", graph.reason))
+    return rows
 
 
 def _table(loops: Iterable[Loop]) -> Table:
@@ -84,22 +84,22 @@ def _within(low: Fraction, high: Fraction) -> str:
     return f"{a:.3g} to {b:.3g}"
 
 
-def _notes(found: Loops) -> list[RenderableType]:
+def _notes(loops: Loops) -> list[RenderableType]:
     notes = [
         "",
         "One loop of each pair of mirror images is listed, in one of its two directions; contact "
         "is ignored.",
     ]
-    if found.pattern.reflex_corner is not None:
+    if loops.pattern.reflex_corner is not None:
         notes.append(
             "This sheet has a reflex corner. The sign after 'saddle' is that of vertex "
-            f"{found.pattern.reflex_corner} in the sheet whose notch is closed."
+            f"{loops.pattern.reflex_corner} in the sheet whose notch is closed."
         )
-    if len(found.loops) > _LISTED:
-        notes.append(f"{counted(len(found.loops) - _LISTED, 'more loop')}: --json lists all.")
-    reasons = sorted({loop.reason for loop in found.loops if loop.reason})
+    if len(loops.loops) > _LISTED:
+        notes.append(f"{counted(len(loops.loops) - _LISTED, 'more loop')}: --json lists all.")
+    reasons = sorted({loop.reason for loop in loops.loops if loop.reason})
     notes += [f"undecided: {reason}" for reason in reasons[:_REASONS]]
-    skipped = [f"{signs} is not followed: {why}" for signs, why in found.skipped.items()]
+    skipped = [f"{signs} is not followed: {why}" for signs, why in loops.skipped.items()]
     notes += skipped[:_REASONS]
     if max(len(reasons), len(skipped)) > _REASONS:
         notes.append("More reasons: --json lists all.")

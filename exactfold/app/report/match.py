@@ -28,24 +28,24 @@ _LETTERS = {"M": "mountain", "V": "valley", "F": "flat fold", "U": "free fold"}
 
 
 def match_report(
-    found: Match, nearest: Nearest | None, seconds: float, *, everything: bool = False
+    match: Match, nearest: Nearest | None, seconds: float, *, everything: bool = False
 ) -> Group:
     """The answer, the letters, and the branches that have them; or the reasons, and the nearest
     ones.
     """
-    parts: list[Any] = [_answer(found, seconds), "", Text(_asked(found))]
-    if found.matches:
-        shown = found.matches if everything else found.matches[:SHOWN]
-        parts += ["", _table(shown, "vertices up", _up), *more_text(len(found.matches) - SHOWN)]
+    parts: list[Any] = [_answer(match, seconds), "", Text(_asked(match))]
+    if match.matches:
+        shown = match.matches if everything else match.matches[:SHOWN]
+        parts += ["", _table(shown, "vertices up", _up), *more_text(len(match.matches) - SHOWN)]
     else:
-        parts += ["", Text("Why" if found.status is PROVED else "What is known", style="bold")]
-        lines = _why(found)
+        parts += ["", Text("Why" if match.status is PROVED else "What is known", style="bold")]
+        lines = _why(match)
         limit = len(lines) if everything else SHOWN
         parts += [Text(f"- {line}") for line in lines[:limit]]
         parts += more_text(len(lines) - limit)
     if nearest is not None:
         parts += ["", *_nearest(nearest, everything)]
-    if found.matches or (nearest is not None and nearest.rays):
+    if match.matches or (nearest is not None and nearest.rays):
         parts += [
             "",
             Text(
@@ -60,21 +60,25 @@ NAMED = 12
 """The number of creases that are named, unless all are asked for."""
 
 
-def panel_match_report(found: PanelMatch, *, everything: bool = False) -> Group:
+def panel_match_report(panel_match: PanelMatch, *, everything: bool = False) -> Group:
     """Whether rigid panels start to fold with the letters, and why, in lines of words."""
-    answer, *reasons = found.lines
+    answer, *reasons = panel_match.lines
     limit = len(reasons) if everything else SHOWN
-    head = Text.assemble(f"{answer} - ", status_text(found.status), f" ({found.seconds:.2f} s)")
+    head = Text.assemble(
+        f"{answer} - ", status_text(panel_match.status), f" ({panel_match.seconds:.2f} s)"
+    )
     rest = [Text(f"- {reason}") for reason in reasons[:limit]]
     more = more_text(len(reasons) - limit)
-    return Group(head, "", Text(_asked(found)), *rest, *more, *_first_order(found, everything))
+    return Group(
+        head, "", Text(_asked(panel_match)), *rest, *more, *_first_order(panel_match, everything)
+    )
 
 
-def _first_order(found: PanelMatch, everything: bool) -> list[str | Text]:
+def _first_order(panel_match: PanelMatch, everything: bool) -> list[str | Text]:
     """Which creases can bend their way together to first order, and which never can."""
-    if found.first_order is None:
+    if panel_match.first_order is None:
         return []
-    first, asked = found.first_order, sum(x in "MV" for x in found.letters.values())
+    first, asked = panel_match.first_order, sum(x in "MV" for x in panel_match.letters.values())
     lines = [f"{len(first.together)} of {counted(asked, 'crease')} can fold together"]
     for folds, said in ((first.never, "never fold"), (first.undecided, "are undecided")):
         if folds:
@@ -86,25 +90,30 @@ def _first_order(found: PanelMatch, everything: bool) -> list[str | Text]:
     return ["", Text(head, style="bold"), *(Text(f"- {line}") for line in lines)]
 
 
-def boundary_match_report(found: BoundaryMatch, *, everything: bool = False) -> Group:
+def boundary_match_report(boundary_match: BoundaryMatch, *, everything: bool = False) -> Group:
     """Whether a sheet with more than four corners starts to fold with the letters, and how."""
     answer = {
         PROVED: "the sheet starts to fold with these mountains and valleys",
         REFUTED: "the sheet does not start to fold with these mountains and valleys",
-    }.get(found.starts, "whether the sheet starts to fold with these mountains and valleys is open")
-    lines = found.why
+    }.get(
+        boundary_match.starts,
+        "whether the sheet starts to fold with these mountains and valleys is open",
+    )
+    lines = boundary_match.why
     limit = len(lines) if everything else SHOWN
-    head = Text.assemble(f"{answer} - ", status_text(found.status), f" ({found.seconds:.2f} s)")
+    head = Text.assemble(
+        f"{answer} - ", status_text(boundary_match.status), f" ({boundary_match.seconds:.2f} s)"
+    )
     rest = [Text(f"- {line}") for line in lines[:limit]]
-    return Group(head, "", Text(_asked(found)), *rest, *more_text(len(lines) - limit))
+    return Group(head, "", Text(_asked(boundary_match)), *rest, *more_text(len(lines) - limit))
 
 
-def _answer(found: Match, seconds: float) -> Text:
+def _answer(match: Match, seconds: float) -> Text:
     took = f" ({seconds:.2f} s)"
-    ways = len({ray.branch.sign_text for ray in found.matches})
-    proved = status_text(found.status)
+    ways = len({ray.branch.sign_text for ray in match.matches})
+    proved = status_text(match.status)
     if not ways:
-        if found.status is PROVED:
+        if match.status is PROVED:
             text = "no way to start folding has these mountains and valleys - "
             return Text.assemble(text, proved, took)
         return Text.assemble(
@@ -112,25 +121,25 @@ def _answer(found: Match, seconds: float) -> Text:
         )
     has = agreeing(ways, "has")
     text = f"{counted(ways, 'way')} to start folding {has} these mountains and valleys"
-    both = f", {len(found.matches)} with both sides" if ways < len(found.matches) else ""
-    if found.status is PROVED:
+    both = f", {len(match.matches)} with both sides" if ways < len(match.matches) else ""
+    if match.status is PROVED:
         return Text.assemble(f"{text}{both} - ", proved, took, "; there is no other")
     return Text.assemble(f"at least {text}{both}; whether others have is ", proved, took)
 
 
-def _asked(found: Match | PanelMatch | BoundaryMatch) -> str:
-    counts = Counter(found.letters.values())
+def _asked(match: Match | PanelMatch | BoundaryMatch) -> str:
+    counts = Counter(match.letters.values())
     kinds = [counted(counts[x], name) for x, name in _LETTERS.items() if counts[x]]
     return f"asked for: {', '.join(kinds)}"
 
 
-def _why(found: Match) -> list[str]:
+def _why(match: Match) -> list[str]:
     """Reasons in plain words: single vertices if these are enough, otherwise what was refuted."""
-    alone = found.conflicts
+    alone = match.conflicts
     lines = [f"vertex {v} can pop {text}" for v, text in sorted(alone.items())]
-    pairs = ((found.labels[i], found.labels[j]) for i, j in found.sheet.folds)
+    pairs = ((match.labels[i], match.labels[j]) for i, j in match.sheet.folds)
     moving = {fold_text((min(pair), max(pair))) for pair in pairs}
-    stuck = [fold_text(f) for f, x in sorted(found.letters.items()) if x in "MV"]
+    stuck = [fold_text(f) for f, x in sorted(match.letters.items()) if x in "MV"]
     stuck = [name for name in stuck if name not in moving]
     if stuck:
         lie, stay = ("lies", "stays") if len(stuck) == 1 else ("lie", "stay")
@@ -140,9 +149,9 @@ def _why(found: Match) -> list[str]:
         )
     if lines:
         return lines
-    single = sum(len(refutation.signs) == 1 for refutation in found.refutations)
-    single += len(found.reasons)
-    several = len(found.refutations) + len(found.reasons) - single
+    single = sum(len(refutation.signs) == 1 for refutation in match.refutations)
+    single += len(match.reasons)
+    several = len(match.refutations) + len(match.reasons) - single
     if single:
         lines.append(
             f"{counted(single, 'sign')} of single vertices {agreeing(single, 'is')} impossible "
@@ -153,15 +162,15 @@ def _why(found: Match) -> list[str]:
             f"{counted(several, 'choice')} of signs of several vertices "
             f"{agreeing(several, 'is')} refuted, each by an exact sum over the creases"
         )
-    if found.leaves:
+    if match.leaves:
         lines.append(
-            f"{counted(found.leaves, 'choice')} of the signs of all vertices "
-            f"{agreeing(found.leaves, 'is')} left: their branches were found, and have other "
+            f"{counted(match.leaves, 'choice')} of the signs of all vertices "
+            f"{agreeing(match.leaves, 'is')} left: their branches were found, and have other "
             "letters"
         )
-    if found.open_signs:
+    if match.open_signs:
         lines.append(
-            f"{counted(len(found.open_signs), 'choice')} of signs {agreeing(1, 'is')} open: "
+            f"{counted(len(match.open_signs), 'choice')} of signs {agreeing(1, 'is')} open: "
             "--most N compares more"
         )
     return lines
@@ -190,9 +199,10 @@ def _nearest(nearest: Nearest, everything: bool) -> list[Any]:
 
 
 def _changes(nearest: Nearest, ray: MatchedRay) -> str:
-    found = nearest.differences(ray)
+    differences = nearest.differences(ray)
     return ", ".join(
-        f"{fold_text(fold)} {wanted}->{actual}" for fold, (wanted, actual) in sorted(found.items())
+        f"{fold_text(fold)} {wanted}->{actual}"
+        for fold, (wanted, actual) in sorted(differences.items())
     )
 
 

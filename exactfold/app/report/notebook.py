@@ -73,21 +73,21 @@ def _count(result: BranchCount) -> str:
 
 
 @shows("html", Match)
-def _match(found: Match) -> str:
+def _match(match: Match) -> str:
     heads = ("", "", "vertex signs", "side", "folds")
-    shown = [branch_way(ray.branch, k) for k, ray in enumerate(found.matches[:ROWS], 1)]
+    shown = [branch_way(ray.branch, k) for k, ray in enumerate(match.matches[:ROWS], 1)]
     shown = [
         replace(way, letters=ray.assignment, signs=ray.vertex_signs, name=ray.sign_text)
-        for way, ray in zip(shown, found.matches, strict=False)
+        for way, ray in zip(shown, match.matches, strict=False)
     ]
     rows = [
         (way, ray.sign_text, "+" if ray.side > 0 else "-", way.text)
-        for way, ray in zip(shown, found.matches, strict=False)
+        for way, ray in zip(shown, match.matches, strict=False)
     ]
-    number = len(found.matches)
+    number = len(match.matches)
     have = agreeing(number, "has")
     head = f"{number or 'no'} {agreeing(number, 'half')} of branches {have} these letters, "
-    head += f"<b>{found.status}</b>"
+    head += f"<b>{match.status}</b>"
     return _page(head, heads, rows, number, None)
 
 

@@ -23,7 +23,7 @@ def complete_pattern(incomplete: str) -> list[str]:
 
     folder, _, _ = incomplete.rpartition("/")
     base = Path(folder or ("/" if incomplete.startswith("/") else "."))
-    found = [name for name in EXAMPLES if name.startswith(incomplete)]
+    completions = [name for name in EXAMPLES if name.startswith(incomplete)]
     try:
         entries = sorted(base.iterdir())
     except OSError:
@@ -33,10 +33,10 @@ def complete_pattern(incomplete: str) -> list[str]:
         text = prefix + entry.name
         if text.startswith(incomplete) and not entry.name.startswith("."):
             if entry.is_dir():
-                found.append(f"{text}/")
+                completions.append(f"{text}/")
             elif entry.suffix in (".fold", ".svg", ".cp", ".opx", ".ori", ".orh"):
-                found.append(text)
-    return found
+                completions.append(text)
+    return completions
 
 
 def flag(*names: str, text: str, **more: Any) -> Any:
@@ -108,10 +108,10 @@ def sizes(text: object) -> tuple[int, ...]:
 
 def sign_vectors(text: object) -> tuple[str, ...]:
     """Vertex signs of several branches, such as +-+,++-."""
-    found = tuple(part.strip() for part in str(text).split(",") if part.strip())
-    if not found or any(set(part) - set("+-0") for part in found):
+    vectors = tuple(part.strip() for part in str(text).split(",") if part.strip())
+    if not vectors or any(set(part) - set("+-0") for part in vectors):
         raise typer.BadParameter(f"{text!r} is not a list of vertex signs such as +-+,++-")
-    return found
+    return vectors
 
 
 def distance(text: object) -> Fraction:

@@ -65,5 +65,5 @@ def read_any(path: Path, snap: Snap | None, number: int | None = None) -> Opened
 
 def warn(pattern: CreasePattern) -> None:
     """Print a warning to stderr if the sheet is nearly degenerate."""
-    if (found := near_degenerate(pattern)) is not None:
-        say(f"warning: {found.text}")
+    if (near_degeneracy := near_degenerate(pattern)) is not None:
+        say(f"warning: {near_degeneracy.text}")

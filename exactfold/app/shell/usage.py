@@ -53,11 +53,11 @@ class Command(TyperCommand):
 
     def get_params(self, ctx: Any) -> Any:
         """All parameters; the help shows arguments without a type."""
-        found = super().get_params(ctx)
-        for parameter in found:
+        parameters = super().get_params(ctx)
+        for parameter in parameters:
             if parameter.param_type_name == "argument":
                 setattr(parameter, "display_type_rich", _no_type)  # noqa: B010 - typer's own name
-        return found
+        return parameters
 
     def collect_usage_pieces(self, ctx: Any) -> list[str]:
         """The words of the usage line, such as PATTERN... instead of {PATTERN}..."""
@@ -73,11 +73,11 @@ class Group(TyperGroup):
 
     def get_params(self, ctx: Any) -> Any:
         """All options; the help shows the options for completion as flags, too."""
-        found = super().get_params(ctx)
-        for parameter in found:
+        parameters = super().get_params(ctx)
+        for parameter in parameters:
             if parameter.name in ("install_completion", "show_completion"):
                 _bare(parameter)
-        return found
+        return parameters
 
     def main(self, *args: Any, **more: Any) -> Any:
         """Run a command line; like every other error, wrong usage is one line on stderr."""
@@ -98,9 +98,9 @@ def plain_usage(error: Any) -> str:
     """What is wrong with a command line, in one line that points to the help of the command."""
     text = " ".join(error.format_message().split()).rstrip(".")
     text = re.sub(
-        r"^Invalid value for (.+?): ", lambda found: found[1].replace("'", "") + ": ", text
+        r"^Invalid value for (.+?): ", lambda match: match[1].replace("'", "") + ": ", text
     )
-    text = re.sub(r"^(Missing|No such|Got unexpected)", lambda found: found[0].lower(), text)
+    text = re.sub(r"^(Missing|No such|Got unexpected)", lambda match: match[0].lower(), text)
     where = f"; see {error.ctx.command_path} --help" if getattr(error, "ctx", None) else ""
     return f"{text}{where}"
 

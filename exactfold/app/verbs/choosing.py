@@ -150,17 +150,17 @@ def _with_letters(pattern: CreasePattern, letters: Letters, progress: Progress |
         if over.branch is None:
             raise NotCountedError(_none(over.status is PROVED, over.reasons))
         return over.branch, 1
-    found = match(pattern, letters, progress=progress)
-    if not found.matches:
-        raise NotCountedError(_none(found.status is PROVED, found.reasons))
-    if len(found.matches) > 1:
-        some = ", ".join(f'"{one.sign_text}"' for one in found.matches[:_NAMED])
-        more = ", ..." if len(found.matches) > _NAMED else ""
+    matched = match(pattern, letters, progress=progress)
+    if not matched.matches:
+        raise NotCountedError(_none(matched.status is PROVED, matched.reasons))
+    if len(matched.matches) > 1:
+        some = ", ".join(f'"{one.sign_text}"' for one in matched.matches[:_NAMED])
+        more = ", ..." if len(matched.matches) > _NAMED else ""
         raise UsageError(
-            f"{counted(len(found.matches), 'ray')} of branches have these letters: name one by its "
-            f"signs, {some}{more}"
+            f"{counted(len(matched.matches), 'ray')} of branches have these letters: name one by "
+            f"its signs, {some}{more}"
         )
-    [one] = found.matches
+    [one] = matched.matches
     return one.branch, one.side
 
 

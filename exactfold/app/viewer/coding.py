@@ -67,13 +67,13 @@ def levelled(coords: FloatArray) -> FloatArray:
 
     So the sheet stays in the middle of the picture and turns no more than necessary.
     """
-    found = [coords[0] - coords[0].mean(axis=0)]
+    frames = [coords[0] - coords[0].mean(axis=0)]
     for shape in coords[1:]:
         centred = shape - shape.mean(axis=0)
-        u, _, v = np.linalg.svd(centred.T @ found[-1])
+        u, _, v = np.linalg.svd(centred.T @ frames[-1])
         turn = u @ np.diag([1.0, 1.0, float(np.sign(np.linalg.det(u @ v))) or 1.0]) @ v
-        found.append(centred @ turn)
-    return np.array(found)
+        frames.append(centred @ turn)
+    return np.array(frames)
 
 
 def _bytes(values: np.ndarray[Any, np.dtype[np.int64]]) -> bytes:
@@ -82,5 +82,5 @@ def _bytes(values: np.ndarray[Any, np.dtype[np.int64]]) -> bytes:
     groups = (values[:, None] >> shifts) & 127
     more = (values[:, None] >> (shifts + 7)) > 0
     used = np.concatenate([np.ones((len(values), 1), dtype=bool), more[:, :-1]], axis=1)
-    found: bytes = (groups | (more * 128))[used].astype(np.uint8).tobytes()
-    return found
+    encoded: bytes = (groups | (more * 128))[used].astype(np.uint8).tobytes()
+    return encoded

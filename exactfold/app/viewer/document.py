@@ -177,9 +177,9 @@ class Known:
             )
         try:
             if isinstance(pattern, CreasePattern) and folds_along_branches:
-                found = _branches(opened, pattern, branches, progress)
-                facts, follower = _branch_facts(found), Following(frames, proving)
-                listed = tuple((branch_way(branch), branch) for branch in found.branches)
+                known_branches = _branches(opened, pattern, branches, progress)
+                facts, follower = _branch_facts(known_branches), Following(frames, proving)
+                listed = tuple((branch_way(branch), branch) for branch in known_branches.branches)
                 return cls(opened, title, follower, listed, facts)
             return _panels(opened, title, frames, proving, progress)
         except (InputError, UsageError, WorkerDiedError):
@@ -199,8 +199,8 @@ class Known:
         """All ways with their motions."""
         ways = [way for way, _ in self.listed]
         jobs = [k for k, (_, job) in enumerate(self.listed) if job is not None]
-        for done, (k, found) in enumerate(_numbered(pool, self.follower, self.listed, jobs), 1):
-            ways[k] = {**ways[k], **found}
+        for done, (k, followed) in enumerate(_numbered(pool, self.follower, self.listed, jobs), 1):
+            ways[k] = {**ways[k], **followed}
             if progress is not None:
                 progress("following", done, len(jobs))
         return ways
@@ -247,10 +247,10 @@ def _numbered(
     """The number of each job with its result, in the order in which the jobs end."""
     results = pool(_Numbered(work), ((k, listed[k][1]) for k in jobs))
     with closing(results):
-        for (k, _), found in results:
-            if isinstance(found, WorkerDiedError):
-                raise found
-            yield k, found
+        for (k, _), outcome in results:
+            if isinstance(outcome, WorkerDiedError):
+                raise outcome
+            yield k, outcome
 
 
 def _branches(
@@ -266,18 +266,18 @@ def _branches(
     finder = BranchFinder(pattern)
     if chosen is not None:
         vectors = [finder.signs(signs, None) for signs in dict.fromkeys(chosen)]
-        found = [finder.find(signs, progress=progress) for signs in vectors]
-        return _Branches(pattern, tuple(found), None)
+        branches = [finder.find(signs, progress=progress) for signs in vectors]
+        return _Branches(pattern, tuple(branches), None)
     up = finder.signs(None, foldable)
     near = finder.neighbours(up, foldable[:MOST_NEIGHBOURS], progress=progress)
     return _Branches(pattern, (finder.find(up), *near.values()), None)
 
 
-def _branch_facts(found: _Branches) -> Facts:
-    if found.count is not None:
+def _branch_facts(known_branches: _Branches) -> Facts:
+    if known_branches.count is not None:
         from exactfold.app.report.count import answer
 
-        count = found.count
+        count = known_branches.count
         whole = count.status is PROVED and len(count) == (count.real or 0)
         return {
             "kind": "branches",
@@ -287,11 +287,11 @@ def _branch_facts(found: _Branches) -> Facts:
             "reason": count.reason,
             "notes": [] if count.warning is None else [f"warning: {count.warning}"],
         }
-    vertices = counted(len(found.pattern.foldable_vertices), "foldable vertex")
-    proved = all(branch.status is PROVED for branch in found.branches)
+    vertices = counted(len(known_branches.pattern.foldable_vertices), "foldable vertex")
+    proved = all(branch.status is PROVED for branch in known_branches.branches)
     return {
         "kind": "branches",
-        "answer": f"{counted(len(found.branches), 'branch')} of a sheet with {vertices}",
+        "answer": f"{counted(len(known_branches.branches), 'branch')} of a sheet with {vertices}",
         "status": str(PROVED if proved else UNDECIDED),
         "complete": False,
         "reason": "each branch was found by its vertex signs, and "

@@ -54,7 +54,7 @@ def view_page(document: Mapping[str, Any]) -> str:
         "script": script,
     }
     page = (_PAGE / "index.html").read_text(encoding="utf-8")
-    return _PLACE.sub(lambda found: parts[found[1]], page)
+    return _PLACE.sub(lambda match: parts[match[1]], page)
 
 
 def write_view(

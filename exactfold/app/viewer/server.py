@@ -144,19 +144,19 @@ class _Handler(BaseHTTPRequestHandler):
             self._send(HTTPStatus.FORBIDDEN, b"only the page itself may ask this", "text/plain")
             return
         status = HTTPStatus.OK
-        found: Way | dict[str, str]
+        answer: Way | dict[str, str]
         try:
             if path == "/motion":
-                found = self.server.motion(_whole(query.get("way", "")))
+                answer = self.server.motion(_whole(query.get("way", "")))
             else:
-                found = self.server.branch(query.get("signs", ""))
+                answer = self.server.branch(query.get("signs", ""))
         except ExactfoldError as error:
             status = HTTPStatus.UNPROCESSABLE_ENTITY
-            found = {"error": str(error)}
+            answer = {"error": str(error)}
         except Exception as error:
             status = HTTPStatus.INTERNAL_SERVER_ERROR
-            found = {"error": f"a defect of exactfold: {error!r}"}
-        text = json.dumps(found, allow_nan=False).encode("utf-8")
+            answer = {"error": f"a defect of exactfold: {error!r}"}
+        text = json.dumps(answer, allow_nan=False).encode("utf-8")
         self._send(status, text, "application/json")
 
     def _send(self, status: HTTPStatus, body: bytes, kind: str) -> None:

@@ -118,8 +118,8 @@ class FollowingPanels:
         from exactfold.motion.panels.following import follow_panels
 
         try:
-            found = follow_panels(self.ways, component=component, frames=self.frames)
-            drawn = _drawn(found, _proof_of_panels(found, self.proving))
+            motion = follow_panels(self.ways, component=component, frames=self.frames)
+            drawn = _drawn(motion, _proof_of_panels(motion, self.proving))
         except WorkerDiedError:
             raise
         except ExactfoldError as error:
@@ -127,8 +127,8 @@ class FollowingPanels:
         return {
             "motion": drawn,
             "why": "",
-            "letters": letters_of(found.pattern, found.assignment),
-            "angles": _angles(found.pattern, found.leading_angles),
+            "letters": letters_of(motion.pattern, motion.assignment),
+            "angles": _angles(motion.pattern, motion.leading_angles),
         }
 
 
@@ -205,12 +205,12 @@ def _proof_of_panels(motion: PanelMotion, contacts: bool) -> _Known:
 def _proved_contact(motion: PanelMotion) -> str:
     from exactfold.motion.panels.clearance import prove_contacts
 
-    found = prove_contacts(motion)
-    if found.status is not PROVED:
-        return f"its contacts are undecided: {found.reason}"
-    if found.event is None:
+    clearance = prove_contacts(motion)
+    if clearance.status is not PROVED:
+        return f"its contacts are undecided: {clearance.reason}"
+    if clearance.event is None:
         return "it is proved that no panels touch on the way"
-    low, high = found.event.time
+    low, high = clearance.event.time
     return f"its first contact is proved to be between the times {low:.12g} and {high:.12g}"
 
 

@@ -88,9 +88,9 @@ def flat_solutions(moving: Mapping[int, Star]) -> FlatSolutions:
 
 def _part(moving: Mapping[int, Star], part: Leaf) -> FlatSolutions:
     """The solutions on one part. If they cannot be decided directly, the part is split."""
-    found = _decided(moving, part)
-    if found is not None:
-        return found
+    solutions = _decided(moving, part)
+    if solutions is not None:
+        return solutions
     try:
         split = leaves(moving, _entries(part), part.size, _MOST_STEPS)
     except TooManyModesError as error:
@@ -106,11 +106,11 @@ def _part(moving: Mapping[int, Star], part: Leaf) -> FlatSolutions:
     )
 
 
-def _together(found: Iterable[FlatSolutions]) -> FlatSolutions:
+def _together(solutions_of_parts: Iterable[FlatSolutions]) -> FlatSolutions:
     joints: list[Joint] = []
     proofs: list[PartProof] = []
     reasons: dict[str, None] = {}
-    for solutions in found:
+    for solutions in solutions_of_parts:
         joints += solutions.joints
         proofs += solutions.proofs
         if solutions.open:
@@ -118,10 +118,10 @@ def _together(found: Iterable[FlatSolutions]) -> FlatSolutions:
     return FlatSolutions(tuple(joints), "; ".join(reasons), tuple(proofs))
 
 
-def _parts(moving: Mapping[int, Star], found: Sequence[Leaf]) -> list[Leaf]:
+def _parts(moving: Mapping[int, Star], split_leaves: Sequence[Leaf]) -> list[Leaf]:
     """The parts of leaves that share no fold, each once, with the vertices whose forms remain."""
     parts: dict[object, Leaf] = {}
-    for leaf in found:
+    for leaf in split_leaves:
         for rows, size in independent_parts(_entries(leaf), leaf.size, moving):
             left = [v for v in _active(moving, rows) if squares_of(moving[v], rows, size)]
             part = made_leaf(rows, size, left)
@@ -247,7 +247,7 @@ def _sampled(moving: Mapping[int, Star], part: Leaf, whole: Leaf) -> FlatSolutio
     names = _active(moving, part.rows)
     wanted = 1 << len(names)
     prover = Forms(moving)
-    found: dict[tuple[int, ...], Joint] = {}
+    joints: dict[tuple[int, ...], Joint] = {}
     folds, all_forms = tuple(parameter_folds(whole.rows, whole.size)), _forms(moving, whole)
     points: list[RegularPoint] = []
     tried: set[tuple[int, ...]] = set()
@@ -257,22 +257,22 @@ def _sampled(moving: Mapping[int, Star], part: Leaf, whole: Leaf) -> FlatSolutio
             -int(np.sign(sum(densities.get(e, 0.0) * length for e, length in lengths[v].items())))
             for v in names
         )
-        if guess in tried or guess in found:
+        if guess in tried or guess in joints:
             continue
         tried.add(guess)
         w = regular_point(prover, part, densities)
         joint = None if w is None else _joint(moving, w, "regular")
         if joint is not None:
             signs = tuple(joint.signs[v] for v in names)
-            found[signs] = joint
+            joints[signs] = joint
             points.append(_regular(all_forms, [densities.get(fold, 0.0) for fold in folds]))
-            found.setdefault(tuple(-sign for sign in signs), joint)
-        if len(found) == wanted:
-            return FlatSolutions(tuple(found.values()), proofs=(_witnesses(folds, points),))
+            joints.setdefault(tuple(-sign for sign in signs), joint)
+        if len(joints) == wanted:
+            return FlatSolutions(tuple(joints.values()), proofs=(_witnesses(folds, points),))
     kind = "a family of solutions" if part.dimension > 0 else "a space of motions"
     return FlatSolutions(
-        tuple(found.values()),
-        f"only {len(found)} of {wanted} sign vectors were found in {kind} of dimension "
+        tuple(joints.values()),
+        f"only {len(joints)} of {wanted} sign vectors were found in {kind} of dimension "
         f"{max(part.dimension, part.size)}",
         (_witnesses(folds, points),) if points else (),
     )

@@ -131,7 +131,7 @@ class _JointSearch:
         Vertices that leave the same stars are treated together. If no star can bend, the star of
         the vertex is never flat.
         """
-        found: dict[frozenset[Edge], tuple[Mapping[int, Star], list[int]]] = {}
+        classes: dict[frozenset[Edge], tuple[Mapping[int, Star], list[int]]] = {}
         for v in self.vertices:
             around = [edge_of(v, u) for u in self.sheet.star(v)]
             moving = stars(self.panels, around)
@@ -140,8 +140,8 @@ class _JointSearch:
                 self.proofs.append(FlatStars((v,), (v,), ()))
                 continue
             key = frozenset(edge for star in moving.values() for edge in star.folds)
-            found.setdefault(key, (moving, []))[1].append(v)
-        return list(found.values())
+            classes.setdefault(key, (moving, []))[1].append(v)
+        return list(classes.values())
 
     def _look_locally(self) -> None:
         """Look for joints at which all stars are flat except one, two, or those along a straight
@@ -180,7 +180,7 @@ class _JointSearch:
     def _straight(self) -> list[frozenset[int]]:
         """The interior vertices of straight creases that run from boundary to boundary."""
         inside = self.sheet.interior_set
-        found = []
+        paths = []
         for b in self.sheet.boundary:
             for v in self.sheet.star(b):
                 path, before = [], b
@@ -192,8 +192,8 @@ class _JointSearch:
                         break
                     before, v = v, after
                 if path:
-                    found.append(frozenset(path))
-        return found
+                    paths.append(frozenset(path))
+        return paths
 
     def _ahead(self, before: int, v: int) -> int | None:
         """The neighbour of v that lies straight ahead if one comes from `before`."""

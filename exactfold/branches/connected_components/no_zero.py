@@ -46,7 +46,7 @@ def have_no_common_zero(forms: Sequence[Sequence[Sequence[fmpq]]]) -> bool:
 
 def _modular(form: Sequence[Sequence[fmpq]]) -> dict[tuple[int, int], int] | None:
     """The coefficients modulo the prime; None if the prime divides a denominator."""
-    found: dict[tuple[int, int], int] = {}
+    coefficients: dict[tuple[int, int], int] = {}
     for i, row in enumerate(form):
         for j in range(i, len(row)):
             value = fmpq(row[j]) * (1 if i == j else 2)
@@ -54,8 +54,8 @@ def _modular(form: Sequence[Sequence[fmpq]]) -> dict[tuple[int, int], int] | Non
                 return None
             x = int(value.p) * pow(int(value.q), -1, _PRIME) % _PRIME
             if x:
-                found[i, j] = x
-    return found
+                coefficients[i, j] = x
+    return coefficients
 
 
 def _rank(forms: Sequence[dict[tuple[int, int], int]], size: int, degree: int) -> int:

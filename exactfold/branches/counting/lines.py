@@ -156,9 +156,9 @@ class _Attempt:
         )
 
     def isolated(
-        self, found: BranchCount, *, lines: tuple[str, ...] = (), **counts: Any
+        self, count: BranchCount, *, lines: tuple[str, ...] = (), **counts: Any
     ) -> BranchCount:
-        """The count `found` as a proved one: 2^n disjoint boxes hold all zeros, by refined Bezout.
+        """The `count` as a proved one: 2^n disjoint boxes hold all zeros, by refined Bezout.
 
         `lines` are the lines of the certificate, if `BranchBlocks` has written them.
         """
@@ -168,11 +168,11 @@ class _Attempt:
         distinct = counts["real"] + counts["nonreal"]
         kind = "chambers" if lines else "isolated"
         counts |= {"distinct": distinct, "true_branches": PROVED}
-        return self.proved(found, reason, kind, None, lines=lines, **counts)
+        return self.proved(count, reason, kind, None, lines=lines, **counts)
 
     def proved(
         self,
-        found: BranchCount,
+        count: BranchCount,
         reason: str,
         kind: str,
         algebraic: AlgebraicProof | None,
@@ -180,10 +180,10 @@ class _Attempt:
         lines: tuple[str, ...] = (),
         **counts: Any,
     ) -> BranchCount:
-        """The count `found` as a proved one, with its proof."""
+        """The `count` as a proved one, with its proof."""
         problem, triangles = self.problem, self.problem.triangles or ()
         return replace(
-            found,
+            count,
             status=PROVED,
             reason=reason,
             with_multiplicity=self.total << problem.pattern.Vt,
@@ -274,18 +274,18 @@ def _with_flat_vertices(attempt: _Attempt, candidates: Candidates) -> BranchCoun
     points = candidates.points.real
     stage = attempt.stage("certifying")
     for guess in flat_vertices(attempt.chart, points):
-        found = Zeros()
+        zeros = Zeros()
         for chosen, where in guess.flat.items():
-            solve_flat(attempt.chart, chosen, points[where], found)
-        if found.total + int(guess.simple.sum()) != attempt.total:
+            solve_flat(attempt.chart, chosen, points[where], zeros)
+        if zeros.total + int(guess.simple.sum()) != attempt.total:
             continue
         simple = points[guess.simple].astype(candidates.points.dtype)
         isolation = isolate(
             attempt.chart.system, replace(candidates, points=simple), progress=stage
         )
-        found.boxes += [box for box in isolation.boxes if box.is_real]
-        if found.total == attempt.total:
-            return _algebraic(attempt, found, dict(candidates.settings))
+        zeros.boxes += [box for box in isolation.boxes if box.is_real]
+        if zeros.total == attempt.total:
+            return _algebraic(attempt, zeros, dict(candidates.settings))
     return None
 
 
@@ -311,17 +311,17 @@ def _solved_exactly(attempt: _Attempt) -> BranchCount:
     return exactly if proved is None or exactly.status is PROVED else proved
 
 
-def _algebraic(attempt: _Attempt, found: Zeros, settings: Mapping[str, int | str]) -> BranchCount:
+def _algebraic(attempt: _Attempt, zeros: Zeros, settings: Mapping[str, int | str]) -> BranchCount:
     """Prove exact classes and boxes complete by a definite stress and the sum of multiplicities."""
     chart = attempt.chart
-    classes = common_parameter(found.classes, chart.system.size) if found.classes else []
-    proof = prove_algebraic(chart, classes, found.boxes, found.flat_boxes)
+    classes = common_parameter(zeros.classes, chart.system.size) if zeros.classes else []
+    proof = prove_algebraic(chart, classes, zeros.boxes, zeros.flat_boxes)
     given: list[tuple[ChartRoot, int]] = [(AlgebraicRoot(c, k), m) for c, k, m in proof.roots]
     given += [(BoxRoot(box, system=chart.system), 1) for box in proof.boxes]
     given += [(FlatBoxRoot(s, box), 1 << len(s.vertices)) for s, box in proof.flat_boxes]
     branches, open_signs = classify(attempt.problem, chart, given)
     if proof.complete is PROVED and open_signs:
-        more = recognised(chart, found, open_signs)
+        more = recognised(chart, zeros, open_signs)
         if more is not None:
             exactly = _algebraic(attempt, more, settings)
             if exactly.status is PROVED:

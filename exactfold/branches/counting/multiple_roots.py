@@ -47,8 +47,8 @@ class Zeros:
         return sum(c.degree * c.multiplicity for c in self.classes) + len(self.boxes) + flat
 
 
-def solve_flat(chart: Chart, vertices: frozenset[int], points: FloatArray, found: Zeros) -> None:
-    """Add to `found` the zeros at which these vertices are flat.
+def solve_flat(chart: Chart, vertices: frozenset[int], points: FloatArray, zeros: Zeros) -> None:
+    """Add to `zeros` the zeros at which these vertices are flat.
 
     They are solved for exactly if the flat sheets leave few unknowns, else isolated in boxes if the
     system is square. `points`, of shape (m, n), are candidates near the zeros.
@@ -57,14 +57,14 @@ def solve_flat(chart: Chart, vertices: frozenset[int], points: FloatArray, found
     if sheets is None:
         return
     if len(sheets.free) <= GROEBNER_LIMIT:
-        found.classes += zeros_flat_at(sheets)
+        zeros.classes += zeros_flat_at(sheets)
     elif sheets.system is not None:
         inner = points[:, list(sheets.free)].astype(np.complex128)
         isolation = isolate(sheets.system, Candidates("flat sheets", inner))
-        found.flat_boxes += [(sheets, box) for box in isolation.boxes if box.is_real]
+        zeros.flat_boxes += [(sheets, box) for box in isolation.boxes if box.is_real]
 
 
-def recognised(chart: Chart, found: Zeros, undecided: Sequence[Undecided]) -> Zeros | None:
+def recognised(chart: Chart, zeros: Zeros, undecided: Sequence[Undecided]) -> Zeros | None:
     """The same zeros, but zeros in boxes at which folds seem flat are replaced by exact classes.
 
     The zeros at which the same folds are flat are all zeros of one rational system, so they are
@@ -75,7 +75,7 @@ def recognised(chart: Chart, found: Zeros, undecided: Sequence[Undecided]) -> Ze
         if isinstance(item.root, BoxRoot | FlatBoxRoot):
             flat = item.root.sheets.vertices if isinstance(item.root, FlatBoxRoot) else None
             groups.setdefault((flat, *item.what), []).append(item.root)
-    result = Zeros(list(found.classes), list(found.boxes), list(found.flat_boxes))
+    result = Zeros(list(zeros.classes), list(zeros.boxes), list(zeros.flat_boxes))
     for group in groups.values():
         if len(group) > _MOST_TOGETHER:
             continue
@@ -95,7 +95,7 @@ def recognised(chart: Chart, found: Zeros, undecided: Sequence[Undecided]) -> Ze
                     for s, b in result.flat_boxes
                     if s is not first.sheets or all(map(b.is_disjoint_from, boxes))
                 ]
-    return result if len(result.classes) > len(found.classes) else None
+    return result if len(result.classes) > len(zeros.classes) else None
 
 
 def with_exact_roots(

@@ -159,8 +159,8 @@ def prove_block(spec: Spec, index: int) -> tuple[ProvedBlock, str]:
     """Prove one block in a worker: the block and its line. Only the line holds the boxes."""
     if getattr(_worker, "spec", None) != spec:
         needed, vertices, triangles, block_size = spec
-        if (found := version("exactfold")) != needed:
-            raise ClusterError(f"a worker has exactfold {found}, not {needed}")
+        if (installed := version("exactfold")) != needed:
+            raise ClusterError(f"a worker has exactfold {installed}, not {needed}")
         _worker.branch_blocks = BranchBlocks.of(CreasePattern(vertices, triangles), block_size)
         _worker.spec = spec
     block = _worker.branch_blocks.prove(index)

@@ -123,7 +123,7 @@ def _on_cluster(
 
 def _checked(needed: str, work: Callable[[J], R], jobs: list[J]) -> tuple[list[R], float]:
     """Run jobs on a worker with the right version of exactfold; their results, and the seconds."""
-    if (found := version("exactfold")) != needed:
-        raise ClusterError(f"a worker has exactfold {found}, not {needed}")
+    if (installed := version("exactfold")) != needed:
+        raise ClusterError(f"a worker has exactfold {installed}, not {needed}")
     start = time.monotonic()
     return [work(job) for job in jobs], time.monotonic() - start

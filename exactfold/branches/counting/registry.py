@@ -174,7 +174,7 @@ def find_candidates(
     report = _Reported(progress)
     try:
         with np.errstate(all="ignore"):
-            found = chosen.solver(chart, seed, None if progress is None else report)
+            candidates = chosen.solver(chart, seed, None if progress is None else report)
     except Exception as error:
         if report.failed or isinstance(error, MemoryError):
             raise
@@ -185,7 +185,7 @@ def find_candidates(
         else:
             why = f"{chosen.name} failed: {type(error).__name__}: {error}"
         return Candidates(chosen.name, np.zeros((0, size), dtype=np.complex128), (why,))
-    return _checked(chosen.name, found, size)
+    return _checked(chosen.name, candidates, size)
 
 
 class _Reported:
@@ -205,17 +205,17 @@ class _Reported:
             raise
 
 
-def _checked(name: str, found: Any, size: int) -> Candidates:
+def _checked(name: str, returned: Any, size: int) -> Candidates:
     """What a solver returned, as `Candidates` with its name; a bad result is a `SolverError`."""
     import numpy as np
 
     from exactfold.solve.numeric.candidates import Candidates
 
-    if not isinstance(found, Candidates):
-        kind = type(found).__name__
+    if not isinstance(returned, Candidates):
+        kind = type(returned).__name__
         raise SolverError(f"the solver {name!r} returned a {kind}, not Candidates")
     try:
-        points = np.asarray(found.points, dtype=np.complex128)
+        points = np.asarray(returned.points, dtype=np.complex128)
     except (TypeError, ValueError) as error:
         raise SolverError(
             f"the points of the solver {name!r} are not an array of complex numbers: {error}"
@@ -227,16 +227,16 @@ def _checked(name: str, found: Any, size: int) -> Candidates:
     bad = int((~np.isfinite(points)).any(axis=1).sum())
     if bad:
         raise SolverError(f"{bad} points of the solver {name!r} are not finite")
-    if isinstance(found.lost, str) or not all(isinstance(text, str) for text in found.lost):
+    if isinstance(returned.lost, str) or not all(isinstance(text, str) for text in returned.lost):
         raise SolverError(f"`lost` of the solver {name!r} is not a sequence of texts")
-    if not isinstance(found.settings, Mapping) or not all(
+    if not isinstance(returned.settings, Mapping) or not all(
         isinstance(key, str) and isinstance(value, int | str)
-        for key, value in found.settings.items()
+        for key, value in returned.settings.items()
     ):
         raise SolverError(
             f"`settings` of the solver {name!r} do not map names to integers or texts"
         )
-    return replace(found, method=name, points=points, lost=tuple(found.lost))
+    return replace(returned, method=name, points=points, lost=tuple(returned.lost))
 
 
 # --- the solvers of exactfold --------------------------------------------------------------------

@@ -222,8 +222,8 @@ class Branch(Picture, Certified):
         if isinstance(self.root, EnclosedRoot):
             return self.root.exact_heights
         unit = self.unit_row
-        found = {v: self.root.exact(row, unit) for v, row in self.height_rows.items()}
-        return None if None in found.values() else found
+        heights = {v: self.root.exact(row, unit) for v, row in self.height_rows.items()}
+        return None if None in heights.values() else heights
 
     @property
     def straight_boundary(self) -> tuple[int, ...]:

@@ -190,5 +190,5 @@ def _fill(signs: dict[K, int | None], rows: Mapping[K, Row], root: ChartRoot) ->
 
 
 def _sharpen(root: R, bits: int) -> R | None:
-    found = root.sharpened(bits) if isinstance(root, BoxRoot | FlatBoxRoot) else None
-    return cast("R | None", found)
+    sharpened = root.sharpened(bits) if isinstance(root, BoxRoot | FlatBoxRoot) else None
+    return cast("R | None", sharpened)

@@ -32,8 +32,8 @@ def zero_in(system: QuadraticSystem, box: IsolatingBox) -> tuple[RootClass, int]
 
     >>> from exactfold.solve.certify.exact_krawczyk import krawczyk
     >>> system = QuadraticSystem.from_rational([[[1, 0], [0, -2]]])
-    >>> found, index = zero_in(system, krawczyk(system, [[1.4142]])[0])
-    >>> found.polynomial, index
+    >>> root_class, index = zero_in(system, krawczyk(system, [[1.4142]])[0])
+    >>> root_class.polynomial, index
     ((-2, 0, 1), 1)
     """
     rational = _rational(system, box)
@@ -58,8 +58,8 @@ def zero_in(system: QuadraticSystem, box: IsolatingBox) -> tuple[RootClass, int]
 
 def _rational(system: QuadraticSystem, box: IsolatingBox) -> RootClass | None:
     """The zero as a class of its own, if its coordinates are rational with short denominators."""
-    found = krawczyk_at(system, box, _BITS) if box.bits < _BITS else box
-    fine = found if isinstance(found, IsolatingBox) else box
+    sharpened = krawczyk_at(system, box, _BITS) if box.bits < _BITS else box
+    fine = sharpened if isinstance(sharpened, IsolatingBox) else box
     # By chance, a fraction with denominator q may be within 1/q^2 of a number.
     most = 1 << fine.bits // 3
     point = [Fraction(m, 1 << fine.bits).limit_denominator(most) for m in fine.real]

@@ -145,17 +145,18 @@ class BranchCount(Page, Ways[Branch], Certified):
         """
         if isinstance(which, int | slice):
             return self.branches[which]
-        found = self._by_signs.get(which, [])
-        if not found:
+        branches = self._by_signs.get(which, [])
+        if not branches:
             raise KeyError(
                 f"no listed branch has the vertex signs {which!r}; give one of +, - and 0 for each "
                 f"of {counted(self.pattern.Vi, 'interior vertex')}"
             )
-        if len(found) > 1:
+        if len(branches) > 1:
             raise UsageError(
-                f"{len(found)} branches have the vertex signs {which!r}; choose one by its number"
+                f"{len(branches)} branches have the vertex signs {which!r}; choose one by its "
+                "number"
             )
-        return found[0]
+        return branches[0]
 
     @cached_property
     def _by_signs(self) -> dict[str, list[Branch]]:
@@ -167,10 +168,10 @@ class BranchCount(Page, Ways[Branch], Certified):
     @property
     def warning(self) -> str | None:
         """A warning about the pattern to read before the count; see `near_degenerate`."""
-        found = near_degenerate(self.pattern)
-        if found is None and self.families is not None:
+        near_degeneracy = near_degenerate(self.pattern)
+        if near_degeneracy is None and self.families is not None:
             return self.families.warning
-        return None if found is None else found.text
+        return None if near_degeneracy is None else near_degeneracy.text
 
     @property
     def by(self) -> str | None:
@@ -185,15 +186,15 @@ class BranchCount(Page, Ways[Branch], Certified):
         if not self.letters or not self.branches:
             return None
         turned = {fold: x.translate(UPSIDE_DOWN) for fold, x in self.letters.items()}
-        found: list[tuple[int, int]] = []
+        ways: list[tuple[int, int]] = []
         unclear: list[tuple[int, int]] = []
         for k, branch in enumerate(self.branches, 1):
             for side, wanted in ((1, self.letters), (-1, turned)):
                 other, unknown = differing(wanted, branch.assignment)
                 if not other:
-                    (unclear if unknown else found).append((k, side))
+                    (unclear if unknown else ways).append((k, side))
         proved = self.status is PROVED and not unclear
-        return Lettered(PROVED if proved else UNDECIDED, tuple(found), tuple(unclear))
+        return Lettered(PROVED if proved else UNDECIDED, tuple(ways), tuple(unclear))
 
     def to_dict(
         self, certificate: str | None = None, name: str | None = None
@@ -330,8 +331,8 @@ class BranchCount(Page, Ways[Branch], Certified):
     def __repr__(self) -> str:
         if self.connected_components is not None and self.distinct is None:
             return f"<BranchCount: {self.status}, {self.connected_components!r}, {self.pattern!r}>"
-        found = counted("?" if self.distinct is None else self.distinct, "branch")
-        return f"<BranchCount: {self.status}, {found}, {self.pattern!r}>"
+        number = counted("?" if self.distinct is None else self.distinct, "branch")
+        return f"<BranchCount: {self.status}, {number}, {self.pattern!r}>"
 
     def _repr_latex_(self) -> str | None:
         if self.connected_components is not None and self.distinct is None:

@@ -45,8 +45,8 @@ def sharper(system: QuadraticSystem, box: IsolatingBox, bits: int) -> IsolatingB
 
     if box.bits >= bits:
         return None
-    found = krawczyk_at(system, box, bits)
-    return found if isinstance(found, IsolatingBox) else None
+    sharpened = krawczyk_at(system, box, bits)
+    return sharpened if isinstance(sharpened, IsolatingBox) else None
 
 
 @dataclass(frozen=True)
@@ -117,8 +117,8 @@ class BoxRoot:
             return self.known
         from exactfold.branches.values.known_roots import zero_in  # here because it loads FLINT
 
-        found = zero_in(self.system, self.box)
-        return None if found is None else AlgebraicRoot(*found)
+        zero = zero_in(self.system, self.box)
+        return None if zero is None else AlgebraicRoot(*zero)
 
 
 @dataclass(frozen=True)
@@ -173,9 +173,9 @@ class AlgebraicRoot:
         scale = max((abs(Fraction(c)) for c in row), default=Fraction(0)) or Fraction(1)
         bits = 80
         while True:
-            found = self.root_class.value_on(row, self.interval(bits))
-            if found is not None and (found[1] - found[0]) * (1 << 64) <= scale:
-                return found if self.side > 0 else (-found[1], -found[0])
+            bounds = self.root_class.value_on(row, self.interval(bits))
+            if bounds is not None and (bounds[1] - bounds[0]) * (1 << 64) <= scale:
+                return bounds if self.side > 0 else (-bounds[1], -bounds[0])
             bits *= 2
 
     def quotient(
@@ -191,9 +191,9 @@ class AlgebraicRoot:
             top, low = (self.root_class.value_on(r, interval) for r in (row, unit))
             if top is not None and low is not None and low[0] * low[1] > 0:
                 ends = [a / b for a in top for b in low]
-                found = min(ends), max(ends)
-                if (found[1] - found[0]) * (1 << 64) <= max(Fraction(1), *map(abs, found)):
-                    return found
+                bounds = min(ends), max(ends)
+                if (bounds[1] - bounds[0]) * (1 << 64) <= max(Fraction(1), *map(abs, bounds)):
+                    return bounds
             bits *= 2
 
     def sign(self, row: Row) -> int | None:
@@ -204,9 +204,9 @@ class AlgebraicRoot:
             return 0
         bits = 40
         while True:
-            found = self.root_class.value_on(row, self.interval(bits))
-            if found is not None and (found[0] > 0 or found[1] < 0):
-                return self.side if found[0] > 0 else -self.side
+            bounds = self.root_class.value_on(row, self.interval(bits))
+            if bounds is not None and (bounds[0] > 0 or bounds[1] < 0):
+                return self.side if bounds[0] > 0 else -self.side
             bits *= 2
 
     def mirrored(self) -> AlgebraicRoot:

@@ -53,8 +53,8 @@ def pair_angles(lines: Lines) -> PairAngles:
     its bin if no edge is within t. Otherwise u and v are computed anew from sharper roots.
 
     >>> from exactfold.pattern.families import single_vertex
-    >>> found = pair_angles(Lines.of(single_vertex(4)))
-    >>> sum(found.bins), found.bins.index(1), found.unclear
+    >>> angles = pair_angles(Lines.of(single_vertex(4)))
+    >>> sum(angles.bins), angles.bins.index(1), angles.unclear
     (1, 63, 0)
     """
     directions = lines.directions

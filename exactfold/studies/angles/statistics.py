@@ -64,9 +64,9 @@ class AnglesOfSize:
 def angles_by_size(rows: Iterable[Row]) -> list[AnglesOfSize]:
     """The rows that have pairs of branches, by size."""
     groups: dict[int, list[Row]] = defaultdict(list)
-    for found in rows:
-        if found["angles"] is not None and sum(found["angles"]):
-            groups[found["interior"]].append(found)
+    for row in rows:
+        if row["angles"] is not None and sum(row["angles"]):
+            groups[row["interior"]].append(row)
     return [
         AnglesOfSize(
             size,
@@ -151,12 +151,12 @@ def exchanged(
     number, other = numbers or (len(first.shares), len(second.shares))
     both = np.vstack([first.shares, second.shares])
     source = np.random.default_rng([first.size, second.size])
-    found = []
+    distances = []
     for _ in range(RESAMPLED):
         order = source.permutation(len(both))
         some, others = both[order[:number]], both[order[number : number + other]]
-        found.append(apart(some.mean(axis=0), others.mean(axis=0)))
-    return np.array(found)
+        distances.append(apart(some.mean(axis=0), others.mean(axis=0)))
+    return np.array(distances)
 
 
 def p_values(seen: FloatArray, by_chance: FloatArray) -> FloatArray:

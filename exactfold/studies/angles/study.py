@@ -57,7 +57,7 @@ def row(recipe: Recipe) -> dict[str, Any]:
     pairs that may be in the next bin. `mean_square` is the mean of cos^2, to six digits.
     """
     lines = Lines.of(square_of(recipe))
-    found: dict[str, Any] = {
+    values: dict[str, Any] = {
         "status": str(lines.status),
         "lines": lines.distinct,
         "angles": None,
@@ -66,10 +66,10 @@ def row(recipe: Recipe) -> dict[str, Any]:
     }
     if lines.status is PROVED:
         angles = pair_angles(lines)
-        found["angles"] = list(angles.bins)
-        found["unclear"] = angles.unclear
-        found["mean_square"] = float(f"{angles.mean_square:.5e}")
-    return found
+        values["angles"] = list(angles.bins)
+        values["unclear"] = angles.unclear
+        values["mean_square"] = float(f"{angles.mean_square:.5e}")
+    return values
 
 
 def tables(rows: Iterable[Row]) -> list[StudyTable]:

@@ -128,17 +128,17 @@ def _by_blocks(branch_blocks: BranchBlocks) -> Lines | None:
         if not block.is_decided:
             return None
         rows = slice(index * count, (index + 1) * count)
-        found = np.where(block.valleys, 1, -1).astype(np.int8)
+        block_letters = np.where(block.valleys, 1, -1).astype(np.int8)
         boxes.append(block.boxes)
         points[rows, :-1] = block.boxes.points
         radii[rows] = block.boxes.radii
         for j, root in block.exact.items():
-            found[j] = [_VALUES[letter] for letter in root.assignment]
+            block_letters[j] = [_VALUES[letter] for letter in root.assignment]
             exact[index * count + j] = box = root.box
             points[index * count + j, :-1] = [x / (1 << box.bits) for x in box.real]
             radii[index * count + j] = (box.radius / (1 << box.bits)) * _UP
             radii[index * count + j] += _U * float(np.abs(points[index * count + j]).max())
-        letters[rows, folds] = found
+        letters[rows, folds] = block_letters
         signs[rows, vertices] = sign_vectors(index * count, count, branch_blocks.size)
     directions, errors = _directions(problem, points, radii)
 
@@ -154,10 +154,10 @@ def _sharpened(problem: Problem, boxes: Sequence[IsolatingBox]) -> list[Isolatin
     from exactfold.solve.certify.exact_krawczyk import krawczyk  # here: only this needs FLINT
 
     centres = [[Fraction(x, 1 << box.bits) for x in box.real] for box in boxes]
-    found = krawczyk(problem.chart.system, centres, precisions=(_BITS,), reach=None)
+    sharpened = krawczyk(problem.chart.system, centres, precisions=(_BITS,), reach=None)
     return [
         sharp if isinstance(sharp, IsolatingBox) and sharp.is_inside(box) else box
-        for sharp, box in zip(found, boxes, strict=True)
+        for sharp, box in zip(sharpened, boxes, strict=True)
     ]
 
 
@@ -176,14 +176,14 @@ def _bends(problem: Problem) -> list[_Bend]:
     flat, unit = over_common_denominator(x for row in rows.values() for x in row)
     size = len(flat) // len(rows)
     heights = {v: flat[k * size : (k + 1) * size] for k, v in enumerate(rows)}
-    found = []
+    bends = []
     for fold in pattern.folds:
         weights = fold_functional(pattern, fold)
         left, right = pattern.opposite(fold)
         row = (sum(w * heights[v][k] for v, w in weights.items()) for k in range(size))
         below = weights[left] * weights[right] * unit
-        found.append(_Bend(tuple(row), below, _length(pattern, fold)))
-    return found
+        bends.append(_Bend(tuple(row), below, _length(pattern, fold)))
+    return bends
 
 
 def _sharp_directions(

@@ -29,8 +29,8 @@ def study_named(name: str) -> Study:
     """
     if name not in MODULES:
         raise UsageError(f"there is no study {name!r}; the studies are: {', '.join(MODULES)}")
-    found: Study = import_module(MODULES[name]).STUDY
-    return found
+    study: Study = import_module(MODULES[name]).STUDY
+    return study
 
 
 def all_studies() -> dict[str, Study]:

@@ -87,26 +87,26 @@ def run_study(
     >>> [row["distinct"] for row in run.rows]
     [4, 4, 4]
     """
-    found = study_named(study) if isinstance(study, str) else study
+    chosen_study = study_named(study) if isinstance(study, str) else study
     if workers < 1:
         raise UsageError(f"the number of workers must be at least one, not {workers}")
-    numbers = dict(found.numbers if numbers is None else numbers)
-    recipes = _Plan(found, seed, numbers)
+    numbers = dict(chosen_study.numbers if numbers is None else numbers)
+    recipes = _Plan(chosen_study, seed, numbers)
     done = engine or process_pool(workers)
     if journal is None:
         memory: dict[str, Row] = {}
 
         def keep(recipe: Recipe, row: Row) -> None:
-            name = found.id_of(recipe)
+            name = chosen_study.id_of(recipe)
             memory[name] = StoredRow(name, recipe, row).whole
 
-        computed = _compute(found, recipes, set(), keep, done, progress)
-        rows = tuple(memory[found.id_of(recipe)] for recipe in recipes)
-        return StudyRun(found, seed, numbers, rows, computed, None)
-    with RowStore(journal, found) as store:
-        computed = _compute(found, recipes, store, store.add, done, progress)
-    stored = StoredRows(store.path, found, recipes)
-    return StudyRun(found, seed, numbers, stored, computed, store.path)
+        computed = _compute(chosen_study, recipes, set(), keep, done, progress)
+        rows = tuple(memory[chosen_study.id_of(recipe)] for recipe in recipes)
+        return StudyRun(chosen_study, seed, numbers, rows, computed, None)
+    with RowStore(journal, chosen_study) as store:
+        computed = _compute(chosen_study, recipes, store, store.add, done, progress)
+    stored = StoredRows(store.path, chosen_study, recipes)
+    return StudyRun(chosen_study, seed, numbers, stored, computed, store.path)
 
 
 @dataclass(frozen=True, repr=False)
@@ -143,9 +143,9 @@ def recompute_row(study: str | Study, journal: str | os.PathLike[str], name: str
     `name` may be abbreviated. Raises `InputError`, the errors of `RowStore` and those of the
     row.
     """
-    found = study_named(study) if isinstance(study, str) else study
-    stored = read_row(journal, found, name)
-    return Recomputed(found, stored, normal(found.row(stored.recipe), stored.recipe))
+    chosen_study = study_named(study) if isinstance(study, str) else study
+    stored = read_row(journal, chosen_study, name)
+    return Recomputed(chosen_study, stored, normal(chosen_study.row(stored.recipe), stored.recipe))
 
 
 def normal(row: Row, recipe: Recipe) -> dict[str, Any]:
@@ -158,10 +158,10 @@ def normal(row: Row, recipe: Recipe) -> dict[str, Any]:
             f"{min(shared)!r} is a name both in the recipe and in the row: rename it in the row"
         )
     try:
-        found: dict[str, Any] = json.loads(canonical(row))
+        normal_row: dict[str, Any] = json.loads(canonical(row))
     except (ValueError, TypeError) as error:
         raise UsageError(f"a row contains a value that JSON cannot express: {error}") from None
-    return found
+    return normal_row
 
 
 @dataclass(frozen=True)

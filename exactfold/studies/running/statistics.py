@@ -13,8 +13,8 @@ AGREE = 0.01
 """Two samples agree if chance makes them differ as much with at least this probability."""
 
 
-def interval(found: int, number: int, level: float = LEVEL) -> tuple[float, float]:
-    """The interval of Clopper and Pearson for a probability, from `found` of `number` trials.
+def interval(successes: int, number: int, level: float = LEVEL) -> tuple[float, float]:
+    """The interval of Clopper and Pearson for a probability, from `successes` of `number` trials.
 
     For any probability, the interval contains it in at least `level` of all samples. Without trials
     it is (0, 1).
@@ -26,12 +26,12 @@ def interval(found: int, number: int, level: float = LEVEL) -> tuple[float, floa
 
     if not number:
         return 0.0, 1.0
-    bounds = binomtest(found, number).proportion_ci(level, method="exact")
+    bounds = binomtest(successes, number).proportion_ci(level, method="exact")
     return float(bounds.low), float(bounds.high)
 
 
 def same_probability(first: tuple[int, int], second: tuple[int, int]) -> float:
-    """Fisher's exact test of two samples (found, number): the two-sided p-value.
+    """Fisher's exact test of two samples (successes, number): the two-sided p-value.
 
     It is the probability of samples as different as these if both have the same probability.
 
@@ -40,7 +40,7 @@ def same_probability(first: tuple[int, int], second: tuple[int, int]) -> float:
     """
     from scipy.stats import fisher_exact
 
-    table = [[found, number - found] for found, number in (first, second)]
+    table = [[successes, number - successes] for successes, number in (first, second)]
     return float(fisher_exact(table).pvalue)
 
 
@@ -68,12 +68,12 @@ def decay(samples: Mapping[int, tuple[int, int]]) -> Decay | None:
     from scipy.stats import chi2
 
     used = {k: sample for k, sample in samples.items() if k >= 1}
-    total = sum(found for found, _ in used.values())
+    total = sum(successes for successes, _ in used.values())
     if len(used) < 2 or not 0 < total < sum(number for _, number in used.values()):
         return None
 
-    def surprise(share: float, found: int, number: int) -> float:
-        return -float(xlogy(found, share) + xlogy(number - found, 1 - share))
+    def surprise(share: float, successes: int, number: int) -> float:
+        return -float(xlogy(successes, share) + xlogy(number - successes, 1 - share))
 
     def misfit(ratio: float) -> float:
         return sum(surprise(ratio**k, *sample) for k, sample in used.items())
@@ -81,13 +81,15 @@ def decay(samples: Mapping[int, tuple[int, int]]) -> Decay | None:
     best = minimize_scalar(
         misfit, bounds=(1e-9, 1 - 1e-9), method="bounded", options={"xatol": 1e-9}
     )
-    least = sum(surprise(found / number, found, number) for found, number in used.values())
+    least = sum(
+        surprise(successes / number, successes, number) for successes, number in used.values()
+    )
     twice = max(0.0, 2 * (float(best.fun) - least))
     return Decay(float(best.x), float(chi2.sf(twice, len(used) - 1)))
 
 
 def one_share(samples: Iterable[tuple[int, int]]) -> float:
-    """Pearson's chi-squared test that samples (found, number) have one share: the p-value.
+    """Pearson's chi-squared test that samples (successes, number) have one share: the p-value.
 
     It is 1 if there is nothing to compare: fewer than two samples, or all shares 0, or all 1.
 
@@ -96,7 +98,7 @@ def one_share(samples: Iterable[tuple[int, int]]) -> float:
     """
     from scipy.stats import chi2_contingency
 
-    table = [[found, number - found] for found, number in samples if number]
+    table = [[successes, number - successes] for successes, number in samples if number]
     if len(table) < 2 or not all(map(sum, zip(*table, strict=True))):
         return 1.0
     return float(chi2_contingency(table, correction=False).pvalue)
@@ -105,7 +107,7 @@ def one_share(samples: Iterable[tuple[int, int]]) -> float:
 def trend(samples: Mapping[int, tuple[int, int]]) -> tuple[float, float]:
     """The test of Cochran and Armitage for shares that change with a number: z and its p-value.
 
-    z is positive if samples (found, number) of larger keys have larger shares. The p-value is
+    z is positive if samples (successes, number) of larger keys have larger shares. The p-value is
     two-sided and uses the normal distribution. If nothing changes, the result is (0, 1).
 
     >>> z, p = trend({5: (12, 1000), 6: (33, 1000), 7: (43, 1000)})
@@ -115,13 +117,13 @@ def trend(samples: Mapping[int, tuple[int, int]]) -> tuple[float, float]:
     from scipy.stats import norm
 
     total = sum(number for _, number in samples.values())
-    share = sum(found for found, _ in samples.values()) / total if total else 0.0
+    share = sum(successes for successes, _ in samples.values()) / total if total else 0.0
     mean = sum(k * number for k, (_, number) in samples.items()) / total if total else 0.0
     spread = sum(number * (k - mean) ** 2 for k, (_, number) in samples.items())
     variance = share * (1 - share) * spread
     if not variance:
         return 0.0, 1.0
-    z = sum(found * (k - mean) for k, (found, _) in samples.items()) / variance**0.5
+    z = sum(successes * (k - mean) for k, (successes, _) in samples.items()) / variance**0.5
     return float(z), float(2 * norm.sf(abs(z)))
 
 
@@ -163,13 +165,13 @@ def percent(part: float) -> str:
     return f"{value:.0f}" if value >= 9.95 or not value else f"{value:.2g}"
 
 
-def interval_text(found: int, number: int) -> str:
+def interval_text(successes: int, number: int) -> str:
     """The interval of a share in per cent, with as many digits as its width justifies.
 
     >>> interval_text(17, 1000), interval_text(7131, 20000), interval_text(8, 50)
     ('0.99 to 2.7', '35.0 to 36.3', '7.2 to 29')
     """
-    ends = interval(found, number)
+    ends = interval(successes, number)
     places = max(0, 1 - floor(log10(100 * (ends[1] - ends[0]))))
     low, high = (percent(x) if 100 * x < 9.95 else f"{100 * x:.{places}f}" for x in ends)
     return f"{low} to {high}"

@@ -88,8 +88,8 @@ class RowStore:
 
     def __contains__(self, row: str) -> bool:
         with _told(self.path):
-            found = self._rows.execute("SELECT 1 FROM rows WHERE id = ?", (row,)).fetchone()
-        return found is not None
+            match = self._rows.execute("SELECT 1 FROM rows WHERE id = ?", (row,)).fetchone()
+        return match is not None
 
     def __len__(self) -> int:
         with _told(self.path):
@@ -124,9 +124,9 @@ class StoredRows:
     def __iter__(self) -> Iterator[Row]:
         with _reading(self.path, self.study) as rows:
             for recipe in self.recipes:
-                found = _row(rows, self.path, self.study, self.study.id_of(recipe))
-                if found is not None:
-                    yield found.whole
+                stored = _row(rows, self.path, self.study, self.study.id_of(recipe))
+                if stored is not None:
+                    yield stored.whole
 
 
 def read_row(path: str | os.PathLike[str], study: Study, name: str) -> StoredRow:
@@ -138,13 +138,13 @@ def read_row(path: str | os.PathLike[str], study: Study, name: str) -> StoredRow
     if not os.path.exists(path):
         raise InputError(f"there is no journal {path}: run the study first")
     with _reading(path, study) as rows, _told(path):
-        found = rows.execute(
+        matches = rows.execute(
             "SELECT id FROM rows WHERE substr(id, 1, ?) = ? LIMIT 2", (len(name), name)
         ).fetchall()
-        if len(found) != 1:
-            what = "no row" if not found else "more than one row"
+        if len(matches) != 1:
+            what = "no row" if not matches else "more than one row"
             raise InputError(f"{path} has {what} whose name begins with {name!r}")
-        row = _row(rows, path, study, found[0][0])
+        row = _row(rows, path, study, matches[0][0])
     if row is None:  # although its name was read a moment ago
         raise ForeignJournalError(f"{path} lost the row {name}")
     return row
@@ -164,8 +164,8 @@ def _reading(path: str, study: Study) -> Iterator[sqlite3.Connection]:
 
 def _row(rows: sqlite3.Connection, path: str, study: Study, name: str) -> StoredRow | None:
     with _told(path):
-        found = rows.execute("SELECT recipe, row, sha256 FROM rows WHERE id = ?", (name,))
-        texts = found.fetchone()
+        cursor = rows.execute("SELECT recipe, row, sha256 FROM rows WHERE id = ?", (name,))
+        texts = cursor.fetchone()
     if texts is None:
         return None
     try:
@@ -191,11 +191,11 @@ def _check_about(rows: sqlite3.Connection, path: str, study: Study) -> None:
     tables = {name for (name,) in rows.execute("SELECT name FROM sqlite_master")}
     if not {"about", "rows"} <= tables:
         raise ForeignJournalError(f"{path} is not the journal of a study")
-    found = dict(rows.execute("SELECT name, value FROM about"))
-    if (found.get("format"), found.get("version")) != (FORMAT, str(VERSION)):
+    about = dict(rows.execute("SELECT name, value FROM about"))
+    if (about.get("format"), about.get("version")) != (FORMAT, str(VERSION)):
         raise ForeignJournalError(f"{path} is not the journal of a study")
-    if found != _about(study):
-        other = f"{found.get('study')}, version {found.get('study version')}"
+    if about != _about(study):
+        other = f"{about.get('study')}, version {about.get('study version')}"
         raise ForeignJournalError(
             f"{path} contains rows of the study {other}, not of {study.name}, version "
             f"{study.version}: name another file"

@@ -21,10 +21,10 @@ K = TypeVar("K", int, tuple[int, int])
 
 def tallied(rows: Iterable[Row], empty: Callable[[], T], key: Callable[[Row], K]) -> dict[K, T]:
     """Adds the rows of each key to a tally of this key; the tallies in the order of the keys."""
-    found: dict[K, T] = {}
+    tallies: dict[K, T] = {}
     for row in rows:
-        found.setdefault(key(row), empty()).add(row)
-    return dict(sorted(found.items()))
+        tallies.setdefault(key(row), empty()).add(row)
+    return dict(sorted(tallies.items()))
 
 
 def interior_of(row: Row) -> int:
@@ -55,24 +55,27 @@ def draw_distributions(axes: Any, values: Mapping[int, Sequence[float]]) -> None
 def draw_rare(
     axes: Any, places: Sequence[float], counts: Sequence[tuple[int, int]], **style: Any
 ) -> None:
-    """Draws shares (found, number) in per cent on a logarithmic axis, with exact 95 % intervals.
+    """Draws shares (successes, number) in per cent on a logarithmic axis.
 
-    If nothing was found, an open triangle marks the upper end of the interval.
+    The bars are exact 95 % intervals. If a share has no successes, an open triangle marks the upper
+    end of its interval.
     """
     style = {"marker": "o", **style}
     label = style.pop("label")
-    some = [place for place, (found, _) in zip(places, counts, strict=True) if found]
+    some = [place for place, (successes, _) in zip(places, counts, strict=True) if successes]
     if some:
-        kept = [(found, number) if found else (1, 0) for found, number in counts]
-        middle = [100 * found / number if number else nan for found, number in kept]
-        bounds = [interval(found, number) if number else (nan, nan) for found, number in kept]
+        kept = [(successes, number) if successes else (1, 0) for successes, number in counts]
+        middle = [100 * successes / number if number else nan for successes, number in kept]
+        bounds = [
+            interval(successes, number) if number else (nan, nan) for successes, number in kept
+        ]
         below = [m - 100 * low for m, (low, _) in zip(middle, bounds, strict=True)]
         above = [100 * high - m for m, (_, high) in zip(middle, bounds, strict=True)]
         axes.errorbar(places, middle, [below, above], label=label, **style)
     none = [
         (place, 100 * interval(0, number)[1])
-        for place, (found, number) in zip(places, counts, strict=True)
-        if not found
+        for place, (successes, number) in zip(places, counts, strict=True)
+        if not successes
     ]
     if none:
         style |= {"marker": "v", "markerfacecolor": "none", "linestyle": "none"}
@@ -82,9 +85,9 @@ def draw_rare(
 def draw_shares(
     axes: Any, places: Sequence[float], counts: Sequence[tuple[int, int]], unit: float, **style: Any
 ) -> None:
-    """Draws shares (found, number) with exact 95 % intervals; `unit` is 100 for per cent."""
-    middle = [unit * found / number for found, number in counts]
-    bounds = [interval(found, number) for found, number in counts]
+    """Draws shares (successes, number) with exact 95 % intervals; `unit` is 100 for per cent."""
+    middle = [unit * successes / number for successes, number in counts]
+    bounds = [interval(successes, number) for successes, number in counts]
     below = [m - unit * low for m, (low, _) in zip(middle, bounds, strict=True)]
     above = [unit * high - m for m, (_, high) in zip(middle, bounds, strict=True)]
     axes.errorbar(places, middle, [below, above], marker="o", **style)

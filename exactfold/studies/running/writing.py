@@ -19,10 +19,10 @@ _BATCH = 10_000
 
 def columns(rows: Iterable[Row]) -> list[str]:
     """The names of all values, in the order of their first occurrence."""
-    found: dict[str, None] = {}
+    names: dict[str, None] = {}
     for row in rows:
-        found.update(dict.fromkeys(row))
-    return list(found)
+        names.update(dict.fromkeys(row))
+    return list(names)
 
 
 def write_csv(rows: Iterable[Row], path: str | os.PathLike[str]) -> None:
