@@ -27,7 +27,7 @@ def collinear_folds(pattern: CreasePattern) -> tuple[tuple[int, int, int], ...]:
     ((0, 6, 2), (1, 6, 3), (4, 6, 5))
     """
     points, _ = pattern.integer_vertices
-    found = []
+    paths = []
     for v in pattern.interior:
         ring = sorted(pattern.star(v))
         for k, i in enumerate(ring):
@@ -35,8 +35,8 @@ def collinear_folds(pattern: CreasePattern) -> tuple[tuple[int, int, int], ...]:
                 (x, y), (ax, ay), (bx, by) = points[v], points[i], points[j]
                 dot = (ax - x) * (bx - x) + (ay - y) * (by - y)
                 if dot < 0 and orientation(points[i], points[v], points[j]) == 0:
-                    found.append((i, v, j))
-    return tuple(found)
+                    paths.append((i, v, j))
+    return tuple(paths)
 
 
 # --- one and two vertices ------------------------------------------------------------------------

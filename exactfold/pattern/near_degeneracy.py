@@ -61,19 +61,19 @@ class NearDegeneracy:
     @property
     def sentences(self) -> tuple[str, ...]:
         """The first of the nearly simple vertices and of the nearly straight paths, in words."""
-        found = []
+        sentences = []
         if self.simple:
             vertex, (x, y) = min(self.simple.items())
             more = f", and {len(self.simple) - 1} more like it" if len(self.simple) > 1 else ""
-            found.append(
+            sentences.append(
                 f"vertex {vertex} is within {decimal_above(self.move, 2)} of "
                 f"({format_rational(x)}, {format_rational(y)}), but not at it{more}"
             )
         if self.straight:
             i, v, j = self.straight[0]
             more = f", and {len(self.straight) - 1} more" if len(self.straight) > 1 else ""
-            found.append(f"the path {i}-{v}-{j} is nearly straight, but not quite{more}")
-        return tuple(found)
+            sentences.append(f"the path {i}-{v}-{j} is nearly straight, but not quite{more}")
+        return tuple(sentences)
 
     @property
     def text(self) -> str:
@@ -110,8 +110,8 @@ def near_degenerate(pattern: PatternLike) -> NearDegeneracy | None:
     >>> rounded = CreasePattern(
     ...     [(0, 0), (1, 0), (1, 1), (0, 1), ("0.3333333333333", "0.3333333333333001")],
     ...     [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)])
-    >>> found = near_degenerate(rounded)
-    >>> found.denominator, found.straight, rounded.snapped(3)[0] == found.nearest
+    >>> degeneracy = near_degenerate(rounded)
+    >>> degeneracy.denominator, degeneracy.straight, rounded.snapped(3)[0] == degeneracy.nearest
     (3, ((0, 4, 2),), True)
     >>> near_degenerate("two-vertex") is None
     True
@@ -126,8 +126,8 @@ def warnings(pattern: CreasePattern) -> list[WarningDocument]:
     >>> warnings(two_vertex())
     []
     """
-    found = near_degenerate(pattern)
-    return [] if found is None else [found.to_dict()]
+    degeneracy = near_degenerate(pattern)
+    return [] if degeneracy is None else [degeneracy.to_dict()]
 
 
 @remembered

@@ -228,9 +228,9 @@ def from_drawing(
     attempts = _attempts(drawing, steps, merge)
     for k, chosen in enumerate(attempts, 1):
         try:
-            found = exact_sheets(drawing, snap=rule, merge=merge, steps=chosen)
+            sheets = exact_sheets(drawing, snap=rule, merge=merge, steps=chosen)
             again = partial(from_drawing, drawing, number=number, steps=steps, merge=merge)
-            return replace(_chosen(drawing, found, number), again=again)
+            return replace(_chosen(drawing, sheets, number), again=again)
         except (FoldError, PatternError):
             if k == len(attempts):
                 raise
@@ -248,31 +248,31 @@ def _attempts(drawing: Drawing, steps: Steps, merge: Fraction | None) -> list[Co
     return [steps]
 
 
-def _chosen(drawing: Drawing, found: Sheets, number: int | None) -> Opened:
+def _chosen(drawing: Drawing, sheets: Sheets, number: int | None) -> Opened:
     """The chosen sheet of a drawing, as a pattern."""
     from exactfold.pattern.panel_pattern import PanelPattern
 
-    if number is None and len(found.sheets) > 1:
+    if number is None and len(sheets.sheets) > 1:
         raise SeveralSheetsError(
-            f"the drawing holds {len(found.sheets)} sheets: choose one with --sheet N, or "
+            f"the drawing holds {len(sheets.sheets)} sheets: choose one with --sheet N, or "
             "`number=` in Python"
         )
-    if number is not None and not 1 <= number <= len(found.sheets):
+    if number is not None and not 1 <= number <= len(sheets.sheets):
         raise SeveralSheetsError(
-            f"there is no sheet {number}: the drawing holds {len(found.sheets)}"
+            f"there is no sheet {number}: the drawing holds {len(sheets.sheets)}"
         )
-    sheet = found.sheets[(number or 1) - 1]
+    sheet = sheets.sheets[(number or 1) - 1]
     pattern = PanelPattern(sheet.points, [(line.start, line.end) for line in sheet.lines])
     letters = {
         (min(line.start, line.end), max(line.start, line.end)): line.letter for line in sheet.lines
     }
-    lines = [drawing.source, *drawing.remarks, found.coordinates.text]
-    lines += [str(repair) for repair in found.repairs]
+    lines = [drawing.source, *drawing.remarks, sheets.coordinates.text]
+    lines += [str(repair) for repair in sheets.repairs]
     return Opened(
         triangulated(pattern) or pattern,
         letters,
         tuple(lines),
-        largest_move=found.coordinates.largest_move,
+        largest_move=sheets.coordinates.largest_move,
         field_name=pattern.field_name,
     )
 

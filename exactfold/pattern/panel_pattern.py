@@ -90,11 +90,11 @@ class PanelPattern(Picture):
     @cached_property
     def sides(self) -> Mapping[tuple[int, int], int]:
         """The face on the left of each directed edge, for the edges that have one."""
-        found: dict[tuple[int, int], int] = {}
+        sides: dict[tuple[int, int], int] = {}
         for k, face in enumerate(self.faces):
             for i, j in zip(face, (*face[1:], face[0]), strict=True):
-                found[i, j] = k
-        return MappingProxyType(found)
+                sides[i, j] = k
+        return MappingProxyType(sides)
 
     @cached_property
     def boundary_edges(self) -> tuple[Edge, ...]:

@@ -28,7 +28,7 @@ def find_triangulated_triangles(
         neighbours[i].add(j)
         neighbours[j].add(i)
     faces = set(triangles)
-    found: list[tuple[Triangle, frozenset[int]]] = []
+    cycles: list[tuple[Triangle, frozenset[int]]] = []
     for i, j in edges:
         for k in neighbours[i] & neighbours[j]:
             if k < j:
@@ -39,12 +39,12 @@ def find_triangulated_triangles(
                 continue
             inside = _inside(following, cycle)
             if inside:
-                found.append((cycle, inside))
+                cycles.append((cycle, inside))
     holders: dict[int, list[frozenset[int]]] = {}
-    for _, inside in found:
+    for _, inside in cycles:
         for v in inside:
             holders.setdefault(v, []).append(inside)
-    maximal = [(t, s) for t, s in found if not any(s < other for other in holders[min(s)])]
+    maximal = [(t, s) for t, s in cycles if not any(s < other for other in holders[min(s)])]
     return tuple(sorted((t, tuple(sorted(s))) for t, s in maximal))
 
 

@@ -60,13 +60,13 @@ def _triangles(points: Sequence[Point], face: Sequence[int]) -> list[tuple[int, 
     The last triangle is what remains after the last ear.
     """
     ring = list(face)
-    found: list[tuple[int, ...]] = []
+    triangles: list[tuple[int, ...]] = []
     while len(ring) > 3:
         ears = [k for k in range(len(ring)) if _is_ear(points, ring, k)]
         k = min(ears, key=lambda k: _length(points[ring[k - 1]], points[ring[(k + 1) % len(ring)]]))
-        found.append((ring[k - 1], ring[k], ring[(k + 1) % len(ring)]))
+        triangles.append((ring[k - 1], ring[k], ring[(k + 1) % len(ring)]))
         del ring[k]
-    return [*found, tuple(ring)]
+    return [*triangles, tuple(ring)]
 
 
 def _is_ear(points: Sequence[Point], ring: Sequence[int], k: int) -> bool:

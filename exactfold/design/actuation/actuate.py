@@ -77,10 +77,10 @@ def actuate(
     Raises `NotCountedError` if more than 12 vertices are foldable, `UndecidedBranchError` if some
     branch is not proved, `UsageError` for wrong arguments, and the errors of `find_branch`.
 
-    >>> found = actuate("two-vertex", "+-")
-    >>> found
+    >>> actuation = actuate("two-vertex", "+-")
+    >>> actuation
     <Actuation of +-: proved, margin 0.982 of at most 0.982>
-    >>> found.orthogonal_dimension, found.independent
+    >>> actuation.orthogonal_dimension, actuation.independent
     ((0, 0), ('--', '-+', '++'))
     """
     start = time.perf_counter()
@@ -199,11 +199,11 @@ class TorqueSearch:
             torques, best = self._torques()
             margin = self._margin(torques)
         self._say("orthogonal torques")
-        found = alone(self.directions, self.branches, self.place, self.size)
+        orthogonality = alone(self.directions, self.branches, self.place, self.size)
         margin, (_, best) = outward(margin), outward((best, best))
         status, reason = judged(margin, torques)
         signs = [branch.sign_text for branch in self.branches]
-        names = tuple(signs[b] for b in found.independent)
+        names = tuple(signs[b] for b in orthogonality.independent)
         signs[self.place] = self.named.sign_text
         return Actuation(
             self.pattern,
@@ -215,9 +215,9 @@ class TorqueSearch:
             best,
             self.creases,
             self.given is not None,
-            found.dimension,
+            orthogonality.dimension,
             names,
-            found.orthogonal,
+            orthogonality.orthogonal,
             self.directions,
             self.place,
             tuple(signs),

@@ -88,9 +88,9 @@ class CreaseChoice:
             if progress is not None:
                 progress("choice of creases", done, nodes)
             node = heappop(queue)
-            found, bound = self._bounded(node)
-            fold = self._undecided(found, node)
-            if found.margin <= self._enough or fold is None:
+            proposal, bound = self._bounded(node)
+            fold = self._undecided(proposal, node)
+            if proposal.margin <= self._enough or fold is None:
                 settled.append(bound)
                 continue
             for taken in (True, False):
@@ -98,7 +98,7 @@ class CreaseChoice:
                 (inside if taken else barred)[fold] = True
                 if inside.sum() == self.most:
                     barred = ~inside
-                heappush(queue, _Node((-found.margin, made), inside, barred, bound))
+                heappush(queue, _Node((-proposal.margin, made), inside, barred, bound))
                 made += 1
         open_bounds = [node.bound for node in queue if node.bound is not None]
         return Choice(self.torques, max([*settled, *open_bounds]))
@@ -112,24 +112,24 @@ class CreaseChoice:
         limited = ~node.inside & ~node.barred
         left = self.most - int(node.inside.sum())
         while True:
-            found = largest_margin(self.gaps[self.known], ~node.barred, limited, left)
-            values = self.gaps @ found.torques
+            proposal = largest_margin(self.gaps[self.known], ~node.barred, limited, left)
+            values = self.gaps @ proposal.torques
             worst = np.argsort(values, kind="stable")[:_JOINING]
-            joining = np.setdiff1d(worst[values[worst] < found.margin - _SHORT], self.known)
+            joining = np.setdiff1d(worst[values[worst] < proposal.margin - _SHORT], self.known)
             if not len(joining):
                 break
             self.known = np.union1d(self.known, joining)
-        self._improve(found.torques)
+        self._improve(proposal.torques)
         rays = [self.rays[r] for r in self.known]
         bound = margin_bound(
             self.directions,
             self.chosen,
-            exact_weights(rays, found.weights),
+            exact_weights(rays, proposal.weights),
             limited.tolist(),
             left,
             node.barred.tolist(),
         )
-        return found, bound
+        return proposal, bound
 
     def _improve(self, torques: FloatArray) -> None:
         """Try the folds with the largest torques; keep them if they are the best choice so far."""
@@ -142,17 +142,17 @@ class CreaseChoice:
         known = largest_margin(self.gaps[self.known], support & self.allowed)
         if known.margin <= self._enough:  # with all rivals the margin is no larger
             return
-        found = largest_margin(self.gaps, support & self.allowed)
-        if found.margin > self.margin:
-            self.torques, self.margin = found.torques, found.margin
+        proposal = largest_margin(self.gaps, support & self.allowed)
+        if proposal.margin > self.margin:
+            self.torques, self.margin = proposal.torques, proposal.margin
 
-    def _undecided(self, found: Proposal, node: _Node) -> int | None:
+    def _undecided(self, proposal: Proposal, node: _Node) -> int | None:
         """The fold with the largest torque that is neither inside nor barred.
 
         None if so few folds are driven that the program has found the best choice of the node.
         """
-        driven = np.abs(found.torques) > _ZERO
+        driven = np.abs(proposal.torques) > _ZERO
         if int((driven | node.inside).sum()) <= self.most:
             return None
-        sizes = np.where(node.inside | node.barred, -1.0, np.abs(found.torques))
+        sizes = np.where(node.inside | node.barred, -1.0, np.abs(proposal.torques))
         return int(np.argmax(sizes))

@@ -119,8 +119,8 @@ class Directions:
         low, high = other.lows[0], other.highs[0]
         here = ((self.lows <= high) & (self.highs >= low)).astype(bool).all(axis=1)
         there = ((self.lows <= -low) & (self.highs >= -high)).astype(bool).all(axis=1)
-        found = [(int(b), 1) for b in np.flatnonzero(here)]
-        return found + [(int(b), -1) for b in np.flatnonzero(there)]
+        rays = [(int(b), 1) for b in np.flatnonzero(here)]
+        return rays + [(int(b), -1) for b in np.flatnonzero(there)]
 
 
 def _densities(branches: Sequence[Branch]) -> Iterator[Ends]:
@@ -175,13 +175,13 @@ def _density_rows(pattern: CreasePattern, heights: Mapping[int, Sequence[Fractio
 def _lengths(pattern: CreasePattern) -> list[tuple[int, int]]:
     """Bounds of the lengths of the folds as integers, all multiplied by one positive factor."""
     points, _ = pattern.integer_vertices
-    found = []
+    lengths = []
     for i, j in pattern.folds:
         (ax, ay), (bx, by) = points[i], points[j]
         squared = (bx - ax) ** 2 + (by - ay) ** 2 << 2 * _WORK
         root = isqrt(squared)
-        found.append((root, root + (root * root < squared)))
-    return found
+        lengths.append((root, root + (root * root < squared)))
+    return lengths
 
 
 def _unit(densities: Ends, lengths: Sequence[tuple[int, int]]) -> Ends:

@@ -58,8 +58,8 @@ def actuate_all(pattern: PatternLike, *, progress: Progress | None = None) -> tu
     Raises `NotCountedError` if more than 12 vertices are foldable, `UndecidedBranchError` if some
     branch is not proved, and the errors of `count_branches`.
 
-    >>> for found in actuate_all("two-vertex"):
-    ...     print(found)
+    >>> for actuation in actuate_all("two-vertex"):
+    ...     print(actuation)
     <Actuation of --: proved, margin 0.8007 of at most 0.8007>
     <Actuation of -+: proved, margin 1.295 of at most 1.295>
     <Actuation of +-: proved, margin 0.982 of at most 0.982>
@@ -71,9 +71,9 @@ def actuate_all(pattern: PatternLike, *, progress: Progress | None = None) -> tu
     problem.require_foldable()
     require_few(problem.size)
     branches = proved_branches(pattern, progress)
-    found = _Together(pattern, branches, problem.size + 1, progress).found()
-    seconds = (time.perf_counter() - start) / max(1, len(found))
-    return tuple(replace(result, seconds=seconds) for result in found)
+    actuations = _Together(pattern, branches, problem.size + 1, progress).found()
+    seconds = (time.perf_counter() - start) / max(1, len(actuations))
+    return tuple(replace(result, seconds=seconds) for result in actuations)
 
 
 class _Together:
@@ -110,16 +110,20 @@ class _Together:
         if self.progress is not None:
             self.progress("torques", len(self.results), len(self.branches))
         proposals = largest_margins(self.directions.middles, np.array(places))
-        known = {b: found for b, found in zip(places, proposals, strict=True) if found is not None}
+        known = {
+            b: proposal
+            for b, proposal in zip(places, proposals, strict=True)
+            if proposal is not None
+        }
         scale = 10**TORQUE_DIGITS
-        rows = [np.rint(scale * found.torques).astype(np.int64) for found in known.values()]
+        rows = [np.rint(scale * proposal.torques).astype(np.int64) for proposal in known.values()]
         torques = np.array(rows, dtype=np.int64).reshape(len(known), len(self.directions.folds))
         leading = leading_rivals(self.directions, list(known), torques)
         for k, (place, proposal) in enumerate(known.items()):
             exact = [Fraction(t, scale) for t in torques[k].tolist()]
-            found = self._proved(place, proposal, exact, leading[k])
-            if found is not None:
-                self.results[place] = found
+            actuation = self._proved(place, proposal, exact, leading[k])
+            if actuation is not None:
+                self.results[place] = actuation
             self.deciding[place] = {place, *leading[k], *(b for b, _ in proposal.rays)}
 
     def _proved(

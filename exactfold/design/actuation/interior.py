@@ -55,8 +55,8 @@ def largest_margins(units: FloatArray, places: IndexArray) -> Iterator[RayPropos
     the rows and their opposites. If a program fails, the result is None, or the torques and weights
     are poor; the proof that follows reveals this.
 
-    >>> for found in largest_margins(np.array([[1.0, 0.0], [0.6, 0.8]]), np.arange(2)):
-    ...     print(found.torques.round(6).tolist(), found.rays, found.weights.round(6).tolist())
+    >>> for answer in largest_margins(np.array([[1.0, 0.0], [0.6, 0.8]]), np.arange(2)):
+    ...     print(answer.torques.round(6).tolist(), answer.rays, answer.weights.round(6).tolist())
     [1.0, -0.75] [(1, 1), (1, -1)] [0.5, 0.5]
     [0.0, 1.0] [(0, 1), (0, -1)] [0.8, 0.2]
     """
@@ -70,13 +70,13 @@ def largest_margins(units: FloatArray, places: IndexArray) -> Iterator[RayPropos
         programs = _Programs(inner, basis, places[start : start + number])
         programs.solve()
         for k in range(len(programs.places)):
-            found = programs.proposal(k)
-            if found is None:
+            proposal = programs.proposal(k)
+            if proposal is None:
                 yield None
                 continue
             torques = np.zeros(len(moving))
-            torques[moving] = found.torques
-            yield replace(found, torques=torques)
+            torques[moving] = proposal.torques
+            yield replace(proposal, torques=torques)
 
 
 class _Programs:

@@ -194,8 +194,8 @@ def _exact_rank(branches: Sequence[Branch]) -> int | None:
 
 def _densities(branch: Branch, heights: Mapping[int, Fraction]) -> list[Fraction]:
     """Exact fold densities, that is, fold angles divided by lengths; they have the same rank."""
-    found = fold_angles(branch.pattern, {v: (h, h) for v, h in heights.items()})
-    return [low for low, _ in found.densities.values()]
+    angles = fold_angles(branch.pattern, {v: (h, h) for v, h in heights.items()})
+    return [low for low, _ in angles.densities.values()]
 
 
 def orthogonal_torques(
@@ -207,15 +207,15 @@ def orthogonal_torques(
     the chosen branch.
     """
     units: FloatArray = directions.middles
-    found = strongest_within(units[chosen], units[list(silent)], moving)
-    if found is None:
+    strongest = strongest_within(units[chosen], units[list(silent)], moving)
+    if strongest is None:
         return None
     # The solver allows errors of 1e-7. Projecting makes the torques orthogonal up to rounding.
     basis = qr(units[list(silent)].T, mode="economic")[0] if len(silent) else units[:0].T
     for _ in range(2):
-        found = found - basis @ (basis.T @ found)
-    found = np.where(moving, found, 0.0) / max(1.0, np.abs(found).max())
-    torques = [Fraction(round(x * 10**15), 10**15) for x in found.tolist()]
+        strongest = strongest - basis @ (basis.T @ strongest)
+    strongest = np.where(moving, strongest, 0.0) / max(1.0, np.abs(strongest).max())
+    torques = [Fraction(round(x * 10**15), 10**15) for x in strongest.tolist()]
     powers = Powers.of(directions, torques)
     least = powers.bounds(chosen)[0]
     others = np.arange(len(directions)) != chosen

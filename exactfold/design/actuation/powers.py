@@ -101,13 +101,13 @@ def leading_rivals(
     width = (int((highs - lows).max()) >> 1 + BITS - bits) + 1
     reach = len(directions.folds) * ((1 << _UNIT_BITS) + (1 << _TORQUE_BITS) + width)
     powers = tau @ units.T
-    found = []
+    leading = []
     for b, values in zip(places, powers, strict=True):
         row = np.abs(values)
         row[b] = -values[b]
         close = np.flatnonzero(row >= row.max() - 2 * reach).tolist()
-        found.append([r for r in close if r != b])
-    return found
+        leading.append([r for r in close if r != b])
+    return leading
 
 
 Weights = Sequence[tuple[Ray, Fraction]]

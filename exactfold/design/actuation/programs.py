@@ -38,19 +38,21 @@ def largest_margin(
     if limited is not None:
         rows = np.vstack([rows, [*limited.astype(float), *limited.astype(float), 0.0]])
         limits = np.append(limits, most)
-    found = linprog(
+    solution = linprog(
         [*np.zeros(2 * folds), -1.0],
         A_ub=rows,
         b_ub=limits,
         bounds=[*((0.0, r) for r in [*reach, *reach]), (None, None)],
         method="highs-ds",
     )
-    if found.x is None:
+    if solution.x is None:
         return Proposal(np.zeros(folds), 0.0, np.full(count, 1 / count))
-    weights = np.maximum(-found.ineqlin.marginals[:count], 0.0)
+    weights = np.maximum(-solution.ineqlin.marginals[:count], 0.0)
     total = weights.sum()
     weights = weights / total if total > 0 else np.full(count, 1 / count)
-    return Proposal(found.x[:folds] - found.x[folds : 2 * folds], float(found.x[-1]), weights)
+    return Proposal(
+        solution.x[:folds] - solution.x[folds : 2 * folds], float(solution.x[-1]), weights
+    )
 
 
 def strongest_within(
@@ -58,11 +60,11 @@ def strongest_within(
 ) -> FloatArray | None:
     """Maximise target . tau with silent @ tau = 0 and |tau_e| <= 1; None if the solver fails."""
     reach = allowed.astype(float)
-    found = linprog(
+    solution = linprog(
         -target,
         A_eq=silent if len(silent) else None,
         b_eq=np.zeros(len(silent)) if len(silent) else None,
         bounds=[(-r, r) for r in reach],
         method="highs-ds",
     )
-    return None if found.x is None else np.asarray(found.x, dtype=np.float64)
+    return None if solution.x is None else np.asarray(solution.x, dtype=np.float64)

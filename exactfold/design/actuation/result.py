@@ -194,14 +194,14 @@ class Actuation:
         is not a fold of the pattern, and `NumberError` for floats.
 
         >>> from exactfold.design.actuation.actuate import actuate
-        >>> found = actuate("two-vertex", "+-")
-        >>> [(row.signs, row.ray, row.above_next) for row in found.ranking()]
+        >>> actuation = actuate("two-vertex", "+-")
+        >>> [(row.signs, row.ray, row.above_next) for row in actuation.ranking()]
         [('+-', 1, True), ('--', 1, True), ('-+', -1, True), ('++', 1, True)]
         """
         powers = self._powers(self.torques if torques is None else self.checked(torques))
         low, high = np.maximum(powers.low, -powers.high), np.maximum(powers.high, -powers.low)
         order = sorted(range(len(low)), key=lambda b: (-low[b] - high[b], b))
-        found = []
+        ranked = []
         least_after: list[bool] = []
         largest = None
         for b in reversed(order):
@@ -210,8 +210,8 @@ class Actuation:
         for b, above in zip(order, reversed(least_after), strict=True):
             ray = 1 if powers.low[b] > 0 else -1 if powers.high[b] < 0 else 0
             bounds = Fraction(max(low[b], 0), powers.unit), Fraction(high[b], powers.unit)
-            found.append(Ranked(self.signs[b], ray, outward(bounds), above))
-        return found
+            ranked.append(Ranked(self.signs[b], ray, outward(bounds), above))
+        return ranked
 
     def checked(self, torques: Mapping[Edge, RationalLike]) -> dict[Edge, Fraction]:
         """Torques of all folds from torques of some of them. Raises the errors of `ranking`."""

@@ -77,9 +77,9 @@ class BendProgram:
             return None
         if x[-1] < _LEAST:
             return self._refutation(signs, duals)
-        found = self._bends(x[:-1])
-        self.bends[frozenset(signs.items())] = found
-        return {**found.sides, **signs}
+        bends = self._bends(x[:-1])
+        self.bends[frozenset(signs.items())] = bends
+        return {**bends.sides, **signs}
 
     def _refutation(self, signs: Mapping[int, int], duals: _Duals) -> Refutation | None:
         """Find heights where the dual solution is not 0, and verify them exactly."""
@@ -91,9 +91,9 @@ class BendProgram:
             some = {
                 fold: x if fold in kept or x == "F" else "U" for fold, x in self.letters.items()
             }
-            found = ConeProgram(self.sheet, some).solved(own, within) if within else None
-            if isinstance(found, Refutation) and found.holds(self.sheet, self.letters):
-                return found
+            answer = ConeProgram(self.sheet, some).solved(own, within) if within else None
+            if isinstance(answer, Refutation) and answer.holds(self.sheet, self.letters):
+                return answer
         return None
 
     def _bends(self, densities: FloatArray) -> Bends:
@@ -169,8 +169,8 @@ class BendProgram:
         goal = np.zeros(count + 1)
         goal[-1] = -1.0
         nothing = sparse.csc_matrix((count + 1, count + 1))
-        found = clarabel.DefaultSolver(nothing, goal, matrix, right, cones, settings()).solve()
-        x, dual = np.array(found.x), np.array(found.z)
+        solution = clarabel.DefaultSolver(nothing, goal, matrix, right, cones, settings()).solve()
+        x, dual = np.array(solution.x), np.array(solution.z)
         duals = _Duals()
         if not held or not (np.isfinite(x).all() and np.isfinite(dual).all()):
             return None, duals

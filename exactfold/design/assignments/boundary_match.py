@@ -53,8 +53,8 @@ def match_boundary(
     sheet has fewer than five boundary vertices or no vertex that can pop.
 
     >>> from exactfold.pattern.families import single_vertex
-    >>> found = match_boundary(single_vertex(5), "MMVMV")
-    >>> found.starts, found.branch.sign_text, found.branch.assignment_text
+    >>> matched = match_boundary(single_vertex(5), "MMVMV")
+    >>> matched.starts, matched.branch.sign_text, matched.branch.assignment_text
     (<Verdict.PROVED: 'proved'>, '+', 'MMVMV')
     >>> match_boundary(single_vertex(5), "MMVVV").starts
     <Verdict.REFUTED: 'refuted'>
@@ -139,17 +139,17 @@ class _BoundaryMatchSearch(SignSearch["Branch | None"]):
         """
         if self.boundaries is None or self.sheet.Ve != 5 or self.sheet.Vi > _MOST_LISTED:
             return False
-        found = all_assignments(self.pattern, progress=self.progress)
-        for circle in found.circles:
+        listed = all_assignments(self.pattern, progress=self.progress)
+        for circle in listed.circles:
             for arc in circle.arcs:
                 letters = dict(zip(self.pattern.folds, arc.letters, strict=True))
                 if not any(differing(self.letters, letters)):
                     self._take(circle.signs, arc.boundary_heights)
-        if found.points is not None and "U" in self.own.values():
+        if listed.points is not None and "U" in self.own.values():
             return False
         text = "".join(self.letters[fold] for fold in self.pattern.folds)
-        occurs = found.points is not None and text in found.assignments
-        return found.status is PROVED and self.branch is None and not occurs
+        occurs = listed.points is not None and text in listed.assignments
+        return listed.status is PROVED and self.branch is None and not occurs
 
     def _take(
         self, signs: str | Mapping[int, int], boundary_heights: Mapping[int, Fraction]

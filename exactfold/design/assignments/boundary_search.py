@@ -181,7 +181,7 @@ class BoundarySearch:
         tangents = self._tangents(floats.bends(h), count)
         largest = radius * float(np.abs(h - h.mean()).max())
         bounds = [(0, 0) if v in self._pinned else (-largest, largest) for v in range(count)]
-        found = linprog(
+        solution = linprog(
             np.append(np.zeros(count), -1.0),
             A_ub=upper.tocsr(),
             b_ub=limits,
@@ -190,7 +190,7 @@ class BoundarySearch:
             bounds=[*bounds, (None, 1)],
             method="highs",
         )
-        return np.array(found.x[:count]) if found.status == 0 else None
+        return np.array(solution.x[:count]) if solution.status == 0 else None
 
     def _tangents(self, omega: FloatArray, count: int) -> sparse.csr_matrix:
         """The derivatives dK_v at heights with these bends, one row per interior vertex, scaled to

@@ -20,7 +20,7 @@ from exactfold.errors import NotApplicableError
 from exactfold.exact.numbers import format_integer
 
 
-def match_certificate(found: Match | BoundaryMatch | PanelMatch) -> Document:
+def match_certificate(matched: Match | BoundaryMatch | PanelMatch) -> Document:
     """The proof of a match, as a JSON object (docs/assignment.md, Certificates).
 
     For a sheet with four corners the certificate shows that the match lists all rays with the
@@ -39,28 +39,28 @@ def match_certificate(found: Match | BoundaryMatch | PanelMatch) -> Document:
     >>> len(checker.check(certificate)["halves"])
     4
     """
-    if isinstance(found, PanelMatch):
-        return starting_certificate(found)
-    if found.status is not PROVED:
+    if isinstance(matched, PanelMatch):
+        return starting_certificate(matched)
+    if matched.status is not PROVED:
         raise NotApplicableError(
-            f"this match is {found.status}; only a match that is proved has a certificate"
+            f"this match is {matched.status}; only a match that is proved has a certificate"
         )
-    if isinstance(found, Match):
-        emptied = emptied_evidence(found.pattern)
-        leaves = [[_ray(ray, emptied) for ray in both] for _, both in found.tree.leaves]
-        return _letters(found, found.matches, leaves)
-    if found.branch is not None:
-        return branch_certificate(found.branch)
-    if found.listed:
-        return _list(found)
-    return _letters(found, (), [])
+    if isinstance(matched, Match):
+        emptied = emptied_evidence(matched.pattern)
+        leaves = [[_ray(ray, emptied) for ray in both] for _, both in matched.tree.leaves]
+        return _letters(matched, matched.matches, leaves)
+    if matched.branch is not None:
+        return branch_certificate(matched.branch)
+    if matched.listed:
+        return _list(matched)
+    return _letters(matched, (), [])
 
 
-def _list(found: BoundaryMatch) -> Document:
+def _list(matched: BoundaryMatch) -> Document:
     """The certificate of the list of all assignments, none of which has the letters."""
-    pattern, labels = found.pattern, found.labels
-    moving = [tuple(sorted((labels[i], labels[j]))) for i, j in found.sheet.folds]
-    if any(found.letters[i, j] == "U" for i, j in moving):
+    pattern, labels = matched.pattern, matched.labels
+    moving = [tuple(sorted((labels[i], labels[j]))) for i, j in matched.sheet.folds]
+    if any(matched.letters[i, j] == "U" for i, j in moving):
         raise NotApplicableError(
             "no certificate: these letters were refuted by the list of all assignments, whose "
             "certificate covers only letters of all folds; give every fold a letter M, V or F"
@@ -69,11 +69,11 @@ def _list(found: BoundaryMatch) -> Document:
 
 
 def _letters(
-    found: Match | BoundaryMatch, matches: tuple[MatchedRay, ...], leaves: list[list[Document]]
+    matched: Match | BoundaryMatch, matches: tuple[MatchedRay, ...], leaves: list[list[Document]]
 ) -> Document:
-    pattern = found.pattern
+    pattern = matched.pattern
     claims: LettersClaims = {
-        "letters": "".join(found.letters[fold] for fold in pattern.folds),
+        "letters": "".join(matched.letters[fold] for fold in pattern.folds),
         "halves": [
             {"vertex_signs": [ray.vertex_signs[v] for v in pattern.interior], "side": ray.side}
             for ray in matches
@@ -86,34 +86,34 @@ def _letters(
         "claims": claims,
         "evidence": {
             "emptied": emptied_evidence(pattern),
-            "refuted": [_refuted(found, each) for each in found.tree.refuted],
-            "tree": [_step(found, step) for step in found.tree.steps],
+            "refuted": [_refuted(matched, each) for each in matched.tree.refuted],
+            "tree": [_step(matched, step) for step in matched.tree.steps],
             "leaves": leaves,
         },
     }
 
 
-def _refuted(found: Match | BoundaryMatch, refuted: Refuted) -> Document:
+def _refuted(matched: Match | BoundaryMatch, refuted: Refuted) -> Document:
     """The signs, and as integers the heights of the stars that are not flat."""
-    signs = [[found.labels[v], sign] for v, sign in sorted(refuted.signs.items())]
+    signs = [[matched.labels[v], sign] for v, sign in sorted(refuted.signs.items())]
     if refuted.refutation is None:
         return {"signs": signs, "heights": None}
     heights = refuted.refutation.heights
     unit = lcm(*(z.denominator for z in heights.values()))
     stars = []
     for v in sorted({v for v, _ in heights}):
-        ring = found.sheet.star(v)
+        ring = matched.sheet.star(v)
         first = ring.index(min(ring))
         star = [heights.get((v, w), 0) * unit for w in ring[first:] + ring[:first]]
-        stars.append([found.labels[v], [format_integer(int(z)) for z in star]])
+        stars.append([matched.labels[v], [format_integer(int(z)) for z in star]])
     return {"signs": signs, "heights": stars}
 
 
-def _step(found: Match | BoundaryMatch, step: Step) -> list[str | int]:
+def _step(matched: Match | BoundaryMatch, step: Step) -> list[str | int]:
     """A step of the tree with the pattern's names of the vertices."""
     kind, *at = step
     if kind in ("split", "force"):
-        at[-1] = found.labels[at[-1]]
+        at[-1] = matched.labels[at[-1]]
     return [kind, *at]
 
 

@@ -72,12 +72,12 @@ class Stars:
         """Folds at one of which every ray differs, for each vertex whose letters leave it
         no sign.
         """
-        found: dict[int, Folds] = {}
+        conflicts: dict[int, Folds] = {}
         for v in self.sheet.interior:
             clauses = self._at(v, freed)
             if len(clauses) == 2:
-                found[self.labels[v]] = clauses[0].folds | clauses[1].folds
-        return found
+                conflicts[self.labels[v]] = clauses[0].folds | clauses[1].folds
+        return conflicts
 
     def _at(self, vertex: int, freed: Set[Edge]) -> list[Clause]:
         around = self._around[vertex]
@@ -88,15 +88,15 @@ class Stars:
         return self._known[key]
 
     def _looked_at(self, vertex: int, letters: Letters) -> list[Clause]:
-        found = []
+        clauses = []
         for sign in (1, -1):
             reason = refuted_at(self.sheet, letters, vertex, sign)
             if isinstance(reason, str):
                 star = frozenset(self._around[vertex].values())
-                found.append(Clause(frozenset({(self.labels[vertex], sign)}), star))
+                clauses.append(Clause(frozenset({(self.labels[vertex], sign)}), star))
             elif reason is not None and reason.holds(self.sheet, letters):
-                found.append(clause_of(reason, self.labels))
-        return found
+                clauses.append(clause_of(reason, self.labels))
+        return clauses
 
 
 def to_blame(clauses: Iterable[Clause]) -> Folds:

@@ -35,11 +35,11 @@ class Descent:
 
     def leaning(self) -> dict[int, int]:
         """For each vertex, the sign that most of its letters suggest: mountains suggest up."""
-        found = {}
+        signs = {}
         for v in self.finder.poppable:
             near = [letter for fold, letter in self.letters.items() if v in fold and letter in "MV"]
-            found[v] = 1 if 2 * near.count("M") >= len(near) else -1
-        return found
+            signs[v] = 1 if 2 * near.count("M") >= len(near) else -1
+        return signs
 
     def descended(self, signs: Mapping[int, int]) -> list[MatchedRay]:
         """Descend from these signs of all vertices that can pop, and return the rays found on the
@@ -47,20 +47,20 @@ class Descent:
         """
         here = dict(signs)
         best, rays = self._looked_at(here)
-        found = [*rays]
+        all_rays = [*rays]
         moved = True
         while moved and best and self.done < self.finds:
             moved = False
             for moves in self._moves(here):
                 there = here | {v: -here[v] for v in moves}
                 distance, rays = self._looked_at(there)
-                found += rays
+                all_rays += rays
                 if distance < best:
                     here, best, moved = there, distance, True
                     break
                 if self.done >= self.finds:
                     break
-        return found
+        return all_rays
 
     def _looked_at(self, signs: Mapping[int, int]) -> tuple[int, tuple[MatchedRay, ...]]:
         """The two rays with these signs, and the least number of letters at which one of them

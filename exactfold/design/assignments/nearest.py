@@ -88,7 +88,7 @@ class Nearest:
 
 
 def nearest_branches(
-    found: Match, *, tries: int | None = None, progress: Progress | None = None
+    matched: Match, *, tries: int | None = None, progress: Progress | None = None
 ) -> Nearest:
     """Find the rays whose letters differ at the fewest folds from those of a match.
 
@@ -111,31 +111,31 @@ def nearest_branches(
     >>> near.differences(near.rays[0])
     {(0, 4): ('V', 'M')}
     """
-    if found.matches:
-        complete = found.status is PROVED
-        return Nearest(found, PROVED, 0, 0, found.matches, complete, "match")
-    if found.sheet.Vi <= LISTED:
-        listed = _listed(found, progress)
+    if matched.matches:
+        complete = matched.status is PROVED
+        return Nearest(matched, PROVED, 0, 0, matched.matches, complete, "match")
+    if matched.sheet.Vi <= LISTED:
+        listed = _listed(matched, progress)
         if listed is not None:
             return listed
-    return _NearestSearch(found, tries, progress).result()
+    return _NearestSearch(matched, tries, progress).result()
 
 
-def _listed(found: Match, progress: Progress | None) -> Nearest | None:
+def _listed(matched: Match, progress: Progress | None) -> Nearest | None:
     """The nearest rays of all branches.
 
     None if some branch is not proved, or if an unproved letter could change the answer.
     """
-    listed = count_branches(found.pattern, progress=progress)
+    listed = count_branches(matched.pattern, progress=progress)
     if listed.status is not PROVED:
         return None
     rays = [MatchedRay(branch, side) for branch in listed.branches for side in (1, -1)]
-    sets = [differing(found.letters, ray.assignment) for ray in rays]
+    sets = [differing(matched.letters, ray.assignment) for ray in rays]
     least = min(len(other) + len(unknown) for other, unknown in sets)
     if any(unknown and len(other) <= least for other, unknown in sets):
         return None
     near = [h for h, (other, _) in zip(rays, sets, strict=True) if len(other) == least]
-    return Nearest(found, PROVED, least, least, tuple(near), True, "list")
+    return Nearest(matched, PROVED, least, least, tuple(near), True, "list")
 
 
 class _NearestSearch:
@@ -147,37 +147,37 @@ class _NearestSearch:
     folds than the least bound of the sets that are left.
     """
 
-    def __init__(self, found: Match, tries: int | None, progress: Progress | None) -> None:
-        self.found, self.progress = found, progress
-        n = found.sheet.Vi
+    def __init__(self, matched: Match, tries: int | None, progress: Progress | None) -> None:
+        self.matched, self.progress = matched, progress
+        n = matched.sheet.Vi
         self.tries = max(_LEAST, _MOST // n) if tries is None else tries
-        labels = found.labels
+        labels = matched.labels
         moving = {
-            (min(labels[i], labels[j]), max(labels[i], labels[j])) for i, j in found.sheet.folds
+            (min(labels[i], labels[j]), max(labels[i], labels[j])) for i, j in matched.sheet.folds
         }
-        self.stuck = [f for f, x in found.letters.items() if x in "MV" and f not in moving]
+        self.stuck = [f for f, x in matched.letters.items() if x in "MV" and f not in moving]
         """Folds inside triangulated triangles; every ray differs at them."""
-        self.letters = {f: x if f in moving else "U" for f, x in found.letters.items()}
+        self.letters = {f: x if f in moving else "U" for f, x in matched.letters.items()}
         own = {
             (i, j): self.letters[min(labels[i], labels[j]), max(labels[i], labels[j])]
-            for i, j in found.sheet.folds
+            for i, j in matched.sheet.folds
         }
-        self.stars = Stars(found.sheet, own, labels)
+        self.stars = Stars(matched.sheet, own, labels)
         self.known: dict[tuple[str, int], MatchedRay] = {}
         self.unclear: int | None = None
         self.tried = 0
 
     def result(self) -> Nearest:
         bound = self._bound(frozenset())
-        for _, rays in self.found.compared:
+        for _, rays in self.matched.compared:
             self._note(rays)
-        descent = Descent(self.found.pattern, self.letters, _FINDS * self.tries, self.progress)
+        descent = Descent(self.matched.pattern, self.letters, _FINDS * self.tries, self.progress)
         alone: dict[int, set[int]] = {}
         for clause in self.stars.clauses(frozenset()):
             for v, sign in clause.signs:
                 alone.setdefault(v, set()).add(-sign)
         forced = {v: sign for v, (sign, *more) in alone.items() if not more}
-        starts = [signs for signs, _ in self.found.compared[:1]] or [forced]
+        starts = [signs for signs, _ in self.matched.compared[:1]] or [forced]
         self._note(descent.descended(descent.leaning() | dict(starts[0])))
         left = self._freed(bound)
         best = self._best()
@@ -185,7 +185,7 @@ class _NearestSearch:
         at_least = min(bounds, default=len(self.stuck))
         others = [bound for bound in (left, self.unclear) if bound is not None]
         return Nearest(
-            self.found,
+            self.matched,
             PROVED if best is not None and best == at_least else UNDECIDED,
             best,
             at_least,
@@ -238,7 +238,7 @@ class _NearestSearch:
 
         Every ray found to have the letters is noted.
         """
-        found = self.found
+        matched = self.matched
         conflicts = self.stars.conflicts(freed)
         if conflicts:
             return min(conflicts.values(), key=lambda folds: (len(folds), sorted(folds)))
@@ -246,14 +246,14 @@ class _NearestSearch:
             self.tried += 1
             if self.progress is not None:
                 self.progress("letters freed", self.tried, self.tries)
-            found = match(found.pattern, self._letters(freed))
-        for _, rays in found.compared:
+            matched = match(matched.pattern, self._letters(freed))
+        for _, rays in matched.compared:
             self._note(rays)
-        if found.status is not PROVED:
+        if matched.status is not PROVED:
             return None
-        clauses = [clause_of(refutation, found.labels) for refutation in found.refutations]
+        clauses = [clause_of(refutation, matched.labels) for refutation in matched.refutations]
         clauses += self.stars.clauses(freed)
-        clauses += [Clause(frozenset(signs.items()), frozenset()) for signs, _ in found.compared]
+        clauses += [Clause(frozenset(signs.items()), frozenset()) for signs, _ in matched.compared]
         return to_blame(clauses)
 
     # --- the rays that are known -----------------------------------------------------------------
@@ -262,13 +262,13 @@ class _NearestSearch:
         for ray in rays:
             if ray.branch.status is not PROVED or ray.names in self.known:
                 continue
-            other, unknown = differing(self.found.letters, ray.assignment)
+            other, unknown = differing(self.matched.letters, ray.assignment)
             if unknown and (self.unclear is None or len(other) < self.unclear):
                 self.unclear = len(other)
             self.known[ray.names] = ray
 
     def _distance(self, ray: MatchedRay) -> int | None:
-        other, unknown = differing(self.found.letters, ray.assignment)
+        other, unknown = differing(self.matched.letters, ray.assignment)
         return None if unknown else len(other)
 
     def _best(self) -> int | None:

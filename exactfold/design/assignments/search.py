@@ -40,8 +40,8 @@ def match(
     >>> from exactfold.pattern.random_squares import random_square
     >>> from exactfold.branches.counting.find import find_branch
     >>> branch = find_branch(random_square(8, seed=1), "+-++--+-")
-    >>> found = match(branch.pattern, branch.assignment)
-    >>> found.status, found.matches
+    >>> matched = match(branch.pattern, branch.assignment)
+    >>> matched.status, matched.matches
     (<Verdict.PROVED: 'proved'>, (<MatchedRay: +-++--+-, side 1>,))
     >>> match(branch.pattern, "V" + branch.assignment_text[1:])
     <Match: proved, 0 halves, 0 sign vectors>

@@ -37,7 +37,7 @@ def fold_text(fold: Edge) -> str:
     return f"{fold[0]}-{fold[1]}"
 
 
-def vertex_conflicts(found: Asked) -> dict[int, str]:
+def vertex_conflicts(asked: Asked) -> dict[int, str]:
     """For each vertex that its letters keep from popping: why it can pop neither up nor down.
 
     A vertex pops up only if it has a valley, and its mountains and free folds do not all lie in one
@@ -52,19 +52,19 @@ def vertex_conflicts(found: Asked) -> dict[int, str]:
     'neither up (its mountains 0-4, 1-4 lie on one side of a line) nor down (its valleys 2-4, 3-4
     lie on one side of a line)'
     """
-    letters, labels = found.letters, found.labels
+    letters, labels = asked.letters, asked.labels
     own = {
         (i, j): letters[min(labels[i], labels[j]), max(labels[i], labels[j])]
-        for i, j in found.sheet.folds
+        for i, j in asked.sheet.folds
     }
     why = {}
-    for v in found.sheet.interior:
+    for v in asked.sheet.interior:
         texts = []
         for sign in (1, -1):
-            reason = refuted_at(found.sheet, own, v, sign)
-            if reason is None or not (isinstance(reason, str) or reason.holds(found.sheet, own)):
+            reason = refuted_at(asked.sheet, own, v, sign)
+            if reason is None or not (isinstance(reason, str) or reason.holds(asked.sheet, own)):
                 break
-            texts.append(_at(found.sheet, labels, own, v, sign))
+            texts.append(_at(asked.sheet, labels, own, v, sign))
         if len(texts) == 2:
             why[labels[v]] = f"neither up ({texts[0]}) nor down ({texts[1]})"
     return why

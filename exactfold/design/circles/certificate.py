@@ -10,7 +10,9 @@ from exactfold.design.circles.covering import NotCoveredError, covering, verifie
 from exactfold.errors import NotApplicableError
 
 
-def assignments_certificate(found: AllAssignments, *, progress: Progress | None = None) -> Document:
+def assignments_certificate(
+    listed: AllAssignments, *, progress: Progress | None = None
+) -> Document:
     """The proof of a list of all assignments, as a JSON object (docs/circles.md, The certificate).
 
     The proof consists of points all round the circles. It is found independently of the list and
@@ -24,15 +26,15 @@ def assignments_certificate(found: AllAssignments, *, progress: Progress | None 
     >>> len(checker.check(document)["assignments"])
     20
     """
-    if found.status is not PROVED:
+    if listed.status is not PROVED:
         raise NotApplicableError(
-            f"this list is {found.status}; only a list that is proved has a certificate"
+            f"this list is {listed.status}; only a list that is proved has a certificate"
         )
     try:
-        points = found.points or covering(found.pattern, progress)
-        document = verified(found.pattern, points)
+        points = listed.points or covering(listed.pattern, progress)
+        document = verified(listed.pattern, points)
     except NotCoveredError as error:
         raise NotApplicableError(str(error)) from None
-    if points.assignments != found.assignments:
+    if points.assignments != listed.assignments:
         raise AssertionError("two ways to list all assignments of a sheet differ")
     return document

@@ -52,8 +52,8 @@ def all_assignments(pattern: PatternLike, *, progress: Progress | None = None) -
     six vertices can pop.
 
     >>> from exactfold.pattern.families import single_vertex
-    >>> found = all_assignments(single_vertex(5))
-    >>> found.circles, len(found.assignments)
+    >>> listed = all_assignments(single_vertex(5))
+    >>> listed.circles, len(listed.assignments)
     ((<Circle -: 10 arcs>, <Circle +: 10 arcs>), 20)
     """
     given = as_pattern(pattern)
@@ -73,16 +73,16 @@ def all_assignments(pattern: PatternLike, *, progress: Progress | None = None) -
             f"{sheet.Vi} vertices can pop; all assignments are listed only if at most "
             f"{MOST_FOLDABLE} can"
         )
-    found = None
+    listed = None
     if sheet.Vi <= _MOST_SOLVED:
-        found = _CircleSearch(given, progress).found()
-        if found.status is PROVED:
-            return found
+        listed = _CircleSearch(given, progress).found()
+        if listed.status is PROVED:
+            return listed
     try:
         points = covering(given, progress)
         verified(given, points)
     except NotCoveredError as error:
-        reason = f"{found.reason}; " if found is not None else ""
+        reason = f"{listed.reason}; " if listed is not None else ""
         return AllAssignments(given, UNDECIDED, f"{reason}{error}", ())
     return AllAssignments(given, PROVED, "", (), points)
 
@@ -268,9 +268,9 @@ def _in_order(events: Iterable[_Event]) -> list[tuple[_Event, Interval]]:
     chosen = list(events)
     bits = _BITS
     while bits <= _MOST_BITS:
-        found = sorted(((event.slope(bits), k) for k, event in enumerate(chosen)))
-        if all(a[1] < b[0] for (a, _), (b, _) in pairwise(found)):
-            return [(chosen[k], slope) for slope, k in found]
+        slopes = sorted(((event.slope(bits), k) for k, event in enumerate(chosen)))
+        if all(a[1] < b[0] for (a, _), (b, _) in pairwise(slopes)):
+            return [(chosen[k], slope) for slope, k in slopes]
         bits *= 2
     raise _UndecidedError("two places at which folds are flat are too close to be told apart")
 
@@ -301,9 +301,9 @@ def _value(zeros: RootClass, row: Sequence[Fraction], place: int, bits: int) -> 
     The zero comes from a root with at least `bits` bits.
     """
     while True:
-        found = zeros.value_on(row, zeros.real_roots(bits)[place])
-        if found is not None:
-            return found
+        bounds = zeros.value_on(row, zeros.real_roots(bits)[place])
+        if bounds is not None:
+            return bounds
         bits *= 2
 
 

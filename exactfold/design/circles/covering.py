@@ -149,20 +149,20 @@ class _CoveringSearch:
         for signs in vectors:
             self._start(signs, self.solvers[0])
         while True:
-            found: dict[Word, tuple[Heights, ...]] = {}
+            circles: dict[Word, tuple[Heights, ...]] = {}
             for signs in vectors:
-                self._tell(len(found), len(vectors))
+                self._tell(len(circles), len(vectors))
                 with suppress(NotCoveredError):  # points of other circles may show what is missing
-                    found[signs] = self._circle(signs)
+                    circles[signs] = self._circle(signs)
             for signs in vectors:
-                if signs not in found:
-                    self._tell(len(found), len(vectors))
-                    found[signs] = self._circle(signs)
+                if signs not in circles:
+                    self._tell(len(circles), len(vectors))
+                    circles[signs] = self._circle(signs)
             before, self.seen = self.seen, set()
-            for a in chain.from_iterable(found.values()):
+            for a in chain.from_iterable(circles.values()):
                 self._look(a)
             if self.seen >= before:
-                return tuple(found[signs] for signs in vectors)
+                return tuple(circles[signs] for signs in vectors)
 
     def _tell(self, done: int, whole: int) -> None:
         if self.progress is not None:
@@ -208,12 +208,12 @@ class _CoveringSearch:
         boundary_heights: Sequence[float],
         start: Sequence[int] | None = None,
     ) -> Heights:
-        found = solver.solved(signs, boundary_heights, start) if start is not None else None
-        found = found or solver.solved(signs, boundary_heights)
-        if found is None:
+        heights = solver.solved(signs, boundary_heights, start) if start is not None else None
+        heights = heights or solver.solved(signs, boundary_heights)
+        if heights is None:
             raise NotCoveredError("no solution was found over some boundary heights")
-        self._look(found)
-        return found
+        self._look(heights)
+        return heights
 
     def _look(self, a: Heights) -> None:
         """Remember the letters of a point and of its reflection, if all of them are known."""

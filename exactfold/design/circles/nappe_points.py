@@ -52,11 +52,11 @@ class NappePoints:
         form, cone = curvature_form(self.sheet, v), round_cone(self.sheet, v)
         square = Fraction(form(cone)) / self._size**2
         root = isqrt((square.numerator << 4 * self._places) // square.denominator)
-        found = [0] * len(self._at)
+        functional = [0] * len(self._at)
         for u, x in form.functional(cone).items():
             if u in self._at:
-                found[self._at[u]] = round(x * (1 << 3 * self._places) / root)
-        return found
+                functional[self._at[u]] = round(x * (1 << 3 * self._places) / root)
+        return functional
 
     def solved(
         self,
@@ -71,9 +71,9 @@ class NappePoints:
         """
         edge = [round(x * (1 << self.bits)) for x in boundary_heights]
         if start is not None:
-            found = self._newton(signs, [*edge, *start[len(edge) :]], self.depth)
-            if found is not None:
-                return found
+            solution = self._newton(signs, [*edge, *start[len(edge) :]], self.depth)
+            if solution is not None:
+                return solution
         heights = [*edge, *self._first(signs, boundary_heights)]
         for depth in (*range(0, self.depth, _STRIDE), self.depth):
             after = self._newton(signs, heights, depth)
@@ -123,10 +123,10 @@ class NappePoints:
         """Heights with l_v = 3 e_v at every interior vertex."""
         k = len(self.free)
         sides = np.array([[x / (1 << self._places) for x in row] for row in self._sides])
-        found = np.linalg.solve(
+        heights = np.linalg.solve(
             sides[:, k:], 3 * np.array(signs) - sides[:, :k] @ np.array(boundary_heights)
         )
-        return [round(float(x) * (1 << self.bits)) for x in found]
+        return [round(float(x) * (1 << self.bits)) for x in heights]
 
 
 def _dot(a: Sequence[int], b: Sequence[int]) -> int:

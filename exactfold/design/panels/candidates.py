@@ -106,7 +106,7 @@ class MotionSearch:
         unit = sparse.identity(forms)
         bent = sparse.hstack([tangents, unit, -unit, sparse.csr_matrix((forms, 1))])
         values = self._values(w)
-        found = linprog(
+        solution = linprog(
             np.concatenate([np.zeros(count), np.full(2 * forms, _WEIGHT), [-1.0]]),
             A_ub=upper,
             b_ub=np.zeros(len(at)),
@@ -117,9 +117,9 @@ class MotionSearch:
             + [(1e-4 if at else 0, 1)],
             method="highs",
         )
-        if found.status != 0:
+        if solution.status != 0:
             return None
-        step: FloatArray = found.x[:count] - w
+        step: FloatArray = solution.x[:count] - w
         return step
 
     def _polished(self, w: FloatArray) -> FloatArray:

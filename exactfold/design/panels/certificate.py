@@ -29,40 +29,40 @@ _BITS: Final = 62
 _SLACK: Final = 8  # more bits of the inverse than |1 - Y J| < 1 needs
 
 
-def starting_certificate(found: PanelMatch) -> Document:
+def starting_certificate(matched: PanelMatch) -> Document:
     """The proof, as a JSON object, that panels start to fold with given letters or do not.
 
     Raises `NotApplicableError` if the question is undecided or was answered by splitting forms.
     """
-    if found.starts is UNDECIDED:
+    if matched.starts is UNDECIDED:
         raise NotApplicableError(
             "this match is undecided; only a match that is proved has a certificate"
         )
-    moving = stars(found.pattern, held(found.letters))
-    truly, evidence = found.truly, dict[str, Any]()
-    if found.starts is PROVED:
-        evidence["motion"] = [_motion(found, moving, part) for part in found.parts]
+    moving = stars(matched.pattern, held(matched.letters))
+    truly, evidence = matched.truly, dict[str, Any]()
+    if matched.starts is PROVED:
+        evidence["motion"] = [_motion(matched, moving, part) for part in matched.parts]
         if truly is REFUTED:
-            part = next(part for part in found.parts if part.truly is REFUTED)
+            part = next(part for part in matched.parts if part.truly is REFUTED)
             evidence |= {
                 "refuted": [],
-                "tree": _failing(found, {v: moving[v] for v in part.vertices}),
+                "tree": _failing(matched, {v: moving[v] for v in part.vertices}),
             }
     else:
-        evidence, truly = _refuted(found, moving)
-    first = found.first_order
+        evidence, truly = _refuted(matched, moving)
+    first = matched.first_order
     claims: PanelLettersClaims = {
-        "letters": "".join(found.letters[fold] for fold in found.pattern.folds),
-        "starts": str(found.starts),
+        "letters": "".join(matched.letters[fold] for fold in matched.pattern.folds),
+        "starts": str(matched.starts),
         "truly": str(truly),
         "together": [] if first is None else _pairs(first.together),
         "never": [] if first is None else _pairs(first.never),
     }
-    evidence |= _first_order(found)
+    evidence |= _first_order(matched)
     return {
         "format": PANEL_LETTERS.format,
         "version": PANEL_LETTERS.version,
-        "pattern": panels_document(found.pattern),
+        "pattern": panels_document(matched.pattern),
         "claims": claims,
         "evidence": evidence,
     }
@@ -71,20 +71,20 @@ def starting_certificate(found: PanelMatch) -> Document:
 # --- no motion -----------------------------------------------------------------------------------
 
 
-def _refuted(found: PanelMatch, moving: Mapping[int, Star]) -> tuple[Document, Verdict]:
+def _refuted(matched: PanelMatch, moving: Mapping[int, Star]) -> tuple[Document, Verdict]:
     """The evidence of one part that cannot move with its letters.
 
     A part for which true motions are refuted is preferred.
     """
-    parts = [part for part in found.parts if part.starts is REFUTED]
+    parts = [part for part in matched.parts if part.starts is REFUTED]
     if not parts:
-        i, j = flat_with_letters(found.pattern, found.letters, moving)[0]
+        i, j = flat_with_letters(matched.pattern, matched.letters, moving)[0]
         return {"refuted": [], "tree": [["flat", i, j]]}, REFUTED
     part = min(parts, key=lambda part: part.truly is not REFUTED)
     own = {v: moving[v] for v in part.vertices}
     if not part.refutations:
-        return {"refuted": [], "tree": _open_loops(found, own, part.named)}, part.truly
-    sets = [_set(found, own, refutation) for refutation in part.refutations]
+        return {"refuted": [], "tree": _open_loops(matched, own, part.named)}, part.truly
+    sets = [_set(matched, own, refutation) for refutation in part.refutations]
     signs = [(v, s) for refutation in part.refutations for v, s in refutation.signs.items()]
     if not signs:
         return {"refuted": sets, "tree": [["refuted", 0]]}, part.truly
@@ -98,12 +98,12 @@ def _refuted(found: PanelMatch, moving: Mapping[int, Star]) -> tuple[Document, V
     }, part.truly
 
 
-def _set(found: PanelMatch, moving: Mapping[int, Star], refutation: PanelRefutation) -> Document:
+def _set(matched: PanelMatch, moving: Mapping[int, Star], refutation: PanelRefutation) -> Document:
     """The vectors of a refutation, and the heights of all neighbours that a moving fold reaches.
 
     The neighbours are sorted by number.
     """
-    field, scale, heights = found.pattern.field, _scale(found.pattern), []
+    field, scale, heights = matched.pattern.field, _scale(matched.pattern), []
     for v in sorted({v for v, _ in refutation.heights}):
         around = sorted(i + j - v for i, j in moving[v].folds)
         star = [number_document(refutation.heights.get((v, u), 0), field) for u in around]
@@ -126,13 +126,13 @@ def _scale(pattern: PanelPattern) -> Number:
     return pattern.direction(i, j)[axis] / exact(drawn)
 
 
-def _open_loops(found: PanelMatch, own: Mapping[int, Star], loop: Iterable[int]) -> list[Any]:
+def _open_loops(matched: PanelMatch, own: Mapping[int, Star], loop: Iterable[int]) -> list[Any]:
     """The cases of the vertices of one loop if they suffice, else of all with at most
     four folds.
     """
     few = {v: star for v, star in own.items() if len(star.folds) <= 4}
     for stars_ in ({v: few[v] for v in loop}, few):
-        search = CellSearch(stars_, found.letters, found.pattern.field)
+        search = CellSearch(stars_, matched.letters, matched.pattern.field)
         if stars_ and next(iter(search), None) is None:
             return _tree(search.cases, [])
     raise NotApplicableError(
@@ -141,15 +141,15 @@ def _open_loops(found: PanelMatch, own: Mapping[int, Star], loop: Iterable[int])
     )
 
 
-def _failing(found: PanelMatch, own: Mapping[int, Star]) -> list[Any]:
+def _failing(matched: PanelMatch, own: Mapping[int, Star]) -> list[Any]:
     """All cells with the letters, each with a loop that does not close at some order in
     the angle.
     """
-    search = CellSearch(own, found.letters, found.pattern.field)
+    search = CellSearch(own, matched.letters, matched.pattern.field)
     known: Loops = {}
     failing = []
     for cell in search:
-        each = (extension(found.pattern, own, mode, known) for mode in cell.modes)
+        each = (extension(matched.pattern, own, mode, known) for mode in cell.modes)
         fails = next(each for each in each if each.verdict is REFUTED)
         failing.append(["loop", list(fails.cycle), fails.order])
     return _tree(search.cases, failing)
@@ -169,16 +169,16 @@ def _tree(cases: Steps, cells: list[list[Any]]) -> list[list[Any]]:
 # --- to first order ------------------------------------------------------------------------------
 
 
-def _first_order(found: PanelMatch) -> Document:
-    """The motion of `found.first_order`, and its vectors, step by step."""
-    if found.first_order is None:
+def _first_order(matched: PanelMatch) -> Document:
+    """The motion of `matched.first_order`, and its vectors, step by step."""
+    if matched.first_order is None:
         return {"flat": [], "densities": []}
-    field, scale = found.pattern.field, _scale(found.pattern)
+    field, scale = matched.pattern.field, _scale(matched.pattern)
     steps = [
         [[v, [number_document(x * scale, field) for x in y]] for v, y in sorted(step.items())]
-        for step in found.first_order.steps
+        for step in matched.first_order.steps
     ]
-    motion = sorted(found.first_order.motion.items())
+    motion = sorted(matched.first_order.motion.items())
     densities = [[i, j, number_document(x, field)] for (i, j), x in motion]
     return {"flat": steps, "densities": densities}
 
@@ -190,14 +190,14 @@ def _pairs(folds: Iterable[Edge]) -> list[list[int]]:
 # --- motions -------------------------------------------------------------------------------------
 
 
-def _motion(found: PanelMatch, moving: Mapping[int, Star], part: PartAnswer) -> Document | None:
+def _motion(matched: PanelMatch, moving: Mapping[int, Star], part: PartAnswer) -> Document | None:
     """The evidence of a part that moves: None if no letters are asked of it, signs, or densities.
 
     If all vertices have at most four folds, the signs of the folds are enough.
     """
     own = {v: moving[v] for v in part.vertices}
     folds = sorted({edge for star in own.values() for edge in star.folds})
-    if not any(found.letters[edge] in "MV" for edge in folds):
+    if not any(matched.letters[edge] in "MV" for edge in folds):
         return None
     if all(len(star.folds) <= 4 for star in own.values()):
         letters = ("FVM"[int(np.sign(part.densities.get(edge, 0)))] for edge in folds)
@@ -212,7 +212,7 @@ def _motion(found: PanelMatch, moving: Mapping[int, Star], part: PartAnswer) -> 
     unknowns = [k for k, edge in enumerate(folds) if boxes[edge][1]]
     radius = 2 * max(radius for _, radius in boxes.values())
     longest = max(abs(float(x)) for s in own.values() for d in s.directions for x in d)
-    true = longest / float(_scale(found.pattern))
+    true = longest / float(_scale(matched.pattern))
     unit = round(log2(true))
     matrix = _derivative(own, near, true / longest / 2.0**unit)
     inverse = np.linalg.inv(matrix[:, unknowns])

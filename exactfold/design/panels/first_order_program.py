@@ -77,7 +77,7 @@ class FirstOrderProgram:
         at = [self._place[edge] for edge in self.lettered]
         rows = sparse.csr_matrix((signs, (range(many), at)), shape=(many, count))
         nothing = sparse.csr_matrix((2 * len(self.stars), many))
-        found = linprog(
+        solution = linprog(
             np.concatenate([np.zeros(count), -np.ones(many)]),
             A_ub=sparse.hstack([rows, sparse.identity(many)], format="csr"),
             b_ub=np.zeros(many),
@@ -86,10 +86,10 @@ class FirstOrderProgram:
             bounds=[(None, None)] * count + [(0, 1)] * many,
             method="highs",
         )
-        if found.status != 0:
+        if solution.status != 0:
             return dict.fromkeys(self.folds, 0.0), list(self.lettered)
-        rest = [edge for edge, x in zip(self.lettered, found.x[count:], strict=True) if x < 0.5]
-        return dict(zip(self.folds, map(float, found.x[:count]), strict=True)), rest
+        rest = [edge for edge, x in zip(self.lettered, solution.x[count:], strict=True) if x < 0.5]
+        return dict(zip(self.folds, map(float, solution.x[:count]), strict=True)), rest
 
     def holding_flat(self, rest: Iterable[Edge]) -> dict[int, Point] | None:
         """Vectors whose sums are against the letters of these folds, and 0 at all other folds.
@@ -106,7 +106,7 @@ class FirstOrderProgram:
         equal = sparse.hstack(
             [sums[others], -sums[others], sparse.csr_matrix((len(others), many))], format="csr"
         )
-        found = linprog(
+        solution = linprog(
             np.concatenate([np.full(2 * size, _SHORT), -np.ones(many)]),
             A_ub=sparse.hstack([turned, -turned, sparse.identity(many)], format="csr"),
             b_ub=np.zeros(many),
@@ -115,9 +115,9 @@ class FirstOrderProgram:
             bounds=[(0, None)] * (2 * size) + [(0, 1)] * many,
             method="highs",
         )
-        if found.status != 0:
+        if solution.status != 0:
             return None
-        y = found.x[:size] - found.x[size : 2 * size]
+        y = solution.x[:size] - solution.x[size : 2 * size]
         return self._exact(y, sums @ y) if np.abs(y).max() > 0 else None
 
     def motion(self, wanted: Iterable[Edge] | None = None) -> dict[Edge, float] | None:
@@ -135,7 +135,7 @@ class FirstOrderProgram:
         limits = sparse.hstack([rows, np.ones((len(at), 1))], format="csr")
         goal = np.append(np.zeros(count), -1.0)
         equal = sparse.hstack([self.matrix, np.zeros((2 * len(self.stars), 1))], format="csr")
-        found = linprog(
+        solution = linprog(
             goal,
             A_ub=limits,
             b_ub=np.zeros(len(at)),
@@ -144,9 +144,9 @@ class FirstOrderProgram:
             bounds=[(-1, 1)] * count + [(None, 1)],
             method="highs",
         )
-        if found.status != 0 or not found.x[-1] > _TIGHT:
+        if solution.status != 0 or not solution.x[-1] > _TIGHT:
             return None
-        return dict(zip(self.folds, map(float, found.x[:-1]), strict=True))
+        return dict(zip(self.folds, map(float, solution.x[:-1]), strict=True))
 
     def refutation(self, wanted: Iterable[Edge] | None = None) -> PanelRefutation | None:
         """Vectors that show that not all wanted folds can bend their way; None if none are found.
@@ -171,7 +171,7 @@ class FirstOrderProgram:
         if free:
             equal.append(sums[free])
         both = sparse.vstack(equal)
-        found = linprog(
+        solution = linprog(
             np.ones(2 * size),
             A_ub=upper,
             b_ub=np.zeros(len(held)),
@@ -179,9 +179,9 @@ class FirstOrderProgram:
             b_eq=np.append(-1.0, np.zeros(len(free))),
             method="highs",
         )
-        if found.status != 0:
+        if solution.status != 0:
             return None
-        y = found.x[:size] - found.x[size:]
+        y = solution.x[:size] - solution.x[size:]
         exact = self._exact(y, sums @ y)
         if exact is None:
             return None

@@ -198,8 +198,8 @@ def match_panels(
     errors of `open_pattern`.
 
     >>> from exactfold.design import match_panels
-    >>> found = match_panels("bird-base")
-    >>> found.starts, found.truly, match_panels("zigzags").starts
+    >>> matched = match_panels("bird-base")
+    >>> matched.starts, matched.truly, match_panels("zigzags").starts
     (<Verdict.PROVED: 'proved'>, <Verdict.PROVED: 'proved'>, <Verdict.REFUTED: 'refuted'>)
     """
     start = time.perf_counter()
@@ -222,12 +222,12 @@ def match_panels(
         if progress is not None:
             progress("parts of the sheet", number, len(groups))
         parts.append(answered(sheet, {v: moving[v] for v in group}, asked))
-    found = _result(sheet, asked, dead, free, parts)
-    if found.starts is not PROVED:
+    matched = _result(sheet, asked, dead, free, parts)
+    if matched.starts is not PROVED:
         if progress is not None:
             progress("first order", 0, 1)
-        found = replace(found, first_order=_first_order(moving, asked, dead, free))
-    return replace(found, seconds=time.perf_counter() - start)
+        matched = replace(matched, first_order=_first_order(moving, asked, dead, free))
+    return replace(matched, seconds=time.perf_counter() - start)
 
 
 def _first_order(
@@ -238,11 +238,11 @@ def _first_order(
     Folds that the flat closure keeps flat never move, and folds from boundary to boundary always
     can.
     """
-    found = going_together(moving, asked)
-    if found is None:
+    inside = going_together(moving, asked)
+    if inside is None:
         return None
-    together, never = sorted({*found.together, *free}), sorted({*found.never, *dead})
-    return replace(found, together=tuple(together), never=tuple(never))
+    together, never = sorted({*inside.together, *free}), sorted({*inside.never, *dead})
+    return replace(inside, together=tuple(together), never=tuple(never))
 
 
 def flat_with_letters(
@@ -319,7 +319,7 @@ def _of_true(truly: Verdict) -> str:
 
 def _all(verdicts: Any) -> Verdict:
     """The verdict on all parts: REFUTED if one part is REFUTED, PROVED if all parts are PROVED."""
-    found = set(verdicts)
-    if REFUTED in found:
+    distinct = set(verdicts)
+    if REFUTED in distinct:
         return REFUTED
-    return UNDECIDED if UNDECIDED in found else PROVED
+    return UNDECIDED if UNDECIDED in distinct else PROVED

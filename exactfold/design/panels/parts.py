@@ -91,8 +91,8 @@ def answered(pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters
 
 
 def _stuck(moving: Mapping[int, Star], letters: Letters) -> list[VertexReason]:
-    found = (vertex_reason(star, letters) for star in moving.values())
-    return [reason for reason in found if reason is not None]
+    reasons = (vertex_reason(star, letters) for star in moving.values())
+    return [reason for reason in reasons if reason is not None]
 
 
 def _refused_at(

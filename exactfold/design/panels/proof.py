@@ -47,10 +47,10 @@ def proved_motion(
     changes. Then Krawczyk's operator shows a zero of the remaining forms (`regular_point`). None
     decides nothing.
     """
-    found = regular_motion(stars, near)
-    if found is not None:
-        if all(side * found[edge][0] > found[edge][1] for edge, side in _wanted(stars, letters)):
-            return ProvedMotion({edge: x for edge, (x, _) in found.items()}, True)
+    boxes = regular_motion(stars, near)
+    if boxes is not None:
+        if all(side * boxes[edge][0] > boxes[edge][1] for edge, side in _wanted(stars, letters)):
+            return ProvedMotion({edge: x for edge, (x, _) in boxes.items()}, True)
         return None
     folds = {edge for star in stars.values() for edge in star.folds}
     if len(folds) * (len(folds) - 2 * len(stars)) > _MOST_ENTRIES:

@@ -111,14 +111,14 @@ def bends(star: Star, heights: list[Number]) -> list[Number]:
     are < pi.
     """
     d, count = star.directions, len(star.folds)
-    found: list[Number] = []
+    densities: list[Number] = []
     for k in range(count):
         before, after = k - 1, (k + 1) % count
         left, right = exact(bracket(d[before], d[k])), exact(bracket(d[k], d[after]))
         both = bracket(d[before], d[after])
         here = heights[before] / left + heights[after] / right
-        found.append(here - heights[k] * both / (left * right))
-    return found
+        densities.append(here - heights[k] * both / (left * right))
+    return densities
 
 
 def _balance(star: Star) -> list[Number]:

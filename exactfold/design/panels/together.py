@@ -49,8 +49,8 @@ def going_together(stars: Mapping[int, Star], letters: Letters) -> Together | No
     exact.
 
     >>> star = Star(0, ((0, 1), (0, 2), (0, 3), (0, 4)), ((1, 0), (0, 1), (-1, 0), (0, -1)))
-    >>> found = going_together({0: star}, dict(zip(star.folds, "MVVV")))
-    >>> found.together, found.never, found.undecided
+    >>> answer = going_together({0: star}, dict(zip(star.folds, "MVVV")))
+    >>> answer.together, answer.never, answer.undecided
     (((0, 2), (0, 4)), ((0, 1), (0, 3)), ())
     """
     folds = {edge for star in stars.values() for edge in star.folds}
@@ -127,27 +127,27 @@ class FlatByLetters:
 
     def left(self) -> dict[int, Star]:
         """The stars, restricted to the folds that are not known to stay flat."""
-        found = {
+        restricted = {
             v: star.only(edge for edge in star.folds if edge not in self.flat)
             for v, star in self.stars.items()
         }
-        return {v: star for v, star in found.items() if star.folds}
+        return {v: star for v, star in restricted.items() if star.folds}
 
     def add(self, planes: Planes) -> bool:
         """Add the folds that these vectors show to be flat, and all that follow at single vertices.
 
         Return False if the vectors show nothing.
         """
-        found = self._shown(planes)
-        if not found:
+        shown = self._shown(planes)
+        if not shown:
             return False
-        self._take(planes, found)
-        self._spread({v for fold in found for v in fold if v in self.stars})
+        self._take(planes, shown)
+        self._spread({v for fold in shown for v in fold if v in self.stars})
         return True
 
-    def _take(self, planes: Planes, found: Iterable[Edge]) -> None:
+    def _take(self, planes: Planes, folds: Iterable[Edge]) -> None:
         self.steps.append(planes)
-        self.flat.update(found)
+        self.flat.update(folds)
 
     def _shown(self, planes: Planes) -> list[Edge]:
         total: dict[Edge, Number] = {}
@@ -166,10 +166,10 @@ class FlatByLetters:
         while waiting:
             v, _ = waiting.popitem()
             for y in _candidates(self.stars[v], self.flat):
-                found = self._shown({v: y})
-                if found:
-                    self._take({v: y}, found)
-                    waiting |= {u: None for edge in found for u in edge if u in self.stars}
+                shown = self._shown({v: y})
+                if shown:
+                    self._take({v: y}, shown)
+                    waiting |= {u: None for edge in shown for u in edge if u in self.stars}
                     break
 
 

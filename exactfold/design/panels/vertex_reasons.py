@@ -53,11 +53,11 @@ def vertex_reason(star: Star, letters: Letters) -> VertexReason | None:
             return VertexReason(star.vertex, text, (PanelRefutation({star.vertex: y}),))
     if pair:
         return None
-    found = {side: refuted_side(star, letters, side) for side in (1, -1)}
-    if any(value is None for value in found.values()):
+    by_side = {side: refuted_side(star, letters, side) for side in (1, -1)}
+    if any(value is None for value in by_side.values()):
         return None
-    refutations = tuple(r for r in found.values() if isinstance(r, PanelRefutation))
-    curved = tuple(side for side, r in found.items() if isinstance(r, str))
+    refutations = tuple(r for r in by_side.values() if isinstance(r, PanelRefutation))
+    curved = tuple(side for side, r in by_side.items() if isinstance(r, str))
     return VertexReason(star.vertex, _second_order_text(star, letter), refutations, curved)
 
 
@@ -142,11 +142,11 @@ def _four_text(star: Star, letter: list[str]) -> str:
 
 def _four(star: Star) -> list[str]:
     """The letters of the two modes of four folds; F where a fold stays flat."""
-    found = []
+    letters = []
     for mode in local_modes(star):
         values = dict(zip(mode.folds, mode.values, strict=True))
-        found.append("".join("MFV"[sign(values.get(fold, 0)) + 1] for fold in star.folds))
-    return found
+        letters.append("".join("MFV"[sign(values.get(fold, 0)) + 1] for fold in star.folds))
+    return letters
 
 
 def _pair(folds: tuple[Edge, ...]) -> str:

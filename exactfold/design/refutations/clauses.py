@@ -61,19 +61,19 @@ class Clauses:
         """The signs that follow: where all signs of a set but one hold, the last one is the
         opposite.
         """
-        found, steps, fresh = dict(signs), list[tuple[int, int]](), list(signs.items())
+        known_signs, steps, fresh = dict(signs), list[tuple[int, int]](), list(signs.items())
         numbers = list(self._alone)
         while True:
             for number in numbers:
                 clause = self.known[number].signs
-                left = [v for v, sign in clause.items() if found.get(v) != sign]
+                left = [v for v, sign in clause.items() if known_signs.get(v) != sign]
                 if not left:
-                    return Forced(found, steps, number)
-                if len(left) == 1 and left[0] not in found:
+                    return Forced(known_signs, steps, number)
+                if len(left) == 1 and left[0] not in known_signs:
                     (v,) = left
-                    found[v] = -clause[v]
+                    known_signs[v] = -clause[v]
                     steps.append((number, v))
-                    fresh.append((v, found[v]))
+                    fresh.append((v, known_signs[v]))
             if not fresh:
-                return Forced(found, steps, None)
+                return Forced(known_signs, steps, None)
             numbers = self._with[fresh.pop()]

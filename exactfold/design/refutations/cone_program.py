@@ -48,8 +48,8 @@ class ConeProgram:
 
     def refutation(self, signs: Mapping[int, int]) -> Refutation | None:
         """A refutation of the letters for these signs, verified exactly; None if none is found."""
-        found = self.solved(signs)
-        return found if isinstance(found, Refutation) else None
+        answer = self.solved(signs)
+        return answer if isinstance(answer, Refutation) else None
 
     def solved(
         self, signs: Mapping[int, int], within: Collection[int] | None = None
@@ -75,9 +75,9 @@ class ConeProgram:
             for places in _PLACES:
                 heights = program.rounded(x / x[-1], places)
                 placed = {v: signs[v] for v in chosen if v in signs}
-                found = Refutation(placed, heights)
-                if found.holds(self.sheet, self.letters):
-                    return found
+                refutation = Refutation(placed, heights)
+                if refutation.holds(self.sheet, self.letters):
+                    return refutation
             return None
         if within is not None:
             return None
@@ -227,8 +227,8 @@ class _Program:
         goal = np.zeros(margin + 1)
         goal[margin] = -1.0
         nothing = sparse.csc_matrix((margin + 1, margin + 1))
-        found = clarabel.DefaultSolver(nothing, goal, matrix, limits, cones, settings()).solve()
-        x, dual = np.array(found.x), np.array(found.z)
+        solution = clarabel.DefaultSolver(nothing, goal, matrix, limits, cones, settings()).solve()
+        x, dual = np.array(solution.x), np.array(solution.z)
         if not (np.isfinite(x).all() and np.isfinite(dual).all()):
             return np.zeros(margin + 1), np.zeros(size)
         return x, dual

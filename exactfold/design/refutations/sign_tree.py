@@ -132,13 +132,13 @@ class SignSearch(ABC, Generic[Leaf]):
         for v in self.sheet.interior:
             left = 2
             for sign in (1, -1):
-                found = refuted_at(self.sheet, self.own, v, sign)
-                if isinstance(found, str):
-                    self.reasons.append(f"vertex {self.labels[v]} {found}")
+                reason = refuted_at(self.sheet, self.own, v, sign)
+                if isinstance(reason, str):
+                    self.reasons.append(f"vertex {self.labels[v]} {reason}")
                     self.clauses.learn(Refuted({v: sign}, None))
                     left -= 1
-                elif found is not None and found.holds(self.sheet, self.own):
-                    self.clauses.learn(Refuted(found.signs, found))
+                elif reason is not None and reason.holds(self.sheet, self.own):
+                    self.clauses.learn(Refuted(reason.signs, reason))
                     left -= 1
             if not left:
                 return
@@ -196,13 +196,13 @@ class SignSearch(ABC, Generic[Leaf]):
         values = np.array(list(signs.values()), dtype=np.int8)
         if any(np.array_equal(known[at], values) for known in self.possible):
             return True
-        found = self.program.solved(signs)
-        if isinstance(found, Refutation):
-            self.clauses.learn(Refuted(found.signs, found))
+        answer = self.program.solved(signs)
+        if isinstance(answer, Refutation):
+            self.clauses.learn(Refuted(answer.signs, answer))
             return False
-        if found is not None:
+        if answer is not None:
             known = np.zeros(len(self.place), dtype=np.int8)
-            for v, sign in found.items():
+            for v, sign in answer.items():
                 known[self.place[v]] = sign
             self.possible.appendleft(known)
         return True

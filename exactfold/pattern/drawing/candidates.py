@@ -56,14 +56,14 @@ class Match:
 def candidates(radicand: int) -> Candidates:
     """All candidates of one field up to the bound on their size."""
     bound, root = _LARGEST[radicand], sqrt(radicand)
-    found: list[tuple[IntArray, IntArray, int]] = []
+    rows: list[tuple[IntArray, IntArray, int]] = []
     for den in range(1, isqrt(bound) + 1):
         most = min((bound // (den * den) - 1) // 2, 256) if radicand > 1 else 0
         a, b = np.meshgrid(np.arange(den), np.arange(-most, most + 1), indexing="ij")
         lowest = np.gcd(np.gcd(a, b), den) == 1
-        found.append((a[lowest], b[lowest], den))
-    a, b = (np.concatenate([row[k] for row in found]) for k in (0, 1))
-    q = np.repeat([row[2] for row in found], [len(row[0]) for row in found])
+        rows.append((a[lowest], b[lowest], den))
+    a, b = (np.concatenate([row[k] for row in rows]) for k in (0, 1))
+    q = np.repeat([row[2] for row in rows], [len(row[0]) for row in rows])
     size = q * q * (2 * np.abs(b) + 1)
     rank = np.searchsorted(np.sort(size), size, side="right")
     values = (a + b * root) / q
@@ -94,18 +94,18 @@ def matches(values: FloatArray, within: float, radicand: int) -> list[Match | No
     low = np.searchsorted(near, parts - within, side="left")
     high = np.searchsorted(near, parts + within, side="right")
     field = field_of(radicand)
-    found: list[Match | None] = []
+    smallest: list[Match | None] = []
     for value, start, end in zip(values, low, high, strict=True):
         if start == end:
-            found.append(None)
+            smallest.append(None)
             continue
         k = min(index[start:end], key=lambda k: int(table.rank[k]))
         q, whole = int(table.denominators[k]), round(float(value - table.values[k]))
         rational = Fraction(int(table.numerators[k]) + whole * q, q)
         root = Fraction(int(table.roots[k]), q)
         number = Surd(field, (rational, root)) if root else rational
-        found.append(Match(number, -log2(2 * within * float(table.rank[k]))))
-    return found
+        smallest.append(Match(number, -log2(2 * within * float(table.rank[k]))))
+    return smallest
 
 
 def reduced_match(

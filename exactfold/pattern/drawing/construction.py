@@ -119,10 +119,10 @@ def constructed(
     points: dict[int, Point] = {
         v: (x, y) for v, (x, y) in enumerate(known) if x is not None and y is not None
     }
-    found: dict[int, Point] = {}
+    exact_points: dict[int, Point] = {}
     todo = {v for line in lines for v in line[:2] if v not in points}
     if not todo:
-        return found
+        return exact_points
     straight = [run for run in runs(places, lines, within) if todo & set(run.vertices)]
     through: dict[int, list[int]] = {v: [] for v in todo}
     for k, run in enumerate(straight):
@@ -142,8 +142,8 @@ def constructed(
             if (point := _fixed(options, places[v], within)) is not None:
                 new[v] = point
         if not new:
-            return found
-        found.update(new)
+            return exact_points
+        exact_points.update(new)
         points.update(new)
         todo -= set(new)
 

@@ -122,10 +122,10 @@ def exact_coordinates(
 
     >>> from exactfold.pattern.drawing.drawing import Line
     >>> points = [(0, 0), (1, 0), (1, 1), (0, 1), (Fraction("0.707106781"), 0)]
-    >>> found = exact_coordinates(Drawing(tuple(points), (Line(0, 4, "B"),), "five points"))
-    >>> found.points[4], found.field_name
+    >>> exact = exact_coordinates(Drawing(tuple(points), (Line(0, 4, "B"),), "five points"))
+    >>> exact.points[4], exact.field_name
     ((1/2*r1, Fraction(0, 1)), 'Q(sqrt 2)')
-    >>> print(found.text)
+    >>> print(exact.text)
     coordinates in Q(sqrt 2), denominators up to 2; largest move 2e-10 of the size, tolerance 1e-09
     """
     if snap == "exact":
@@ -158,10 +158,10 @@ def exact_coordinates(
     best: Exact | None = None
     seen = frames(written)
     for within in [tolerance] if tolerance is not None else _tolerances(written, size):
-        found = _fitted(drawing, written, seen, size, within)
+        fitted = _fitted(drawing, written, seen, size, within)
         # Chance fits more at a coarser tolerance, so the fit must be far better to be believed.
-        if found is not None and (best is None or 2 * len(found.kept) < len(best.kept)):
-            best = found
+        if fitted is not None and (best is None or 2 * len(fitted.kept) < len(best.kept)):
+            best = fitted
         if best is not None and not best.kept:
             break
     if best is None or len(best.kept) > _MOST_KEPT * len(written):
@@ -283,12 +283,12 @@ def _last_digit(written: Written, size: Fraction) -> Fraction:
 
 
 def _fractions(drawing: Drawing) -> list[tuple[Fraction, Fraction]]:
-    found = []
+    points = []
     for x, y in drawing.points:
         if isinstance(x, Surd) or isinstance(y, Surd):
             raise UsageError("the coordinates of this drawing are irrational and already exact")
-        found.append((Fraction(x), Fraction(y)))
-    return found
+        points.append((Fraction(x), Fraction(y)))
+    return points
 
 
 def _size(written: Written) -> Fraction:

@@ -102,14 +102,14 @@ def extended(model: Model, made: Mapping[int, tuple[Number, Number]]) -> Model:
     left = _left(model)
     best: dict[Fraction, Match] = {}
     for field in _EXTENSIONS[model.radicand] if left else ():
-        found: dict[Fraction, Match] = {}
+        fits: dict[Fraction, Match] = {}
         for done, r in enumerate(left, 1):
             if (match := reduced_match(r, within, field, _SURE)) is not None:
-                found[r] = match
-            if done >= _SAMPLE and 2 * len(found) < done:
+                fits[r] = match
+            if done >= _SAMPLE and 2 * len(fits) < done:
                 break
-        if 2 * len(found) >= len(left) and len(found) > len(best):
-            best = found
+        if 2 * len(fits) >= len(left) and len(fits) > len(best):
+            best = fits
     return _with(model, best)
 
 
@@ -124,9 +124,9 @@ def _left(model: Model) -> list[Fraction]:
     return list(dict.fromkeys(r for c, r in _paired(model) if c is None))
 
 
-def _with(model: Model, found: Mapping[Fraction, Match]) -> Model:
-    flat = [found[r].value if c is None and r in found else c for c, r in _paired(model)]
-    bits = model.bits + sum(match.bits for match in found.values())
+def _with(model: Model, fits: Mapping[Fraction, Match]) -> Model:
+    flat = [fits[r].value if c is None and r in fits else c for c, r in _paired(model)]
+    bits = model.bits + sum(match.bits for match in fits.values())
     return replace(model, known=list(zip(flat[::2], flat[1::2], strict=True)), bits=bits)
 
 
@@ -146,9 +146,9 @@ def fitted_model(frame: Frame, radicand: int, within: Fraction) -> Model:
     total = 0.0
     for axis, alike in enumerate(groups):
         middle = np.array([frame.places[group[len(group) // 2], axis] for group in alike])
-        found: list[Match | None] = matches(middle, float(within), radicand)
+        fits: list[Match | None] = matches(middle, float(within), radicand)
         column: list[Number | None] = [None] * len(frame.points)
-        for group, match in zip(alike, found, strict=True):
+        for group, match in zip(alike, fits, strict=True):
             for v in group:
                 column[v] = None if match is None else match.value
             total += 0.0 if match is None else match.bits

@@ -48,7 +48,7 @@ def _misses(drawing: Drawing, within: float) -> FloatArray:
     beside, across = _beside(ends, places, lines, within)
     own = [lines[k][:2] for k in beside[1]]
     ending = [int(members[v]) in pair for v, pair in zip(beside[0], own, strict=True)]
-    found = [across[~np.array(ending, dtype=bool)]]
+    distances = [across[~np.array(ending, dtype=bool)]]
     touching = set(zip(members[beside[0]].tolist(), beside[1].tolist(), strict=True))
     clear = [
         (k, m)
@@ -59,11 +59,11 @@ def _misses(drawing: Drawing, within: float) -> FloatArray:
     crossings = np.array([_crossing(places, lines[k], lines[m]) for k, m in clear]).reshape(-1, 2)
     spots, at = _beside(crossings, places, lines, within)
     through = [k in clear[v] for v, k in zip(*spots.tolist(), strict=True)]
-    found.append(at[~np.array(through, dtype=bool)])
+    distances.append(at[~np.array(through, dtype=bool)])
     tree = cKDTree(ends)
     pairs = near_pairs(tree, within)
-    found.append(np.hypot(*(ends[pairs[:, 0]] - ends[pairs[:, 1]]).T))
-    return np.concatenate(found)
+    distances.append(np.hypot(*(ends[pairs[:, 0]] - ends[pairs[:, 1]]).T))
+    return np.concatenate(distances)
 
 
 def _beside(

@@ -81,8 +81,8 @@ def groups_within(places: FloatArray, members: Sequence[int], within: float) -> 
     tree = cKDTree(places[list(members)])
     graph = nx.Graph()
     graph.add_edges_from(near_pairs(tree, within).tolist())
-    found = [sorted(members[k] for k in group) for group in nx.connected_components(graph)]
-    return sorted(found)
+    groups = [sorted(members[k] for k in group) for group in nx.connected_components(graph)]
+    return sorted(groups)
 
 
 def near_pairs(tree: cKDTree, within: float) -> IntArray:

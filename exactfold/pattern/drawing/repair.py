@@ -71,14 +71,14 @@ def repaired(
     for step in STEPS:
         if step not in steps:
             continue
-        drawing, found = _step(drawing, step, near)
-        repairs += found
-        if step == "split" and found and "merge" in steps:
-            drawing, found = coinciding(drawing)  # several crossings can be the same point
-            repairs += found
+        drawing, reports = _step(drawing, step, near)
+        repairs += reports
+        if step == "split" and reports and "merge" in steps:
+            drawing, reports = coinciding(drawing)  # several crossings can be the same point
+            repairs += reports
         if step == "split" and "duplicates" in steps:
-            drawing, found = without_duplicates(drawing)
-            repairs += found
+            drawing, reports = without_duplicates(drawing)
+            repairs += reports
     return drawing, tuple(repairs)
 
 
@@ -131,14 +131,14 @@ def exact_sheets(
     distances = clear[:_TRIALS] or [near]
     first = [step for step in STEPS[:2] if step in steps]
     before, begun = repaired(drawing, merge=distances[0], steps=first)
-    found = exact_coordinates(_used_only(before), snap, tolerance=tolerance)
+    exact = exact_coordinates(_used_only(before), snap, tolerance=tolerance)
     # Snapping can make points coincide that were further apart than the merging distance.
-    least = 2 * found.tolerance if merge is None else Fraction(0)
+    least = 2 * exact.tolerance if merge is None else Fraction(0)
 
     def made(distance: Fraction) -> Sheets:
-        after, ended = repaired(found.drawing, merge=max(distance, least), steps=steps)
+        after, ended = repaired(exact.drawing, merge=max(distance, least), steps=steps)
         try:
-            return Sheets(sheets(after), found, (*_noted(distance, near), *begun, *ended))
+            return Sheets(sheets(after), exact, (*_noted(distance, near), *begun, *ended))
         except (FoldError, PatternError) as error:
             dropped = sum(repair.count for repair in ended if repair.step == "dangling")
             if after.lines and 2 * dropped > (whole := dropped + len(after.lines)):

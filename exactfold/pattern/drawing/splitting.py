@@ -64,20 +64,20 @@ def split(drawing: Drawing, within: float) -> tuple[Drawing, list[Repair]]:
         f"at {counted(len(bent), 'vertex')} a line bends by less than {within:.2g}, because more "
         "than two lines do not quite meet there"
     )
-    found = (
+    reports = (
         repair("split", len(junctions), sorted(junctions), points, met)
         + repair("split", len(added), sorted(added), points, crossed)
         + repairs
         + repair("split", len(bent), sorted(bent), points, bend)
     )
-    return Drawing(tuple(points), tuple(pieces), drawing.source, drawing.remarks), found
+    return Drawing(tuple(points), tuple(pieces), drawing.source, drawing.remarks), reports
 
 
 def _junctions(places: FloatArray, lines: Sequence[Line], within: float) -> Junctions:
     members = np.array(used(lines), dtype=np.intp)
     members = members[np.argsort(places[members, 0], kind="stable")]
     spots = places[members]
-    found: Junctions = {}
+    junctions: Junctions = {}
     ends = places[[line[:2] for line in lines]][:, :, 0].reshape(-1, 2)
     check_pairs(spots[:, 0], ends.min(axis=1, initial=np.inf), ends.max(axis=1, initial=-np.inf))
     for k, (a, b, _) in enumerate(lines):
@@ -94,8 +94,8 @@ def _junctions(places: FloatArray, lines: Sequence[Line], within: float) -> Junc
         near = (across <= within) & (along > 0) & (along < length)
         for v in members[first:last][near]:
             if v not in (a, b):
-                found.setdefault(int(v), []).append(k)
-    return found
+                junctions.setdefault(int(v), []).append(k)
+    return junctions
 
 
 def _moved_onto_lines(
@@ -187,10 +187,10 @@ def _crossings(
         if not meets[k] & meets[m]:
             point = crossing(_supporting(points, lines[k]), _supporting(points, lines[m]))
             through.setdefault(point, set()).update((k, m))
-    found = list(through)
-    for first, *rest in groups_within(floats(found), range(len(found)), within):
+    crossings = list(through)
+    for first, *rest in groups_within(floats(crossings), range(len(crossings)), within):
         for v in rest:
-            through[found[first]] |= through.pop(found[v])
+            through[crossings[first]] |= through.pop(crossings[v])
     start = len(points)
     points += through
     return {v: sorted(hosts) for v, hosts in enumerate(through.values(), start)}

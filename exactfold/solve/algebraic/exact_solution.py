@@ -186,8 +186,8 @@ class RootClass:
         The result is None if p' may be zero on the interval; then refine the interval.
         """
         slope = tuple(k * c for k, c in enumerate(self.polynomial))[1:]
-        found = quotients_on_interval([from_rational_poly(self._value(row))], slope, interval)
-        return None if found is None else found[0]
+        bounds = quotients_on_interval([from_rational_poly(self._value(row))], slope, interval)
+        return None if bounds is None else bounds[0]
 
     def real_points(self, bits: int) -> list[tuple[Interval, ...]]:
         """Boxes of width at most 2^-bits, each of which contains one real zero of the class.
@@ -199,9 +199,9 @@ class RootClass:
         precision = bits + 8
         while True:
             boxes = [self.enclose(interval) for interval in self.real_roots(precision)]
-            found = [box for box in boxes if box is not None and _width(box) * (1 << bits) <= 1]
-            if len(found) == len(boxes):
-                return found
+            narrow = [box for box in boxes if box is not None and _width(box) * (1 << bits) <= 1]
+            if len(narrow) == len(boxes):
+                return narrow
             precision *= 2
 
     def approx_points(self) -> ComplexArray:
@@ -217,9 +217,9 @@ class RootClass:
                 ctx.prec = precision + modulus.height_bits()
                 roots = self._root_balls(precision)
                 points = [self._approx_point(root) for root in roots]
-                found = [point for point in points if point is not None]
-                if len(found) == len(points):
-                    return np.array(found, dtype=np.complex128).reshape(self.degree, -1)
+                accurate = [point for point in points if point is not None]
+                if len(accurate) == len(points):
+                    return np.array(accurate, dtype=np.complex128).reshape(self.degree, -1)
                 precision *= 2
                 if precision > _MOST_BITS + modulus.height_bits():
                     raise OverflowError("zeros are too close or too large for floating point")
@@ -237,8 +237,8 @@ class RootClass:
         ]
         if len(real) == self.degree:
             return real
-        found = (root for root, _ in fmpz_poly(list(self.polynomial)).complex_roots())
-        return [*real, *(root for root in found if root.imag != 0)]
+        balls = (root for root, _ in fmpz_poly(list(self.polynomial)).complex_roots())
+        return [*real, *(root for root in balls if root.imag != 0)]
 
     def _approx_point(self, root: acb) -> list[complex] | None:
         """The coordinates at one root by ball arithmetic; None if the balls are too wide."""
@@ -319,8 +319,8 @@ class ExactSolution:
     guesses: ComplexArray | None = field(default=None, compare=False, repr=False)
 
     def __repr__(self) -> str:
-        found = "infinitely many" if self.dimension is None else str(self.distinct)
-        return f"<ExactSolution: {found} zeros of {self.system!r}>"
+        number = "infinitely many" if self.dimension is None else str(self.distinct)
+        return f"<ExactSolution: {number} zeros of {self.system!r}>"
 
     @property
     def factor_degrees(self) -> tuple[int, ...]:

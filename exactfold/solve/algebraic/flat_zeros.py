@@ -43,13 +43,13 @@ def zeros_flat_at(sheets: FlatSheets) -> list[RootClass]:
         raise SolverError(
             f"there are infinitely many zeros with flat stars at {sorted(sheets.vertices)}"
         )
-    found = []
+    flat_classes = []
     for inner in classes:
         lifted = lift(sheets, inner)
         lifted.verify(sheets.chart.system)
         if frozenset(flat_equations(sheets.chart, lifted)) == sheets.vertices:
-            found.append(lifted)
-    return found
+            flat_classes.append(lifted)
+    return flat_classes
 
 
 def lift(sheets: FlatSheets, inner: RootClass) -> RootClass:
@@ -91,9 +91,9 @@ def common_parameter(classes: Sequence[RootClass], size: int) -> list[RootClass]
     """The same classes, all with one linear form as parameter, which separates all their zeros."""
     for form in separating_forms(size):
         again = [c.with_parameter(form) for c in classes]
-        found = [c for c in again if c is not None]
-        if len(found) == len(classes) and len({c.polynomial for c in found}) == len(found):
-            return found
+        usable = [c for c in again if c is not None]
+        if len(usable) == len(classes) and len({c.polynomial for c in usable}) == len(usable):
+            return usable
     raise SolverError("no linear form separates the zeros")  # cannot happen
 
 

@@ -59,8 +59,8 @@ def parametrisation_from_roots(
     >>> import numpy as np
     >>> system = QuadraticSystem((((1, 0), (0, -2)),))
     >>> guesses = Candidates("guess", np.array([[1.4], [-1.4]], dtype=complex))
-    >>> found = parametrisation_from_roots(system, guesses)
-    >>> found.polynomial, found.numerators
+    >>> root_class = parametrisation_from_roots(system, guesses)
+    >>> root_class.polynomial, root_class.numerators
     ((-2, 0, 1), ((Fraction(4, 1),),))
     """
     refined = refined_roots(system, roots)
@@ -100,14 +100,14 @@ def _parametrised(system: QuadraticSystem, refined: RefinedRoots) -> RootClass |
     while height < 4 * bezout:
         if not refined.refine(height + height // _VALUES + _magnitude(refined, form) + 8 * _SURE):
             return None
-        found = _proposal(refined, form)
-        if found is not None:
+        proposal = _proposal(refined, form)
+        if proposal is not None:
             try:
-                found.verify(system)
+                proposal.verify(system)
             except SolverError:
                 pass  # too little precision: these are not the true coefficients
             else:
-                return found
+                return proposal
         height += height // 2 + 1
     return None
 

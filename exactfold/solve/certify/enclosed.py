@@ -38,11 +38,11 @@ def enclosed(
         if refined is None:
             break
         heights = refined
-        found = enclose(sheet, heights.values, heights.denominator, heights.bits)
-        if isinstance(found, tuple) or found.signs != wanted:
-            failed = found if isinstance(found, tuple) else ()
+        outcome = enclose(sheet, heights.values, heights.denominator, heights.bits)
+        if isinstance(outcome, tuple) or outcome.signs != wanted:
+            failed = outcome if isinstance(outcome, tuple) else ()
             break
-        best = deduced(sheet, found)
+        best = deduced(sheet, outcome)
         if best.complete:
             break
     if best is not None and not best.complete:

@@ -35,8 +35,8 @@ def deduced(sheet: VertexEquations, proof: Enclosure) -> Enclosure:
     decided = dict(zip(sheet.pattern.folds, proof.letters, strict=True))
     folds = sheet.unclosed.folds
     open_ = {fold: decided[fold] or None for fold in folds}
-    found = flat_folds(sheet.unclosed, open_, sheet.targets)
-    flat = frozenset(k for k, fold in enumerate(sheet.pattern.folds) if fold in found)
+    known_flat = flat_folds(sheet.unclosed, open_, sheet.targets)
+    flat = frozenset(k for k, fold in enumerate(sheet.pattern.folds) if fold in known_flat)
     return _with_flat(sheet, proof, flat)
 
 

@@ -97,13 +97,13 @@ def enclose(
     convex.
     """
     check_hypotheses(sheet, heights, denominator)
-    found = curvatures(sheet, heights, bits)
-    signs = nappes(sheet, found.bends)
-    failed = tuple(v for v in sheet.unknowns if found.low[v] <= 0 or not signs[v])
+    curvature = curvatures(sheet, heights, bits)
+    signs = nappes(sheet, curvature.bends)
+    failed = tuple(v for v in sheet.unknowns if curvature.low[v] <= 0 or not signs[v])
     if failed:
         return failed
-    distance = _squared_distance(sheet, found, denominator)
-    letters = _letters(sheet, found.bends, distance * denominator**2)
+    distance = _squared_distance(sheet, curvature, denominator)
+    letters = _letters(sheet, curvature.bends, distance * denominator**2)
     ends = sheet.folds.corners[np.array(letters, dtype=bool), :2]
     decided = set(ends.ravel().tolist())
     loose = tuple(v for v in sheet.poppable if v not in decided and v not in sheet.targets)
@@ -146,7 +146,7 @@ def nappes(sheet: VertexEquations, bends: BigArray) -> dict[int, int]:
     }
 
 
-def _squared_distance(sheet: VertexEquations, found: Curvatures, denominator: int) -> Fraction:
+def _squared_distance(sheet: VertexEquations, curvature: Curvatures, denominator: int) -> Fraction:
     """An upper bound of sum_v m_v (sqrt K_v - sqrt k_v)^2; `off_target` is used where k_v > 0."""
     points = sheet.pattern.integer_vertices[0]
     x, y = (min(p[a] for p in points) + max(p[a] for p in points) for a in (0, 1))
@@ -155,12 +155,14 @@ def _squared_distance(sheet: VertexEquations, found: Curvatures, denominator: in
         return (2 * points[v][0] - x) ** 2 + (2 * points[v][1] - y) ** 2
 
     radius = max(squared(b) for b in sheet.pattern.boundary)
-    unit = 2 * denominator**2 << found.bits
+    unit = 2 * denominator**2 << curvature.bits
     targets = sheet.targets
-    total = sum((radius - squared(v)) * found.high[v] for v in sheet.unknowns if v not in targets)
+    total = sum(
+        (radius - squared(v)) * curvature.high[v] for v in sheet.unknowns if v not in targets
+    )
     distance = Fraction(total, 4 * unit)
     for v, target in targets.items():
-        bounds = (Fraction(bound[v], unit) for bound in (found.low, found.high))
+        bounds = (Fraction(bound[v], unit) for bound in (curvature.low, curvature.high))
         distance += Fraction(radius - squared(v), 4) * off_target(bounds, target)
     return distance
 

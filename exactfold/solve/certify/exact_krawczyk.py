@@ -75,8 +75,8 @@ def krawczyk(
     if real:
         starts = [candidate.real for candidate in real.values()]
         floats = np.array([candidate.shown for candidate in real.values()]).real
-        found = _Kernel(system).run(starts, floats, precisions, reach)
-        for (index, candidate), box in zip(real.items(), found, strict=True):
+        boxes = _Kernel(system).run(starts, floats, precisions, reach)
+        for (index, candidate), box in zip(real.items(), boxes, strict=True):
             results[index] = _named(candidate, box)
             if isinstance(box, str) and any(candidate.imag):
                 nonreal[index] = candidate
@@ -85,8 +85,8 @@ def krawczyk(
         starts = [(*candidate.real, *candidate.imag) for candidate in nonreal.values()]
         shown = np.array([candidate.shown for candidate in nonreal.values()])
         floats = np.hstack([shown.real, shown.imag])
-        found = _Kernel(system.realification).run(starts, floats, precisions, reach)
-        for (index, candidate), box in zip(nonreal.items(), found, strict=True):
+        boxes = _Kernel(system.realification).run(starts, floats, precisions, reach)
+        for (index, candidate), box in zip(nonreal.items(), boxes, strict=True):
             if isinstance(box, IsolatingBox):
                 box = IsolatingBox(box.real[:n], box.real[n:], box.radius, box.bits)
             if index not in real or (isinstance(box, IsolatingBox) and box.is_nonreal):
@@ -128,8 +128,8 @@ def krawczyk_at(system: QuadraticSystem, box: IsolatingBox, bits: int) -> Isolat
     return result
 
 
-def _named(candidate: Candidate, found: IsolatingBox | str) -> IsolatingBox | Uncertified:
-    return Uncertified(candidate.shown, found) if isinstance(found, str) else found
+def _named(candidate: Candidate, outcome: IsolatingBox | str) -> IsolatingBox | Uncertified:
+    return Uncertified(candidate.shown, outcome) if isinstance(outcome, str) else outcome
 
 
 @dataclass(frozen=True)

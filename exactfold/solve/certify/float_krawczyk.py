@@ -101,8 +101,8 @@ class FloatKrawczyk:
         if not 0 < self.system.size <= _MOST_UNKNOWNS:
             return None
         blocks = [scaled_rows(matrix) for matrix in self.system.matrices]
-        found = [block for block in blocks if block is not None]
-        return np.vstack(found) if len(found) == len(blocks) else None
+        usable = [block for block in blocks if block is not None]
+        return np.vstack(usable) if len(usable) == len(blocks) else None
 
     @cached_property
     def _absolute(self) -> tuple[FloatArray, FloatArray]:
@@ -194,8 +194,8 @@ class FloatSigns:
     @cached_property
     def _matrix(self) -> FloatArray | None:
         scaled = [scaled_rows([row]) for row in self.rows]
-        found = [row for row in scaled if row is not None]
-        return np.vstack(found) if found and len(found) == len(scaled) else None
+        usable = [row for row in scaled if row is not None]
+        return np.vstack(usable) if usable and len(usable) == len(scaled) else None
 
     def on(self, boxes: FloatBoxes) -> npt.NDArray[np.int8]:
         """1 or -1 if a row has this sign on the whole box, 0 if that is not proved."""

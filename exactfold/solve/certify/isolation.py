@@ -72,8 +72,8 @@ def isolate(
     >>> import numpy as np
     >>> system = QuadraticSystem.from_rational([[[1, 0], [0, -2]]])
     >>> guesses = np.array([[1.4], [-1.4], [1.5]], dtype=complex)
-    >>> found = isolate(system, Candidates("guess", guesses))
-    >>> found.real, str(found.complete)
+    >>> isolation = isolate(system, Candidates("guess", guesses))
+    >>> isolation.real, str(isolation.complete)
     (2, 'proved')
     """
     boxes: list[IsolatingBox] = []
@@ -112,7 +112,7 @@ def _prove_meeting(
     system: QuadraticSystem, group: list[ComplexArray]
 ) -> tuple[list[IsolatingBox], Uncertified | None]:
     """Tries higher precision and the second certifier on a group; stops at the first failure."""
-    found: list[IsolatingBox] = []
+    boxes: list[IsolatingBox] = []
     for point in group:
         (result,) = krawczyk(system, [point], precisions=_RISING, reach=None)
         if isinstance(result, Uncertified):
@@ -120,11 +120,11 @@ def _prove_meeting(
 
             (result,) = interval_newton(system, [point.tolist()], precisions=_INTERVAL)
         if isinstance(result, Uncertified):
-            left = len(group) - len(found)
+            left = len(group) - len(boxes)
             many = f"{left} candidates meet here; " if left > 1 else ""
-            return found, Uncertified(result.point, many + result.reason)
-        found.append(result)
-    return found, None
+            return boxes, Uncertified(result.point, many + result.reason)
+        boxes.append(result)
+    return boxes, None
 
 
 def disjoint(boxes: Iterable[IsolatingBox]) -> list[IsolatingBox]:

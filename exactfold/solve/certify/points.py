@@ -52,7 +52,7 @@ def exact_candidates(points: Points, size: int) -> list[Candidate | Uncertified]
     >>> row.real, row.imag
     ((Fraction(1, 2), Fraction(1, 3)), (Fraction(0, 1), Fraction(2, 1)))
     """
-    found: list[Candidate | Uncertified] = []
+    candidates: list[Candidate | Uncertified] = []
     for given in points:
         row = given.tolist() if isinstance(given, np.ndarray) else given
         shown = tuple(_approx_complex(x) for x in row)
@@ -61,11 +61,11 @@ def exact_candidates(points: Points, size: int) -> list[Candidate | Uncertified]
         parts = [_exact_parts(x) for x in row]
         finite = [part for part in parts if part is not None]
         if len(finite) < len(parts):
-            found.append(Uncertified(shown, "the candidate is not finite"))
+            candidates.append(Uncertified(shown, "the candidate is not finite"))
             continue
         real, imag = tuple(a for a, _ in finite), tuple(b for _, b in finite)
-        found.append(Candidate(real, imag, shown))
-    return found
+        candidates.append(Candidate(real, imag, shown))
+    return candidates
 
 
 def is_within_reach(box: IsolatingBox, start: Point, reach: Fraction | None) -> bool:

@@ -66,11 +66,11 @@ def refine(
         if v in sheet.targets:
             wanted[k] += int(unit * sheet.targets[v])
     for _ in range(_ITERATIONS):
-        found = curvatures(sheet, at.values, bits)
-        rest = found.low[inner] - wanted
+        curvature = curvatures(sheet, at.values, bits)
+        rest = curvature.low[inner] - wanted
         if (2 * abs(rest) <= excess).all():
             return Heights(at.values, q, bits)
-        omega = ratio(found.bends * square, areas * q)
+        omega = ratio(curvature.bends * square, areas * q)
         point = Point(
             np.zeros(0), omega, floats.lines(omega), floats.scale * ratio(rest * square, unit)
         )

@@ -150,7 +150,7 @@ class NappeSystem:
         lift |= {
             v: (size - 1, h) for v, h in zip(gauge.boundary_heights, heights, strict=True) if h
         }
-        found = []
+        nappes = []
         for v in gauge.unknowns:
             form, cone = curvature_form(gauge.sheet, v), round_cone(gauge.sheet, v)
             t, _ = over_common_denominator(cone[u] for u in form.labels)
@@ -169,8 +169,8 @@ class NappeSystem:
                 level = gauge.corner_curvature * top * form.denominator / (hub * hub)
                 last = tuple(int(k == size - 1) for k in range(size))
                 squares.append((level.as_integer_ratio(), (last, 1)))
-            found.append(Nappe((_lifted(p, places, size), hub * unit), tuple(squares)))
-        return tuple(found)
+            nappes.append(Nappe((_lifted(p, places, size), hub * unit), tuple(squares)))
+        return tuple(nappes)
 
     @cached_property
     def lines(self) -> FloatArray:
@@ -207,8 +207,8 @@ class NappeSystem:
         >>> from exactfold.pattern.families import single_vertex
         >>> from exactfold.rigidity.equations.branch_system import chamber_chart
         >>> system = NappeSystem(chamber_chart(single_vertex(4)))
-        >>> found = system.ends(sign_vectors(0, 2, 1))
-        >>> found.points.shape, bool(found.converged.all())
+        >>> ends = system.ends(sign_vectors(0, 2, 1))
+        >>> ends.points.shape, bool(ends.converged.all())
         ((2, 1), True)
         """
         return self._ends(*self.unknowns(self.full_signs(signs)))
@@ -345,8 +345,8 @@ def _lifted(
 ) -> tuple[int, ...]:
     """A row over a star as a row on (x, 1), with heights in units; other vertices have height 0."""
     full = [0] * size
-    for value, found in zip(row, places, strict=True):
-        if found is not None:
-            place, height = found
+    for value, placed in zip(row, places, strict=True):
+        if placed is not None:
+            place, height = placed
             full[place] += height * value
     return tuple(full)

@@ -62,8 +62,8 @@ def homotopy(
 
     >>> circle_and_line_pair = QuadraticSystem.from_rational(
     ...     [[[1, 0, 0], [0, 1, 0], [0, 0, -1]], [[0, 1, 0], [1, 0, 0], [0, 0, 0]]])
-    >>> found = homotopy(circle_and_line_pair)
-    >>> sorted((int(x), int(y)) for x, y in found.points.real.round()), found.lost
+    >>> candidates = homotopy(circle_and_line_pair)
+    >>> sorted((int(x), int(y)) for x, y in candidates.points.real.round()), candidates.lost
     ([(-1, 0), (0, -1), (0, 1), (1, 0)], ())
     """
     if system.size == 0:

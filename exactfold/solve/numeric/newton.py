@@ -36,12 +36,12 @@ def newton(chart: Chart, *, progress: Steps | None = None) -> Candidates:
     system, size = NappeSystem(natural), natural.system.size
     total = 1 << size
     block = min(_BLOCK, total)
-    found = []
+    swept = []
     for first in range(0, total, block):
-        found.append(system.ends_of_block(first, block))
+        swept.append(system.ends_of_block(first, block))
         if progress is not None:
             progress(first + block, total)
-    candidates = candidates_of(found, size)
+    candidates = candidates_of(swept, size)
     points = between(natural, chart, candidates.points.real)
     return replace(candidates, points=points.astype(np.complex128))
 

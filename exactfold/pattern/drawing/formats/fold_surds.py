@@ -63,7 +63,7 @@ def surd_points(document: Mapping[str, Any], stated: Sequence[tuple[Fraction, ..
         )
     field = _field(list_at(document, FIELD_KEY))
     tolerance = AGREEMENT * max(abs(c) for point in stated for c in point[:2])
-    found: list[Point] = []
+    points: list[Point] = []
     for v, (row, place) in enumerate(zip(rows, stated, strict=True)):
         if not isinstance(row, list) or len(row) != 2:
             raise NumberError(f"vertex {v}: {shown(row)} in `{SURDS_KEY}` is not two numbers")
@@ -74,8 +74,8 @@ def surd_points(document: Mapping[str, Any], stated: Sequence[tuple[Fraction, ..
                     f"vertex {v}: `{SURDS_KEY}` and `vertices_coords` disagree; delete "
                     f"`{SURDS_KEY}` if another program moved the vertex"
                 )
-        found.append((x, y))
-    return found
+        points.append((x, y))
+    return points
 
 
 def _field(rows: Sequence[object]) -> SurdField:

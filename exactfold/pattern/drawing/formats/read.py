@@ -86,14 +86,14 @@ def _format(text: str, name: str) -> str:
     ending = PurePath(name).suffix.lower().removeprefix(".")
     start = text.lstrip()
     if start.startswith("{"):
-        found = "ori" if _ORI.search(text) else "fold" if _FOLD.search(text) else ""
+        key = "ori" if _ORI.search(text) else "fold" if _FOLD.search(text) else ""
     elif start.startswith("<"):
-        found = "orh" if LINES in text else "opx" if "OriLineProxy" in text else ""
-        found = found or ("svg" if _SVG.search(text) else "")
+        key = "orh" if LINES in text else "opx" if "OriLineProxy" in text else ""
+        key = key or ("svg" if _SVG.search(text) else "")
     else:
-        found = "cp" if _CP.match(text) else ""
-    if found:
-        return found
+        key = "cp" if _CP.match(text) else ""
+    if key:
+        return key
     if ending in READERS:
         return ending
     raise UnknownFormatError(f"{name} is not a drawing of a known format; {_NONE}")

@@ -112,13 +112,13 @@ def _styles(text: str) -> dict[str, dict[str, str]]:
     first, *others = text.split("/*")
     text = first + "".join(part.partition("*/")[2] for part in others)
     text = "\n".join(line.partition("//")[0] for line in text.split("\n"))
-    found: dict[str, dict[str, str]] = {}
+    styles: dict[str, dict[str, str]] = {}
     for rule in text.split("}"):
         selectors, _, body = rule.partition("{")
         if declared := _declarations(body):
             for selector in selectors.split(","):
-                found.setdefault(selector.strip(), {}).update(declared)
-    return found
+                styles.setdefault(selector.strip(), {}).update(declared)
+    return styles
 
 
 def _declarations(text: str) -> dict[str, str]:
