@@ -20,7 +20,7 @@ from types import ModuleType
 from typing import Any, Final
 
 import exactfold
-from exactfold.app.cli.main import app
+from exactfold.app.cli import app
 from exactfold.app.schemas import DOCUMENTS, schema
 
 FOLDER: Final = Path(__file__).with_name("generated")

@@ -29,7 +29,7 @@ def main() -> None:
     gc.set_threshold(_BETWEEN)
 
     def run() -> None:
-        from exactfold.app.cli.main import main as command_line
+        from exactfold.app.cli import main as command_line
 
         if loud:
             signal.signal(signal.SIGINT, signal.default_int_handler)

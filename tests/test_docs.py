@@ -19,7 +19,7 @@ import pytest
 from running import run
 
 import exactfold
-from exactfold.app.cli.main import app
+from exactfold.app.cli import app
 from exactfold.app.schemas import DOCUMENTS, schema
 from exactfold.app.shell.guard import INTERRUPTED, NO_MEMORY
 from exactfold.app.shell.shell import BAD_INPUT, EXIT, INTERNAL, OUTPUT_FAILED, USAGE

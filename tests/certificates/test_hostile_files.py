@@ -13,7 +13,7 @@ from sheets import SQUARE, dart, reflex_corners, scrambled, with_point
 from typer.testing import CliRunner
 
 from exactfold import checker, random_square
-from exactfold.app.cli.main import app
+from exactfold.app.cli import app
 from exactfold.branches.certificates.check import check_compact
 from exactfold.branches.certificates.read import read_branches
 from exactfold.branches.counting.stream import stream_branches

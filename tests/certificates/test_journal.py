@@ -16,7 +16,7 @@ from typer.testing import CliRunner
 
 from exactfold import random_square
 from exactfold._support.verdict import PROVED
-from exactfold.app.cli.main import app
+from exactfold.app.cli import app
 from exactfold.branches.counting import branch_blocks
 from exactfold.branches.counting.stream import stream_branches
 from exactfold.certificates import durable, journal

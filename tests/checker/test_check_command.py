@@ -9,7 +9,7 @@ import pytest
 from typer.testing import CliRunner
 
 from exactfold import checker
-from exactfold.app.cli.main import app
+from exactfold.app.cli import app
 from exactfold.pattern.data import example_path
 
 FIXTURES = Path(__file__).parent.parent / "fixtures" / "certificates"

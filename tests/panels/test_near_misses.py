@@ -10,7 +10,7 @@ import pytest
 from panel_sheets import regular_twist
 from typer.testing import CliRunner
 
-from exactfold.app.cli.main import app
+from exactfold.app.cli import app
 from exactfold.branches.counting.ways import count_ways
 from exactfold.panels import near_misses
 from exactfold.panels.decomposition import decompose

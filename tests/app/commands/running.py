@@ -9,7 +9,7 @@ from typing import Any
 
 from typer.testing import CliRunner, Result
 
-from exactfold.app.cli.main import app
+from exactfold.app.cli import app
 
 PROVED, INVALID, USAGE, BAD_INPUT, UNDECIDED = range(5)
 DEFECT, OUTPUT_FAILED, INTERRUPTED = 70, 74, 130

@@ -7,7 +7,7 @@ import json
 import pytest
 from typer.testing import CliRunner, Result
 
-from exactfold.app.cli.main import app
+from exactfold.app.cli import app
 from exactfold.app.commands import branch
 from exactfold.branches.counting.find import BranchFinder, find_branch
 from exactfold.pattern.data import example_path

@@ -9,7 +9,7 @@ import pytest
 from typer.testing import CliRunner
 
 from exactfold._support.verdict import UNDECIDED as UNPROVED
-from exactfold.app.cli.main import app
+from exactfold.app.cli import app
 from exactfold.branches import branch_certificate, count_branches, export_branch, find_branch
 from exactfold.errors import UndecidedBranchError
 from exactfold.interop import branch_to_coq, branches_to_coq, to_coq

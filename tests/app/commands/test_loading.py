@@ -30,7 +30,7 @@ HEAVY = ("mpmath", "sympy", "networkx", "scipy", "distributed", "asyncio")
 def test_commands_load_what_they_need(two_vertex, arguments, idle):
     script = (
         "import sys\n"
-        "from exactfold.app.cli.main import main\n"
+        "from exactfold.app.cli import main\n"
         "try: main()\n"
         "except SystemExit as end: code = end.code\n"
         f"print(code, *(m for m in {idle!r} if m in sys.modules), file=sys.stderr)"

@@ -94,7 +94,7 @@ def completed(line: str, folder: Path) -> list[str]:
         "COMP_WORDS": line,
         "COMP_CWORD": str(len(words) - (not line.endswith(" "))),
     }
-    script = "from exactfold.app.cli.main import app; app(prog_name='exactfold')"
+    script = "from exactfold.app.cli import app; app(prog_name='exactfold')"
     done = subprocess.run(
         [sys.executable, "-c", script],
         env=environment,
@@ -130,7 +130,7 @@ def test_the_shell_completes_names_files_and_methods(tmp_path: Path) -> None:
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
 def test_a_script_for_every_shell(shell: str) -> None:
     environment = {**os.environ, "_EXACTFOLD_COMPLETE": f"source_{shell}"}
-    script = "from exactfold.app.cli.main import app; app(prog_name='exactfold')"
+    script = "from exactfold.app.cli import app; app(prog_name='exactfold')"
     done = subprocess.run(
         [sys.executable, "-c", script], env=environment, capture_output=True, text=True, check=False
     )

@@ -11,7 +11,7 @@ import pytest
 from files import written
 from running import BAD_INPUT, PROVED, USAGE, error_class, process, run
 
-from exactfold.app.cli import main as cli
+from exactfold.app import cli
 from exactfold.pattern.data import example_path
 
 
@@ -134,7 +134,7 @@ def test_full_disk(option):
 
 def test_one_thread_unless_the_environment_says_otherwise():
     script = (
-        "import atexit, os; from exactfold.app.cli.main import main\n"
+        "import atexit, os; from exactfold.app.cli import main\n"
         "atexit.register(lambda: print(os.environ['OPENBLAS_NUM_THREADS']))\n"
         "main()"
     )

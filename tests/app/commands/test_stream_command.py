@@ -13,7 +13,7 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from exactfold import random_square
-from exactfold.app.cli.main import app
+from exactfold.app.cli import app
 from exactfold.app.commands import stream as stream_command
 from exactfold.branches.counting import branch_blocks, by_theorem
 from exactfold.branches.counting.stream import stream_branches
@@ -214,7 +214,7 @@ def test_a_dead_worker_is_no_verdict(tmp_path: Path, monkeypatch: pytest.MonkeyP
 SIGNALLED = """
 import os, signal, sys
 from contextlib import suppress
-from exactfold.app.cli.main import main
+from exactfold.app.cli import main
 from exactfold.certificates import journal
 from exactfold.branches.counting import branch_blocks, engines, stream
 

@@ -13,7 +13,7 @@ import pytest
 from typer.testing import CliRunner
 
 from exactfold import random_square
-from exactfold.app.cli.main import app
+from exactfold.app.cli import app
 from exactfold.branches.certificates.blocks import block_line
 from exactfold.branches.counting import on_dask as engine_module
 from exactfold.branches.counting import pools
@@ -131,7 +131,7 @@ def test_a_local_cluster_by_command(tmp_path: Path) -> None:
     command = [
         sys.executable,
         "-c",
-        "from exactfold.app.cli.main import main; main()",
+        "from exactfold.app.cli import main; main()",
         "count",
         str(fold),
     ]

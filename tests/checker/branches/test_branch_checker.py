@@ -30,7 +30,7 @@ from sheets import (
 from typer.testing import CliRunner
 
 from exactfold import PROVED, checker, random_square
-from exactfold.app.cli.main import app
+from exactfold.app.cli import app
 from exactfold.branches import find_branch
 from exactfold.branches.certificates.single import branch_certificate
 from exactfold.checker import CertificateError, FormatError

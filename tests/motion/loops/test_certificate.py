@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 
 from exactfold import checker, random_square
 from exactfold._support.verdict import PROVED, UNDECIDED
-from exactfold.app.cli.main import app
+from exactfold.app.cli import app
 from exactfold.branches import find_branch
 from exactfold.certificates.journal import Journal
 from exactfold.errors import ForeignJournalError, NotCountedError, UsageError
@@ -291,7 +291,7 @@ def test_what_an_interrupted_run_leaves_is_unfinished(tmp_path, capsys):
 
 SIGNALLED = """
 import os, signal
-from exactfold.app.cli.main import main
+from exactfold.app.cli import main
 from exactfold.certificates import journal
 
 append = journal.Journal.append

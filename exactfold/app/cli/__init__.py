@@ -1,1 +1,0 @@
-"""The command line: it reads options, calls commands, and returns their exit codes."""
