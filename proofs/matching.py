@@ -29,7 +29,7 @@ from proofs.framework import Proof, Script, run
 from proofs.patterns import DART, SPIKY
 
 NAME = "matching"
-TITLE = "The matching of half-branches: fans, H1 sheets, the parity law"
+TITLE = "The matching of rays: fans, H1 sheets, the parity law"
 HYPOTHESES = (
     "a sheet with four boundary vertices, all branches simple (docs/matching.md)",
     "w: an interior vertex, x: a boundary vertex joined to w and the boundary vertices q, r only",

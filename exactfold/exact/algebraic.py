@@ -59,8 +59,8 @@ class NumberField:
             live = [i for i in range(top, len(work)) if work[i][column] != 0]
             if not live:
                 continue
-            found = min(live, key=lambda i: work[i][column].degree())
-            work[top], work[found] = work[found], work[top]
+            pivot_row = min(live, key=lambda i: work[i][column].degree())
+            work[top], work[pivot_row] = work[pivot_row], work[top]
             scale = self.inverse(work[top][column])
             work[top] = [self.multiply(x, scale) if x != 0 else x for x in work[top]]
             for i, row in enumerate(work):

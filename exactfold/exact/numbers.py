@@ -238,8 +238,8 @@ def decimal_near(value: Fraction, digits: int) -> str:
 
 
 def _decimal(value: Fraction, rounding: Context) -> str:
-    found = rounding.divide(Decimal(value.numerator), Decimal(value.denominator))
-    return f"{found.normalize(rounding):g}"
+    quotient = rounding.divide(Decimal(value.numerator), Decimal(value.denominator))
+    return f"{quotient.normalize(rounding):g}"
 
 
 def over_common_denominator(values: Iterable[Fraction | int]) -> tuple[list[int], int]:

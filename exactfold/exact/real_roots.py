@@ -66,9 +66,9 @@ def _isolated(polynomial: IntPolynomial, bits: int) -> tuple[Interval, ...]:
         return ((root, root),)
     precision = bits
     while True:
-        found = [_on_grid(p, cell, precision).interval for cell in _isolating_cells(polynomial)]
-        if all(a[1] < b[0] for a, b in pairwise(found)):
-            return tuple(found)
+        intervals = [_on_grid(p, cell, precision).interval for cell in _isolating_cells(polynomial)]
+        if all(a[1] < b[0] for a, b in pairwise(intervals)):
+            return tuple(intervals)
         precision = 2 * precision + 32
 
 
@@ -89,22 +89,22 @@ def _isolating_cells(polynomial: IntPolynomial) -> tuple[_Cell, ...]:
 def _positive_cells(p: fmpz_poly) -> list[_Cell]:
     """Cells of the positive roots of p, from left to right; p(0) must not be 0."""
     reach = _root_bound(p)
-    found: list[_Cell] = []
+    cells: list[_Cell] = []
     waiting = [(0, -reach, _stretched(p, -reach))]  # q has a root in (0, 1) for each in the cell
     while waiting:
         at, bits, q = waiting.pop()
         count = _descartes(q)
         if count == 1:
-            found.append(_Cell(at, bits))
+            cells.append(_Cell(at, bits))
         if count < 2:
             continue
         left = _stretched(q, 1)
         left = left / left.content()
         right = left(_SHIFT)
         if right[0] == 0:
-            found.append(_Cell(2 * at + 1, bits + 1, point=True))
+            cells.append(_Cell(2 * at + 1, bits + 1, point=True))
         waiting += [(2 * at, bits + 1, left), (2 * at + 1, bits + 1, right)]
-    return sorted(found, key=lambda cell: cell.interval)
+    return sorted(cells, key=lambda cell: cell.interval)
 
 
 def _root_bound(p: fmpz_poly) -> int:

@@ -78,14 +78,14 @@ class RootTower:
             before = ctx.prec
             ctx.prec = bits
             try:
-                found = [arb(1)]
+                products = [arb(1)]
                 for radicand in self._radicands:
-                    square = sum((p * c for c, p in zip(radicand, found, strict=True)), arb(0))
+                    square = sum((p * c for c, p in zip(radicand, products, strict=True)), arb(0))
                     root = square.sqrt()
-                    found += [p * root for p in found]
+                    products += [p * root for p in products]
             finally:
                 ctx.prec = before
-            known[bits] = tuple(found)
+            known[bits] = tuple(products)
         return known[bits]
 
     def square_root_of(self, a: Parts) -> Parts | None:

@@ -239,8 +239,8 @@ class SurdField(RootTower):
         root = self.square_root_of(self.number(value).parts)
         if root is None:
             return None
-        found = _made(self, root)
-        return -found if found.sign() < 0 else found
+        surd = _made(self, root)
+        return -surd if surd.sign() < 0 else surd
 
     def __reduce__(self) -> tuple[object, ...]:
         return SurdField, (self.radicands,)  # without the cached enclosures

@@ -97,11 +97,11 @@ def with_enclosed_frames(
     branch.
     """
     problem = problem_of(motion.branch)
-    found = [positions_in(problem, framework, frame) for frame in frames]
-    coords = np.array([positions.coords for positions in found])
+    enclosures = [positions_in(problem, framework, frame) for frame in frames]
+    coords = np.array([positions.coords for positions in enclosures])
     if np.abs(coords - motion.coords).max() > _NEAR * float(framework.unit):
         return None
-    near = np.array([positions.from_the_pin for positions in found])
+    near = np.array([positions.from_the_pin for positions in enclosures])
     angles = fold_angles_of(near, hinges_of(motion.pattern))
     angles = angles + 2 * np.pi * np.rint((motion.angles - angles) / (2 * np.pi))
     times = [
@@ -110,5 +110,5 @@ def with_enclosed_frames(
             (frame.time for frame in frames), motion.times.tolist(), strict=True
         )
     ]
-    bounds = FrameBounds(tuple(positions.radius for positions in found), tuple(times))
+    bounds = FrameBounds(tuple(positions.radius for positions in enclosures), tuple(times))
     return replace(motion, coords=coords, angles=angles, bounds=bounds)

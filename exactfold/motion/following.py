@@ -225,18 +225,20 @@ def _followed(
             stop: tuple[float, str] | None = None
             if limit is not None and piece.time + piece.length >= limit:
                 stop = piece.parameter(limit - piece.time), LENGTH
-            found = watch.events(piece)
+            piece_events = watch.events(piece)
             last = None
-            if any(event.kind == RETURN for _, event in found):
+            if any(event.kind == RETURN for _, event in piece_events):
                 last = landing(framework, piece)
                 if last is None:  # the flat sheet is close, but its series does not reach so far
-                    found = [item for item in found if item[1].kind != RETURN]
-            ending = _first(piece, found, goal)
+                    piece_events = [item for item in piece_events if item[1].kind != RETURN]
+            ending = _first(piece, piece_events, goal)
             if ending is not None and (stop is None or ending[0] <= stop[0]):
                 stop = ending
             if stop is not None:
-                found = [item for item in found if item[0] <= stop[0] + _AT_ONCE * piece.reach]
-            events += [event for _, event in found]
+                piece_events = [
+                    item for item in piece_events if item[0] <= stop[0] + _AT_ONCE * piece.reach
+                ]
+            events += [event for _, event in piece_events]
             if last is not None and stop is not None and stop[1] == RETURN:
                 piece, stop = last, (last.reach, RETURN)
             if stop is None:
@@ -261,13 +263,13 @@ def _followed(
     return curve, events, SINGULAR
 
 
-def _first(piece: Piece, found: list[tuple[float, Event]], goal: Goal) -> tuple[float, str] | None:
+def _first(piece: Piece, events: list[tuple[float, Event]], goal: Goal) -> tuple[float, str] | None:
     """The parameter and the kind of the first event that ends a motion.
 
     A fold that closes brings its faces into contact. If both happen at once, the closed fold is
     named.
     """
-    ending = [(parameter, event.kind) for parameter, event in found if event.kind in goal.kinds]
+    ending = [(parameter, event.kind) for parameter, event in events if event.kind in goal.kinds]
     at_once = [item for item in ending if item[0] <= ending[0][0] + _AT_ONCE * piece.reach]
     return min(at_once, key=lambda item: item[1] == CONTACT, default=None)
 
@@ -331,11 +333,11 @@ def _at_equal_angles(problem: Problem, curve: Curve, by: Edge, frames: int) -> F
     def beyond(time: float, goal: float) -> float:
         return float(angles(np.array([time]))[0]) - goal
 
-    found = [0.0]
+    frame_times = [0.0]
     for goal in np.linspace(0.0, values[-1], frames)[1:-1]:
         k = int(np.searchsorted(np.abs(values), abs(goal))) - 1
-        found.append(zero_of(partial(beyond, goal=goal), coarse[k], coarse[k + 1]))
-    return np.array([*found, coarse[-1]])
+        frame_times.append(zero_of(partial(beyond, goal=goal), coarse[k], coarse[k + 1]))
+    return np.array([*frame_times, coarse[-1]])
 
 
 def _named(event: Event, problem: Problem, unit: float) -> Event:

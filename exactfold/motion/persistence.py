@@ -33,9 +33,9 @@ def prove_persistently(
     >>> prove_persistently(motion, lambda held: follow(branch, until="30deg", pinned=held)).status
     <Verdict.PROVED: 'proved'>
     """
-    found = prove(motion, progress=progress)
-    if not found.may_succeed_otherwise:
-        return found
+    first_proof = prove(motion, progress=progress)
+    if not first_proof.may_succeed_otherwise:
+        return first_proof
     other = _another(motion.curve.framework)
     held = [motion.pinned]
     finer = prove(motion, bits=BITS[1], progress=progress)
@@ -49,7 +49,7 @@ def prove_persistently(
         return finer
     faces = " and ".join("-".join(map(str, face)) for face in held)
     tried = f"tried: steps down to 1e-7, {BITS[0]} and {BITS[1]} bits, face {faces} held"
-    best = max(found, finer, key=lambda proof: proof.length[0])
+    best = max(first_proof, finer, key=lambda proof: proof.length[0])
     return replace(best, reason=f"{best.reason} ({tried})")
 
 

@@ -153,7 +153,7 @@ class MotionProof:
         >>> import exactfold
         >>> proof = exactfold.prove(exactfold.follow("two-vertex", signs="+-", until="return"))
         >>> exactfold.check(proof.certificate()).text[:57]
-        'VALID: 1 loop of true motions, which match 4 of 8 half-br'
+        'VALID: 1 loop of true motions, which match 4 of 8 rays; s'
         """
         looped, boundary_heights = self.looped, self.motion.boundary_heights
         if looped is not None and looped.landing is not None:
@@ -177,7 +177,7 @@ class MotionProof:
         >>> with tempfile.TemporaryDirectory() as folder:
         ...     path = os.path.join(folder, "proof")
         ...     proof.write(path), summary(verify(path))[:57]
-        (True, 'VALID: 1 loop of true motions, which match 4 of 8 half-br')
+        (True, 'VALID: 1 loop of true motions, which match 4 of 8 rays; s')
         """
         try:
             write_certificate(self.certificate(), path)
@@ -260,22 +260,22 @@ def _tracked(motion: Motion, bits: int, progress: Progress | None) -> MotionProo
     to_contact = _ends_at_the_first_contact(motion)
     to_branch_point = motion.end == NODE
     missed = Fraction(motion.duration) * (1 + _FARTHER)
-    found: FirstContact | None = None
+    passed_contact: FirstContact | None = None
     seen = 0
 
     def stop(step: Step) -> str | None:
-        nonlocal found, seen
+        nonlocal passed_contact, seen
         seen += 1
         if progress is not None:
             progress("proving, tubes", seen, 0)
         if to_branch_point and step.entered[0] * so_far.framework.unit > missed:
             return _NO_NODE
-        if found is not None:
+        if passed_contact is not None:
             return None
         said = watch(step)
         if said is None or to_contact:
             return said
-        found = watch.result(so_far)
+        passed_contact = watch.result(so_far)
         return None
 
     until = None if to_contact or to_branch_point else motion.duration
@@ -293,9 +293,9 @@ def _tracked(motion: Motion, bits: int, progress: Progress | None) -> MotionProo
         bits=bits,
         drive=motion.drive,
     )
-    contact = watch.result(track) if found is None else found
+    contact = watch.result(track) if passed_contact is None else passed_contact
     status, reason = _judged(motion, track, contact)
-    met = found is not None or (contact.event is not None and not to_contact)
+    met = passed_contact is not None or (contact.event is not None and not to_contact)
     passed = met and contact.clear < Fraction(motion.duration)
     proof = MotionProof(status, reason, motion, track.length, track.tubes, track, contact, passed)
     if track.branch_point is not None and status is not PROVED:

@@ -42,25 +42,25 @@ def by_spaces(pattern: PanelPattern, moving: Mapping[int, Star]) -> Part:
     if left == 0:
         still = tuple(sorted({edge for star in moving.values() for edge in star.folds}))
         return Part(tuple(moving), "subspaces", {0: 1}, {0: 1}, dimension=size, still=still)
-    found: list[FoundComponent] | None = None
+    components: list[FoundComponent] | None = None
     if size > MOST_DIMENSION:
         reason = (
             f"the first-order motions of {counted(len(moving), 'vertex')} round vertex "
             f"{next(iter(moving))} have dimension {size}; they are decomposed only up to dimension "
             f"{MOST_DIMENSION}"
         )
-        found, ended = _found(pattern, moving, small, left)
+        components, ended = _found(pattern, moving, small, left)
         if not ended:
-            return _partial(pattern, moving, size, (small, left), found, reason)
+            return _partial(pattern, moving, size, (small, left), components, reason)
     try:
-        most = MOST_STEPS if found is None else MOST_STEPS_BEYOND
-        return _complete(pattern, moving, (rows, size), (small, left), most, found)
+        most = MOST_STEPS if components is None else MOST_STEPS_BEYOND
+        return _complete(pattern, moving, (rows, size), (small, left), most, components)
     except TooManyModesError as error:
-        if found is None:
+        if components is None:
             where = f"the part of {counted(len(moving), 'vertex')} with vertex"
             reason = f"{where} {next(iter(moving))}: {error}"
-            found, _ = _found(pattern, moving, small, left)
-        return _partial(pattern, moving, size, (small, left), found, reason)
+            components, _ = _found(pattern, moving, small, left)
+        return _partial(pattern, moving, size, (small, left), components, reason)
 
 
 def _complete(
@@ -69,7 +69,7 @@ def _complete(
     first: tuple[Rows, int],
     smaller: tuple[Rows, int],
     most: int,
-    found: list[FoundComponent] | None,
+    components: list[FoundComponent] | None,
 ) -> Part:
     """All components; raises `TooManyModesError` if this is too much work or forms remain.
 
@@ -93,9 +93,9 @@ def _complete(
         alone = alone or is_one_family(moving, size, spaces[0].size, spaces[0].vertices)
     known = all(folding) and alone
     if all(folding):
-        found = []
-    elif found is None:
-        found, _ = _found(pattern, moving, small, left)
+        components = []
+    elif components is None:
+        components, _ = _found(pattern, moving, small, left)
     return Part(
         vertices,
         "subspaces",
@@ -104,7 +104,7 @@ def _complete(
         spaces=tuple(spaces),
         spaces_fold=tuple(folding),
         dimension=size,
-        found=tuple(found),
+        found=tuple(components),
         still=still,
         reason=_open(known, all(folding)),
     )
@@ -143,13 +143,13 @@ def _partial(
     moving: Mapping[int, Star],
     size: int,
     smaller: tuple[Rows, int],
-    found: list[FoundComponent],
+    components: list[FoundComponent],
     reason: str,
 ) -> Part:
     """What is proved of a part that is not decomposed: components, or modes if none of
     them folds.
     """
-    folds = any(one.folds for one in found)
+    folds = any(one.folds for one in components)
     modes = [] if folds else folding_modes(pattern, moving, *smaller, MOST_FOUND)
     return Part(
         tuple(moving),
@@ -157,7 +157,7 @@ def _partial(
         None,
         None,
         dimension=size,
-        found=tuple(found),
+        found=tuple(components),
         modes=tuple(modes),
         still=_still(moving, smaller[0]),
         reason=reason,

@@ -148,7 +148,7 @@ def _by_folds(
                     f"no certificate: it would have to list {support.count} modes of different "
                     f"folds round vertex {support.vertices[0]}; at most {MOST_LISTED} are listed"
                 )
-            folds = {edge for [found] in kinds for edge in found}
+            folds = {edge for [active] in kinds for edge in active}
             yield _Together(
                 support.vertices, tuple(sorted(folds)), support.count, (support.example,)
             )
@@ -182,8 +182,8 @@ def _support(
         extending = together.count
     elif len(together.choices) == together.count:
         loops: Loops = {}
-        found = [extension(pattern, moving, c, loops).verdict for c in together.choices]
-        extending = None if UNDECIDED in found else found.count(PROVED)
+        verdicts = [extension(pattern, moving, c, loops).verdict for c in together.choices]
+        extending = None if UNDECIDED in verdicts else verdicts.count(PROVED)
     return {
         "vertices": list(together.vertices),
         "folds": _pairs(together.folds),

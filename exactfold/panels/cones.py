@@ -87,12 +87,12 @@ def _ordered(
             ranks[v] = int(np.linalg.matrix_rank(inner.T @ (weights[v][:, None] * inner), 1e-9))
         order.insert(0, max(waiting, key=ranks.__getitem__))
         waiting.remove(order[0])
-    found = []
+    bases = []
     before: list[Sequence[Entry]] = []
     for v in order:
-        found.append((v, _basis(*imposed(rows, size, *before))))
+        bases.append((v, _basis(*imposed(rows, size, *before))))
         before += functionals[v]
-    return found
+    return bases
 
 
 def _basis(rows: Rows, size: int) -> list[Balls]:
@@ -120,7 +120,7 @@ def _sides(
     and shifted again.
     """
     last = forms.value(v, u)
-    found: list[Balls] = []
+    zeros: list[Balls] = []
     below = False
     slopes = forms.gradient(v, u)
     for point in [*points, *(_centred(forms, v, point, room, u) for point in points)]:
@@ -130,12 +130,12 @@ def _sides(
                 w = _plus(w, _shift(number, k), motion)
             middle = _product(slopes, w) / 2
             square = middle * middle - forms.value(v, w) * last
-            if square > 0 and len(found) < _KEPT:
-                found.append(_plus(w, (square.sqrt() - middle) / last, u))
+            if square > 0 and len(zeros) < _KEPT:
+                zeros.append(_plus(w, (square.sqrt() - middle) / last, u))
             below = below or bool(square < 0)
-            if below and len(found) == _KEPT:
-                return found, below
-    return found, below
+            if below and len(zeros) == _KEPT:
+                return zeros, below
+    return zeros, below
 
 
 def _centred(forms: Forms, v: int, w: Balls, room: Sequence[Balls], u: Balls) -> Balls:
@@ -165,10 +165,10 @@ def _shift(number: int, k: int) -> Any:
 
 
 def _plus(w: Balls, weight: Any, u: Balls) -> Balls:
-    found = dict(w)
+    total = dict(w)
     for edge, x in u.items():
-        found[edge] = found.get(edge, arb(0)) + weight * x
-    return found
+        total[edge] = total.get(edge, arb(0)) + weight * x
+    return total
 
 
 def is_one_family(

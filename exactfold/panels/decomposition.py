@@ -67,38 +67,38 @@ def decompose(
     active = {edge for star in moving.values() for edge in star.folds}
     rest = tuple(e for e in pattern.folds if e not in active and e not in free)
     groups = groups_of(moving)
-    found: list[Part] = []
+    parts: list[Part] = []
     for number, group in enumerate(groups):
         if progress is not None:
             progress("decomposing", number, len(groups))
-        found.append(_part(pattern, {v: moving[v] for v in group}, listed))
+        parts.append(_part(pattern, {v: moving[v] for v in group}, listed))
     result = Decomposition(
         pattern,
-        "subspaces" if any(part.theory == "subspaces" for part in found) else "modes",
+        "subspaces" if any(part.theory == "subspaces" for part in parts) else "modes",
         PROVED,
         UNDECIDED,
-        product((part.second_order for part in found), len(free)),
-        product((part.true for part in found), len(free)),
+        product((part.second_order for part in parts), len(free)),
+        product((part.true for part in parts), len(free)),
         rest,
         free,
-        modes=tuple(mode for part in found for mode in part.modes),
-        modes_count=_modes_count(found),
-        parts=tuple(found),
-        near_misses=tuple(miss for part in found for miss in part.near_misses),
+        modes=tuple(mode for part in parts for mode in part.modes),
+        modes_count=_modes_count(parts),
+        parts=tuple(parts),
+        near_misses=tuple(miss for part in parts for miss in part.near_misses),
         held=tuple(sorted(held)),
-        still=tuple(sorted(edge for part in found for edge in part.still)),
+        still=tuple(sorted(edge for part in parts for edge in part.still)),
         seconds=time.perf_counter() - start,
     )
     if result.second_order is None:
-        reasons = [part.reason for part in found if part.second_order is None]
+        reasons = [part.reason for part in parts if part.second_order is None]
         result = replace(
             result,
             status=UNDECIDED,
             reason="; ".join(dict.fromkeys(reasons)),
-            found=product((part.at_least for part in found), len(free)),
+            found=product((part.at_least for part in parts), len(free)),
         )
-    if result.true is None and any(part.spaces or part.found for part in found):
-        result = replace(result, found_true=product((part.folding for part in found), len(free)))
+    if result.true is None and any(part.spaces or part.found for part in parts):
+        result = replace(result, found_true=product((part.folding for part in parts), len(free)))
     return replace(result, rigid=_rigidity(result))
 
 
@@ -114,9 +114,9 @@ def _rigidity(result: Decomposition) -> Verdict:
     return PROVED if known else UNDECIDED
 
 
-def _modes_count(found: Iterable[Part]) -> int | None:
+def _modes_count(parts: Iterable[Part]) -> int | None:
     total = 0
-    for part in found:
+    for part in parts:
         if part.theory != "modes" or part.second_order is None:
             return None
         total += sum(support.count for support in part.supports)

@@ -100,20 +100,20 @@ class ModeSearch:
 
         Raises `TooManyModesError` if there are more than `limit`, or if the search takes too long.
         """
-        found: list[Support] = []
+        supports: list[Support] = []
         for seed in sorted(self.stars):
             ended: dict[int, _State] = {}
             for state in self._grown(seed, self._bits(self.stars), listing=False):
                 before = ended.get(state.assigned)
                 count = state.count + (before.count if before else 0)
                 ended[state.assigned] = _State(state.assigned, {}, count, state.choice, None)
-            found += [
+            supports += [
                 Support(self._vertices(mask), state.count, _chosen(state.choice))
                 for mask, state in ended.items()
             ]
-            if len(found) > limit:
+            if len(supports) > limit:
                 raise TooManyModesError(f"more than {limit} sets of vertices move together")
-        return found
+        return supports
 
     def listed(self, support: Support) -> list[ElementaryMode]:
         """Every elementary mode of a support; raises `TooManyModesError` if there are too many."""

@@ -117,15 +117,15 @@ def cycle_basis(pattern: PanelPattern, graph: nx.Graph) -> list[tuple[int, ...]]
     A block is a part that no single vertex cuts. In a block every fold is a side of two faces, so
     each face is the sum of the others. The longest face, usually the outer one, is left out.
     """
-    found: list[tuple[int, ...]] = []
+    basis: list[tuple[int, ...]] = []
     for block in nx.biconnected_component_edges(graph):
         sides = {half_edge for i, j in block for half_edge in ((i, j), (j, i))}
         if len(sides) == 2:
             continue  # a single fold lies in no loop
         faces = _faces(pattern, sides)
         faces.remove(max(faces, key=len))
-        found += faces
-    return found
+        basis += faces
+    return basis
 
 
 def _faces(pattern: PanelPattern, sides: set[tuple[int, int]]) -> list[tuple[int, ...]]:

@@ -36,11 +36,11 @@ def folding_modes(
     may be many more modes. The work is limited to `most` steps, as in `found_components`. If no
     mode is found, nothing follows.
     """
-    found: dict[tuple[tuple[Edge, str], ...], Mode] = {}
+    modes: dict[tuple[tuple[Edge, str], ...], Mode] = {}
     work = 0
     for tried, proposal in enumerate(Proposals(moving, rows, size, regular=False)):
         work += (len(proposal.steps) + 1) * len(rows) * size
-        if work > most or (tried == _TRIES and not found):
+        if work > most or (tried == _TRIES and not modes):
             break
         leaf = exact_leaf(moving, rows, size, proposal, _MOST_ROOTS)
         if leaf is None or leaf.vertices:
@@ -49,8 +49,8 @@ def folding_modes(
         for line, dimension in independent_parts(lines, leaf.size, moving):
             mode = folding_mode(pattern, moving, line) if dimension == 1 else None
             if mode is not None:
-                found.setdefault(tuple(sorted(mode.assignment.items())), mode)
-    return sorted(found.values(), key=lambda mode: -len(mode.assignment))[:MOST_MODES]
+                modes.setdefault(tuple(sorted(mode.assignment.items())), mode)
+    return sorted(modes.values(), key=lambda mode: -len(mode.assignment))[:MOST_MODES]
 
 
 def folding_mode(pattern: PanelPattern, moving: Mapping[int, Star], line: Rows) -> Mode | None:

@@ -66,12 +66,12 @@ def found_components(
     forms = Forms(moving)
     whole = in_balls(rows)
     search = Proposals(moving, rows, size)
-    found: list[FoundComponent] = []
+    components: list[FoundComponent] = []
     work = 0
     for proposal in search:
         work += (len(proposal.steps) + 1) * len(rows) * size
         if work > most:
-            return found, False
+            return components, False
         leaf = exact_leaf(moving, rows, size, proposal)
         if leaf is None:
             continue
@@ -79,11 +79,11 @@ def found_components(
         w = regular_point(forms, leaf, proposal.densities)
         if w is None or not is_component(forms, whole, size, w, dimension):
             continue
-        if any(not outside(w, f.leaf) and not outside(f.motion, leaf) for f in found):
+        if any(not outside(w, f.leaf) and not outside(f.motion, leaf) for f in components):
             continue
         folds = (not leaf.vertices and extends(leaf)) or truly_folds(moving, w)
-        found.append(FoundComponent(leaf, dimension, w, folds))
-    return found, search.complete
+        components.append(FoundComponent(leaf, dimension, w, folds))
+    return components, search.complete
 
 
 def exact_leaf(

@@ -70,19 +70,19 @@ def _plane(star: Star) -> tuple[list[Number], list[Number]]:
     In the first motion fold 0 is flat.
     """
     d = star.directions
-    found: list[list[Number]] = []
+    motions: list[list[Number]] = []
     for skip in range(4):
         i, j, k = (n for n in range(4) if n != skip)
         w: list[Number] = [Fraction(0)] * 4
         # w_i d_i + w_j d_j + w_k d_k = 0 with the brackets of the opposite pairs (Cramer)
         w[i], w[j], w[k] = bracket(d[j], d[k]), bracket(d[k], d[i]), bracket(d[i], d[j])
-        if not found or any(
-            found[0][p] * w[q] != found[0][q] * w[p] for p in range(4) for q in range(p)
+        if not motions or any(
+            motions[0][p] * w[q] != motions[0][q] * w[p] for p in range(4) for q in range(p)
         ):
-            found.append(w)
-        if len(found) == 2:
+            motions.append(w)
+        if len(motions) == 2:
             break
-    return found[0], found[1]
+    return motions[0], motions[1]
 
 
 def _mode(star: Star, index: int, values: Sequence[Number]) -> LocalMode:

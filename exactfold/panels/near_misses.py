@@ -134,7 +134,7 @@ def snapped_misses(
     the sheet closes nothing. Only the first 16 near misses are tried.
     """
     open_ones = dict(enumerate(misses[:_MOST_MISSES]))
-    found = list(misses)
+    snapped = list(misses)
     tried: tuple[str | int, ...] = ()
     for snap in SNAPS if len(pattern.vertices) <= _MOST_VERTICES else SNAPS[:1]:
         if not open_ones:
@@ -148,11 +148,11 @@ def snapped_misses(
             continue
         for k, miss in list(open_ones.items()):
             if closes(sheet, miss):
-                found[k] = replace(miss, snap=snap, largest_move=move, tried=tried)
+                snapped[k] = replace(miss, snap=snap, largest_move=move, tried=tried)
                 del open_ones[k]
     for k, miss in open_ones.items():
-        found[k] = replace(miss, tried=tried)
-    return tuple(found)
+        snapped[k] = replace(miss, tried=tried)
+    return tuple(snapped)
 
 
 def closes(sheet: PanelPattern, miss: NearMiss) -> bool:

@@ -177,7 +177,7 @@ class Proposals:
             basis = _without(basis, np.vstack([functionals for _, functionals in kinds.kernels]))
 
     def _kinds(self, basis: FloatArray) -> _Kinds:
-        found = _Kinds([], {}, [])
+        kinds = _Kinds([], {}, [])
         self._visits += len(self._forms)
         for vertices, folds, forms in self._batches:
             rows = basis[folds]
@@ -189,14 +189,14 @@ class Proposals:
             for k in np.flatnonzero(kept.any(axis=1)):
                 v, some = vertices[k], values[k][kept[k]]
                 if (some > 0).all() or (some < 0).all():
-                    found.kernels.append((v, vectors[k][:, kept[k]].T @ turned[k] @ rows[k]))
+                    kinds.kernels.append((v, vectors[k][:, kept[k]].T @ turned[k] @ rows[k]))
                 elif len(some) == 2:
                     both = vectors[k][:, kept[k]].T @ turned[k] @ rows[k]
                     x, y = both * np.sqrt(np.abs(some))[:, None]
-                    found.splits[v] = (x - y, x + y)
+                    kinds.splits[v] = (x - y, x + y)
                 else:
-                    found.left.append(v)
-        return found
+                    kinds.left.append(v)
+        return kinds
 
     def _nearest(self, vertices: Iterable[int], steps: Sequence[_Step]) -> int:
         """The vertex to continue with: one with the most neighbours done, so that loops close
@@ -228,10 +228,10 @@ class Proposals:
         return float(local @ self._forms[v] @ local)
 
     def _jacobian(self, vertices: Sequence[int], w: FloatArray) -> FloatArray:
-        found = np.zeros((len(vertices), len(self._edges)))
+        jacobian = np.zeros((len(vertices), len(self._edges)))
         for k, v in enumerate(vertices):
-            found[k, self._folds[v]] = 2 * self._forms[v] @ w[self._folds[v]]
-        return found
+            jacobian[k, self._folds[v]] = 2 * self._forms[v] @ w[self._folds[v]]
+        return jacobian
 
     def _rank(self, w: FloatArray) -> int:
         jacobian = self._jacobian(list(self._forms), w) @ self._whole

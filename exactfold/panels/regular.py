@@ -50,13 +50,13 @@ class Forms:
 
     def gradient(self, v: int, w: Balls) -> dict[Edge, Any]:
         """The derivative of the form of vertex v at w, by fold."""
-        found: dict[Edge, Any] = {}
+        gradient: dict[Edge, Any] = {}
         for e, f, c in self._terms(v):
             if f in w:
-                found[e] = found.get(e, 0) + c * w[f]
+                gradient[e] = gradient.get(e, 0) + c * w[f]
             if e in w:
-                found[f] = found.get(f, 0) + c * w[e]
-        return found
+                gradient[f] = gradient.get(f, 0) + c * w[e]
+        return gradient
 
     def derivatives(
         self, vertices: Iterable[int], w: Balls, rows: BallRows, size: int
@@ -64,14 +64,14 @@ class Forms:
         """The derivatives at w of the forms of these vertices with respect to a space's
         parameters.
         """
-        found = []
+        derivatives = []
         for v in vertices:
             total = [arb(0)] * size
             for edge, weight in self.gradient(v, w).items():
                 for k, x in rows.get(edge, ()):
                     total[k] += weight * x
-            found.append(total)
-        return found
+            derivatives.append(total)
+        return derivatives
 
 
 def in_balls(rows: Mapping[Edge, Sequence[Any]]) -> BallRows:
@@ -93,12 +93,12 @@ def point(rows: Mapping[Edge, Sequence[Any]], size: int) -> Balls:
 
 def parameter_folds(rows: Mapping[Edge, Sequence[Any]], size: int) -> list[Edge]:
     """For each parameter of a space, a fold whose density equals it."""
-    found: dict[int, Edge] = {}
+    folds: dict[int, Edge] = {}
     for edge, row in rows.items():
         entries = [k for k, x in enumerate(row) if x]
         if len(entries) == 1 and row[entries[0]] == 1:
-            found.setdefault(entries[0], edge)
-    return [found[k] for k in range(size)]
+            folds.setdefault(entries[0], edge)
+    return [folds[k] for k in range(size)]
 
 
 def regular_point(forms: Forms, leaf: Leaf, near: Mapping[Edge, float]) -> Balls | None:
@@ -212,10 +212,10 @@ def truly_folds(stars: Mapping[int, Star], w: Balls) -> bool:
     before = ctx.prec
     ctx.prec = BITS
     try:
-        found = Forms(active).derivatives(full, w, in_balls(rows), size)
+        derivatives = Forms(active).derivatives(full, w, in_balls(rows), size)
     finally:
         ctx.prec = before
-    return rank_at_least(found, len(full))
+    return rank_at_least(derivatives, len(full))
 
 
 def outside(w: Balls, leaf: Leaf) -> bool:

@@ -320,8 +320,10 @@ class Part:
             return self.true
         shown = zip(self.spaces, self.spaces_fold, strict=True)
         known = _counted(leaf.dimension for leaf, folds in shown if folds)
-        found = _by_dimension(one for one in self.found if one.folds)
-        return {d: max(known.get(d, 0), found.get(d, 0)) for d in {**known, **found}} or None
+        by_components = _by_dimension(one for one in self.found if one.folds)
+        return {
+            d: max(known.get(d, 0), by_components.get(d, 0)) for d in {**known, **by_components}
+        } or None
 
     @property
     def folds(self) -> bool:
@@ -333,8 +335,8 @@ def _texts(counts: Counts | None) -> _ByDimension | None:
     return None if counts is None else {str(k): n for k, n in counts.items()}
 
 
-def _by_dimension(found: Iterable[FoundComponent]) -> dict[int, int]:
-    return _counted(one.dimension for one in found)
+def _by_dimension(components: Iterable[FoundComponent]) -> dict[int, int]:
+    return _counted(one.dimension for one in components)
 
 
 def _counted(dimensions: Iterable[int]) -> dict[int, int]:

@@ -43,14 +43,14 @@ class Star:
         >>> right.derivative((1, 0, 1, 0))
         [0, 2, 0, 0]
         """
-        found: list[Number] = []
+        gradient: list[Number] = []
         for j, dj in enumerate(self.directions):
             total: Number = 0
             for k, (dk, wk) in enumerate(zip(self.directions, w, strict=True)):
                 if k != j:
                     total = total + wk * (bracket(dk, dj) if k < j else bracket(dj, dk))
-            found.append(total)
-        return found
+            gradient.append(total)
+        return gradient
 
     def only(self, folds: Iterable[Edge]) -> Star:
         """The star of these folds alone; the other folds are held flat."""
@@ -114,7 +114,7 @@ def stars(pattern: PanelPattern, flat: Iterable[Edge] = ()) -> Mapping[int, Star
     ((2, 4), (0, 4))
     """
     gone = set(flat)
-    found: dict[int, Star] = {}
+    remaining: dict[int, Star] = {}
     waiting = dict.fromkeys(pattern.interior)
     while waiting:
         v, _ = waiting.popitem()
@@ -130,8 +130,8 @@ def stars(pattern: PanelPattern, flat: Iterable[Edge] = ()) -> Mapping[int, Star
                 gone.add(edge)
                 if u in pattern.stars:
                     waiting[u] = None
-        found[v] = star.only(star.folds[k] for k in kept)
-    return MappingProxyType({v: found[v] for v in pattern.interior if found[v].folds})
+        remaining[v] = star.only(star.folds[k] for k in kept)
+    return MappingProxyType({v: remaining[v] for v in pattern.interior if remaining[v].folds})
 
 
 def edge_of(i: int, j: int) -> Edge:

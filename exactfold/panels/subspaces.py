@@ -65,8 +65,8 @@ def leaves(stars: Mapping[int, Star], rows: Rows, size: int, most: int) -> list[
     times one dimension, times the square of the degree of the field.
     """
     search = _SubspaceSearch(stars, most)
-    found = search.solved(dict(rows), size)
-    return [leaf for leaf in found if leaf.size]
+    solutions = search.solved(dict(rows), size)
+    return [leaf for leaf in solutions if leaf.size]
 
 
 class _SubspaceSearch:
@@ -98,11 +98,11 @@ class _SubspaceSearch:
         rows, size, products, left = self.reduced(rows, size)
         if not products:
             return [made_leaf(rows, size, left)]
-        found: list[Leaf] = []
+        solutions: list[Leaf] = []
         for functional in factors(products, rows):
             child, child_size = imposed(rows, size, functional)
-            found += self.solved(child, child_size)
-        return found
+            solutions += self.solved(child, child_size)
+        return solutions
 
     def reduced(self, rows: Rows, size: int) -> tuple[Rows, int, list[Squares], list[int]]:
         """The space after all semidefinite forms; the forms that split; the vertices with other
@@ -223,20 +223,20 @@ def _diagonalised(form: Sequence[Sequence[Entry]]) -> list[tuple[Entry, Vector]]
     """A symmetric matrix as sum d_i l_i^2 with d_i not 0, by completing squares."""
     size = len(form)
     work = [list(row) for row in form]
-    found: list[tuple[Entry, Vector]] = []
+    squares: list[tuple[Entry, Vector]] = []
     while True:
         pivot = next((k for k in range(size) if work[k][k]), None)
         if pivot is None:
             pair = next(((i, j) for i in range(size) for j in range(i) if work[i][j]), None)
             if pair is None:
-                return found
+                return squares
             i, j = pair  # 2 m x y = m ((x + y)^2 - (x - y)^2) / 2, other terms included
             functional = [work[i][k] + work[j][k] for k in range(size)]
             value = 2 * work[i][j]
         else:
             functional, value = list(work[pivot]), work[pivot][pivot]
         weight = 1 / value
-        found.append((weight, functional))
+        squares.append((weight, functional))
         for a in range(size):
             for b in range(size):
                 if functional[a] and functional[b]:
@@ -266,11 +266,11 @@ def independent_parts(rows: Rows, size: int, stars: Mapping[int, Star]) -> list[
     ]
     if len(groups) == 1 and len(groups[0]) == len(rows):
         return [(rows, size)]
-    found = []
+    parts = []
     for group in groups:
         basis, coordinates = _row_space([rows[edge] for edge in group], size)
-        found.append((dict(zip(group, coordinates, strict=True)), len(basis)))
-    return found
+        parts.append((dict(zip(group, coordinates, strict=True)), len(basis)))
+    return parts
 
 
 def _sum(a: Leaf, b: Leaf) -> Leaf:
@@ -281,10 +281,10 @@ def _sum(a: Leaf, b: Leaf) -> Leaf:
     return Leaf(rows, a.size + b.size, tuple(sorted(a.vertices + b.vertices)))
 
 
-def _maximal(found: Iterable[Leaf]) -> list[Leaf]:
+def _maximal(candidates: Iterable[Leaf]) -> list[Leaf]:
     """The leaves that lie in no other leaf; among equal leaves, the first."""
     kept: list[Leaf] = []
-    for leaf in sorted(found, key=lambda leaf: (-leaf.size, len(leaf.vertices))):
+    for leaf in sorted(candidates, key=lambda leaf: (-leaf.size, len(leaf.vertices))):
         if not any(_inside(leaf, other) for other in kept):
             kept.append(leaf)
     return kept

@@ -27,8 +27,8 @@ class Reality:
     multipliers: dict[int, Fraction] | None = None
 
     def __repr__(self) -> str:
-        found = "?" if self.solutions is None else str(self.solutions)
-        return f"<Reality: {self.verdict}, {found} solutions>"
+        number = "?" if self.solutions is None else str(self.solutions)
+        return f"<Reality: {self.verdict}, {number} solutions>"
 
 
 def decide_all_branches_real(pattern: PatternLike) -> Reality:

@@ -57,7 +57,7 @@ def why_no_way(result: BranchCount | Decomposition) -> str:
     >>> strip = PanelPattern([(0, 0), (1, 0), (2, 0), (2, 1), (1, 1), (0, 1)],
     ...     [(0, 1), (1, 2), (2, 3), (3, 4), (4, 5), (5, 0), (1, 4)])
     >>> why_no_way(decompose(strip))
-    'the only fold that can fold is 1-4, from border to border, and it is free'
+    'the only fold that can fold is 1-4, from boundary to boundary, and it is free'
     """
     if isinstance(result, BranchCount):
         if result.status is PROVED and result.dimension:
@@ -68,11 +68,13 @@ def why_no_way(result: BranchCount | Decomposition) -> str:
     if result.true == {len(result.free): 1}:
         named = ", ".join(f"{i}-{j}" for i, j in result.free[:MOST_NAMED])
         if len(result.free) == 1:
-            return f"the only fold that can fold is {named}, from border to border, and it is free"
+            return (
+                f"the only fold that can fold is {named}, from boundary to boundary, and it is free"
+            )
         more = len(result.free) - MOST_NAMED
         return (
             f"the only folds that can fold are {named}{f' and {more} more' if more > 0 else ''}, "
-            "from border to border, and each of them can fold independently of the others"
+            "from boundary to boundary, and each of them can fold independently of the others"
         )
     if sum((result.true or result.second_order or result.found or {}).values()):
         return "the sheet folds in families or along curves, and none of them is listed"

@@ -39,7 +39,7 @@ def branch_report(result: Branch, driven: Driven | None = None) -> Group:
         deficits = _by_vertex(dict(sorted(result.curvature.items())))
         rows.append(("angle deficits", cut(deficits)))
     if result.boundary_heights is not None:
-        rows.append(("heights of the border", cut(boundary_heights_text(result.boundary_heights))))
+        rows.append(("boundary heights", cut(boundary_heights_text(result.boundary_heights))))
         if straight := result.straight_boundary:
             rows.append(("on a straight side", f"{_vertices(straight)}: the side may bend there"))
     if driven is not None:
@@ -92,7 +92,7 @@ def shapes_report(result: ShapeCount, *, everything: bool = False) -> Group:
         ("status", Text.assemble(status_text(result.status), f" ({result.reason})")),
         ("shapes", f"{number}; {result.with_multiplicity} with multiplicity"),
         ("angle deficits", cut(deficits)),
-        ("heights of the border", cut(boundary_heights_text(result.boundary_heights))),
+        ("boundary heights", cut(boundary_heights_text(result.boundary_heights))),
     ]
     if result.signs:
         texts = ", ".join(result.signs)

@@ -84,7 +84,7 @@ def _branch_rows(motion: Motion) -> list[tuple[str, RenderableType]]:
     ]
     if motion.boundary_heights is not None:
         rows.append(
-            ("border", f"in the ratio {cut(boundary_heights_text(motion.boundary_heights))}")
+            ("boundary", f"in the ratio {cut(boundary_heights_text(motion.boundary_heights))}")
         )
     if motion.drive is not None:
         rows.append(("driven", cut(f"{motion.drive.text}; sines of half the angles in ratio")))

@@ -188,7 +188,7 @@ def _proof_of_panels(motion: PanelMotion, contacts: bool) -> _Known:
         said = (
             "every vertex closes exactly at all fold angles"
             if motion.curves
-            else "only folds from border to border turn, and they may turn by any angle"
+            else "only folds from boundary to boundary turn, and they may turn by any angle"
         )
         touching = _proved_contact(motion) if contacts else "contacts were found in floats"
         return _Known(True, True, f"{said}; {touching}")
@@ -252,7 +252,7 @@ def component_way(
     numbers = ", ".join(map(str, component.modes))
     name = f"mode{'s' if len(folding) > 1 else ''} {numbers}" if folding else "free folds"
     shown = sorted({_shown_by(mode.extends.by) for mode in folding})
-    why = " and ".join(shown) or "folds from border to border are free"
+    why = " and ".join(shown) or "folds from boundary to boundary are free"
     if component.dimension > 1:
         what = "modes" if folding else "folds"
         still = ", free folds flat" if folding and component.free else ""

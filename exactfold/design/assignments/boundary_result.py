@@ -78,7 +78,7 @@ class BoundaryMatch(Certified):
             signs = self.branch.sign_text
             return (
                 f"the branch with the vertex signs {signs} has them, with the heights of the "
-                f"border {_heights(self.branch)}",
+                f"boundary {_heights(self.branch)}",
                 "true motions begin like this",
             )
         stuck = self._stuck

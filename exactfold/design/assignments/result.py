@@ -147,7 +147,7 @@ class MatchedRay:
         }
 
     def __repr__(self) -> str:
-        return f"<Matched: {self.sign_text}, side {self.side}>"
+        return f"<MatchedRay: {self.sign_text}, side {self.side}>"
 
 
 Compared = tuple[Mapping[int, int], tuple[MatchedRay, MatchedRay]]

@@ -42,7 +42,7 @@ def match(
     >>> branch = find_branch(random_square(8, seed=1), "+-++--+-")
     >>> found = match(branch.pattern, branch.assignment)
     >>> found.status, found.matches
-    (<Verdict.PROVED: 'proved'>, (<Matched: +-++--+-, side 1>,))
+    (<Verdict.PROVED: 'proved'>, (<MatchedRay: +-++--+-, side 1>,))
     >>> match(branch.pattern, "V" + branch.assignment_text[1:])
     <Match: proved, 0 halves, 0 sign vectors>
     """

@@ -60,7 +60,7 @@ def all_assignments(pattern: PatternLike, *, progress: Progress | None = None) -
     if given.Ve != 5 or not given.is_convex:
         raise NotCountedError(
             "all assignments are listed only if the boundary is convex and has five vertices; this "
-            f"border has {given.Ve}"
+            f"boundary has {given.Ve}"
             + ("" if given.is_convex else f", and vertex {given.reflex_corner} is reflex")
         )
     sheet, _ = given.without_rigid_parts()

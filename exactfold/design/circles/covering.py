@@ -211,7 +211,7 @@ class _CoveringSearch:
         found = solver.solved(signs, boundary_heights, start) if start is not None else None
         found = found or solver.solved(signs, boundary_heights)
         if found is None:
-            raise NotCoveredError("no solution was found over some heights of the border")
+            raise NotCoveredError("no solution was found over some boundary heights")
         self._look(found)
         return found
 

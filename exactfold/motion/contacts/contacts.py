@@ -134,12 +134,12 @@ class ContactWatch:
         self.clear = link.time(parameter)[0] if parameter > link.entry[1] else link.entered[0]
         self.parameters = parameter, parameter, parameter
         after = (max(link.entry) + _AFTER) / (1 << PARAMETER_BITS)
-        found = _touching(pairs, coefficients, radius, (after, max(at, after), longest))
-        if found is None:
+        contact = _touching(pairs, coefficients, radius, (after, max(at, after), longest))
+        if contact is None:
             return _NEITHER
-        begin, end = (int(s * (1 << PARAMETER_BITS)) for s in (found.begin, found.end))
+        begin, end = (int(s * (1 << PARAMETER_BITS)) for s in (contact.begin, contact.end))
         self.parameters = parameter, begin, end
-        self.touching = replace(found, latest=link.time(end)[1])
+        self.touching = replace(contact, latest=link.time(end)[1])
         return _FIRST
 
     def _at_a_branch_point(self, branch_point: Passage, pairs: FacePairs) -> str | None:
@@ -175,12 +175,12 @@ class ContactWatch:
             return None
         self.open_pairs = left
         where = arc.begin, max(at, arc.begin), arc.end
-        found = _touching(pairs, arc.coefficients, _ROOM * arc.radius + _MORE, where)
-        if found is None:
+        contact = _touching(pairs, arc.coefficients, _ROOM * arc.radius + _MORE, where)
+        if contact is None:
             return _NEITHER
-        begin, end = (int(s * (1 << PARAMETER_BITS)) for s in (found.begin, found.end))
+        begin, end = (int(s * (1 << PARAMETER_BITS)) for s in (contact.begin, contact.end))
         self.parameters = parameter, begin, end
-        self.touching = replace(found, latest=branch_point.time(end)[1])
+        self.touching = replace(contact, latest=branch_point.time(end)[1])
         return _FIRST
 
     def result(self, track: Track) -> FirstContact:
@@ -302,12 +302,12 @@ def _touching(
         return None
 
     def earliest(test: Callable[[float], _Touching | None], good: float) -> _Touching | None:
-        found, bad = test(good), low
-        for _ in range(_STEPS if found else 0):
+        contact, bad = test(good), low
+        for _ in range(_STEPS if contact else 0):
             middle = 0.5 * (bad + good)
             other = test(middle)
-            found, bad, good = (found, middle, good) if other is None else (other, bad, middle)
-        return found
+            contact, bad, good = (contact, middle, good) if other is None else (other, bad, middle)
+        return contact
 
     step = 1e-9 * (high - low)
     while closed(low + step) is None and crossed(low + step) is None:
@@ -357,9 +357,9 @@ def _labelled(track: Track, face: Triangle) -> Triangle:
 
 def _named(track: Track, pairs: FacePairs, left: Open) -> tuple[tuple[Triangle, Triangle], ...]:
     """The pairs of faces that are left, with the pattern's numbers of the vertices."""
-    found = [pairs.names(int(k), "apart") for k in left.apart]
-    found += [pairs.names(int(k), "corner") for k in left.corner]
+    open_pairs = [pairs.names(int(k), "apart") for k in left.apart]
+    open_pairs += [pairs.names(int(k), "corner") for k in left.corner]
     for fold in left.folds:
         i, j, a, b = (int(v) for v in track.framework.hinges[fold])
-        found.append(((i, j, a), (i, b, j)))
-    return tuple((_labelled(track, one), _labelled(track, two)) for one, two in found)
+        open_pairs.append(((i, j, a), (i, b, j)))
+    return tuple((_labelled(track, one), _labelled(track, two)) for one, two in open_pairs)

@@ -93,7 +93,7 @@ class FacePairs(AnyPairs):
     def closed(self) -> FloatArray:
         """Upper bounds of |l - r'|^2, where r' is the mirror image of r in the line of the fold."""
         points, bits = self.framework.points, self.framework.bits
-        found = []
+        squared_distances = []
         for i, j in self.framework.sheet.folds:
             left, right = self.framework.sheet.opposite((i, j))
             (ix, iy), (jx, jy), (lx, ly), (rx, ry) = (points[v] for v in (i, j, left, right))
@@ -102,8 +102,8 @@ class FacePairs(AnyPairs):
             # Along the fold the corners keep their places; across it the distances are subtracted.
             along = (lx - rx) * ex + (ly - ry) * ey
             across = (ex * (ly - iy) - ey * (lx - ix)) + (ex * (ry - iy) - ey * (rx - ix))
-            found.append((along * along + across * across) / (square << 2 * bits))
-        return np.array(found) * (1 + 1e-12)
+            squared_distances.append((along * along + across * across) / (square << 2 * bits))
+        return np.array(squared_distances) * (1 + 1e-12)
 
     def names(self, row: int, kind: str) -> tuple[Triangle, Triangle]:
         """The two faces of a pair, as triangles of the sheet."""

@@ -209,11 +209,11 @@ def fold_ranges(
     parts.angles = np.cumsum(np.concatenate([parts.angles[:1], steps]), axis=0)
     turns = np.rint(parts.angles[-1] / (2 * np.pi))
     low, high = parts.extremes()
-    found = []
+    ranges = []
     for k, fold in enumerate(names):
         at_ends = (Fraction(0), Fraction(360 * int(turns[k])))
         least, greatest = _degrees(*low[:, k]), _degrees(*high[:, k])
-        found.append(
+        ranges.append(
             FoldRange(
                 fold,
                 int(turns[k]),
@@ -221,7 +221,7 @@ def fold_ranges(
                 (max(greatest[0], *at_ends), greatest[1]),
             )
         )
-    return tuple(found)
+    return tuple(ranges)
 
 
 def angle_in_floats(bounds: Interval) -> tuple[float, float]:

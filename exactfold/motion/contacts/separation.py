@@ -313,16 +313,16 @@ def _nearest_points(p: FloatArray) -> FloatArray:
     solution n exactly if 0 is not in their convex hull. Then the point of the hull nearest to 0 is
     a solution; it is one of the four points or one of the points returned here.
     """
-    found = [p]
+    candidates = [p]
     for i, j in combinations(range(4), 2):
         side = p[:, j] - p[:, i]
         square = np.maximum((side * side).sum(axis=1), 1e-300)
         share = (p[:, i] * side).sum(axis=1) / square
-        found.append((p[:, i] - share[:, None] * side)[:, None])
+        candidates.append((p[:, i] - share[:, None] * side)[:, None])
     for i, j, k in combinations(range(4), 3):
         normal = cross(p[:, j] - p[:, i], p[:, k] - p[:, i])
-        found.append((normal * np.sign((normal * p[:, i]).sum(axis=1))[:, None])[:, None])
-    return _unit(np.concatenate(found, axis=1))
+        candidates.append((normal * np.sign((normal * p[:, i]).sum(axis=1))[:, None])[:, None])
+    return _unit(np.concatenate(candidates, axis=1))
 
 
 def _unit(vectors: FloatArray) -> FloatArray:

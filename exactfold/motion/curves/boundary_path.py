@@ -48,15 +48,15 @@ def ties_of(problem: Problem) -> tuple[Tie, ...]:
     base, raised = _base(sheet, boundary_heights)
     unit = level(sheet, base, raised)
     height = _value(unit, boundary_heights)
-    found = []
+    ties = []
     for v in sorted(set(sheet.boundary).difference(base, [raised])):
         own = level(sheet, base, v)
         slope = _value(own, boundary_heights) / height
         row = dict(own)
         for w, c in unit.items():
             row[w] = row.get(w, Fraction(0)) - slope * c
-        found.append(_whole(row))
-    return tuple(found)
+        ties.append(_whole(row))
+    return tuple(ties)
 
 
 def framework_of(

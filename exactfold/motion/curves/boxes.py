@@ -46,11 +46,11 @@ class BoxTree:
         boxes[3:] = -np.inf
         boxes[:3, : len(self.order)] = low[self.order].T
         boxes[3:, : len(self.order)] = high[self.order].T
-        found = [boxes]
+        levels = [boxes]
         for _ in range(depth):
-            even, odd = found[-1][:, 0::2], found[-1][:, 1::2]
-            found.append(np.vstack([np.minimum(even, odd)[:3], np.maximum(even, odd)[3:]]))
-        return found[::-1]
+            even, odd = levels[-1][:, 0::2], levels[-1][:, 1::2]
+            levels.append(np.vstack([np.minimum(even, odd)[:3], np.maximum(even, odd)[3:]]))
+        return levels[::-1]
 
     def __repr__(self) -> str:
         return f"<BoxTree: {len(self.order)} boxes>"

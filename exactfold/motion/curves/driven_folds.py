@@ -140,15 +140,15 @@ class DrivenFolds:
         """
         basis = np.linalg.svd(rates, full_matrices=True)[2]
         free = basis[len(rates) :]
-        folds, labels, found = self.problem.sheet.folds, self.problem.labels, []
+        folds, labels, chosen = self.problem.sheet.folds, self.problem.labels, []
         moves = self.bends @ tangents
         while len(free):
             best = int(np.argmax(np.linalg.norm(moves @ free.T, axis=1)))
             i, j = sorted(labels[v] for v in folds[best])
-            found.append((i, j))
+            chosen.append((i, j))
             direction = free @ moves[best]
             free = np.linalg.svd(direction[None])[2][1:] @ free
-        return found
+        return chosen
 
     def completed(self, y: FloatArray) -> PrescribedAngles | None:
         """The drive, where folds without an angle get their angle on the branch at y.

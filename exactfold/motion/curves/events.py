@@ -107,16 +107,16 @@ class Watch:
         positions = self.framework.positions(piece.at(grid))
         raw = fold_angles_of(positions, self.framework.hinges)
         angles = np.unwrap(np.vstack([self.angles, raw]), axis=0)[1:]
-        found = [
+        events = [
             *self._branch_point(piece),
             *self._angle_events(piece, grid, angles),
             *self._turnings(piece, grid, positions, angles),
             *self._returns(piece, grid, raw),
         ]
         if self.look_for_contacts:
-            found += self._contacts(piece, grid, positions)
+            events += self._contacts(piece, grid, positions)
         self.angles = angles[-1]
-        return sorted(found, key=lambda item: item[0])
+        return sorted(events, key=lambda item: item[0])
 
     def _event(
         self, piece: Piece, kind: str, low: float, high: float, **more: object
@@ -142,7 +142,7 @@ class Watch:
     def _angle_events(
         self, piece: Piece, grid: FloatArray, angles: FloatArray
     ) -> list[tuple[float, Event]]:
-        found = []
+        events = []
         goals = [(np.pi, FLAT_FOLD)]
         if self.largest_angle is not None and self.largest_angle < np.pi:
             goals.append((self.largest_angle, ANGLE))
@@ -171,15 +171,15 @@ class Watch:
                 i, j, left, right = (int(v) for v in self.framework.hinges[e])
                 faces = ((i, j, left), (i, right, j)) if kind == FLAT_FOLD else ()
                 folds = tuple(f for f, _ in self.driven) if kind == DRIVEN else ((i, j),)
-                found.append(self._event(piece, kind, low, high, faces=faces, folds=folds))
-        return found
+                events.append(self._event(piece, kind, low, high, faces=faces, folds=folds))
+        return events
 
     def _turnings(
         self, piece: Piece, grid: FloatArray, positions: FloatArray, angles: FloatArray
     ) -> list[tuple[float, Event]]:
         framework = self.framework
         rates = angle_rates(positions, framework.displacement(piece.speed(grid)), framework.hinges)
-        found = []
+        events = []
         # The rates of folds that stay flat are only rounding errors.
         sizes = np.abs(rates)
         moving = np.maximum(sizes[1:], sizes[:-1]) > _STILL * sizes.max(initial=0.0)
@@ -188,15 +188,15 @@ class Watch:
             low, high = _bracket(fold.rate, grid[k], grid[k + 1])
             i, j = (int(v) for v in framework.hinges[e, :2])
             size = abs(np.degrees(fold.angle(high, angles[k + 1, e])))
-            found.append(
+            events.append(
                 self._event(
                     piece, TURNING, low, high, folds=((i, j),), detail=f"at {size:.4g} degrees"
                 )
             )
             if self.driven and (i, j) == self.driven[0][0]:
                 folds = tuple(fold for fold, _ in self.driven)
-                found.append(self._event(piece, DEAD_POINT, low, high, folds=folds))
-        return found
+                events.append(self._event(piece, DEAD_POINT, low, high, folds=folds))
+        return events
 
     def _returns(
         self, piece: Piece, grid: FloatArray, raw: FloatArray

@@ -179,10 +179,10 @@ class Framework:
 
         row, starts, _, _ = self._structure
         entries, shape = self._entries(rows), (self._number, self.size)
-        found = csc_array((entries, row, starts), shape=shape, copy=bool(self.coupling.rows))
+        matrix = csc_array((entries, row, starts), shape=shape, copy=bool(self.coupling.rows))
         if self.coupling.rows:
-            found.sum_duplicates()  # diagonals may share vertices
-        return found
+            matrix.sum_duplicates()  # diagonals may share vertices
+        return matrix
 
     @property
     def _number(self) -> int:
@@ -192,16 +192,16 @@ class Framework:
     def _entries(self, rows: FloatArray) -> FloatArray:
         """The entries of `matrix` that may be nonzero, column by column."""
         _, _, source, factor = self._structure
-        found: FloatArray = factor * np.append(rows.reshape(-1), 1.0)[source]
-        return found
+        entries: FloatArray = factor * np.append(rows.reshape(-1), 1.0)[source]
+        return entries
 
     def dense(self, rows: FloatArray) -> FloatArray:
         """The same matrix as `matrix`, but dense."""
         row, starts, _, _ = self._structure
-        found = np.zeros((self._number, self.size))
+        matrix = np.zeros((self._number, self.size))
         columns = np.repeat(np.arange(self.size), np.diff(starts))
-        np.add.at(found, (row, columns), self._entries(rows))
-        return found
+        np.add.at(matrix, (row, columns), self._entries(rows))
+        return matrix
 
     @cached_property
     def _structure(self) -> tuple[IndexArray, IndexArray, IndexArray, FloatArray]:

@@ -28,7 +28,7 @@ def least_of(
     """
     from scipy.optimize import minimize_scalar
 
-    found = minimize_scalar(
+    minimum = minimize_scalar(
         function, bounds=(low, high), method="bounded", options={"xatol": within}
     )
-    return float(found.x), float(found.fun)
+    return float(minimum.x), float(minimum.fun)

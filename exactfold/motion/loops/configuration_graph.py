@@ -236,15 +236,15 @@ class ConfigurationGraph:
         """
         import networkx as nx
 
-        found: nx.MultiGraph[int | str] = nx.MultiGraph()
-        found.add_node(FLAT)
-        found.add_nodes_from(
+        graph: nx.MultiGraph[int | str] = nx.MultiGraph()
+        graph.add_node(FLAT)
+        graph.add_nodes_from(
             (k, {"node": branch_point}) for k, branch_point in enumerate(self.nodes)
         )
         for k, arc in enumerate(self.arcs):
             if arc.start is not None and arc.end is not None:
-                found.add_edge(_vertex(arc.start), _vertex(arc.end), key=k, arc=arc)
-        return nx.freeze(found)
+                graph.add_edge(_vertex(arc.start), _vertex(arc.end), key=k, arc=arc)
+        return nx.freeze(graph)
 
     @property
     def independent_cycles(self) -> int | None:
@@ -267,7 +267,7 @@ class ConfigurationGraph:
             if end is not None
         }
         seen: set[int] = set()
-        found = []
+        curves = []
         for k, arc in enumerate(self.arcs):
             if k in seen:
                 continue
@@ -277,8 +277,8 @@ class ConfigurationGraph:
                 curve.append(number)
             seen.update(curve)
             if isinstance(end, EndAtBranchPoint):
-                found.append(tuple(curve))
-        return tuple(found)
+                curves.append(tuple(curve))
+        return tuple(curves)
 
     def to_dict(self) -> GraphDocument:
         """The object of the graph in the output of `exactfold motions --json`."""

@@ -50,10 +50,10 @@ def _at(proof: LoopProof, wanted: Fraction) -> tuple[Interval, Ball]:
 
 def _landed(link: Link, landing: Landing) -> Interval:
     """Bounds of the time at which the motion passes from the last tube to that of the landing."""
-    found = link.tube.located(landing.ball)
-    if found is None:
+    parameters = link.tube.located(landing.ball)
+    if parameters is None:
         raise ArithmeticError("the landing is not on the tube")
-    return link.time(found[0])[0], link.time(found[1])[1]
+    return link.time(parameters[0])[0], link.time(parameters[1])[1]
 
 
 def _before_the_end(landing: Landing, landed: Interval, wanted: Fraction) -> tuple[Interval, Ball]:

@@ -162,8 +162,8 @@ def _landed(link: Link, start: StartTube, tau: int) -> Landing | None:
     tube = link.tube
     if not 0 < abs(tau) <= start.last:
         return None
-    found = tube.located(start.ball(tau))
-    if found is None or found[0] < link.entry[1]:
+    parameters = tube.located(start.ball(tau))
+    if parameters is None or parameters[0] < link.entry[1]:
         return None
     velocity = start.ball_velocity(tau)
     if tube.goes_along(velocity) * (1 if tau > 0 else -1) != -1:

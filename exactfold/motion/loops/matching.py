@@ -100,12 +100,12 @@ class Loops(Ways[Loop]):
 
         Every loop gives four entries: there and back, and the mirror images of both.
         """
-        found: dict[Ray, Ray] = {}
+        partners: dict[Ray, Ray] = {}
         for loop in self.loops:
             if loop.target is not None:
                 for a, b in ((loop.source, loop.target), (loop.target, loop.source)):
-                    found[a], found[a.mirrored] = b, b.mirrored
-        return found
+                    partners[a], partners[a.mirrored] = b, b.mirrored
+        return partners
 
     def to_dict(self, name: str | None = None) -> LoopsDocument:
         """The object printed by `exactfold motions --json`: `schema("motions")`."""
@@ -158,8 +158,8 @@ def find_loops(
     `ForeignJournalError`, `JournalInUseError`, `UnwritableFileError` and `UsageError`. It raises
     `WorkerDiedError` if a process dies.
 
-    >>> found = find_loops("two-vertex")
-    >>> found
+    >>> loops = find_loops("two-vertex")
+    >>> loops
     <Loops: proved, 2 of 2 loops proved>
     """
     begun = time.perf_counter()
@@ -176,24 +176,26 @@ def find_loops(
     }
     runs = pool or process_pool(processes if len(problem.foldable) > _ALONE else 1)
     if certificate is None:
-        found = _matching(_followed(sheet, problem, runs, progress, None))
+        distinct_loops = _matching(_followed(sheet, problem, runs, progress, None))
     else:
         with closing(LoopFile.opened(certificate, problem, resume, replace)) as file:
-            found = _matching([*file.known, *_followed(sheet, problem, runs, progress, file)])
+            distinct_loops = _matching(
+                [*file.known, *_followed(sheet, problem, runs, progress, file)]
+            )
             file.finish()
     reasons = []
     if many := len(skipped):
         reasons.append(f"{counted(many, 'branch')} {agreeing(many, 'is')} not simple")
-    if left := sum(loop.target is None for loop in found):
+    if left := sum(loop.target is None for loop in distinct_loops):
         reasons.append(f"{counted(left, 'loop')} {agreeing(left, 'is')} not proved to its end")
     reason = "; ".join(reasons)
     loops = Loops(
         sheet,
-        tuple(found),
+        tuple(distinct_loops),
         skipped,
         UNDECIDED if reasons else PROVED,
         reason,
-        graph_of(problem, found, reason, runs, progress),
+        graph_of(problem, distinct_loops, reason, runs, progress),
         time.perf_counter() - begun,
     )
     if not reasons and len(loops.matching) != 2 ** (len(problem.foldable) + 1):
@@ -292,20 +294,20 @@ def _followed(
             yield loop
 
 
-def _matching(found: Iterable[Loop]) -> list[Loop]:
+def _matching(loops: Iterable[Loop]) -> list[Loop]:
     """The loops, each once, in the order of their sources; raises the errors of `_check`."""
-    ordered = sorted(found, key=lambda loop: loop.source)
+    ordered = sorted(loops, key=lambda loop: loop.source)
     _check(ordered)
     return _once(ordered)
 
 
-def _once(found: Iterable[Loop]) -> list[Loop]:
+def _once(loops: Iterable[Loop]) -> list[Loop]:
     """The first of several loops that are equal, mirrored, or run through backwards."""
     seen: set[Ray] = set()
     kept = []
     # Proved loops come first: the source of an unproved loop may be the target of a proved one.
     for loop in sorted(
-        found, key=lambda loop: (loop.target is None, _turn(loop.source.vertex_signs))
+        loops, key=lambda loop: (loop.target is None, _turn(loop.source.vertex_signs))
     ):
         if loop.source not in seen:
             kept.append(loop)
@@ -315,7 +317,7 @@ def _once(found: Iterable[Loop]) -> list[Loop]:
     return sorted(kept, key=lambda loop: loop.source)
 
 
-def _check(found: Iterable[Loop]) -> None:
+def _check(loops: Iterable[Loop]) -> None:
     """Raise `ArithmeticError` unless the proved loops are a matching of rays.
 
     Loops that were followed from both ends have to agree. No ray is matched with itself or with two
@@ -323,7 +325,7 @@ def _check(found: Iterable[Loop]) -> None:
     the number of stars that are flat at its branch points (docs/matching.md, Theorem 1a).
     """
     partner: dict[Ray, Ray] = {}
-    for loop in found:
+    for loop in loops:
         if loop.target is None:
             continue
         signs = zip(loop.source.vertex_signs, loop.target.vertex_signs, strict=True)

@@ -193,11 +193,11 @@ class LoopProof:
             vague = max(vague, step.entry[1] - step.entry[0])
             if not isinstance(after, Link):
                 ball = self.landing.ball if after is None else after.tube.ball(after.entry)
-                found = step.tube.located(ball)
-                if found is None:
+                parameters = step.tube.located(ball)
+                if parameters is None:
                     raise ArithmeticError("a loop has a gap")
-                end = found[1]
-                vague = max(vague, end - found[0])
+                end = parameters[1]
+                vague = max(vague, end - parameters[0])
             chain.append(on_tube(step.tube, step.entry[0], end))
         if vague >= SLACK * (1 << PARAMETER_BITS):
             return ()
@@ -364,8 +364,8 @@ def named(start: StartTube, side: int = 1) -> Ray:
 
 def whole_length(step: Step, landing: Landing) -> Interval:
     """Bounds of the length of a loop whose last step meets the start tube of the landing."""
-    found = step.tube.located(landing.ball) if isinstance(step, Link) else None
-    if not isinstance(step, Link) or found is None or found[0] < step.entry[1]:
+    parameters = step.tube.located(landing.ball) if isinstance(step, Link) else None
+    if not isinstance(step, Link) or parameters is None or parameters[0] < step.entry[1]:
         raise ArithmeticError("the landing is not on the tube")
     shortest, longest = landing.start.length(0, abs(landing.tau))
-    return step.time(found[0])[0] + shortest, step.time(found[1])[1] + longest
+    return step.time(parameters[0])[0] + shortest, step.time(parameters[1])[1] + longest

@@ -168,11 +168,11 @@ def _in_field(field: SurdField, values: tuple[Number, ...]) -> tuple[Surd | None
     """The numbers in a field, or in the field with the square root of a number; also this
     number.
     """
-    found: list[Surd | tuple[Surd, Surd]] = []
+    members: list[Surd | tuple[Surd, Surd]] = []
     radicand: Surd | None = None
     for value in map(simple, values):
         if not isinstance(value, Surd) or _extends(field, value.field):
-            found.append(field.number(value))
+            members.append(field.number(value))
             continue
         square, low, high = split(value)
         if not _extends(field, square.field) or radicand not in (None, field.number(square)):
@@ -180,15 +180,15 @@ def _in_field(field: SurdField, values: tuple[Number, ...]) -> tuple[Surd | None
                 "no certificate: a vertex needs more than one square root of its own"
             )
         radicand = field.number(square)
-        found.append((field.number(low), field.number(high)))
+        members.append((field.number(low), field.number(high)))
     if radicand is None:
-        return None, [value for value in found if isinstance(value, Surd)]
+        return None, [value for value in members if isinstance(value, Surd)]
     root = field.square_root(radicand)
     above = field if root is not None else field.adjoined(radicand)
     root = above.square_root(radicand)
     if root is None:
         raise ArithmeticError("a field does not contain the square root that was adjoined to it")
-    pairs = (value if isinstance(value, tuple) else (value, 0) for value in found)
+    pairs = (value if isinstance(value, tuple) else (value, 0) for value in members)
     numbers = [above.number(low + root * high) for low, high in pairs]
     return None if above is field else radicand, numbers
 

@@ -73,8 +73,8 @@ def prove_contacts(motion: PanelMotion) -> PanelClearance:
     >>> from exactfold.pattern.families import single_vertex
     >>> from exactfold.pattern.opening import panels
     >>> motion = follow_panels(panels(single_vertex(4)), until="90deg", frames=3)
-    >>> found = prove_contacts(motion)
-    >>> found.status, found.event, found.clear >= motion.duration
+    >>> clearance = prove_contacts(motion)
+    >>> clearance.status, clearance.event, clearance.clear >= motion.duration
     (<Verdict.PROVED: 'proved'>, None, True)
     """
     if motion.exists is not PROVED:
@@ -112,16 +112,16 @@ def with_proved_contact(motion: PanelMotion) -> tuple[PanelMotion, PanelClearanc
 
     Raises the errors of `prove_contacts`. An event that is not proved stays as it is.
     """
-    found = prove_contacts(motion)
-    event = found.event
-    if found.status is not PROVED or event is None:
-        return motion, found
+    clearance = prove_contacts(motion)
+    event = clearance.event
+    if clearance.status is not PROVED or event is None:
+        return motion, clearance
     kept = [e for e in motion.events if e.kind != event.kind]
     if event.kind == FLAT_FOLD:  # name the folds that close in floats
         folds = next((e.folds for e in motion.events if e.kind == FLAT_FOLD), event.folds)
         event = replace(event, folds=folds)
     events = tuple(sorted((event, *kept), key=lambda e: e.time))
-    return replace(motion, events=events), found
+    return replace(motion, events=events), clearance
 
 
 @dataclass(frozen=True, repr=False)
@@ -155,7 +155,7 @@ class PanelPairs(AnyPairs):
         Arb computes them.
         """
         points = self.contacts.pattern.vertices
-        found = []
+        squared_distances = []
         for i, j, left, right in self.hinges.tolist():
             (ix, iy), (jx, jy), (lx, ly), (rx, ry) = (points[v] for v in (i, j, left, right))
             e = (jx - ix, jy - iy)
@@ -164,8 +164,8 @@ class PanelPairs(AnyPairs):
             with ctx.workprec(_BITS):
                 square = ball(dot(e, e), _BITS) * arb(self.unit) ** 2
                 value = (ball(along, _BITS) ** 2 + ball(across, _BITS) ** 2) / square
-                found.append(float(value.upper()) * (1 + 1e-12))
-        return np.array(found)
+                squared_distances.append(float(value.upper()) * (1 + 1e-12))
+        return np.array(squared_distances)
 
     def one_body(self, i: int, j: int) -> bool:
         """Whether two triangles belong to one panel."""
@@ -174,11 +174,11 @@ class PanelPairs(AnyPairs):
     def named(self, left: Open) -> tuple[tuple[Panel, Panel], ...]:
         """The pairs of panels among the pairs that are left, each once."""
         rows = [self.apart[left.apart], self.corner[left.corner]]
-        found = {self._panels(i, j) for row in rows for i, j in row.tolist()}
+        pairs = {self._panels(i, j) for row in rows for i, j in row.tolist()}
         sides = self.contacts.cut.sides
         for i, j, _, _ in self.hinges[left.folds].tolist():
-            found.add(self._panels(sides[i, j], sides[j, i]))
-        return tuple(sorted(found))
+            pairs.add(self._panels(sides[i, j], sides[j, i]))
+        return tuple(sorted(pairs))
 
     def _panels(self, i: int, j: int) -> tuple[Panel, Panel]:
         faces, panel = self.contacts.pattern.faces, self.contacts.panel_of
@@ -199,8 +199,8 @@ def _crossing(
     begin, most = known[0], pi
     step = _FIRST
     while begin + step < most:
-        found = _crossed(contacts, pieces, begin + step)
-        if found is not None:
+        panels = _crossed(contacts, pieces, begin + step)
+        if panels is not None:
             good, bad = begin + step, begin + step / 2 if step > _FIRST else begin
             break
         step *= 2
@@ -211,8 +211,8 @@ def _crossing(
         if not bad < middle < good:
             break
         other = _crossed(contacts, pieces, middle)
-        found, good, bad = (found, good, middle) if other is None else (other, middle, bad)
-    faces = tuple(contacts.pattern.faces[panel] for panel in found)
+        panels, good, bad = (panels, good, middle) if other is None else (other, middle, bad)
+    faces = tuple(contacts.pattern.faces[panel] for panel in panels)
     return Event(CONTACT, (clear, good), faces=faces, detail="an edge runs through a face")
 
 

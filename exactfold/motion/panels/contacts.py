@@ -53,15 +53,15 @@ class PanelContacts:
     def panel_of(self) -> dict[int, int]:
         """The panel of each triangle, spread from the edges of the panels across the cuts."""
         cut, sides = self.cut, self.pattern.sides
-        found = {cut.sides[half_edge]: panel for half_edge, panel in sides.items()}
+        panels = {cut.sides[half_edge]: panel for half_edge, panel in sides.items()}
         inside = [edge for edge in cut.edges if edge not in set(self.pattern.edges)]
-        while len(found) < len(cut.faces):
+        while len(panels) < len(cut.faces):
             for i, j in inside:
                 one, other = cut.sides[i, j], cut.sides[j, i]
-                if one in found or other in found:
-                    panel = found.get(one, found.get(other, -1))
-                    found[one] = found[other] = panel
-        return found
+                if one in panels or other in panels:
+                    panel = panels.get(one, panels.get(other, -1))
+                    panels[one] = panels[other] = panel
+        return panels
 
     @cached_property
     def _panels(self) -> dict[tuple[int, ...], int]:

@@ -154,12 +154,12 @@ class FollowedCurve:
         """The folds opposite to those that close, where the latter close alone."""
         end = dict(zip(self.folds, np.abs(self.angles(np.array([pi]))[0]), strict=True))
         closed = {fold for fold, angle in end.items() if angle > pi - _AT_180}
-        found = set()
+        opposite = set()
         for vertex in self._vertices:
             if not vertex.is_linear:
                 pairs = zip(vertex.folds, vertex.folds[2:] + vertex.folds[:2], strict=True)
-                found |= {across for fold, across in pairs if fold in closed} - closed
-        return tuple(sorted(found))
+                opposite |= {across for fold, across in pairs if fold in closed} - closed
+        return tuple(sorted(opposite))
 
 
 class _Vertex:

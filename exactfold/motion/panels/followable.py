@@ -78,16 +78,16 @@ class PanelMode:
         for k, star in enumerate(self.stars):
             for fold in star.folds:
                 at.setdefault(fold, []).append(k)
-        found: list[tuple[int, Edge]] = []
+        walk: list[tuple[int, Edge]] = []
         seen: set[int] = set()
         waiting = [start]
         for fold in waiting:
             for k in at[fold]:
                 if k not in seen:
                     seen.add(k)
-                    found.append((k, fold))
+                    walk.append((k, fold))
                     waiting += [other for other in self.stars[k].folds if other != fold]
-        return tuple(found)
+        return tuple(walk)
 
     @cached_property
     def densities(self) -> Mapping[Edge, Density]:
@@ -148,27 +148,27 @@ def panel_modes(result: Decomposition) -> tuple[PanelMode, ...]:
     <PanelMode: 1, 1 vertex, 4 folds, proved by forest>
     """
     moving = stars(result.pattern, result.held)
-    found: list[PanelMode] = []
+    modes: list[PanelMode] = []
 
     def add(
         choice: Sequence[LocalMode], letters: Mapping[Edge, str], extends: Extension
     ) -> PanelMode:
         around = tuple(moving[mode.vertex].only(mode.folds) for mode in choice)
-        number = len(found) + 1
+        number = len(modes) + 1
         return PanelMode(result.pattern, number, around, tuple(choice), dict(letters), extends)
 
     for mode in result.modes:
-        found.append(add(mode.choice, mode.assignment, mode.extends))
+        modes.append(add(mode.choice, mode.assignment, mode.extends))
     for part in result.parts:
         for choice in _examples(part):
             extends = extension(result.pattern, moving, choice)
-            found.append(add(choice, _letters(choice), extends))
+            modes.append(add(choice, _letters(choice), extends))
         for leaf in _lines(part):
             choice = _on_line(leaf, moving)
             line = add(choice, _letters(choice), Extension(PROVED, LINEAR))
             if line.is_linear:
-                found.append(line)
-    return tuple(found)
+                modes.append(line)
+    return tuple(modes)
 
 
 def panel_components(
@@ -197,7 +197,7 @@ def panel_components(
     places = [set(mode.vertices) for mode in folding]
     for i in range(len(folding)):
         graph.add_edges_from((i, j) for j in range(i) if places[i].isdisjoint(places[j]))
-    found = [
+    components = [
         PanelComponent(
             tuple(sorted(folding[k].number for k in clique)),
             result.free,
@@ -205,13 +205,13 @@ def panel_components(
         )
         for clique in islice(nx.find_cliques(graph), MOST_COMPONENTS + 1)
     ]
-    if len(found) > MOST_COMPONENTS:
+    if len(components) > MOST_COMPONENTS:
         raise TooManyModesError(
             f"there are more than {MOST_COMPONENTS} components; name the modes that have to fold"
         )
-    if not found and result.free:
-        found = [PanelComponent((), result.free, len(result.free))]
-    return tuple(sorted(found, key=lambda one: (-one.folds, one.modes)))
+    if not components and result.free:
+        components = [PanelComponent((), result.free, len(result.free))]
+    return tuple(sorted(components, key=lambda one: (-one.folds, one.modes)))
 
 
 def closes_always(directions: Sequence[Point], values: Sequence[Number]) -> bool:
@@ -248,11 +248,11 @@ def _examples(part: Part) -> Iterable[tuple[LocalMode, ...]]:
 
 def _lines(part: Part) -> list[Leaf]:
     """The components of dimension one of a part with more than four folds at a vertex."""
-    found: list[Leaf] = []
+    lines: list[Leaf] = []
     for leaf in (*part.spaces, *(one.leaf for one in part.found)):
-        if leaf.size == 1 and not leaf.vertices and leaf not in found:
-            found.append(leaf)
-    return found
+        if leaf.size == 1 and not leaf.vertices and leaf not in lines:
+            lines.append(leaf)
+    return lines
 
 
 def _letters(choice: Sequence[LocalMode]) -> dict[Edge, str]:
@@ -276,14 +276,14 @@ def _letters(choice: Sequence[LocalMode]) -> dict[Edge, str]:
 
 def _on_line(leaf: Leaf, moving: Mapping[int, Star]) -> tuple[LocalMode, ...]:
     """The motions of all active vertices on a space with one parameter."""
-    found = []
+    local_modes = []
     for v, star in sorted(moving.items()):
         folds = tuple(fold for fold in star.folds if fold in leaf.rows)
         if folds:
             scale = exact(leaf.rows[folds[0]][0])
             values = tuple(simple(leaf.rows[fold][0] / scale) for fold in folds)
-            found.append(LocalMode(v, 0, folds, values))
-    return tuple(found)
+            local_modes.append(LocalMode(v, 0, folds, values))
+    return tuple(local_modes)
 
 
 def open_reason(mode: PanelMode) -> str:

@@ -260,5 +260,5 @@ def _at_equal_angles(
         return abs(float(angles_at(np.array([time]))[0, at])) - goal
 
     goals = np.linspace(0.0, abs(last), len(times))[1:-1]
-    found = [zero_of(partial(excess, goal=goal), 0.0, times[-1]) for goal in goals]
-    return np.array([0.0, *found, times[-1]])
+    inner_times = [zero_of(partial(excess, goal=goal), 0.0, times[-1]) for goal in goals]
+    return np.array([0.0, *inner_times, times[-1]])

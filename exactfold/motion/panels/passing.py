@@ -56,7 +56,7 @@ class Passed(NamedTuple):
 
 def passes_of(mode: PanelMode, driver: Edge, bits: int) -> list[Passed]:
     """The transmissions from the driver to all other folds, in the order in which they are used."""
-    found: list[Passed] = []
+    passes: list[Passed] = []
     known = {driver}
     with ctx.workprec(bits):
         lengths = {
@@ -76,8 +76,8 @@ def passes_of(mode: PanelMode, driver: Edge, bits: int) -> list[Passed]:
                     p, q, b, a = (ball(value, bits) for value in step.quadratic)
                     quadratic = p, q, b, a
                 ends = lengths[fold], lengths[other]
-                found.append(Passed(fold, other, ball(step.gain, bits), quadratic, ends))
-    return found
+                passes.append(Passed(fold, other, ball(step.gain, bits), quadratic, ends))
+    return passes
 
 
 def spread(passes: list[Passed], driver: Edge, tangent: Tangent) -> dict[Edge, Tangent]:
@@ -85,9 +85,9 @@ def spread(passes: list[Passed], driver: Edge, tangent: Tangent) -> dict[Edge, T
 
     Raises `ValueError` if some fold may be closed, because the mode may end there.
     """
-    found = {driver: tangent}
+    tangents = {driver: tangent}
     for passed in passes:
-        found[passed.end] = passed(found[passed.start])
-    if not all(c[0] > 0 for c, _ in found.values()):
+        tangents[passed.end] = passed(tangents[passed.start])
+    if not all(c[0] > 0 for c, _ in tangents.values()):
         raise ValueError("a fold may be closed")
-    return found
+    return tangents

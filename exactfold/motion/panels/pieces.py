@@ -100,14 +100,14 @@ class PanelPieces:
     @cached_property
     def _axes(self) -> dict[Edge, tuple[FloatArray, float]]:
         """The directions of the folds between the panels in floats, with bounds of their errors."""
-        found = {}
+        axes = {}
         for _, _, _, i, j in self._placing.steps:
             d = self.motion.pattern.direction(i, j)
             with ctx.workprec(_BITS):
                 length = ball(dot(d, d), _BITS).sqrt()
                 x, y = (ball(c, _BITS) / length for c in d)
-                found[i, j] = _vector(x, y)
-        return found
+                axes[i, j] = _vector(x, y)
+        return axes
 
     @cached_property
     def _numbers(self) -> dict[Edge, int]:
@@ -116,15 +116,15 @@ class PanelPieces:
     @cached_property
     def _gains(self) -> list[dict[int, arb]]:
         """For each linear mode, the gains from its driver to every fold; empty for other modes."""
-        found: list[dict[int, arb]] = []
+        gains: list[dict[int, arb]] = []
         for curve in self.motion.curves:
-            found.append({})
+            gains.append({})
             if isinstance(curve, LinearCurve):
                 tangents = curve.exact_tangents(_BITS)
                 with ctx.workprec(_BITS):
                     unit = abs(tangents[curve.driver])
-                    found[-1] = {self._numbers[e]: t / unit for e, t in tangents.items()}
-        return found
+                    gains[-1] = {self._numbers[e]: t / unit for e, t in tangents.items()}
+        return gains
 
     @cached_property
     def _passes(self) -> list[list[Passed]]:
@@ -186,12 +186,12 @@ class PanelPieces:
         """Sine and 1 - cosine of the angles of the moving folds, as series in the time after
         `time`.
         """
-        found = {}
+        turns = {}
         for fold, (c, s) in self._tangents(time).items():
             square = s * s
             over = 2 / (c * c + square)
-            found[fold] = c * s * over, square * over
-        return found
+            turns[fold] = c * s * over, square * over
+        return turns
 
     def _rests(self, middle: float, half: float) -> dict[int, list[arb]]:
         """Bounds of the first neglected coefficients of the sines and of the versines.
@@ -201,14 +201,14 @@ class PanelPieces:
         """
         count = _PARTS if any(self._passes) else 1
         width = half / count
-        found: dict[int, list[arb]] = {}
+        rests: dict[int, list[arb]] = {}
         for part in range(count):
             time = arb(middle) + arb((2 * part + 1 - count) * width, width)
             for fold, series in self._turns(time).items():
-                known = found.setdefault(fold, [arb(0), arb(0)])
+                known = rests.setdefault(fold, [arb(0), arb(0)])
                 for k, f in enumerate(series):
                     known[k] = known[k].max(abs(f[ORDER + 1]))
-        return found
+        return rests
 
     def _placed(self, turns: dict[int, list[Turned]]) -> tuple[FloatArray, FloatArray]:
         """The polynomials of all vertices in y = (time - middle) / half, and their errors."""
@@ -234,7 +234,7 @@ class PanelPieces:
         """By fold: (c, s) with s / c = tan(angle / 2), as series about a time or a ball
         of times.
         """
-        motion, found = self.motion, dict[int, Tangent]()
+        motion, tangents = self.motion, dict[int, Tangent]()
 
         def driven(rate: float) -> Tangent:
             half = arb_series([time * arb(rate) / 2, arb(rate) / 2], _CAP)
@@ -243,14 +243,14 @@ class PanelPieces:
         parts = zip(motion.curves, motion.rates, self._gains, self._passes, strict=True)
         for curve, rate, gains, passes in parts:
             c, s = driven(rate)
-            found.update({k: (c, s * gain) for k, gain in gains.items()})
+            tangents.update({k: (c, s * gain) for k, gain in gains.items()})
             if not gains:
                 s = s if curve.mode.letters[curve.driver] == "V" else -s
                 pairs = spread(passes, curve.driver, (c, s))
-                found.update({self._numbers[fold]: pair for fold, pair in pairs.items()})
+                tangents.update({self._numbers[fold]: pair for fold, pair in pairs.items()})
         for fold, rate in motion.free_rates.items():
-            found[self._numbers[fold]] = driven(rate)
-        return found
+            tangents[self._numbers[fold]] = driven(rate)
+        return tangents
 
 
 _CAPPING = RLock()
@@ -283,6 +283,6 @@ def _polynomial(series: arb_series, rest: arb, half: float) -> Turned:
 
 
 def _vector(x: arb, y: arb) -> tuple[FloatArray, float]:
-    found = np.array([float(x.mid()), float(y.mid())])
-    off = abs(x - arb(float(found[0]))) + abs(y - arb(float(found[1])))
-    return found, float(off.upper()) * (1 + 1e-9)
+    vector = np.array([float(x.mid()), float(y.mid())])
+    off = abs(x - arb(float(vector[0]))) + abs(y - arb(float(vector[1])))
+    return vector, float(off.upper()) * (1 + 1e-9)

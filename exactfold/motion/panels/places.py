@@ -59,7 +59,7 @@ class Placing:
         """The panels in the order in which they are placed, without the panel that is held."""
         numbers = {fold: k for k, fold in enumerate(self.pattern.folds)}
         seen, waiting = {self.held}, [self.held]
-        found: list[_Step] = []
+        steps: list[_Step] = []
         for before in waiting:
             face = self.pattern.faces[before]
             for i, j in zip(face, (*face[1:], face[0]), strict=True):
@@ -68,8 +68,8 @@ class Placing:
                     continue
                 seen.add(panel)
                 waiting.append(panel)
-                found.append(_Step(panel, before, numbers[min(i, j), max(i, j)], j, i))
-        return tuple(found)
+                steps.append(_Step(panel, before, numbers[min(i, j), max(i, j)], j, i))
+        return tuple(steps)
 
     @property
     def middle(self) -> int:
@@ -93,10 +93,10 @@ class Placing:
     @property
     def depths(self) -> IndexArray:
         """For each panel, the least number of folds between it and the panel that is held."""
-        found = np.zeros(len(self.pattern.faces), dtype=np.intp)
+        depths = np.zeros(len(self.pattern.faces), dtype=np.intp)
         for step in self.steps:
-            found[step.panel] = found[step.before] + 1
-        return found
+            depths[step.panel] = depths[step.before] + 1
+        return depths
 
     @cached_property
     def owners(self) -> Mapping[int, int]:

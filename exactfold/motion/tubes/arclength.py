@@ -149,11 +149,11 @@ def shifted(curve: Sequence[Row], at: int, places: int) -> tuple[list[Row], int]
     more = places * (len(curve) - 1)
     columns = []
     for column in zip(*curve, strict=True):
-        found = [c << more for c in column]
-        for k in range(len(found) - 1):
-            for i in range(len(found) - 2, k - 1, -1):
-                found[i] += found[i + 1] * at >> places
-        columns.append(found)
+        coefficients = [c << more for c in column]
+        for k in range(len(coefficients) - 1):
+            for i in range(len(coefficients) - 2, k - 1, -1):
+                coefficients[i] += coefficients[i + 1] * at >> places
+        columns.append(coefficients)
     return [tuple(row) for row in zip(*columns, strict=True)], more
 
 

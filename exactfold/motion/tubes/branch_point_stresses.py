@@ -80,7 +80,7 @@ def directions_at(framework: Framework, patch: FlatPatch, near: FloatArray) -> l
     parts = framework.along(kernel)
     forms = np.einsum("ve,aex,bex->vab", w, parts, parts)
     forms /= np.abs(forms).max(axis=(1, 2), keepdims=True)
-    found: list[FloatArray] = []
+    directions: list[FloatArray] = []
     random = np.random.default_rng(0)
     for _ in range(_STARTS << number):
         c = random.standard_normal(number + 1)
@@ -94,9 +94,9 @@ def directions_at(framework: Framework, patch: FlatPatch, near: FloatArray) -> l
             c = c - step
             if np.abs(step).max() < _CLOSE:
                 c /= np.linalg.norm(c)
-                if all(abs(c @ other) < 1 - _SAME for other in found):
-                    found.append(c)
+                if all(abs(c @ other) < 1 - _SAME for other in directions):
+                    directions.append(c)
                 break
-        if len(found) == 1 << number:
+        if len(directions) == 1 << number:
             break
-    return [c @ kernel for c in found]
+    return [c @ kernel for c in directions]

@@ -104,10 +104,10 @@ def prove_branch_point_tube(
     if branch_point is None:
         return None
     stresses = Stresses.of(equations, patch)
-    found = _series(equations, stresses, branch_point, along, order)
-    if found is None:
+    series = _series(equations, stresses, branch_point, along, order)
+    if series is None:
         return None
-    curve, row, inverse, weights = found
+    curve, row, inverse, weights = series
     proof = _bounds(equations, stresses, branch_point, curve, row, inverse, weights)
     reach = longest(proof, thickness)
     if not reach:
@@ -254,7 +254,7 @@ def _residuals(
     x = equations.flat_edges + equations.along([branch_point.finer(bits).centre])[0]
     e = equations.along(curve)
     squares = squared(e)
-    found = []
+    residuals = []
     for k in range(len(squares) + 1):
         total = np.zeros(len(x), dtype=object)
         if k < len(e):
@@ -274,8 +274,8 @@ def _residuals(
             last -= (1 << bits + ROW_BITS) if k == 0 else 0
             ties = [x << more + 1 for x in equations.tied(curve[k])]
         linear = np.array([*ties, last << (bits + more - ROW_BITS + 1)], dtype=object)
-        found.append(np.append(total, linear))
-    return found
+        residuals.append(np.append(total, linear))
+    return residuals
 
 
 def _corrected(
@@ -289,13 +289,13 @@ def _corrected(
     """One step of Newton's method with the same P for all coefficients."""
     more = equations.bits + stresses.bits + 1
     p = _whole(inverse)
-    found = []
+    coefficients = []
     for a, g in zip(curve, _residuals(equations, stresses, branch_point, curve, row), strict=False):
         step = p @ g
-        found.append(
+        coefficients.append(
             tuple(int(x) - (int(s) >> (_BITS + more)) for x, s in zip(a, step, strict=True))
         )
-    return tuple(found)
+    return tuple(coefficients)
 
 
 def _bounds(
@@ -343,18 +343,18 @@ def _bounds(
         product = p @ matrix
         if k == 0:
             product[np.diag_indices(n)] -= 1 << (_BITS + bits + more)
-        found = norm(abs(product) @ w, _BITS + bits + more + WEIGHT_BITS)
+        bound = norm(abs(product) @ w, _BITS + bits + more + WEIGHT_BITS)
         if k == 0:
             off = (spread * sums).sum(axis=1)
-            found += norm(size[:, kept] @ off[kept], _BITS + bits + WEIGHT_BITS)
-        slope.append(found)
+            bound += norm(size[:, kept] @ off[kept], _BITS + bits + WEIGHT_BITS)
+        slope.append(bound)
     residual = []
     for k, g in enumerate(_residuals(equations, stresses, branch_point, curve, row)):
-        found = norm(abs(p @ g), _BITS + 2 * bits + more + 1)
+        bound = norm(abs(p @ g), _BITS + 2 * bits + more + 1)
         if k < len(parts):
             off = (spread * abs(parts[k])).sum(axis=1)
-            found += norm(size[:, kept] @ off[kept], _BITS + 2 * bits)
-        residual.append(found)
+            bound += norm(size[:, kept] @ off[kept], _BITS + 2 * bits)
+        residual.append(bound)
     squares = (sums**2).sum(axis=1)
     stressed = abs(stresses.rows) @ squares
     quadratic = [

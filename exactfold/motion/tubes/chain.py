@@ -62,10 +62,10 @@ class Chain:
         if isinstance(link, Link):
             self.steps.append(link)
             return link
-        found = passage_ahead(self.labels, self.steps)
-        if found is None:
+        replacement = passage_ahead(self.labels, self.steps)
+        if replacement is None:
             return singular_at(self.labels, self.steps, link)
-        kept, passage = found
+        kept, passage = replacement
         self.steps[kept:] = [passage]
         tube, at = passage.tube, passage.exit
         self.ahead = _after(self.equations, tube, at, passage.left, tube.length(0, at))
@@ -98,10 +98,10 @@ def point_near(start: StartTube, steps: Sequence[Step], time: Fraction) -> tuple
 
 def step_documents(steps: Sequence[Step], leaves: bool) -> list[Document]:
     """The steps in the form of certificates; `leaves` says whether the last tube has an exit."""
-    found = []
+    documents = []
     for step, after in zip_longest(steps, steps[1:]):
         if isinstance(step, Passage):
-            found.append(step.document)
+            documents.append(step.document)
             continue
         tube = step.tube
         entry: Document = {
@@ -111,8 +111,8 @@ def step_documents(steps: Sequence[Step], leaves: bool) -> list[Document]:
         }
         if isinstance(after, Link) or (after is None and leaves):
             entry["exit"] = step.exit
-        found.append(entry)
-    return found
+        documents.append(entry)
+    return documents
 
 
 def chords(

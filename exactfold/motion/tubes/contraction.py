@@ -146,20 +146,22 @@ class Places:
 
     def dense(self, rows: Any) -> Any:
         """The matrix that the rows describe, shape (edges, size)."""
-        found = np.zeros((len(rows), self.size), dtype=rows.dtype)
+        matrix = np.zeros((len(rows), self.size), dtype=rows.dtype)
         columns = 3 * self.vertex[:, None] + np.arange(3)
-        found[self.edge[:, None], columns] = self.sign[:, None] * rows[self.edge]
-        return found
+        matrix[self.edge[:, None], columns] = self.sign[:, None] * rows[self.edge]
+        return matrix
 
     def product(self, left: Any, rows: Any) -> Any:
         """left @ dense(rows), computed without the zeros; `rows` may have shape (..., edges, 3)."""
         weighted = self.sign[:, None] * rows[..., self.edge, :]
         taken = left[:, self.edge]
-        found = np.empty((*rows.shape[:-2], len(left), self.size), dtype=np.result_type(left, rows))
+        product = np.empty(
+            (*rows.shape[:-2], len(left), self.size), dtype=np.result_type(left, rows)
+        )
         for a in range(3):
             products = taken * weighted[..., None, :, a]
-            found[..., a::3] = np.add.reduceat(products, self._starts, axis=-1)
-        return found
+            product[..., a::3] = np.add.reduceat(products, self._starts, axis=-1)
+        return product
 
     @cached_property
     def _starts(self) -> IndexArray:
@@ -331,8 +333,8 @@ def _above(a: Whole, v: Sequence[int]) -> list[int]:
     largest = _largest(a)
     excess = (largest * sum(v)).bit_length() - _WORD
     if excess <= 0:
-        found = a.astype(np.int64) @ np.array(v, dtype=np.int64)
-        return [int(x) for x in found]
+        bounds = a.astype(np.int64) @ np.array(v, dtype=np.int64)
+        return [int(x) for x in bounds]
     if largest >> (excess + 2):  # the shifted entries fit
         return [x << (excess + 2) for x in _above((a >> (excess + 2)) + 1, v)]
     return [int(x) for x in a.astype(object) @ np.array(v, dtype=object)]

@@ -145,9 +145,9 @@ def find_driven(
     search = _DrivenSearch(finder, angles, side, boundary_heights is not None, progress)
     search.check()
     for each in [asked] if asked is not None else _all_signs(finder):
-        found = search.found(each)
-        if found is not None:
-            return found
+        driven = search.found(each)
+        if driven is not None:
+            return driven
     raise search.failure(asked)
 
 
@@ -244,13 +244,13 @@ class _DrivenSearch:
         dependent: list[BadDriveError] = []
         for start in self._starts:
             try:
-                found = self._from(start, signs, drive)
+                solution = self._from(start, signs, drive)
             except BadDriveError as error:  # on one branch by chance, or on all
                 dependent.append(error)
                 continue
-            if found is None:
+            if solution is None:
                 continue
-            drive, y = found
+            drive, y = solution
             if all(np.abs(y - x).max() > _SAME * np.abs(x).max() for x in solutions):
                 solutions.append(y)
             if self.on.framework.size > _SMALL:

@@ -74,13 +74,13 @@ class FlatPatch:
         points = self.framework.points
         (ax, ay), (bx, by), (cx, cy) = (points[v] for v in self.base)
         whole = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
-        found = {}
+        weights = {}
         for v in sorted(self.vertices.difference(self.base)):
             x, y = points[v]
             b = Fraction((x - ax) * (cy - ay) - (y - ay) * (cx - ax), whole)
             c = Fraction((bx - ax) * (y - ay) - (by - ay) * (x - ax), whole)
-            found[v] = (1 - b - c, b, c)
-        return found
+            weights[v] = (1 - b - c, b, c)
+        return weights
 
     @cached_property
     def moving(self) -> tuple[int, ...]:
@@ -202,9 +202,9 @@ class FlatPatch:
         d, flat = self._edges(z, bits)
         exact = ((d + 2 * flat) * d).sum(axis=1)
         square = self._denominator**2
-        found = [-(-x // square) if x < 0 else x // square for x in exact]
-        found += [int(x << bits + 1) // self._tie_unit for x in self._ties @ z[:, 2]]
-        return np.array(found, dtype=object)
+        values = [-(-x // square) if x < 0 else x // square for x in exact]
+        values += [int(x << bits + 1) // self._tie_unit for x in self._ties @ z[:, 2]]
+        return np.array(values, dtype=object)
 
     def _jacobian(self, z: BigArray, bits: int) -> BigArray:
         """The derivative of the equations, over 2^_MATRIX_BITS, rounded down."""
@@ -223,8 +223,8 @@ class FlatPatch:
         i, j = self.bars.T
         spread = abs(self._rows[i] - self._rows[j]).sum(axis=1)
         square = self._denominator**2
-        found = [-(-3 * int(x) ** 2 // square) for x in spread]
-        return np.array(found + [0] * len(self._ties), dtype=object)
+        bounds = [-(-3 * int(x) ** 2 // square) for x in spread]
+        return np.array(bounds + [0] * len(self._ties), dtype=object)
 
     def __repr__(self) -> str:
         return f"<FlatPatch: flat at {self.flat}, {len(self.bars)} bars>"

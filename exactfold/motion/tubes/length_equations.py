@@ -51,14 +51,14 @@ class LengthEquations:
         """The ties as rows on the unknowns, over 2^bits."""
         framework, shift = self.framework, self.bits - self.framework.tie_bits
         place = {int(v): 3 * k + 2 for k, v in enumerate(framework.free)}
-        found = []
+        rows = []
         for tie in framework.ties:
             row = [0] * framework.size
             for v, c in tie:
                 if v in place:
                     row[place[v]] = c << shift
-            found.append(tuple(row))
-        return tuple(found)
+            rows.append(tuple(row))
+        return tuple(rows)
 
     def tied(self, unknowns: Sequence[int]) -> list[int]:
         """The left sides of the ties over 2^(2 bits), for unknowns over 2^bits."""
@@ -148,12 +148,12 @@ def squared(e: BigArray) -> list[BigArray]:
         packed = (packed << bits) + row
     whole = (packed * packed).sum(axis=1)
     half, mask = 1 << (bits - 1), (1 << bits) - 1
-    found = []
+    coefficients = []
     for _ in range(2 * len(e) - 1):
         part = ((whole + half) & mask) - half
-        found.append(part)
+        coefficients.append(part)
         whole = (whole - part) >> bits
-    return found
+    return coefficients
 
 
 def corrected(
@@ -166,14 +166,14 @@ def corrected(
 
     The residuals are integers over 2^(bits + extra), and the curve is over 2^bits.
     """
-    found = []
+    coefficients = []
     for row, g in zip(curve, residuals, strict=False):
         shift = max(0, max(map(int.bit_length, g)) - 60)
         step = np.rint(inverse @ np.array([float(x >> shift) for x in g]) * 2.0**30)
-        found.append(
+        coefficients.append(
             tuple(a - ((int(x) << shift) >> (30 + extra)) for a, x in zip(row, step, strict=True))
         )
-    return tuple(found)
+    return tuple(coefficients)
 
 
 def weights_of(matrix: FloatArray) -> Row:

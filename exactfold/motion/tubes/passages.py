@@ -217,9 +217,9 @@ def _refined(arc: BranchPointTube, at: int, bounds: Interval) -> tuple[Interval,
     if not step > _LEAST:
         return bounds, ball
     tube = prove_tube(equations, ball.finer(equations.bits).centre, velocity.floats[0], step)
-    found = None if tube is None else tube.located(ball)
-    if tube is None or found is None:
+    parameters = None if tube is None else tube.located(ball)
+    if tube is None or parameters is None:
         return bounds, ball
-    slack = tube.length((found[0], found[0]), found[1])[1]
-    finer = sharpened(tube, (found[0] + found[1]) // 2)
+    slack = tube.length((parameters[0], parameters[0]), parameters[1])[1]
+    finer = sharpened(tube, (parameters[0] + parameters[1]) // 2)
     return (bounds[0] - slack, bounds[1] + slack), finer

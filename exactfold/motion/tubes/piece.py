@@ -110,13 +110,13 @@ class Piece:
 
     def radius_within(self, most: int) -> int:
         """A radius that is proved for the parameters |s| <= most, over 2^PARAMETER_BITS."""
-        found = self._radii.get(most)
-        if found is None and most <= self.longest:
-            found = self.contraction.radius(most << (SCALE - PARAMETER_BITS))
-        if found is None:
+        radius = self._radii.get(most)
+        if radius is None and most <= self.longest:
+            radius = self.contraction.radius(most << (SCALE - PARAMETER_BITS))
+        if radius is None:
             raise ArithmeticError("nothing is proved beyond the reach of a piece")
-        self._radii[most] = found
-        return found
+        self._radii[most] = radius
+        return radius
 
     @cached_property
     def _radii(self) -> dict[int, int]:

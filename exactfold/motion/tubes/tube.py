@@ -157,18 +157,18 @@ def _residuals(equations: LengthEquations, curve: Curve, row: Row) -> list[list[
     """The coefficients of 2 [g(p(s)); ties; T(p(s) - c) - s], over 2^(2 bits + `more`)."""
     e = equations.along(curve)
     shift = equations.bits - ROW_BITS
-    found = squared(e)
+    length_residuals = squared(e)
     for k, part in enumerate(e):
-        found[k] = found[k] + 2 * (equations.flat_edges * part).sum(axis=1)
+        length_residuals[k] = length_residuals[k] + 2 * (equations.flat_edges * part).sum(axis=1)
     last = [sum(t * a for t, a in zip(row, part, strict=True)) for part in curve]
     last[0] = 0
     last[1] -= 1 << (equations.bits + ROW_BITS)
-    last += [0] * (len(found) - len(curve))
+    last += [0] * (len(length_residuals) - len(curve))
     ties = [[2 * x for x in equations.tied(a)] for a in curve]
-    ties += [[0] * len(equations.ties)] * (len(found) - len(curve))
+    ties += [[0] * len(equations.ties)] * (len(length_residuals) - len(curve))
     return [
         equations.stacked(g.tolist(), [*t, x << (shift + 1)])
-        for g, t, x in zip(found, ties, last, strict=True)
+        for g, t, x in zip(length_residuals, ties, last, strict=True)
     ]
 
 
@@ -306,17 +306,17 @@ def _stretch(equations: LengthEquations, centre: Row, last: int) -> list[int]:
 
 def _taylor(framework: Framework, inverse: FloatArray, order: int) -> list[FloatArray]:
     """The coefficients a_1, ..., a_order of the curve in floats."""
-    found = [inverse[:, -1]]
-    parts = [framework.along(found[0])]
+    coefficients = [inverse[:, -1]]
+    parts = [framework.along(coefficients[0])]
     for k in range(2, order + 1):
         right = sum(
             ((parts[i] * parts[k - 2 - i]).sum(axis=1) for i in range(k - 1)),
             start=np.zeros(len(framework.bars)),
         )
         right = framework.coupling.combined(right)
-        found.append(-0.5 * (inverse[:, : len(right)] @ right))
-        parts.append(framework.along(found[-1]))
-    return found
+        coefficients.append(-0.5 * (inverse[:, : len(right)] @ right))
+        parts.append(framework.along(coefficients[-1]))
+    return coefficients
 
 
 def _slopes(

@@ -247,9 +247,9 @@ def prove_start(
             "the curve that leaves the flat state along this branch could not be enclosed: the "
             "branch is not simple, or it is ill-conditioned"
         )
-    found = StartTube(framework, equations.bits, curve, weights, proof, reach, m, held, (), 0)
-    signs, side = names_at(gauge, framework, found.enclosure(0), ways)
-    return replace(found, vertex_signs=signs, side=side)
+    tube = StartTube(framework, equations.bits, curve, weights, proof, reach, m, held, (), 0)
+    signs, side = names_at(gauge, framework, tube.enclosure(0), ways)
+    return replace(tube, vertex_signs=signs, side=side)
 
 
 def names_at(
@@ -307,7 +307,7 @@ def _residuals(equations: LengthEquations, curve: Sequence[Row], m: int) -> list
     """
     e = equations.along(curve)
     heights, plane = squared(e[:, :, 2:]), squared(e[:, :, :2])
-    found = []
+    residuals = []
     for k in range(2 * len(curve)):
         total = np.zeros(e.shape[1], dtype=object)
         if k < len(e):
@@ -318,8 +318,8 @@ def _residuals(equations: LengthEquations, curve: Sequence[Row], m: int) -> list
         if k:
             total = total + plane[k - 1]
         ties = equations.tied(curve[k]) if k < len(curve) else [0] * len(equations.ties)
-        found.append(equations.stacked(total.tolist(), [*(x << 2 * m + 1 for x in ties), 0]))
-    return found
+        residuals.append(equations.stacked(total.tolist(), [*(x << 2 * m + 1 for x in ties), 0]))
+    return residuals
 
 
 def _shifted(equations: LengthEquations, more: int) -> list[list[int]]:

@@ -17,7 +17,7 @@ Segment: TypeAlias = tuple[Place, Place, str]
 _WORDS: Final = {
     "M": "mountain",
     "V": "valley",
-    "B": "border",
+    "B": "boundary",
     "F": "flat",
     "U": "unassigned",
     "C": "cut",

@@ -41,7 +41,7 @@ def bordered(drawing: Drawing) -> tuple[Drawing, list[Repair]]:
         lines.append(line)
     sentence = (
         f"{counted(len(changed), 'line')} round the sheet {agreeing(len(changed), 'is')} "
-        "taken for the border"
+        "taken for the boundary"
     )
     at = [line.start for line in changed]
     return with_lines(drawing, lines), repair("border", len(changed), at, drawing.points, sentence)

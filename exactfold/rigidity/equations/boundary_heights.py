@@ -61,14 +61,14 @@ def saddle_boundary_heights(pattern: CreasePattern) -> list[dict[int, Fraction]]
     >>> len(boundaries), boundaries[0] == default_boundary_heights(single_vertex(5))
     (8, True)
     """
-    found = [default_boundary_heights(pattern)]
+    saddles = [default_boundary_heights(pattern)]
     for form in (_FORMS[0], (1, -1, -1), *_FORMS[1:]):
         for sign in (1, -1):
             a, b, c = form
             heights = _saddle(pattern, (sign * a, sign * b, sign * c))
-            if any(heights.values()) and heights not in found:
-                found.append(heights)
-    return found
+            if any(heights.values()) and heights not in saddles:
+                saddles.append(heights)
+    return saddles
 
 
 def _saddle(pattern: CreasePattern, form: tuple[int, int, int]) -> dict[int, Fraction]:
@@ -155,7 +155,7 @@ def given_deficits(
     is not interior, and for a deficit that is not a number or is negative.
     """
     interior = set(pattern.interior)
-    found = {}
+    deficits = {}
     for v, value in curvature.items():
         if v not in interior:
             raise BadCurvatureError(
@@ -172,8 +172,8 @@ def given_deficits(
                 (v,),
             )
         if deficit:
-            found[v] = deficit
-    return dict(sorted(found.items()))
+            deficits[v] = deficit
+    return dict(sorted(deficits.items()))
 
 
 def _require_convex(pattern: CreasePattern) -> None:

@@ -218,5 +218,5 @@ def test_free_folds_are_not_said_to_be_no_way_to_fold(tmp_path):
     )
     for asked in (["--all"], ["--branch", "1"]):
         said = run("draw", tmp_path / "s.svg", *asked).stderr
-        assert "the only folds that can fold are 4-5, 6-7, from boundary to border" in said
+        assert "the only folds that can fold are 4-5, 6-7, from boundary to boundary" in said
         assert f"draw the pattern without {asked[0]}" in said

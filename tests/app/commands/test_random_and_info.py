@@ -60,7 +60,7 @@ def test_info_agrees_with_count(name):
 @pytest.mark.parametrize(
     ("pattern", "expected"),
     [
-        (CreasePattern(SQUARE, [(0, 1, 2), (0, 2, 3)]), "1 fold from boundary to border"),
+        (CreasePattern(SQUARE, [(0, 1, 2), (0, 2, 3)]), "1 fold from boundary to boundary"),
         (scrambled(1, TRIANGLE, 2), "rigid: 0 ways to start folding"),
         (
             nested_triangles(),

@@ -221,7 +221,7 @@ def test_with_a_rim_no_other_face_is_held() -> None:
 def test_what_is_not_followed() -> None:
     with pytest.raises(UndecidedBranchError, match="nothing is proved of it"):
         follow(replace(pentagon(), root=None))
-    with pytest.raises(NotFollowedError, match="a branch with given heights of the border"):
+    with pytest.raises(NotFollowedError, match="a branch with given boundary heights"):
         follow(replace(pentagon(), gauge="saddle"))
 
 

@@ -76,7 +76,7 @@ def test_a_forged_ratio_does_not_close():
 def test_a_followed_motion_has_no_exact_positions():
     motion = follow_panels(mesh(1, 2, seed=2))
     assert motion.ratios is None
-    with pytest.raises(NotApplicableError, match="floats only"):
+    with pytest.raises(NotApplicableError, match="only in floats"):
         motion.exactly(1)
     with pytest.raises(UsageError, match="is a float"):
         follow_panels(miura(1, 1)).exactly(0.5)

@@ -212,7 +212,7 @@ def test_without_border_letters_the_outer_cycle_is_the_border():
     lines = [(a, b, "U") for a, b, _ in RIM] + [(0, 2, "U")]
     found, (repair,) = after(CORNERS, lines)
     assert letters(found) == {(0, 1): "B", (1, 2): "B", (2, 3): "B", (0, 3): "B", (0, 2): "U"}
-    assert repair.sentence == "4 lines round the sheet are taken for the border"
+    assert repair.sentence == "4 lines round the sheet are taken for the boundary"
 
 
 @pytest.mark.parametrize("left_out", STEPS)
