@@ -157,16 +157,11 @@ def _sorted(rows: Iterable[Row]) -> tuple[dict[int, _SizeTally], list[Row]]:
 def tables(rows: Iterable[Row]) -> list[StudyTable]:
     """Shares beside those of the paper, their decay, and all types."""
     tallies, every = _sorted(rows)
-    by_type = [_types(every)] if every else []
+    of_types = [_types(every)] if every else []
     if not tallies:
-        return by_type
-    return [
-        _shares(tallies),
-        _moves(tallies),
-        _decay(tallies),
-        *by_type,
-        _sentences(tallies, every),
-    ]
+        return of_types
+    of_squares = [_shares(tallies), _moves(tallies), _decay(tallies)]
+    return [*of_squares, *of_types, _sentences(tallies, every)]
 
 
 def _shares(tallies: dict[int, _SizeTally]) -> StudyTable:
