@@ -296,7 +296,7 @@ class CreaseDrawing:
 
     @cached_property
     def _boundary(self) -> frozenset[Edge]:
-        """The lines of the border, in both directions."""
+        """The lines of the boundary, in both directions."""
         pairs = zip(self.lines.edges, self.lines.letters, strict=True)
         sides = [edge for edge, letter in pairs if letter == "B"]
         return frozenset([*sides, *((j, i) for i, j in sides)])

@@ -96,7 +96,7 @@ def _motion_rows(facts: PanelFacts) -> list[tuple[str, str]]:
     parts = [f"{counted(len(part), 'vertex')} with {part[0]}" for part in facts.parts]
     return [
         ("folds that stay flat", _listed([f"{i}-{j}" for i, j in facts.flat], ", ")),
-        ("folds from boundary to border", _listed([f"{i}-{j}" for i, j in facts.free], ", ")),
+        ("folds from boundary to boundary", _listed([f"{i}-{j}" for i, j in facts.free], ", ")),
         ("parts that move independently", _listed(parts)),
     ]
 

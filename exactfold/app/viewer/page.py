@@ -30,7 +30,7 @@ _SELF, _NOBODY = "'self'", "'none'"
 _PLACE: Final = re.compile(r"\{\{(\w+)\}\}")
 _DARK: Final = {"B": 0.92}
 _LIGHTNESS: Final = 0.66
-"""The least lightness of a line on dark ground; the border is lighter still."""
+"""The least lightness of a line on dark ground; the boundary is lighter still."""
 
 
 def view_page(document: Mapping[str, Any]) -> str:

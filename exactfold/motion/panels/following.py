@@ -201,7 +201,7 @@ def _rates(
             )
         if not isinstance(key, int) and key not in result.free:
             raise UsageError(
-                f"an amount is given for {key}, which is not a fold from boundary to border"
+                f"an amount is given for {key}, which is not a fold from boundary to boundary"
             )
         if not isfinite(value):
             raise UsageError(f"the amount of {key} is {value}: give a finite number")

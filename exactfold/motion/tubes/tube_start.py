@@ -279,7 +279,7 @@ def names_at(
                 )
         return signs, 1
     if gauge.kind == RIM:
-        return signs, sign(factor_functional(sheet, gauge.boundary_heights), "the border")
+        return signs, sign(factor_functional(sheet, gauge.boundary_heights), "the boundary")
     if gauge.corner is None:
         return signs, sign(saddle_functional(sheet), "the boundary saddle")
     functional = vertex_sign_functional(gauge.sheet, gauge.corner)

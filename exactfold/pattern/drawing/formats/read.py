@@ -44,7 +44,7 @@ def read_drawing(path: str | PathLike[str]) -> Drawing:
 
     >>> from exactfold.pattern.data import example_path
     >>> read_drawing(example_path("two-vertex")).source
-    'read two-vertex.fold: FOLD 1.2, 11 lines (4 border, 7 unassigned)'
+    'read two-vertex.fold: FOLD 1.2, 11 lines (4 boundary, 7 unassigned)'
     """
     return parse_drawing(read_bytes(path), PurePath(path).name)
 
@@ -57,7 +57,7 @@ def parse_drawing(content: str | bytes, name: str) -> Drawing:
     raises the errors of the reader of the format.
 
     >>> parse_drawing("1 0 0 1 0", "edge").source
-    'read edge: CP, 1 line (1 border)'
+    'read edge: CP, 1 line (1 boundary)'
     >>> parse_drawing("%PDF-1.4", "crane.pdf")
     Traceback (most recent call last):
     exactfold.errors.UnknownFormatError: crane.pdf is not a drawing of a known format; exactfold
