@@ -241,7 +241,7 @@ def test_a_mode_that_does_not_fold_is_not_followed():
         ({"modes": [7]}, "no mode 7: give numbers from 1 to"),
         ({"modes": [1, 4]}, "cannot fold together: both use vertex"),
         ({"amounts": {17: 1}}, "an amount is given for mode 17"),
-        ({"amounts": {(0, 1): 1}}, "not a fold from boundary to border"),
+        ({"amounts": {(0, 1): 1}}, "not a fold from boundary to boundary"),
         ({"amounts": {}}, "so nothing folds"),
         ({"amounts": {4: float("nan")}}, "give a finite number"),
         ({"held": 9}, "no panel 9 to hold: give a number from 0 to 8"),
