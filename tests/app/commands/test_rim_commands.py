@@ -225,7 +225,7 @@ def test_such_a_branch_is_followed_and_proved(here: Path) -> None:
     options = ["--signs", "+-", "--rim", "rim.json", "--until", "5deg", "--frames", "2"]
     done = run("fold", "pentagon.fold", *options, "--certificate", "c.json")
     assert done.exit_code == 0
-    said = "border in the ratio 0: 1, 1: -1/2, 2: 1/4, 4: 1/10, others 0"
+    said = "boundary in the ratio 0: 1, 1: -1/2, 2: 1/4, 4: 1/10, others 0"
     assert said in " ".join(done.stdout.split())
     claims = checker.check(checker.load(Path("c.json").read_text()))
     assert claims["rim"] == ["1", "-1/2", "1/4", "0", "1/10"]
