@@ -224,7 +224,10 @@ def test_frames_at_equal_steps_of_an_angle():
     assert np.std(np.diff(motion.times)) > 1e-5
     with pytest.raises(UsageError, match="turns back"):
         follow(find_branch(random_square(2, seed=1), "+-"), until="return", by=(1, 4))
-    for pair, words in (((0, 1), "0-1 is an edge of the boundary"), ((0, 2), "there is no fold 0-2")):
+    for pair, words in (
+        ((0, 1), "0-1 is an edge of the boundary"),
+        ((0, 2), "there is no fold 0-2"),
+    ):
         with pytest.raises(UsageError, match=f"{words}.* to make equal steps of"):
             follow(branch, by=pair)
 

@@ -20,6 +20,7 @@ from exactfold.pattern.drawing.drawing import Snap as Snapping
 def complete_pattern(incomplete: str) -> list[str]:
     """Shipped patterns, pattern files and folders whose names begin with the typed text."""
     from exactfold.pattern.data import EXAMPLES
+    from exactfold.pattern.drawing.formats.read import READERS
 
     folder, _, _ = incomplete.rpartition("/")
     base = Path(folder or ("/" if incomplete.startswith("/") else "."))
@@ -34,7 +35,7 @@ def complete_pattern(incomplete: str) -> list[str]:
         if text.startswith(incomplete) and not entry.name.startswith("."):
             if entry.is_dir():
                 completions.append(f"{text}/")
-            elif entry.suffix in (".fold", ".svg", ".cp", ".opx", ".ori", ".orh"):
+            elif entry.suffix[1:] in READERS:
                 completions.append(text)
     return completions
 
