@@ -157,7 +157,7 @@ def test_a_motion_is_proved_with_its_first_contact() -> None:
     assert max(proof.motion.bounds.radii) < 1e-13
     claims = check(proof.certificate())
     assert claims["rim"] == ["1", "-1/2", "1/4", "0", "1/10"]
-    assert "border in the ratio of 1, -1/2, 1/4, 0, 1/10 above the face 1-2-6" in summary(claims)
+    assert "boundary in the ratio of 1, -1/2, 1/4, 0, 1/10 above the face 1-2-6" in summary(claims)
 
 
 def test_tubes_hold_what_sixty_digits_give() -> None:
