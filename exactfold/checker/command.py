@@ -90,13 +90,13 @@ def check(
 
     `workers` and `engine_of` are used for lines only, as in `verify`. Raises `CertificateError` at
     the first claim that is not supported, and `FormatError` if the object, or the first line, does
-    not belong to a known kind.
+    not belong to a known kind, in a known version.
     """
     if isinstance(data, tuple):
         in_lines = _kind_in_lines(data[0] if data else "{}")
         return Verified(in_lines, in_lines.check(iter(data), workers, engine_of(in_lines)))
     kind = _kind_of(data)
-    return Verified(kind, kind.check(data))
+    return Verified(kind, kind.check(kind.read(data)))
 
 
 def _kind_of(data: Any) -> DocumentKind[Any]:

@@ -76,9 +76,14 @@ class Mutant(NamedTuple):
 
 def modules(chosen: list[str]) -> list[str]:
     """The modules asked for, or all."""
-    parts = [path.relative_to(PACKAGE).with_suffix("").parts for path in PACKAGE.rglob("*.py")]
     left_out = ("_", "exactfold")
-    return chosen or sorted(".".join(p) for p in parts if not p[-1].startswith(left_out))
+    paths = (path for path in PACKAGE.rglob("*.py") if not path.name.startswith(left_out))
+    return chosen or sorted(map(module_of, paths))
+
+
+def module_of(path: Path) -> str:
+    """The name of a module of the checker, by its file."""
+    return ".".join(path.relative_to(PACKAGE).with_suffix("").parts)
 
 
 def definitions(tree: ast.Module) -> Iterator[tuple[str, ast.FunctionDef]]:
@@ -213,7 +218,7 @@ def worth_running(before: str, after: str, every: bool = False) -> bool:
 
 
 def functions_of(names: list[str]) -> Functions:
-    """The functions and methods of modules, by `module:name`, but those that call `super`."""
+    """The functions and methods of modules, by `module:name`."""
     found = {}
     for module in names:
         loaded = import_module(f"exactfold.checker.{module}")
@@ -222,20 +227,26 @@ def functions_of(names: list[str]) -> Functions:
             value = inspect.getattr_static(getattr(loaded, owner) if owner else loaded, last)
             for inner in ("__func__", "fget", "func", "__wrapped__"):
                 value = getattr(value, inner, value)
-            if value.__closure__ is None:
-                found[f"{module}:{name}"] = value
+            found[f"{module}:{name}"] = value
     return found
 
 
 def give(function: Any, definition: str) -> None:
     """Let a function, wherever it has been imported to, do what another definition says."""
     node = ast.parse(definition).body[0]
+    names = function.__code__.co_freevars  # `__class__` if it calls `super`
     if isinstance(node, ast.FunctionDef):
         node.decorator_list = []
+        node.body[:0] = [ast.parse(name).body[0] for name in names]
+        outer = ast.parse(f"def outer({', '.join(names)}):\n    return {node.name}").body[0]
+        if isinstance(outer, ast.FunctionDef):
+            outer.body.insert(0, node)
+            node = outer
     flags = __future__.annotations.compiler_flag
     made: dict[str, Any] = {}
     exec(compile(ast.Module([node], []), "mutant", "exec", flags), function.__globals__, made)
-    [other] = made.values()
+    [outermost] = made.values()
+    other = outermost(*names)
     function.__code__, function.__defaults__ = other.__code__, other.__defaults__
     function.__kwdefaults__ = other.__kwdefaults__
 
@@ -280,7 +291,9 @@ class Bench:
         before = {}
         for key, function in functions.items():
             name = key.replace(":", "_").replace(".", "_")
-            copy = FunctionType(function.__code__, function.__globals__)
+            copy = FunctionType(
+                function.__code__, function.__globals__, closure=function.__closure__
+            )
             copy.__defaults__, copy.__kwdefaults__ = function.__defaults__, function.__kwdefaults__
             before[key] = copy
             function.__globals__.update({f"_bench_{name}": copy, "_bench_called": self._called})
@@ -312,8 +325,8 @@ class Bench:
         frame: FrameType | None = sys._getframe()
         while frame is not None:
             path = Path(frame.f_code.co_filename)
-            if path.parent == PACKAGE:
-                self.refusing[f"{path.stem}:{frame.f_lineno}"].add(self.test)
+            if path.is_relative_to(PACKAGE):
+                self.refusing[f"{module_of(path)}:{frame.f_lineno}"].add(self.test)
             frame = frame.f_back
 
     def _share(self, job: int, items: list[pytest.Item], functions: Functions, said: Any) -> None:

@@ -155,3 +155,14 @@ def test_what_is_quoted_in_a_listing_does_not_make_it_compact(tmp_path: Path) ->
     assert not checker.is_compact(path)
     with pytest.raises(checker.FormatError, match='no "format" of a certificate that is writt'):
         checker.verify(path)
+
+
+@pytest.mark.parametrize("name", ["listing-cross", "branch-dart", "motion-start", "panels-nested"])
+def test_an_object_is_read_before_it_is_checked(name: str) -> None:
+    """Also one that no file held: what another version claims may mean something else."""
+    document = given(name)
+    assert checker.check(document).kind.format == document["format"]
+    with pytest.raises(checker.FormatError, match=r"^version 99 is not known to this checker$"):
+        checker.check(document | {"version": 99})
+    with pytest.raises(checker.FormatError, match=r"^the object: expected an object with the keys"):
+        checker.check(document | {"more": 1})

@@ -38,7 +38,7 @@ def gathered(header: dict[str, Any], texts: Iterator[str]) -> tuple[dict[str, An
     for k in range(blocks):
         text = next(texts, None)
         if text is None:
-            raise UnfinishedError(f"only {k} of {blocks} blocks are there")
+            raise UnfinishedError(f"only {k} of {blocks} blocks are there, and no root is checked")
         total += len(text)
         at_most(total, MOST_BYTES, "the bytes of the blocks", "MOST_BYTES")
         what = f"block {k}"

@@ -20,7 +20,10 @@ class CertificateError(Exception):
 
 
 class UnfinishedError(CertificateError):
-    """The file ends before its claims, as after an interrupted run; all that it has holds."""
+    """The file ends before its claims, as after an interrupted run.
+
+    What was checked holds, and the message says what was checked.
+    """
 
 
 class FormatError(Exception):

@@ -169,8 +169,12 @@ def test_forged_blocks(change: Callable[[Lines], object], message: str) -> None:
 def test_files_that_are_not_finished() -> None:
     parts = given_lines(FOURS)
     refused_lines(parts[:-1], "all 7 blocks hold, but the claims are missing", UnfinishedError)
-    refused_lines(parts[:-2], "only 6 of 7 blocks are there", UnfinishedError)
-    refused_lines(parts[:1], "only 0 of 7 blocks are there", UnfinishedError)
+    said = "only {} of 7 blocks are there, and no root is checked"
+    refused_lines(parts[:-2], said.format(6), UnfinishedError)
+    refused_lines(parts[:1], said.format(0), UnfinishedError)
+    parts[1]["roots"][0]["multiplicity"] = 7
+    refused_lines(parts[:-2], said.format(6), UnfinishedError)
+    refused_lines(parts[:-1], "branch 0: multiplicity is 2")
     rigid = given_lines("compact-roots-rigid")
     message = "all 0 blocks hold, but the claims are missing"
     refused_lines(rigid[:1], message, UnfinishedError)

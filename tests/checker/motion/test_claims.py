@@ -6,7 +6,7 @@ from fractions import Fraction
 from typing import get_type_hints
 
 import pytest
-from forge import given, refused, verified
+from forge import given, refused, verified, without
 
 from exactfold.checker.core.reading import parse_rational, require
 from exactfold.checker.motion import certificate as motion
@@ -63,3 +63,32 @@ def test_a_class_in_the_table_is_a_claim(monkeypatch: pytest.MonkeyPatch) -> Non
     refused(document, "there are more: they were counted")
     del document["claims"]["pieces"]
     refused(document, f"evidence: expected an object with the keys {names}")
+
+
+OTHERS = "the motion passes other branch points than those claimed"
+NONE = "a motion passes branch points and claims none, or the other way round"
+
+
+@pytest.mark.parametrize(
+    ("name", "through", "message"),
+    [
+        ("motion-through", [], OTHERS),
+        ("motion-through", [[5]], OTHERS),
+        ("motion-through", [[6], [6]], OTHERS),
+        ("motion-through", [[6, 6]], OTHERS),
+        ("motion-convex", [], NONE),
+        ("motion-node", [], NONE),
+    ],
+)
+def test_other_branch_points_are_refused(name: str, through: list[list[int]], message: str) -> None:
+    document = given(name)
+    document["claims"]["through"] = through
+    refused(document, message)
+    with without(message):
+        assert verified(document)["through"] == through
+
+
+def test_branch_points_are_not_passed_in_silence() -> None:
+    document = given("motion-through")
+    assert document["claims"].pop("through") == [[6]]
+    refused(document, NONE)

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from forge import Document, beyond, refused, unreadable, verified
+from forge import given as fixture
 from forge_panel_motions import MOTIONS, at_rest, forged, given, stopped, whole
 
 from exactfold import checker
@@ -75,6 +76,19 @@ def test_a_fold_that_is_not_named_closes_in_modes_that_are_not_linear() -> None:
     assert ", a fold is closed by 3.1416 (180.001 degrees)" in checker.summary(verified(document))
     document["claims"]["contact"]["folds"] = document["claims"]["drivers"]
     stopped(document, "a named fold is not proved to close")
+
+
+@pytest.mark.parametrize("power", [-130, 130])
+def test_the_scale_of_a_sheet_does_not_matter(power: int) -> None:
+    """Positions have errors over a fixed denominator, so that the sheet is shrunk before."""
+    document = fixture("panelmotion-clear")
+    time = document["claims"]["clear"]
+    vertices = document["pattern"]["vertices"]
+    document["pattern"]["vertices"] = [
+        [[str(Fraction(text) * Fraction(2) ** power) for text in number] for number in point]
+        for point in vertices
+    ]
+    assert verified(document)["clear"] == time
 
 
 # --- rates of their own --------------------------------------------------------------------------
