@@ -178,7 +178,9 @@ def test_faces_that_are_not_parted_on_the_arc_are_named(motion, proof, monkeypat
     claims = checker.check(undecided.certificate())
     assert claims["node"] == {"flat": [FLAT], "clear": False}
     # Nor where the last tube is not clear up to the arc.
-    monkeypatch.setattr(contacts, "on_branch_point_tube", lambda *given: pytest.fail("not looked at"))
+    monkeypatch.setattr(
+        contacts, "on_branch_point_tube", lambda *given: pytest.fail("not looked at")
+    )
 
     def sooner(pairs, coefficients, radius, low, high, planar=False):
         return vague(pairs, coefficients, radius, low, 0.0 if not planar else high, planar)
