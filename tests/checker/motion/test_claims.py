@@ -8,6 +8,7 @@ from typing import get_type_hints
 import pytest
 from forge import given, refused, verified, without
 
+from exactfold import checker
 from exactfold.checker.core.reading import parse_rational, require
 from exactfold.checker.motion import certificate as motion
 from exactfold.checker.motion.chain import Chain
@@ -92,3 +93,8 @@ def test_branch_points_are_not_passed_in_silence() -> None:
     document = given("motion-through")
     assert document["claims"].pop("through") == [[6]]
     refused(document, NONE)
+
+
+def test_a_summary_says_along_which_ray_a_motion_comes_back() -> None:
+    said = checker.summary(checker.check(given("motion-rim-return")))
+    assert ", and back to the flat state along -, side +, with the boundary in the ratio " in said
