@@ -1,7 +1,5 @@
 """The options of the commands for single branches, and checks of which go together."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -28,7 +26,7 @@ from exactfold.app.shell.shell import apart, one_at_most
 from exactfold.errors import UsageError
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False, match_args=False)
 class BranchOptions:
     """The options of `exactfold branch`; `UsageError` if they do not go together."""
 
@@ -70,7 +68,7 @@ class BranchOptions:
         apart(self.certificate, self.pattern, self.boundary_heights, self.curvature)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False, match_args=False)
 class MatchOptions:
     """The options of `exactfold match`; `UsageError` if the output is the pattern."""
 
@@ -113,7 +111,7 @@ class MatchOptions:
         apart(self.certificate, self.file)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False, match_args=False)
 class AssignmentsOptions:
     """The options of `exactfold assignments`."""
 
@@ -128,7 +126,7 @@ class AssignmentsOptions:
     sheet: Sheet = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False, match_args=False)
 class ExportOptions:
     """The options of `exactfold export`; `UsageError` if they do not go together."""
 

@@ -1,7 +1,5 @@
 """The options of the commands that fold and drive sheets, and checks of which go together."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -32,7 +30,7 @@ from exactfold.app.shell.shell import apart, one_at_most
 from exactfold.errors import UsageError
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False, match_args=False)
 class FoldOptions:
     """The options of `exactfold fold`; `UsageError` if they do not go together.
 
@@ -132,7 +130,7 @@ class FoldOptions:
         apart(self.certificate, self.file, self.boundary_heights)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False, match_args=False)
 class MotionsOptions:
     """The options of `exactfold motions`."""
 
@@ -152,7 +150,7 @@ class MotionsOptions:
     sheet: Sheet = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False, match_args=False)
 class ActuateOptions:
     """The options of `exactfold actuate`; `UsageError` if they do not go together."""
 

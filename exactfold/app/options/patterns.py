@@ -1,7 +1,5 @@
 """The options of the commands for whole patterns, and checks of which go together."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
@@ -29,7 +27,7 @@ from exactfold.branches.counting.registry import METHODS
 from exactfold.errors import UsageError
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False, match_args=False)
 class CountOptions:
     """The options of `exactfold count`; `UsageError` if they do not go together.
 
@@ -117,7 +115,7 @@ class CountOptions:
             )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False, match_args=False)
 class InfoOptions:
     """The options of `exactfold info`."""
 
@@ -134,7 +132,7 @@ class InfoOptions:
     sheet: Sheet = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False, match_args=False)
 class ConvertOptions:
     """The options of `exactfold convert`."""
 

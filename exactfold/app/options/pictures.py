@@ -1,7 +1,5 @@
 """The options of the commands that make pictures and pages, and checks of them."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,7 +22,7 @@ from exactfold.app.shell.parameters import (
 from exactfold.errors import UsageError
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False, match_args=False)
 class DrawOptions:
     """The options of `exactfold draw`; `UsageError` if they do not go together.
 
@@ -88,7 +86,7 @@ class DrawOptions:
             raise UsageError("--rim goes with the vertex signs of a way, and without --folded")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False, match_args=False)
 class ViewOptions:
     """The options of `exactfold view`; `UsageError` if they do not go together."""
 

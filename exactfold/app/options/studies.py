@@ -47,7 +47,7 @@ def _complete_numbers(ctx: typer.Context, incomplete: str) -> list[str]:
     return [text] if text and text.startswith(incomplete) else []
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False, match_args=False)
 class StudyOptions:
     """The options of `exactfold study`."""
 
