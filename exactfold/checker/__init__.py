@@ -40,14 +40,13 @@ folder is on the import path when it is run.
 
 TYPE_CHECKING = False  # as in typing, which takes a while to load
 if TYPE_CHECKING:
-    from .command import check, is_compact, load, main, summary, verify
+    from .command import check, load, main, summary, verify
     from .core.reading import CertificateError, FormatError
 
 __all__ = [
     "CertificateError",
     "FormatError",
     "check",
-    "is_compact",
     "load",
     "main",
     "summary",

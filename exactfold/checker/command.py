@@ -151,11 +151,6 @@ def kind_in_lines(path: str | PathLike[str]) -> LineKind[Any] | None:
         return None
 
 
-def is_compact(path: str | PathLike[str]) -> bool:
-    """Whether the first line of a file is that of a compact certificate; raises `OSError`."""
-    return kind_in_lines(path) is COMPACT
-
-
 def _sealed(line: bytes) -> bool:
     """Whether a line ends with a tab and a digest, as in certificates that are written in lines."""
     return re.fullmatch(rb"[0-9a-f]{64}\n", line.rpartition(b"\t")[2]) is not None

@@ -9,6 +9,8 @@ import pytest
 from typed_values import misfits
 
 from exactfold import checker
+from exactfold.checker.branches.compact import COMPACT
+from exactfold.checker.command import kind_in_lines
 
 FOLDER = Path(__file__).parent.parent / "fixtures" / "certificates"
 FILES = sorted(path.name for path in FOLDER.iterdir() if path.suffix in (".json", ".txt"))
@@ -40,7 +42,7 @@ def test_certificates_of_earlier_versions_verify(name: str) -> None:
     path = FOLDER / name
     claims = checker.verify(path)
     assert list(misfits(claims.claims, claims.kind.claims)) == []
-    assert checker.is_compact(path) == name.startswith("compact")
+    assert (kind_in_lines(path) is COMPACT) == name.startswith("compact")
     last = path.read_text().splitlines()[-1]
     given = json.loads(last.partition("\t")[0])["claims"]
     assert {key: claims[key] for key in given} == given

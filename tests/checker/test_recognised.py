@@ -13,6 +13,8 @@ from forge import FIXTURES, chained, given, given_lines, unreadable
 
 from exactfold import checker
 from exactfold.checker import command
+from exactfold.checker.branches.compact import COMPACT
+from exactfold.checker.command import kind_in_lines
 
 NO_FORMAT = 'the object has no "format" that this checker knows'
 FOLD = "this is a FOLD file, which is a crease pattern and not a certificate"
@@ -145,14 +147,14 @@ def test_what_is_quoted_in_a_listing_does_not_make_it_compact(tmp_path: Path) ->
     document = given("listing-cross")
     document["provenance"] = {"a": "x" * 5000, "format": "exactfold compact certificate"}
     path.write_text(json.dumps(document))
-    assert not checker.is_compact(path)
+    assert kind_in_lines(path) is not COMPACT
     assert checker.verify(path) == document["claims"]
     path.write_text("\n\n" + json.dumps(document, indent=1))
     assert checker.verify(path) == document["claims"]
     parts = given_lines("compact-exact")
     parts[0]["format"] = "exactfold certificate"
     path.write_bytes(chained(parts))
-    assert not checker.is_compact(path)
+    assert kind_in_lines(path) is not COMPACT
     with pytest.raises(checker.FormatError, match='no "format" of a certificate that is writt'):
         checker.verify(path)
 

@@ -276,7 +276,7 @@ def _followed(
     def left() -> Iterator[Job]:
         for k, signs in enumerate(sorted(product((-1, 1), repeat=number), key=_turn)):
             if progress is not None:
-                progress("half-branches", k, 1 << number)
+                progress("rays", k, 1 << number)
             if (named := Ray(signs, 1)) not in ended:
                 yield named, file is not None
 

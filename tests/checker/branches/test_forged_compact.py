@@ -24,7 +24,9 @@ from forge_compact import EXACT, FOUR, moved
 from exactfold import checker
 from exactfold.checker import command
 from exactfold.checker.branches import compact
+from exactfold.checker.branches.compact import COMPACT
 from exactfold.checker.branches.compact_blocks import CompactSheet
+from exactfold.checker.command import kind_in_lines
 from exactfold.checker.core import parts as sharing
 from exactfold.checker.core.lines import digest, lines, read_object
 from exactfold.checker.core.reading import CertificateError, FormatError, LimitError
@@ -74,7 +76,7 @@ def test_the_first_line_may_have_been_read(tmp_path: Any) -> None:
         first = stream.readline()
         assert len(list(lines(stream, first))) == 6
     assert compact.check(str(path)) == checker.verify(path) == given_lines(FOUR)[-1]["claims"]
-    assert checker.is_compact(path)
+    assert kind_in_lines(path) is COMPACT
 
 
 def test_a_file_is_compact_by_the_format_in_its_first_line(tmp_path: Any) -> None:
@@ -90,11 +92,11 @@ def test_a_file_is_compact_by_the_format_in_its_first_line(tmp_path: Any) -> Non
     path = tmp_path / "c.txt"
     for data in (chained(late), escaped.encode()):
         path.write_bytes(data)
-        assert checker.is_compact(path)
+        assert kind_in_lines(path) is COMPACT
         assert checker.verify(path)["distinct"] == 16
     for data in (b"", b"{}", b"\t\n", b"{}\tx\n", chained(parts)[:-5]):
         path.write_bytes(data)
-        assert checker.is_compact(path) == (len(data) > 9)
+        assert (kind_in_lines(path) is COMPACT) == (len(data) > 9)
     for text, message in (
         ('{"format" :\t "exactfold compact certificate"}', "line 1 is cut off or was altered"),
         (json.dumps(parts[0]), "line 1 is cut off or was altered"),
@@ -102,7 +104,7 @@ def test_a_file_is_compact_by_the_format_in_its_first_line(tmp_path: Any) -> Non
         ('{"a": "exactfold branch"}', 'the object has no "format" that this checker knows'),
     ):
         path.write_text(text)
-        assert not checker.is_compact(path)
+        assert kind_in_lines(path) is not COMPACT
         with pytest.raises(FormatError) as caught:
             checker.verify(path)
         assert str(caught.value) == message
