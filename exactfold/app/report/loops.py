@@ -39,7 +39,7 @@ def _graph(loops: Loops) -> list[tuple[str, RenderableType]]:
     """What can be reached from the flat state, in one or two lines."""
     graph = loops.graph
     arcs = counted(len(graph.arcs), "arc")
-    nodes = counted(len(graph.nodes), "node") if graph.nodes else "no nodes"
+    nodes = counted(len(graph.nodes), "branch point") if graph.nodes else "no branch points"
     parts: list[str | Text] = [f"the flat state, {nodes}, {arcs}, ", status_text(graph.status)]
     if graph.closed_curves:
         curves = counted(len(graph.closed_curves), "closed curve")
