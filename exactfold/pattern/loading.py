@@ -17,16 +17,14 @@ from exactfold.pattern.drawing.drawing import Drawing, Snap
 from exactfold.pattern.fold import FoldFile
 from exactfold.pattern.opening import (
     Opened,
-    Steps,
     from_drawing,
     open_pattern,
     opened,
     triangles,
 )
+from exactfold.pattern.reading import PLAIN, Reading
 
 if TYPE_CHECKING:
-    from fractions import Fraction
-
     from exactfold.pattern.panel_pattern import PanelPattern
 
 PatternLike: TypeAlias = (
@@ -40,23 +38,18 @@ _TEXT = "FOLD text"
 
 def open_sheet(
     sheet: PatternLike,
-    snap: Snap | None = None,
-    number: int | None = None,
-    *,
-    steps: Steps = "all",
-    merge: Fraction | None = None,
+    reading: Reading = PLAIN,
 ) -> Opened:
     """The sheet that `sheet` stands for; files and FOLD are read.
 
     A text that is a name in `EXAMPLES` stands for this shipped pattern, even if there is a file of
     the same name (write "./two-vertex" for that). A text that begins with "{" is the text of a FOLD
     file, and a mapping is its JSON object. Every other text and every `Path` is the path of a file
-    of any format. If a drawing has several sheets, `number` chooses one, counted from 1. The other
-    arguments are those of `open_pattern`.
+    of any format. `reading` says how a drawing is read.
 
     Raises the errors of `open_pattern`; `UnreadableFileError`, which lists the names, if a text is
-    neither a name nor a file; `SeveralSheetsError` if a pattern is given and `number` is not 1;
-    `UsageError` if a pattern is given and `snap` is "auto", and for objects of other types.
+    neither a name nor a file; for a pattern, `SeveralSheetsError` if another sheet than the first
+    is asked for, and `UsageError` if the snap is "auto"; `UsageError` for objects of other types.
 
     >>> open_sheet("miura").sheet
     <PanelPattern: 9 interior vertices, 24 folds, 16 panels>
@@ -65,23 +58,23 @@ def open_sheet(
     <CreasePattern: 0 interior and 3 boundary vertices>
     """
     if isinstance(sheet, Drawing):
-        return from_drawing(sheet, snap, number=number, steps=steps, merge=merge)
+        return from_drawing(sheet, reading)
     if isinstance(sheet, Mapping):
-        return _of_text(_dumped(sheet), snap, number, steps, merge)
+        return _of_text(_dumped(sheet), reading)
     if isinstance(sheet, str | PathLike):
         if isinstance(sheet, str) and sheet.lstrip().startswith("{"):
-            return _of_text(sheet, snap, number, steps, merge)
+            return _of_text(sheet, reading)
         path = _located(sheet)
         name = os.fspath(sheet)
-        return open_pattern(path, snap, name=name, number=number, steps=steps, merge=merge)
-    if number not in (None, 1):
-        raise SeveralSheetsError(f"there is no sheet {number}: a pattern is one sheet")
+        return open_pattern(path, reading, name=name)
+    if reading.number not in (None, 1):
+        raise SeveralSheetsError(f"there is no sheet {reading.number}: a pattern is one sheet")
     if isinstance(sheet, Opened):
         return sheet
     if isinstance(sheet, FoldFile):
         return Opened(sheet.pattern, sheet.assignment, snapped=sheet.snapped)
     if isinstance(sheet, CreasePattern):
-        return _snapped(sheet, snap)
+        return _snapped(sheet, reading.snap)
     if _is_panels(sheet):
         return Opened(sheet)
     raise UsageError(
@@ -110,7 +103,7 @@ def load(what: PatternLike, snap: Snap | None = None) -> CreasePattern:
     """
     if isinstance(what, FoldFile):
         what = what.pattern
-    return triangles(open_sheet(what, snap), "load")
+    return triangles(open_sheet(what, Reading(snap)), "load")
 
 
 def as_pattern(what: PatternLike) -> CreasePattern:
@@ -139,12 +132,10 @@ def _dumped(document: Mapping[str, Any]) -> str:
         raise UsageError(f"the dictionary is not a FOLD document: {error}") from None
 
 
-def _of_text(
-    text: str, snap: Snap | None, number: int | None, steps: Steps, merge: Fraction | None
-) -> Opened:
+def _of_text(text: str, reading: Reading) -> Opened:
     """The sheet in the text of a FOLD file."""
     try:
-        return opened(text.encode(), _TEXT, snap, number=number, steps=steps, merge=merge)
+        return opened(text.encode(), _TEXT, reading)
     except InputError as error:
         error.args = (f"{_TEXT}: {error}",)
         raise

@@ -8,7 +8,7 @@ from fractions import Fraction
 from functools import partial
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, TypeAlias, TypedDict
+from typing import TYPE_CHECKING, TypedDict
 
 from exactfold._support.documents import FieldName, NotNegative, Several
 from exactfold._support.notebook import Picture
@@ -31,14 +31,12 @@ from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.drawing.bounds import check_common_denominator, read_bytes
 from exactfold.pattern.drawing.drawing import Drawing, Snap
 from exactfold.pattern.fold import FoldFile, parse_bytes
+from exactfold.pattern.reading import PLAIN, Reading, Steps
 
 # Drawings need libraries that take long to load; triangulated sheets are read without them.
 if TYPE_CHECKING:
     from exactfold.pattern.drawing.repair import Sheets
     from exactfold.pattern.panel_pattern import Edge, PanelPattern
-
-Steps: TypeAlias = "Literal['all', 'least'] | Collection[str]"
-"""Steps of repair: "all", "least" (as few as reading the drawing takes), or a set of names."""
 
 # These errors of the strict reader are final: reading the file as a drawing cannot mend them.
 _FINAL = (NumberError, StaleExactCoordinatesError)
@@ -66,7 +64,8 @@ class Opened(Picture):
     `PanelPattern`. `assignment` holds the letters of the file by edge. `lines` has one sentence
     each for what was read, how coordinates were made exact, and each repair; it is empty if the
     file needed nothing. `snapped` is the largest change of a coordinate by `snap`. `again` reads
-    the sheet once more with another `snap`; it is None for a sheet that was not read from a file.
+    the sheet once more with another `Reading` than `reading`; it is None for a sheet that was not
+    read from a file.
     """
 
     sheet: CreasePattern | PanelPattern
@@ -75,7 +74,8 @@ class Opened(Picture):
     snapped: Fraction = Fraction(0)
     largest_move: float = 0.0
     field_name: str = "Q"
-    again: Callable[[Snap], Opened] | None = field(default=None, repr=False, compare=False)
+    reading: Reading = field(default=PLAIN, repr=False, compare=False)
+    again: Callable[[Reading], Opened] | None = field(default=None, repr=False, compare=False)
 
     def __repr__(self) -> str:
         return f"<Opened: {self.sheet!r}, in {self.field_name}>"
@@ -107,25 +107,19 @@ class Opened(Picture):
 
 
 def open_pattern(
-    path: str | PathLike[str],
-    snap: Snap | None = None,
-    *,
-    name: str | None = None,
-    number: int | None = None,
-    steps: Steps = "all",
-    merge: Fraction | None = None,
+    path: str | PathLike[str], reading: Reading = PLAIN, *, name: str | None = None
 ) -> Opened:
     """The sheet in a file of any format that `read_drawing` knows.
 
-    A FOLD file of triangles is read unchanged (`load_fold`); `snap` is a denominator there. All
+    A FOLD file of triangles is read unchanged (`load_fold`); the snap is a denominator there. All
     other files are read as drawings: they are repaired, and their coordinates are made exact
     (`exact_sheets`). This includes FOLD files with panels, crossings, near-duplicate vertices or a
     frame in another plane. If a file has several sheets, `number` chooses one, counted from 1.
 
-    `steps` and `merge` are those of `repaired`. With steps "least", a drawing that already is a
-    sheet is not repaired; in other drawings only points are merged, lines cut where they meet, and
-    loose ends dropped. If `merge` or a set of steps is given, a file of triangles is read as a
-    drawing, too.
+    The steps of repair and `merge` are those of `repaired`. With steps "least", a drawing that
+    already is a sheet is not repaired; in other drawings only points are merged, lines cut where
+    they meet, and loose ends dropped. If `merge` or a set of steps is given, a file of triangles is
+    read as a drawing, too.
 
     Raises the errors of `read_drawing`, `exact_sheets` and `PanelPattern`; the name of the file
     stands before the message. Raises `SeveralSheetsError` if there are several sheets and none is
@@ -134,7 +128,7 @@ def open_pattern(
     raw = read_bytes(path)
     known = name or str(path)
     try:
-        return opened(raw, known, snap, number=number, steps=steps, merge=merge)
+        return opened(raw, known, reading)
     except UnknownFormatError:
         raise  # its message begins with the name already
     except InputError as error:
@@ -142,19 +136,11 @@ def open_pattern(
         raise
 
 
-def opened(
-    raw: bytes,
-    name: str,
-    snap: Snap | None = None,
-    *,
-    number: int | None = None,
-    steps: Steps = "all",
-    merge: Fraction | None = None,
-) -> Opened:
+def opened(raw: bytes, name: str, reading: Reading = PLAIN) -> Opened:
     """Reads the bytes of a file like `open_pattern`; messages do not begin with its name."""
     strict: InputError | None = None
-    plain = merge is None and isinstance(steps, str) and number in (None, 1)
-    if plain and snap != "auto":
+    snap = reading.snap
+    if snap != "auto" and not reading.repairs and reading.number in (None, 1):
         try:
             file = parse_bytes(raw, name, snap if isinstance(snap, int) else None)
         except _FINAL:
@@ -162,9 +148,11 @@ def opened(
         except (FoldError, PatternError) as error:
             strict = error
         else:
-            again = partial(opened, raw, name, number=number)
+            again = partial(opened, raw, name)
             lines = _meant(file, name)
-            return Opened(file.pattern, file.assignment, lines, file.snapped, again=again)
+            return Opened(
+                file.pattern, file.assignment, lines, file.snapped, reading=reading, again=again
+            )
     from exactfold.pattern.drawing.formats.read import parse_drawing
 
     try:
@@ -177,7 +165,7 @@ def opened(
             raise
         raise strict from None
     try:
-        return from_drawing(drawing, snap, number=number, steps=steps, merge=merge)
+        return from_drawing(drawing, reading)
     except (FoldError, PatternError):
         if isinstance(strict, PatternError) and not isinstance(strict, _OF_EDGES):
             raise strict from None  # it names the face or vertex of the file
@@ -201,14 +189,7 @@ def _meant(file: FoldFile, name: str) -> tuple[str, ...]:
     )
 
 
-def from_drawing(
-    drawing: Drawing,
-    snap: Snap | None = None,
-    *,
-    number: int | None = None,
-    steps: Steps = "all",
-    merge: Fraction | None = None,
-) -> Opened:
+def from_drawing(drawing: Drawing, reading: Reading = PLAIN) -> Opened:
     """The sheet of a drawing, after repair, with exact coordinates and traced panels.
 
     A drawing with exact coordinates of its own keeps them, and is repaired only if it is not a
@@ -224,13 +205,13 @@ def from_drawing(
     """
     from exactfold.pattern.drawing.repair import exact_sheets
 
-    rule: Snap = snap or ("exact" if drawing.exact else "auto")
-    attempts = _attempts(drawing, steps, merge)
+    rule: Snap = reading.snap or ("exact" if drawing.exact else "auto")
+    attempts = _attempts(drawing, reading.steps, reading.merge)
     for k, chosen in enumerate(attempts, 1):
         try:
-            sheets = exact_sheets(drawing, snap=rule, merge=merge, steps=chosen)
-            again = partial(from_drawing, drawing, number=number, steps=steps, merge=merge)
-            return replace(_chosen(drawing, sheets, number), again=again)
+            sheets = exact_sheets(drawing, snap=rule, merge=reading.merge, steps=chosen)
+            again = partial(from_drawing, drawing)
+            return replace(_chosen(drawing, sheets, reading.number), reading=reading, again=again)
         except (FoldError, PatternError):
             if k == len(attempts):
                 raise

@@ -20,6 +20,7 @@ from exactfold.panels.stars import edge_of
 from exactfold.pattern.drawing.drawing import Drawing, Line
 from exactfold.pattern.opening import from_drawing
 from exactfold.pattern.panel_pattern import PanelPattern
+from exactfold.pattern.reading import Reading
 
 PLAIN = regular_twist(4, (Fraction(3), Fraction(-7)))
 
@@ -36,7 +37,7 @@ def pinwheel(digits: int, scale: Fraction = Fraction(1, 3)) -> Drawing:
 
 
 def counted(drawing: Drawing) -> Decomposition:
-    result = count_ways(drawing, snap="exact")
+    result = count_ways(drawing, Reading("exact"))
     assert isinstance(result, Decomposition)
     return result
 
@@ -53,7 +54,7 @@ def test_auto_closes_a_pinwheel_on_thirds(digits: int) -> None:
         assert miss.off == pytest.approx(abs(miss.quotient - 1), abs=1e-15)
         assert (miss.snap, miss.tried) == ("auto", ("auto",))
         assert 0 < (miss.largest_move or 0) < 10**-digits
-    snapped = count_ways(pinwheel(digits), snap="auto")
+    snapped = count_ways(pinwheel(digits), Reading("auto"))
     assert isinstance(snapped, Decomposition)
     assert snapped.second_order == {1: 6}
     assert not snapped.near_misses
@@ -92,14 +93,14 @@ def test_no_snap_closes_what_is_no_small_number(monkeypatch: pytest.MonkeyPatch)
 
 def test_what_is_not_tried() -> None:
     """A pattern in memory is not read again; large moves and other edges count for nothing."""
-    sheet = from_drawing(pinwheel(7), "exact").sheet
+    sheet = from_drawing(pinwheel(7), Reading("exact")).sheet
     assert isinstance(sheet, PanelPattern)
     result = decompose(sheet)
     [first, *_] = result.near_misses
     assert (first.snap, first.tried) == (None, ())
     assert result.warning is not None
     assert "the drawing may be rounded (try --snap auto)" in result.warning
-    good = from_drawing(pinwheel(7), "auto").sheet
+    good = from_drawing(pinwheel(7), Reading("auto")).sheet
     assert isinstance(good, PanelPattern)
     assert closes(good, first)
     assert not closes(sheet, first)
@@ -134,7 +135,7 @@ def test_json_and_terminal(tmp_path) -> None:  # type: ignore[no-untyped-def]
 def test_results_are_pickled() -> None:
     result = counted(pinwheel(7))
     assert pickle.loads(pickle.dumps(result)).near_misses == result.near_misses
-    opened = from_drawing(pinwheel(7), "exact")
+    opened = from_drawing(pinwheel(7), Reading("exact"))
     again = pickle.loads(pickle.dumps(opened)).again
     assert again is not None
-    assert again("auto").sheet == from_drawing(pinwheel(7), "auto").sheet
+    assert again(Reading("auto")).sheet == from_drawing(pinwheel(7), Reading("auto")).sheet

@@ -30,6 +30,7 @@ from exactfold.pattern.fold_writing import document_text
 from exactfold.pattern.opening import Opened, from_drawing, open_pattern, opened
 from exactfold.pattern.panel_pattern import PanelPattern
 from exactfold.pattern.panel_writing import converted
+from exactfold.pattern.reading import Reading
 from exactfold.pattern.triangulating import triangulating_edges
 
 CROSSED = [
@@ -40,7 +41,7 @@ CROSSED = [
 
 
 def sheet(lines, **more) -> Opened:
-    return from_drawing(parse_drawing(as_fold(lines), "s.fold"), **more)
+    return from_drawing(parse_drawing(as_fold(lines), "s.fold"), Reading(**more))
 
 
 def test_a_triangulated_file_is_read_as_it_stands() -> None:
@@ -61,7 +62,7 @@ def test_flat_folds_between_triangles_bend_and_it_is_said_where_panels_could_be_
     star += [(end, ("0.5", "0.25"), letter) for end, letter in zip(ends, letters, strict=True)]
     found = opened(as_fold(star).encode(), "star.fold")
     assert len(found.sheet.folds) == 4
-    panels_meant = opened(as_fold(star).encode(), "star.fold", steps=("join",))
+    panels_meant = opened(as_fold(star).encode(), "star.fold", Reading(steps=("join",)))
     left = sum(letter not in "FJ" for letter in letters)
     assert len(panels_meant.sheet.folds) == left
     assert [line for line in found.lines if "may bend" in line] == list(found.lines)
@@ -95,7 +96,7 @@ def test_a_drawing_with_exact_coordinates_is_not_repaired_without_need() -> None
     half = [(("0", "0"), ("0.5", "0"), "B"), (("0.5", "0"), ("1", "0"), "B"), *SQUARE[1:]]
     drawing = parse_drawing(as_fold(half), "s.fold")
     assert len(from_drawing(drawing).sheet.vertices) == 5
-    text = document_text(converted(from_drawing(drawing, steps=())).document())
+    text = document_text(converted(from_drawing(drawing, Reading(steps=()))).document())
     exact = parse_drawing(text, "s.fold")
     assert (drawing.exact, exact.exact) == (False, True)
     assert len(from_drawing(exact).sheet.vertices) == 6
@@ -103,7 +104,7 @@ def test_a_drawing_with_exact_coordinates_is_not_repaired_without_need() -> None
     loose["vertices_exactfold:coords"][4:] = [["1/2", "1/10"], ["1/2", "1/10"]]
     loose["vertices_coords"][4:] = [[0.5, 0.1], [0.5, 0.1]]
     with pytest.raises(InputError):
-        from_drawing(parse_drawing(json.dumps(loose), "s.fold"), steps=())
+        from_drawing(parse_drawing(json.dumps(loose), "s.fold"), Reading(steps=()))
 
 
 @pytest.mark.parametrize(

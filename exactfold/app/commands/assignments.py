@@ -23,7 +23,7 @@ class Listed(AssignmentsOptions):
         Raises the errors of `read` and `all_assignments`.
         """
         with Bar("reading") as bar:
-            pattern = read(self.file, self.snap, self.sheet, "assignments").pattern
+            pattern = read(self.file, self.reading, "assignments").pattern
             assignments = all_assignments(pattern, progress=bar)
             self._write(assignments, bar)
         if self.as_json:

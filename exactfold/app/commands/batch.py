@@ -154,7 +154,7 @@ class Batch(CountOptions):
 
         def jobs() -> Iterator[Job]:
             for path in self.patterns:
-                job = Job(str(path), _source(path), self.method, self.seed, self.snap, self.sheet)
+                job = Job(str(path), _source(path), self.method, self.seed, self.reading)
                 earlier_line = known.take(job, names)
                 if earlier_line is None:
                     yield job
@@ -303,7 +303,8 @@ def _digest(job: Job) -> str | None:
 
 
 def _asked(job: Job) -> AskedDocument:
-    return {"method": job.method, "seed": job.seed, "snap": job.snap, "sheet": job.number}
+    asked = job.reading
+    return {"method": job.method, "seed": job.seed, "snap": asked.snap, "sheet": asked.number}
 
 
 def _key(digest: str | None, asked: Mapping[str, Any]) -> str:

@@ -90,7 +90,7 @@ class Asked(BranchOptions):
         return driven.branch.status is PROVED and status is PROVED
 
     def _read(self, bar: Bar) -> CreasePattern:
-        pattern = read(self.pattern, self.snap, self.sheet, "branch").pattern
+        pattern = read(self.pattern, self.reading, "branch").pattern
         one_at_least("one of --signs, --up and --batch", self.signs, self.up, self.batch)
         bar("setting up")
         return pattern

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from dataclasses import replace
 from typing import Literal, TypedDict
 
 from exactfold._support.documents import FieldName, FoldText
@@ -15,8 +16,9 @@ from exactfold.errors import FoldError, NotFoldError, PatternError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import PanelsDocument, PatternDocument, described, described_panels
 from exactfold.pattern.fold_writing import document_text, write_text
-from exactfold.pattern.opening import Opened, ReadDocument, Steps, open_pattern
+from exactfold.pattern.opening import Opened, ReadDocument, open_pattern
 from exactfold.pattern.panel_writing import Converted, converted
+from exactfold.pattern.reading import Steps
 
 
 class Conversion(ConvertOptions):
@@ -49,14 +51,8 @@ class Conversion(ConvertOptions):
 
     def _opened(self) -> Opened:
         try:
-            return open_pattern(
-                located(self.file),
-                self.snap,
-                name=said(self.file),
-                number=self.sheet,
-                steps=self._steps,
-                merge=self.merge,
-            )
+            reading = replace(self.reading, steps=self._steps, merge=self.merge)
+            return open_pattern(located(self.file), reading, name=said(self.file))
         except (FoldError, PatternError) as error:
             if not self.repair and not isinstance(error, NotFoldError):
                 error.args = (f"{error}; --repair may mend it",)

@@ -87,7 +87,7 @@ class Asked(CountOptions):
                     "a certificate of one shape"
                 )
         with Bar("reading") as bar:
-            pattern = read(self.pattern, self.snap, self.sheet, "count").pattern
+            pattern = read(self.pattern, self.reading, "count").pattern
             finder = self.given.finder(pattern)
             result = count_shapes(
                 pattern,
@@ -110,7 +110,7 @@ class Asked(CountOptions):
         if self.resume or self.workers is not None or self.dask is not None:
             raise UsageError("--resume, --workers and --dask go with --stream")
         with Bar("reading") as bar:
-            opened = read_any(self.pattern, self.snap, self.sheet)
+            opened = read_any(self.pattern, self.reading)
             sheet = opened.sheet
             if isinstance(sheet, CreasePattern) and (better := advice(sheet)) is not None:
                 say(better)

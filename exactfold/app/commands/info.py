@@ -41,7 +41,7 @@ def show_info(asked: InfoOptions) -> None:
     """
     name, exact = name_of(asked.file), asked.exact
     with Bar("reading") as bar:
-        sheet = read_any(asked.file, asked.snap, asked.sheet).sheet
+        sheet = read_any(asked.file, asked.reading).sheet
         data: BranchesFactsDocument | DecomposedFactsDocument | PanelFactsDocument
         if not isinstance(sheet, CreasePattern):
             motions = _motions(sheet)

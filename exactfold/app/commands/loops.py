@@ -48,7 +48,7 @@ class Wanted(MotionsOptions):
             raise UsageError("--resume continues a file: it goes with --certificate")
         apart(self.certificate, self.file)
         with Bar("reading") as bar:
-            pattern = read(self.file, self.snap, self.sheet, "motions").pattern
+            pattern = read(self.file, self.reading, "motions").pattern
             with ExitStack() as stack:
                 if self.certificate is not None:
                     require_file(self.certificate, self.resume)

@@ -50,7 +50,7 @@ class Asked(MatchOptions):
         begin = time.perf_counter()
         nearest = None
         with Bar("reading") as bar:
-            opened = read_any(self.file, self.snap, self.sheet)
+            opened = read_any(self.file, self.reading)
             letters = self._letters(opened.sheet, opened)
             if isinstance(opened.sheet, PanelPattern) or opened.sheet.Ve > 4:
                 if isinstance(opened.sheet, CreasePattern) and can_pop(opened.sheet):

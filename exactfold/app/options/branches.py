@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from exactfold.app.options.reading import ReadingOptions
 from exactfold.app.shell.parameters import (
     BoundaryHeights,
     Curvature,
@@ -13,9 +14,7 @@ from exactfold.app.shell.parameters import (
     Pattern,
     Place,
     PrescribedAngles,
-    Sheet,
     Signs,
-    Snap,
     Up,
     degrees,
     flag,
@@ -27,7 +26,7 @@ from exactfold.errors import UsageError
 
 
 @dataclass(frozen=True, eq=False, repr=False, match_args=False)
-class BranchOptions:
+class BranchOptions(ReadingOptions):
     """The options of `exactfold branch`; `UsageError` if they do not go together."""
 
     pattern: Pattern
@@ -56,8 +55,6 @@ class BranchOptions:
     drive: PrescribedAngles = None
     curvature: Curvature = None
     as_json: Json = False
-    snap: Snap = None
-    sheet: Sheet = None
 
     def __post_init__(self) -> None:
         one_at_most("one of --signs, --up and --batch", self.signs, self.up, self.batch)
@@ -69,7 +66,7 @@ class BranchOptions:
 
 
 @dataclass(frozen=True, eq=False, repr=False, match_args=False)
-class MatchOptions:
+class MatchOptions(ReadingOptions):
     """The options of `exactfold match`; `UsageError` if the output is the pattern."""
 
     file: Pattern
@@ -103,8 +100,6 @@ class MatchOptions:
         written("Write a certificate, if the answer is proved.", "OUT.json"),
     ] = None
     as_json: Json = False
-    snap: Snap = None
-    sheet: Sheet = None
     everything: Annotated[bool, flag("--all", text="List every branch and reason.")] = False
 
     def __post_init__(self) -> None:
@@ -112,7 +107,7 @@ class MatchOptions:
 
 
 @dataclass(frozen=True, eq=False, repr=False, match_args=False)
-class AssignmentsOptions:
+class AssignmentsOptions(ReadingOptions):
     """The options of `exactfold assignments`."""
 
     file: Pattern
@@ -122,12 +117,10 @@ class AssignmentsOptions:
         written("Write a certificate, if the list is proved.", "OUT.json"),
     ] = None
     as_json: Json = False
-    snap: Snap = None
-    sheet: Sheet = None
 
 
 @dataclass(frozen=True, eq=False, repr=False, match_args=False)
-class ExportOptions:
+class ExportOptions(ReadingOptions):
     """The options of `exactfold export`; `UsageError` if they do not go together."""
 
     file: Pattern
@@ -169,8 +162,6 @@ class ExportOptions:
         ),
     ] = False
     as_json: Json = False
-    snap: Snap = None
-    sheet: Sheet = None
 
     def __post_init__(self) -> None:
         apart(self.output, self.file, self.boundary_heights)

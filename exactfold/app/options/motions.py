@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from exactfold.app.options.reading import ReadingOptions
 from exactfold.app.shell.parameters import (
     BoundaryHeights,
     Dask,
@@ -15,10 +16,8 @@ from exactfold.app.shell.parameters import (
     Place,
     PrescribedAngles,
     Resume,
-    Sheet,
     Side,
     Signs,
-    Snap,
     Up,
     flag,
     fold_name,
@@ -31,7 +30,7 @@ from exactfold.errors import UsageError
 
 
 @dataclass(frozen=True, eq=False, repr=False, match_args=False)
-class FoldOptions:
+class FoldOptions(ReadingOptions):
     """The options of `exactfold fold`; `UsageError` if they do not go together.
 
     `side` is None if it was not given.
@@ -112,8 +111,6 @@ class FoldOptions:
         ),
     ] = None
     as_json: Json = False
-    snap: Snap = None
-    sheet: Sheet = None
 
     def __post_init__(self) -> None:
         one_at_most("one of --signs, --up and --branch", self.signs, self.up, self.place)
@@ -131,7 +128,7 @@ class FoldOptions:
 
 
 @dataclass(frozen=True, eq=False, repr=False, match_args=False)
-class MotionsOptions:
+class MotionsOptions(ReadingOptions):
     """The options of `exactfold motions`."""
 
     file: Pattern
@@ -146,12 +143,10 @@ class MotionsOptions:
     ] = None
     resume: Resume = False
     as_json: Json = False
-    snap: Snap = None
-    sheet: Sheet = None
 
 
 @dataclass(frozen=True, eq=False, repr=False, match_args=False)
-class ActuateOptions:
+class ActuateOptions(ReadingOptions):
     """The options of `exactfold actuate`; `UsageError` if they do not go together."""
 
     file: Pattern
@@ -170,8 +165,6 @@ class ActuateOptions:
         ),
     ] = None
     as_json: Json = False
-    snap: Snap = None
-    sheet: Sheet = None
     everything: Annotated[bool, flag("--all", text="List every branch in the ranking.")] = False
 
     def __post_init__(self) -> None:

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from exactfold.app.options.reading import ReadingOptions
 from exactfold.app.shell.parameters import (
     BoundaryHeights,
     Curvature,
@@ -14,8 +15,6 @@ from exactfold.app.shell.parameters import (
     Pattern,
     Patterns,
     Resume,
-    Sheet,
-    Snap,
     complete_method,
     distance,
     flag,
@@ -28,7 +27,7 @@ from exactfold.errors import UsageError
 
 
 @dataclass(frozen=True, eq=False, repr=False, match_args=False)
-class CountOptions:
+class CountOptions(ReadingOptions):
     """The options of `exactfold count`; `UsageError` if they do not go together.
 
     Several patterns, or one pattern with `jsonl`, are counted as a batch.
@@ -88,8 +87,6 @@ class CountOptions:
     curvature: Curvature = None
     boundary_heights: BoundaryHeights = None
     as_json: Json = False
-    snap: Snap = None
-    sheet: Sheet = None
     seed: Annotated[int, number("Seed of the complex homotopy.", "S", least=0)] = 0
     everything: Annotated[bool, flag("--all", text="List every way.")] = False
     verbose: Annotated[
@@ -116,7 +113,7 @@ class CountOptions:
 
 
 @dataclass(frozen=True, eq=False, repr=False, match_args=False)
-class InfoOptions:
+class InfoOptions(ReadingOptions):
     """The options of `exactfold info`."""
 
     file: Pattern
@@ -128,19 +125,16 @@ class InfoOptions:
         ),
     ] = False
     as_json: Json = False
-    snap: Snap = None
-    sheet: Sheet = None
 
 
 @dataclass(frozen=True, eq=False, repr=False, match_args=False)
-class ConvertOptions:
+class ConvertOptions(ReadingOptions):
     """The options of `exactfold convert`."""
 
     file: Pattern
     output: Annotated[
         Path, typer.Argument(metavar="OUT.fold", help="The FOLD file to write; - for stdout.")
     ]
-    snap: Snap = None
     merge: Annotated[
         Fraction | None,
         typer.Option(
@@ -167,5 +161,4 @@ class ConvertOptions:
     triangulate: Annotated[
         bool, flag("--triangulate", text="Cut panels into triangles by edges with the letter J.")
     ] = False
-    sheet: Sheet = None
     as_json: Json = False

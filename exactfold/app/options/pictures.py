@@ -7,12 +7,11 @@ from typing import Annotated
 
 import typer
 
+from exactfold.app.options.reading import ReadingOptions
 from exactfold.app.shell.parameters import (
     BoundaryHeights,
     Pattern,
-    Sheet,
     Side,
-    Snap,
     Up,
     flag,
     number,
@@ -23,7 +22,7 @@ from exactfold.errors import UsageError
 
 
 @dataclass(frozen=True, eq=False, repr=False, match_args=False)
-class DrawOptions:
+class DrawOptions(ReadingOptions):
     """The options of `exactfold draw`; `UsageError` if they do not go together.
 
     `way` is a number in the list of `exactfold count`, or vertex signs. `side` is None if it was
@@ -69,8 +68,6 @@ class DrawOptions:
             "a new file NAME-drawn.svg, NAME-way.svg or NAME-ways.svg.",
         ),
     ] = None
-    snap: Snap = None
-    sheet: Sheet = None
 
     def __post_init__(self) -> None:
         if (self.way is not None) + (self.up is not None) + self.everything > 1:
@@ -87,7 +84,7 @@ class DrawOptions:
 
 
 @dataclass(frozen=True, eq=False, repr=False, match_args=False)
-class ViewOptions:
+class ViewOptions(ReadingOptions):
     """The options of `exactfold view`; `UsageError` if they do not go together."""
 
     file: Pattern
@@ -135,8 +132,6 @@ class ViewOptions:
         int | None,
         number("The port for --serve. Default: any free port.", "P"),
     ] = None
-    snap: Snap = None
-    sheet: Sheet = None
 
     def __post_init__(self) -> None:
         if self.serve:

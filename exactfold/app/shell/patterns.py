@@ -9,9 +9,9 @@ from exactfold.app.shell.shell import STDIN, said, say
 from exactfold.errors import UnreadableFileError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.data import EXAMPLES, example_path
-from exactfold.pattern.drawing.drawing import Snap
 from exactfold.pattern.near_degeneracy import near_degenerate
 from exactfold.pattern.opening import Opened, has_branches, open_pattern, triangles
+from exactfold.pattern.reading import PLAIN, Reading
 
 
 @dataclass(frozen=True)
@@ -38,24 +38,24 @@ def located(path: Path) -> Path:
     )
 
 
-def read(path: Path, snap: Snap | None, number: int | None, needs: str) -> Triangulated:
+def read(path: Path, reading: Reading, needs: str) -> Triangulated:
     """Open a triangulated sheet for the command `needs`, and print warnings to stderr.
 
     Raises the errors of `located`, `open_pattern` and `triangles`.
     """
-    opened = read_any(path, snap, number)
+    opened = read_any(path, reading)
     pattern = triangles(opened, needs)
     if not has_branches(pattern):
         warn(pattern)
     return Triangulated(pattern, opened)
 
 
-def read_any(path: Path, snap: Snap | None, number: int | None = None) -> Opened:
+def read_any(path: Path, reading: Reading = PLAIN) -> Opened:
     """Open a sheet in any format; print to stderr what was read and repaired, and warnings.
 
     Raises the errors of `located` and `open_pattern`.
     """
-    opened = open_pattern(located(path), snap, name=said(path), number=number)
+    opened = open_pattern(located(path), reading, name=said(path))
     for line in opened.lines:
         say(line)
     if isinstance(opened.sheet, CreasePattern) and has_branches(opened.sheet):

@@ -18,7 +18,8 @@ from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.drawing.drawing import Drawing, Snap
 from exactfold.pattern.fold import FoldFile
 from exactfold.pattern.loading import PatternLike, open_sheet
-from exactfold.pattern.opening import Opened, Steps
+from exactfold.pattern.opening import Opened
+from exactfold.pattern.reading import Reading, Steps
 
 if TYPE_CHECKING:
     from typing import TypeAlias
@@ -56,7 +57,7 @@ def read(
     >>> miura.sheet, len(miura.letters)
     (<PanelPattern: 9 interior vertices, 24 folds, 16 panels>, 24)
     """
-    return open_sheet(sheet, snap, number, steps=steps, merge=merge)
+    return open_sheet(sheet, Reading(snap, number, steps, merge))
 
 
 @overload
@@ -120,16 +121,13 @@ def count(
             raise UsageError(
                 f"{workers} workers share a list of sheets; a single sheet takes one worker"
             )
-        return count_ways(
-            sheet, method=method, seed=seed, snap=snap, number=number, progress=progress
-        )
+        return count_ways(sheet, Reading(snap, number), method=method, seed=seed, progress=progress)
     return count_many(
         cast("Iterable[PatternLike]", sheet),
         jobs=workers,
         method=method,
         seed=seed,
-        snap=snap,
-        number=number,
+        reading=Reading(snap, number),
         progress=progress,
     )
 
@@ -153,7 +151,7 @@ def decompose(
     >>> ways.status, [str(mode.extends.verdict) for mode in ways]
     (<Verdict.PROVED: 'proved'>, ['proved', 'proved', 'proved', 'refuted', 'proved'])
     """
-    return decompose_opened(open_sheet(sheet, snap, number), progress=progress)
+    return decompose_opened(open_sheet(sheet, Reading(snap, number)), progress=progress)
 
 
 def branch(

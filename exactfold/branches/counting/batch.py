@@ -17,9 +17,9 @@ from exactfold.branches.values.result import BranchCount
 from exactfold.errors import InputError, NotEnoughMemoryError, UnreadableFileError, UsageError
 from exactfold.pattern.data import EXAMPLES, example_path
 from exactfold.pattern.drawing.bounds import read_bytes
-from exactfold.pattern.drawing.drawing import Snap
 from exactfold.pattern.loading import PatternLike, open_sheet
 from exactfold.pattern.opening import Opened, opened
+from exactfold.pattern.reading import PLAIN, Reading
 
 if TYPE_CHECKING:
     from exactfold.panels.result import Decomposition
@@ -36,8 +36,7 @@ class Job:
     source: Source
     method: str = "auto"
     seed: int = 0
-    snap: Snap | None = None
-    number: int | None = None
+    reading: Reading = PLAIN
 
     @property
     def opened(self) -> Opened:
@@ -45,8 +44,8 @@ class Job:
         if isinstance(self.source, InputError):
             raise self.source
         if isinstance(self.source, bytes):
-            return opened(self.source, self.name, self.snap, number=self.number)
-        return open_sheet(self.source, self.snap, self.number)
+            return opened(self.source, self.name, self.reading)
+        return open_sheet(self.source, self.reading)
 
 
 def read_source(path: str | os.PathLike[str]) -> bytes | UnreadableFileError:
@@ -72,8 +71,7 @@ def count_many(
     engine: Pool | None = None,
     method: str = "auto",
     seed: int = 0,
-    snap: Snap | None = None,
-    number: int | None = None,
+    reading: Reading = PLAIN,
     progress: Progress | None = None,
 ) -> Generator[tuple[str, BranchCount | Decomposition | Exception], None, None]:
     """Count many sheets and yield each name with its count, as soon as the count is ready.
@@ -108,9 +106,9 @@ def count_many(
 
     def job(place: int, given: PatternLike) -> Job:
         if not isinstance(given, str | os.PathLike):
-            return Job(str(place), given, method, seed, snap, number)
+            return Job(str(place), given, method, seed, reading)
         path = example_path(given) if isinstance(given, str) and given in EXAMPLES else given
-        return Job(os.fspath(given), read_source(path), method, seed, snap, number)
+        return Job(os.fspath(given), read_source(path), method, seed, reading)
 
     total = len(patterns) if isinstance(patterns, Sized) else 0
     given = (job(place, pattern) for place, pattern in enumerate(patterns))

@@ -13,6 +13,7 @@ from exactfold.branches.counting.registry import METHODS, choose
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.loading import PatternLike, open_sheet
 from exactfold.pattern.opening import Opened, has_branches, panels
+from exactfold.pattern.reading import PLAIN, Reading
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -27,11 +28,10 @@ __all__ = ["METHODS", "count_opened", "count_ways", "decompose_opened"]
 
 def count_ways(
     sheet: PatternLike,
+    reading: Reading = PLAIN,
     *,
     method: str = "auto",
     seed: int = 0,
-    snap: Snap | None = None,
-    number: int | None = None,
     progress: Progress | None = None,
 ) -> BranchCount | Decomposition:
     """Count the ways in which a sheet folds, whatever its faces are.
@@ -41,7 +41,7 @@ def count_ways(
     vertices; its irreducible components are the `families` of the result. Every other sheet has
     motions of rigid panels, which `decompose` finds. The type of the result shows which theory
     applied. Files of all formats are read (`open_pattern`); drawings are repaired and made exact.
-    If a drawing holds several sheets, `number`, from 1, chooses one. If loops of the sheet nearly
+    `reading` says how. If loops of the sheet nearly
     close, the file is read again with other values of `snap`, and for each loop the result names
     the first value with which it closes.
 
@@ -55,7 +55,7 @@ def count_ways(
     <Decomposition: proved, {0: 1}, <PanelPattern: 0 interior vertices, 0 folds, 1 panel>>
     """
     choose(method)
-    opened = open_sheet(sheet, snap, number)
+    opened = open_sheet(sheet, reading)
     return count_opened(opened, method=method, seed=seed, progress=progress)
 
 
@@ -89,13 +89,16 @@ def decompose_opened(opened: Opened, *, progress: Progress | None = None) -> Dec
         return ways
     from exactfold.panels.near_misses import snapped_misses
 
-    misses = snapped_misses(ways.near_misses, pattern, partial(_reopened, opened.again))
+    reopened = partial(_reopened, opened.again, opened.reading)
+    misses = snapped_misses(ways.near_misses, pattern, reopened)
     return replace(ways, near_misses=misses)
 
 
-def _reopened(again: Callable[[Snap], Opened], snap: Snap) -> tuple[PanelPattern, float]:
+def _reopened(
+    again: Callable[[Reading], Opened], reading: Reading, snap: Snap
+) -> tuple[PanelPattern, float]:
     """The sheet that is read with another snap, and the largest move of a vertex over its size."""
-    opened = again(snap)
+    opened = again(replace(reading, snap=snap))
     sheet = panels(opened.sheet) if isinstance(opened.sheet, CreasePattern) else opened.sheet
     if not opened.snapped:
         return sheet, opened.largest_move

@@ -21,6 +21,7 @@ from exactfold.pattern.drawing.formats.read import parse_drawing
 from exactfold.pattern.families import single_vertex, two_vertex
 from exactfold.pattern.opening import has_branches, open_pattern, panels
 from exactfold.pattern.panel_pattern import PanelPattern
+from exactfold.pattern.reading import Reading
 
 BORDER = [(0, 1), (1, 2), (2, 3), (0, 3)]
 CORNERS = [(0, 0), (2, 0), (2, 2), (0, 2)]
@@ -87,7 +88,7 @@ def test_rounding_is_never_silent(tmp_path: Path) -> None:
     near = [(x + Fraction(k, 10**6), y) for k, (x, y) in enumerate(PENTAGON.vertices)]
     write_fold(CreasePattern(near, PENTAGON.triangles), path)
     assert count_ways(path).read is None
-    rounded = count_ways(path, snap=1)
+    rounded = count_ways(path, Reading(1))
     assert rounded.pattern == PENTAGON
     assert rounded.read["lines"] == ["rounding moved coordinates by up to 6e-06"]
 
@@ -98,11 +99,11 @@ def test_what_is_no_sheet_is_refused(tmp_path: Path) -> None:
     with pytest.raises(UnreadableFileError, match="two-vertex"):
         count_ways("crane")
     with pytest.raises(UsageError, match="--snap auto is for drawings"):
-        count_ways(two_vertex(), snap="auto")
+        count_ways(two_vertex(), Reading("auto"))
     for given in (two_vertex(), CROSS):
-        assert count_ways(given, number=1) == count_ways(given)
+        assert count_ways(given, Reading(number=1)) == count_ways(given)
         with pytest.raises(SeveralSheetsError, match="there is no sheet 2"):
-            count_ways(given, number=2)
+            count_ways(given, Reading(number=2))
 
 
 @pytest.mark.parametrize(
@@ -139,7 +140,7 @@ def test_many_sheets_of_all_kinds_and_one_number_for_drawings_with_several(tmp_p
     apart = [((str(3 + float(a)), b), (str(3 + float(c)), d), e) for (a, b), (c, d), e in SQUARE]
     two = tmp_path / "two.cp"
     two.write_text(as_cp([*SQUARE[:4], *apart]))
-    found = dict(count_many([two, CROSS], number=2))
+    found = dict(count_many([two, CROSS], reading=Reading(number=2)))
     assert len(found[str(two)].pattern.folds) == 2
     assert isinstance(found["1"], SeveralSheetsError)
     assert isinstance(dict(count_many([two]))[str(two)], SeveralSheetsError)
