@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Literal, NamedTuple, TypeAlias
 
@@ -23,6 +24,14 @@ class Line(NamedTuple):
     start: int
     end: int
     letter: str
+
+
+@dataclass(frozen=True)
+class SvgReading:
+    """The choices with which an SVG file is read: letters of lines by colour and by dashes."""
+
+    colours: Mapping[str, str] | None = None
+    dashes: Mapping[str, str] | None = None
 
 
 @dataclass(frozen=True)

@@ -5,16 +5,22 @@ from fractions import Fraction
 import pytest
 from drawings import drawn, places, svg
 
-from exactfold.errors import MalformedDrawingError
+from exactfold.errors import MalformedDrawingError, UsageError
+from exactfold.pattern.drawing.drawing import SvgReading
 from exactfold.pattern.drawing.formats.svg import read_svg
 from exactfold.pattern.drawing.formats.svg_path import path_lines
+from exactfold.pattern.opening import from_drawing
 
 ONE = '<line x1="1" y1="2" x2="3.1" y2="4" {}/>'
 PLACED = (("1", "-2"), ("3.1", "-4"))
 
 
-def letters(content):
-    return [line.letter for line in read_svg(svg(content)).lines]
+CREASE = '<line x1="5" y1="5" x2="6" y2="7" stroke="#f00"/>'
+"""A crease by its colour, so that black is the boundary."""
+
+
+def letters(content, **reading):
+    return [line.letter for line in read_svg(svg(content), SvgReading(**reading)).lines]
 
 
 @pytest.mark.parametrize(
@@ -36,8 +42,8 @@ def letters(content):
     ],
 )
 def test_the_colours_of_origami_simulator(colour, letter):
-    drawing = read_svg(svg(ONE.format(f'stroke="{colour}"')))
-    assert drawn(drawing) == places([(*PLACED, letter)])
+    drawing = read_svg(svg(ONE.format(f'stroke="{colour}"') + CREASE))
+    assert drawn(drawing) == places([(*PLACED, letter), (("5", "-5"), ("6", "-7"), "M")])
     assert drawing.remarks == ()
 
 
@@ -45,7 +51,7 @@ def test_the_colours_of_origami_simulator(colour, letter):
     ("colour", "letter"), [("#ed1c24", "M"), ("#2e3192", "V"), ("#231f20", "B"), ("#fff200", "F")]
 )
 def test_colours_near_these_are_taken_for_them_with_a_remark(colour, letter):
-    drawing = read_svg(svg(ONE.format(f'stroke="{colour}"')))
+    drawing = read_svg(svg(ONE.format(f'stroke="{colour}"') + CREASE))
     assert drawing.lines[0].letter == letter
     assert drawing.remarks == (f"took 1 element of colour '{colour}' for {letter}",)
 
@@ -54,7 +60,9 @@ def test_colours_near_these_are_taken_for_them_with_a_remark(colour, letter):
 def test_other_colours_are_left_out_with_a_remark(colour):
     drawing = read_svg(svg(ONE.format('stroke="red"') + ONE.format(f'stroke="{colour}"')))
     assert len(drawing.lines) == 1
-    assert drawing.remarks == (f"left out 1 element of colour '{colour}'",)
+    assert drawing.remarks == (
+        f"left out 1 element of colour '{colour}' (`--colours` gives it a letter)",
+    )
 
 
 @pytest.mark.parametrize(
@@ -248,3 +256,118 @@ def test_entities_that_grow_without_bound_are_refused():
     bomb = f'<!DOCTYPE svg [<!ENTITY e0 "lol">{rows}]><svg>&e11;</svg>'
     with pytest.raises(MalformedDrawingError):
         read_svg(bomb)
+
+
+# --- drawings whose colours do not tell creases apart --------------------------------------------
+
+
+def crossed(first="", second="", border=""):
+    """A square with two creases from side to side that cross in its middle."""
+    return (
+        f'<rect width="4" height="4" stroke="black" {border}/>'
+        f'<line x1="1" y1="0" x2="3" y2="4" stroke="black" {first}/>'
+        f'<line x1="0" y1="1" x2="4" y2="3" stroke="black" {second}/>'
+    )
+
+
+def creases(content, **reading):
+    """The letters of the folds in the sheet of a drawing, sorted."""
+    opened = from_drawing(read_svg(svg(content), SvgReading(**reading)))
+    return "".join(sorted(opened.assignment[fold] for fold in opened.sheet.folds))
+
+
+def test_black_lines_inside_a_black_outline_are_creases_without_letters():
+    drawing = read_svg(svg(crossed()))
+    assert drawing.remarks == (
+        "no colour says which lines are mountains or valleys (6 lines solid black): all are read "
+        "as creases without a letter, except the outermost, which are the boundary (`--colours` "
+        "and `--dashes` give letters)",
+    )
+    opened = from_drawing(drawing)
+    assert creases(crossed()) == "UUUU"
+    assert len(opened.sheet.faces) == 4
+    assert {opened.assignment[edge] for edge in opened.sheet.boundary_edges} == {"B"}
+
+
+def test_colours_without_a_meaning_are_creases_if_no_others_are():
+    content = crossed('style="stroke:orange"') + '<line x2="4" y1="3" y2="3" stroke="#ddd"/>'
+    drawing = read_svg(svg(content))
+    assert drawing.remarks[0] == (
+        "left out 1 element of colour '#ddd' (`--colours` gives it a letter)"
+    )
+    assert "(5 lines solid black, 1 line solid orange)" in drawing.remarks[1]
+    assert creases(content) == "UUUU"
+
+
+def test_dashed_valleys_and_dash_dotted_mountains():
+    drawing = crossed('stroke-dasharray="5 3"', 'style="stroke-dasharray: 8,2,1,2"')
+    assert creases(drawing) == "MMVV"
+    remark = read_svg(svg(drawing)).remarks[0]
+    assert "(4 lines solid black, 1 line dashed (5 3) black, 1 line dash-dotted (8 2 1 2)" in remark
+    assert "valleys where dashed, mountains where dash-dotted" in remark
+    third = drawing + '<line x1="1" x2="1" y2="4" stroke="black"/>'
+    assert creases(third).count("U") == 2
+
+
+@pytest.mark.parametrize("dashes", ["4", "4 3", "1 5", "9 2 1 2"])
+def test_dashes_of_one_kind_claim_nothing(dashes):
+    assert creases(crossed(f'stroke-dasharray="{dashes}"')) == "UUUU"
+
+
+@pytest.mark.parametrize("dashes", ["none", "3 0", "0", "x"])
+def test_strokes_that_are_solid(dashes):
+    assert (
+        "(6 lines solid black)" in read_svg(svg(crossed(f'stroke-dasharray="{dashes}"'))).remarks[0]
+    )
+
+
+def test_a_cut_by_its_colour_stays_a_cut():
+    assert letters('<line x2="1" stroke="black"/><line x2="2" stroke="lime"/>') == ["U", "C"]
+
+
+# --- maps ----------------------------------------------------------------------------------------
+
+
+def test_a_map_of_colours():
+    content = crossed('style="stroke:orange"', 'style="stroke:#0088A5"')
+    assert creases(content, colours={"#ffa500": "M", "rgb(0, 136, 165)": "V"}) == "MMVV"
+    assert letters(content, colours={"orange": "M"}) == [*"BBBBM"]
+    red = '<line x2="1" stroke="red"/><line x2="2" stroke="#ff0001"/>'
+    assert letters(red, colours={"red": "V"}) == ["V", "M"]
+    assert read_svg(svg(red), SvgReading(colours={"red": "V", "#FF0001": "V"})).remarks == ()
+
+
+def test_a_map_of_dashes():
+    content = crossed('stroke-dasharray="8,8"', 'stroke-dasharray="3px"')
+    assert creases(content, dashes={"8 8": "M", "3": "V"}) == "MMVV"
+    assert creases(content, dashes={"8,8": "M"}) == "MMUU"
+    assert creases(content, dashes={"dashed": "V"}) == "VVVV"
+    assert letters(content, dashes={"solid": "B", "8 8": "M", "dashed": "V"}) == [*"BBBBMV"]
+
+
+def test_dashes_come_before_colours():
+    lines = '<line x2="1" stroke="red"/><line x2="2" stroke="red" stroke-dasharray="2 1"/>'
+    assert letters(lines, dashes={"2 1": "V"}) == ["M", "V"]
+    assert letters(lines, dashes={"2 1": "V"}, colours={"red": "F"}) == ["F", "V"]
+
+
+def test_black_in_a_map_reads_borders_inside_as_creases():
+    content = crossed('style="stroke:red"')
+    assert creases(content, colours={"black": "U"}) == "MMUU"
+
+
+@pytest.mark.parametrize(
+    ("reading", "message"),
+    [
+        ({"colours": {"orange": "M"}}, "no line has 'orange'; the lines have black \\(6 lines\\)"),
+        ({"colours": {"blackish": "M"}}, "no line has 'blackish'"),
+        ({"colours": {"black": "X"}}, "the letter 'X' is not one of B, M, V, F, U, C, J"),
+        ({"colours": {"black": ""}}, "the letter '' is not one of"),
+        ({"dashes": {"3 2": "V"}}, r"no line has '3 2'; the lines have solid \(5 lines\), 8 4 \(1"),
+        ({"dashes": {"dotted": "V"}}, "no line has 'dotted'"),
+        ({"dashes": {"stripes": "V"}}, "no line has 'stripes'"),
+    ],
+)
+def test_maps_that_do_not_fit_are_refused_with_what_is_there(reading, message):
+    with pytest.raises(UsageError, match=message):
+        read_svg(svg(crossed('stroke-dasharray="8 4"')), SvgReading(**reading))
