@@ -20,7 +20,7 @@ class Reading:
     `snap` says how coordinates become exact. `number`, from 1, chooses one of several sheets.
     `steps` names the steps of repair, and points closer than `merge` times the size of the drawing
     are merged. `colours` and `dashes` give letters to the lines of an SVG file, such as
-    {"orange": "M"} and {"3 2": "V", "solid": "B"}.
+    {"orange": "M"} and {"3 2": "V", "solid": "B"}; its curves become `chords` straight lines each.
     """
 
     snap: Snap | None = None
@@ -29,6 +29,7 @@ class Reading:
     merge: Fraction | None = None
     colours: Mapping[str, str] | None = None
     dashes: Mapping[str, str] | None = None
+    chords: int | None = None
 
     @property
     def repairs(self) -> bool:
@@ -38,7 +39,7 @@ class Reading:
     @property
     def svg(self) -> SvgReading:
         """The choices for SVG files."""
-        return SvgReading(self.colours, self.dashes)
+        return SvgReading(self.colours, self.dashes, self.chords)
 
 
 PLAIN = Reading()

@@ -208,6 +208,9 @@ Dashes = Annotated[
         help="Give letters by dashes, such as '3 2=V,5 1 1 1=M' or dashed=V,dash-dotted=M,solid=B.",
     ),
 ]
+Chords = Annotated[
+    int | None, number("Read each curve of an SVG file as N straight lines.", "N", "--chords")
+]
 Json = Annotated[bool, flag("--json", text="Print one JSON object.")]
 Signs = Annotated[
     str | None,

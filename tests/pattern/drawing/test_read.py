@@ -124,9 +124,11 @@ def test_a_damaged_file_is_read_or_refused_but_never_a_traceback(ending, data):
     assert max(v for line in drawing.lines for v in line[:2]) < len(drawing.points)
 
 
-@pytest.mark.parametrize("reading", [{"colours": {"red": "M"}}, {"dashes": {"solid": "M"}}])
-def test_maps_are_for_svg_files(reading):
-    message = "maps of colours and dashes are for SVG files; a.cp is CP"
+@pytest.mark.parametrize(
+    "reading", [{"colours": {"red": "M"}}, {"dashes": {"solid": "M"}}, {"chords": 2}]
+)
+def test_choices_for_svg_files(reading):
+    message = r"colours, dashes and chords are for SVG files, and a\.cp is CP"
     with pytest.raises(UsageError, match=message):
         parse_drawing(as_cp(SQUARE), "a.cp", SvgReading(**reading))
     with pytest.raises(UsageError, match=r"two-vertex\.fold is FOLD"):

@@ -1,12 +1,14 @@
 """SVG: colours, styles, transforms, shapes, paths; what is left out; curves, which are refused."""
 
 from fractions import Fraction
+from itertools import pairwise
 
 import pytest
 from drawings import drawn, places, svg
 
-from exactfold.errors import MalformedDrawingError, UsageError
+from exactfold.errors import MalformedDrawingError, TooLargeError, UsageError
 from exactfold.pattern.drawing.drawing import SvgReading
+from exactfold.pattern.drawing.formats import svg_path
 from exactfold.pattern.drawing.formats.svg import read_svg
 from exactfold.pattern.drawing.formats.svg_path import path_lines
 from exactfold.pattern.opening import from_drawing
@@ -168,21 +170,33 @@ def test_units_of_length():
     ],
 )
 def test_paths(data, ends):
-    lines, curves = path_lines(data)
+    lines, unbent, bent = path_lines(data)
     assert [end for _, end in lines] == ends
-    assert curves == 0
+    assert (unbent, bent) == (0, ())
 
 
 def test_relative_places_are_added_exactly():
-    lines, _ = path_lines("m0.1 0" + "l0.1 0" * 9)
+    lines, *_ = path_lines("m0.1 0" + "l0.1 0" * 9)
     assert lines[-1][1] == (1, 0)
 
 
 @pytest.mark.parametrize(
-    "data", ["M0 0C1 1 2 2 3 3", "M0 0c0 0 3 3 3 3", "M0 0S1 1 3 3", "M0 0Q1 1 3 3", "M0 0T3 3"]
+    "data",
+    [
+        "M0 0C1 1 2 2 3 3",
+        "M0 0c0 0 3 3 3 3",
+        "M0 0S1 1 3 3",
+        "M0 0Q1 1 3 3",
+        "M0 0T3 3",
+        "M0 0A2000 2000 0 0 1 3 3",
+    ],
 )
 def test_curves_that_do_not_bend_are_lines(data):
-    assert path_lines(data) == ([((0, 0), (3, 3))], 1)
+    assert path_lines(data, 5) == ([((0, 0), (3, 3))], 1, ())
+
+
+def test_an_arc_without_a_radius_is_a_line():
+    assert path_lines("M0 0A0 5 0 0 1 3 3") == ([((0, 0), (3, 3))], 0, ())
 
 
 def test_a_curve_that_hardly_bends_is_read_with_a_remark():
@@ -204,16 +218,82 @@ def test_a_curve_that_hardly_bends_is_read_with_a_remark():
     ],
 )
 def test_curves_are_refused(data):
-    with pytest.raises(MalformedDrawingError, match="straight"):
-        path_lines(data)
+    with pytest.raises(MalformedDrawingError, match=r"straight, .* `--chords 8` reads each as 8"):
+        read_svg(svg(f'<path stroke="red" d="{data}"/>'))
 
 
-def test_the_refusal_of_a_curve_names_the_element():
-    content = '<path stroke="red" d="M0 0h1"/><path id="arc" stroke="red" d="M0 0Q1 0 2 2"/>'
-    with pytest.raises(MalformedDrawingError, match=r"path 2 \(id 'arc'\): a curve \(Q\)"):
+def test_the_refusal_of_curves_names_the_elements():
+    bent = '<path id="arc" stroke="red" d="M0 0Q1 0 2 2M0 0Q1 0 2 2"/>'
+    content = '<path stroke="red" d="M0 0h1"/>' + bent + '<path stroke="red" d="M0 0Q1 0 9 2"/>' * 7
+    with pytest.raises(MalformedDrawingError) as refusal:
         read_svg(svg(content))
-    with pytest.raises(MalformedDrawingError, match="rect 1: the corners"):
+    assert str(refusal.value).startswith(
+        "path 2 (id 'arc'): a curve (Q) from (0, 0) to (2, 2); creases must be straight, and the "
+        "drawing has 9 curves (2 in path 2 (id 'arc'), 1 in path 3, 1 in path 4, 1 in path 5, 1 in "
+        "path 6, ... 3 more): `--chords 8`"
+    )
+    with pytest.raises(MalformedDrawingError, match="rect 1: a rounded corner"):
         read_svg(svg('<rect width="3" height="3" rx="1" stroke="red"/>'))
+
+
+def test_a_curve_is_as_many_chords_as_asked_for():
+    content = '<path stroke="red" d="M0 0Q2 4 4 0"/><path stroke="blue" d="M0 0C1 0 2 0 3 0"/>'
+    drawing = read_svg(svg(content), SvgReading(chords=4))
+    places_passed = [("0", "0"), ("1", "-1.5"), ("2", "-2"), ("3", "-1.5"), ("4", "0")]
+    chords = [(a, b, "M") for a, b in pairwise(places_passed)]
+    assert drawn(drawing) == places([*chords, (("0", "0"), ("3", "0"), "V")])
+    assert drawing.remarks == (
+        "read 1 curve as straight, within 1/1000 of the length",
+        "read 1 curve (1 in path 1) as 4 chords each: all answers are about the sheet with these "
+        "straight lines, not about the curved one",
+    )
+
+
+@pytest.mark.parametrize(
+    ("data", "passed"),
+    [
+        ("M0 0C0 3 3 3 3 0", [(1.5, 2.25), (3, 0)]),
+        ("M0 0C0 3 3 3 3 0S6-3 6 0", [(1.5, 2.25), (3, 0), (4.5, -2.25), (6, 0)]),
+        ("M0 0Q1 2 2 0T4 0", [(1, 1), (2, 0), (3, -1), (4, 0)]),
+        ("M0 0A5 5 0 0 1 10 0", [(5, -5), (10, 0)]),  # clockwise on the screen: above
+        ("M0 0A5 5 0 0 0 10 0", [(5, 5), (10, 0)]),
+        ("M0 0A1 1 0 0 0 10 0", [(5, 5), (10, 0)]),  # too small a radius grows
+        ("M0 0a5 5 0 016 0", [(3, -1), (6, 0)]),  # flags without spaces
+        ("M0 0a5 5 0 116 0", [(3, -9), (6, 0)]),
+        ("M0 0a5,5,0,1,0,6,0", [(3, 9), (6, 0)]),
+        ("M0 0A5 10 90 0 1 0 10", [(10, 5), (0, 10)]),  # the first radius lies downwards
+    ],
+)
+def test_places_on_curves(data, passed):
+    ends = [end for _, end in path_lines(data, 2).lines]
+    assert [(float(x), float(y)) for x, y in ends] == [pytest.approx(p) for p in passed]
+    assert ends[-1] == passed[-1]
+
+
+def test_rounded_corners():
+    content = '<rect width="10" height="8" rx="5" ry="2" stroke="red"/>'
+    ends = read_svg(svg(content), SvgReading(chords=1)).points
+    assert set(ends) == {(5, 0), (10, -2), (10, -6), (5, -8), (0, -6), (0, -2)}
+    square = read_svg(svg('<rect width="10" height="8" rx="0" ry="2" stroke="red"/>'))
+    assert set(square.points) == {(0, 0), (10, 0), (10, -8), (0, -8)}
+
+
+def test_too_many_chords(monkeypatch):
+    content = '<path stroke="red" d="M0 0Q1 0 2 2Q1 0 3 3"/>'
+    monkeypatch.setattr(svg_path, "MOST_LINES", 6)
+    assert len(read_svg(svg(content), SvgReading(chords=3)).lines) == 6
+    with pytest.raises(TooLargeError, match="more than 6 lines: read each as fewer chords than 4"):
+        read_svg(svg(content), SvgReading(chords=4))
+    with pytest.raises(TooLargeError, match="fewer chords than 3"):
+        read_svg(svg(content + content), SvgReading(chords=3))
+    with pytest.raises(UsageError, match="the number of chords of a curve is 0"):
+        SvgReading(chords=0)
+
+
+def test_arcs_beyond_floats_are_refused():
+    for radius in ("1e999", "1e-999"):
+        with pytest.raises(MalformedDrawingError, match="path 1: an arc has numbers that are too"):
+            read_svg(svg(f'<path stroke="red" d="M0 0A{radius} 1 0 0 1 2 2"/>'))
 
 
 def test_curves_in_other_colours_do_not_matter():

@@ -53,7 +53,7 @@ def parse_drawing(content: str | bytes, name: str, reading: SvgReading | None = 
     """The drawing in the content of a file; if the content shows no format, `name` decides.
 
     Bytes are decoded as UTF-8, as UTF-16 if there is a byte order mark, or as an XML declaration
-    says. `reading` has the maps of colours and dashes for SVG files. Raises `UnknownFormatError`,
+    says. `reading` has the choices for SVG files. Raises `UnknownFormatError`,
     whose message lists the formats, `TooLargeError`, and the errors of the reader of the format.
 
     >>> parse_drawing("1 0 0 1 0", "edge").source
@@ -67,7 +67,9 @@ def parse_drawing(content: str | bytes, name: str, reading: SvgReading | None = 
     text = text.removeprefix("\ufeff")
     key = _format(text, name)
     if reading not in (None, SvgReading()) and key != "svg":
-        raise UsageError(f"maps of colours and dashes are for SVG files; {name} is {key.upper()}")
+        raise UsageError(
+            f"colours, dashes and chords are for SVG files, and {name} is {key.upper()}"
+        )
     drawing = read_svg(text, reading) if key == "svg" else READERS[key](text)
     check_drawing(drawing)
     return replace(drawing, source=f"read {name}: {drawing.source}, {summary(drawing)}")

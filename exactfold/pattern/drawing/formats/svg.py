@@ -5,18 +5,23 @@ from __future__ import annotations
 import io
 import re
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import Any, Final
 from xml.etree import ElementTree
 
 from exactfold._support.plurals import counted
-from exactfold.errors import MalformedDrawingError, NumberError
+from exactfold.errors import MalformedDrawingError, NumberError, TooLargeError
 from exactfold.exact.numbers import parse_rational, shown
 from exactfold.pattern.drawing.drawing import Drawing, SvgReading
 from exactfold.pattern.drawing.formats.markup import xml_root
 from exactfold.pattern.drawing.formats.svg_path import NUMBER as NUMERAL
-from exactfold.pattern.drawing.formats.svg_path import STRAIGHT, path_lines
+from exactfold.pattern.drawing.formats.svg_path import (
+    PathLines,
+    arc_places,
+    check_chords,
+    path_lines,
+)
 from exactfold.pattern.drawing.formats.svg_strokes import Stroke, lettered
 from exactfold.pattern.drawing.formats.svg_tree import NAMESPACE, NUMBER, plain_tree
 from exactfold.pattern.drawing.segments import Place, drawing_of
@@ -32,6 +37,7 @@ _UNITS: Final = {
     "pc": Fraction(16),
 }
 _POINTS: Final = re.compile(rf"[\s,]*({NUMERAL})")
+_NAMED: Final = 5
 _VIEW: Final = ("width", "height", "viewBox", "x", "y")
 _FAULTS: Final = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
 
@@ -48,8 +54,10 @@ def read_svg(text: str, reading: SvgReading | None = None) -> Drawing:
     `viewBox`) is not applied. Numbers are read from their text; only transforms are products of
     floats.
 
+    `reading.chords` says as how many straight lines a curve is read.
+
     Raises `UsageError` for maps that do not fit. Raises `MalformedDrawingError`, also for a file
-    without lines and for curves. For a curve the message names the element.
+    without lines, and for curves if there is no number of chords; the message names the elements.
 
     >>> drawing = read_svg('<svg><g stroke="red"><line x2="0.1" y2="3"/></g></svg>')
     >>> drawing.points[1], drawing.lines[0].letter
@@ -58,7 +66,7 @@ def read_svg(text: str, reading: SvgReading | None = None) -> Drawing:
     strokes: list[Stroke] = []
     omitted: Counter[str] = Counter()
     seen: Counter[str] = Counter()
-    unbent = 0
+    chords = (reading and reading.chords) or 1
     shapes, given = _shapes(text)
     for shape in shapes:
         values, tag = shape.values, shape.values["attributes"]["tag"]
@@ -72,35 +80,61 @@ def read_svg(text: str, reading: SvgReading | None = None) -> Drawing:
             omitted["without stroke"] += 1
             continue
         name = f"{tag} {seen[tag]}" + (f" (id {shown(own['id'])})" if "id" in own else "")
+        fault: Exception | None = None
         try:
-            lines, curves, fault = *_lines(tag, own, name), None
+            found = _lines(tag, own, name, chords)
             move = _mover(shape.transform)
-        except (MalformedDrawingError, NumberError) as error:
-            lines, curves, fault = [], 0, error  # it matters only if the stroke has a letter
-        if lines is None:
+        except (MalformedDrawingError, NumberError, TooLargeError) as error:
+            found, fault = PathLines([]), error  # it matters only if the stroke has a letter
+        if found is None:
             omitted[f"of the kind {tag}"] += 1
             continue
-        unbent += curves
-        moved = [(move(start), move(end)) for start, end in lines]
+        moved = [(move(start), move(end)) for start, end in found.lines]
         faint = any(
             str(values.get(key, "1")) not in ("1", "1.0") for key in ("opacity", "stroke-opacity")
         )
         dashes = str(values.get("stroke-dasharray", "none"))
-        strokes.append(Stroke(colour, dashes, moved, faint, fault))
+        strokes.append(Stroke(name, colour, dashes, moved, found.unbent, found.bent, faint, fault))
     letters, notes = lettered(strokes, reading or SvgReading())
     drawn = [(stroke, x) for stroke, x in zip(strokes, letters, strict=True) if x]
     for stroke, _ in drawn:
         if stroke.fault is not None:
             raise stroke.fault
+    remarks_on_curves = _curves([stroke for stroke, _ in drawn], reading and reading.chords)
     segments = [(*ends, letter) for stroke, letter in drawn for ends in stroke.lines]
     remarks = [f"left out {counted(omitted[why], 'element')} {why}" for why in sorted(omitted)]
-    remarks += notes
-    if unbent:
-        remarks.append(f"read {counted(unbent, 'curve')} as straight, within 1/1000 of the length")
+    remarks += notes + remarks_on_curves
     angled = sum(stroke.faint and letter in "MV" for stroke, letter in drawn)
     if angled:
         remarks.append(f"did not read the opacity of {counted(angled, 'element')} as fold angles")
     return drawing_of(segments, "SVG", remarks)
+
+
+def _curves(strokes: Sequence[Stroke], chords: int | None) -> list[str]:
+    """Remarks on the curves of strokes; raises `MalformedDrawingError` if they have no chords."""
+    unbent = sum(stroke.unbent for stroke in strokes)
+    bent = [stroke for stroke in strokes if stroke.bent]
+    remarks = []
+    if unbent:
+        remarks.append(f"read {counted(unbent, 'curve')} as straight, within 1/1000 of the length")
+    if not bent:
+        return remarks
+    number = sum(len(stroke.bent) for stroke in bent)
+    names = ", ".join(f"{len(stroke.bent)} in {stroke.name}" for stroke in bent[:_NAMED])
+    more = f", ... {len(bent) - _NAMED} more" if len(bent) > _NAMED else ""
+    where = f"{counted(number, 'curve')} ({names}{more})"
+    if chords is None:
+        raise MalformedDrawingError(
+            f"{bent[0].name}: {bent[0].bent[0]}; creases must be straight, and the drawing has "
+            f"{where}: `--chords 8` reads each as 8 straight lines, and the answer is about that "
+            "sheet"
+        )
+    check_chords(number, chords)
+    remarks.append(
+        f"read {where} as {counted(chords, 'chord')} each: all answers are about the sheet "
+        "with these straight lines, not about the curved one"
+    )
+    return remarks
 
 
 def _shapes(text: str) -> tuple[Iterator[Any], list[Mapping[str, str]]]:
@@ -125,25 +159,23 @@ def _shapes(text: str) -> tuple[Iterator[Any], list[Mapping[str, str]]]:
     return (element for element in picture.elements() if isinstance(element, Shape)), given
 
 
-def _lines(
-    tag: str, own: Mapping[str, str], name: str
-) -> tuple[list[tuple[Place, Place]] | None, int]:
-    """The lines of an element (None if its kind is not read), and how many were curves."""
+def _lines(tag: str, own: Mapping[str, str], name: str, chords: int) -> PathLines | None:
+    """The lines of an element; None if its kind is not read."""
     try:
         if tag == "path":
-            return path_lines(own.get("d", ""))
+            return path_lines(own.get("d", ""), chords)
         if tag == "line":
             x1, y1, x2, y2 = (_length(own, key) for key in ("x1", "y1", "x2", "y2"))
-            return [((x1, y1), (x2, y2))], 0
+            return PathLines([((x1, y1), (x2, y2))])
         if tag == "rect":
-            return _sides(_corners(own)), 0
+            return _rectangle(own, chords)
         if tag == "polygon":
-            return _sides(_points(own.get("points", ""))), 0
+            return PathLines(_sides(_points(own.get("points", ""))))
         if tag == "polyline":
-            return _sides(_points(own.get("points", "")))[:-1], 0
-    except (MalformedDrawingError, NumberError) as error:
+            return PathLines(_sides(_points(own.get("points", "")))[:-1])
+    except (MalformedDrawingError, NumberError, TooLargeError) as error:
         raise type(error)(f"{name}: {error}") from None
-    return None, 0
+    return None
 
 
 def _sides(places: list[Place]) -> list[tuple[Place, Place]]:
@@ -151,13 +183,27 @@ def _sides(places: list[Place]) -> list[tuple[Place, Place]]:
     return [(a, b) for a, b in zip(places, closed, strict=True)]
 
 
-def _corners(own: Mapping[str, str]) -> list[Place]:
-    x, y, width, height, rx, ry = (
-        _length(own, key) for key in ("x", "y", "width", "height", "rx", "ry")
+def _rectangle(own: Mapping[str, str], chords: int) -> PathLines:
+    """The sides of a rectangle; each rounded corner becomes `chords` chords."""
+    x, y, width, height = (_length(own, key) for key in ("x", "y", "width", "height"))
+    stated = [_length(own, key) for key in ("rx", "ry") if own.get(key, "auto") != "auto"]
+    rx, ry = (
+        min(r, side / 2)
+        for r, side in zip((stated * 2)[:2] or (0, 0), (width, height), strict=True)
     )
-    if rx or ry:
-        raise MalformedDrawingError(f"the corners are rounded; {STRAIGHT}")
-    return [(x, y), (x + width, y), (x + width, y + height), (x, y + height)]
+    if not rx * ry:
+        return PathLines(_sides([(x, y), (x + width, y), (x + width, y + height), (x, y + height)]))
+    right, low = x + width, y + height
+    corners = [
+        ((right - rx, y), (right, y + ry)),
+        ((right, low - ry), (right - rx, low)),
+        ((x + rx, low), (x, low - ry)),
+        ((x, y + ry), (x + rx, y)),
+    ]
+    places: list[Place] = []
+    for start, end in corners:
+        places += [start, *arc_places(start, [rx, ry, *map(Fraction, (0, 0, 1))], end, chords)]
+    return PathLines(_sides(places), 0, ("a rounded corner",) * 4)
 
 
 def _points(text: str) -> list[Place]:

@@ -42,12 +42,16 @@ _FAULTS: Final = (ArithmeticError, AttributeError, LookupError, TypeError, Value
 class Stroke:
     """The lines of one element, with the colour and the dashes of its stroke as written.
 
-    `faint` says that it has an opacity, and `fault` why its lines cannot be read.
+    `unbent` and `bent` are those of `PathLines`. `faint` says that the stroke has an opacity, and
+    `fault` why its lines cannot be read.
     """
 
+    name: str
     colour: str
     dashes: str
     lines: Sequence[tuple[Place, Place]]
+    unbent: int = 0
+    bent: Sequence[str] = ()
     faint: bool = False
     fault: Exception | None = None
 
