@@ -245,7 +245,7 @@ def test_a_curve_is_as_many_chords_as_asked_for():
     assert drawing.remarks == (
         "read 1 curve as straight, within 1/1000 of the length",
         "read 1 curve (1 in path 1) as 4 chords each: all answers are about the sheet with these "
-        "straight lines, not about the curved one",
+        "straight lines and rigid panels, not about the curved one",
     )
 
 

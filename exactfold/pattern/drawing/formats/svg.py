@@ -131,8 +131,8 @@ def _curves(strokes: Sequence[Stroke], chords: int | None) -> list[str]:
         )
     check_chords(number, chords)
     remarks.append(
-        f"read {where} as {counted(chords, 'chord')} each: all answers are about the sheet "
-        "with these straight lines, not about the curved one"
+        f"read {where} as {counted(chords, 'chord')} each: all answers are about the sheet with "
+        "these straight lines and rigid panels, not about the curved one"
     )
     return remarks
 
@@ -187,10 +187,8 @@ def _rectangle(own: Mapping[str, str], chords: int) -> PathLines:
     """The sides of a rectangle; each rounded corner becomes `chords` chords."""
     x, y, width, height = (_length(own, key) for key in ("x", "y", "width", "height"))
     stated = [_length(own, key) for key in ("rx", "ry") if own.get(key, "auto") != "auto"]
-    rx, ry = (
-        min(r, side / 2)
-        for r, side in zip((stated * 2)[:2] or (0, 0), (width, height), strict=True)
-    )
+    radii = stated or [Fraction(0)]
+    rx, ry = min(radii[0], width / 2), min(radii[-1], height / 2)
     if not rx * ry:
         return PathLines(_sides([(x, y), (x + width, y), (x + width, y + height), (x, y + height)]))
     right, low = x + width, y + height
