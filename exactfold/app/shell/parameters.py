@@ -41,6 +41,26 @@ def complete_pattern(incomplete: str) -> list[str]:
     return completions
 
 
+def in_folders(paths: list[Path]) -> list[Path]:
+    """The paths, with each folder replaced by the drawings in it and below it, in order of name.
+
+    Raises `typer.BadParameter` for a folder without drawings.
+    """
+    if not any(path.is_dir() for path in paths):
+        return paths
+    from exactfold.pattern.drawing.formats.read import READERS
+
+    found = []
+    for path in paths:
+        inside = sorted(path.rglob("*")) if path.is_dir() else [path]
+        drawings = [file for file in inside if file.suffix[1:].lower() in READERS]
+        if path.is_dir() and not drawings:
+            endings = ", ".join(sorted(READERS))
+            raise typer.BadParameter(f"the folder {path} has no file that ends in {endings}")
+        found += drawings if path.is_dir() else [path]
+    return found
+
+
 def flag(*names: str, text: str, **more: Any) -> Any:
     """An option without a value."""
     return typer.Option(*names, metavar="", help=text, **more)
@@ -175,9 +195,10 @@ Patterns = Annotated[
     list[Path],
     typer.Argument(
         metavar="PATTERN",
-        callback=lambda paths: [standard_input(path) for path in paths],
+        callback=lambda paths: in_folders([standard_input(path) for path in paths]),
         autocompletion=complete_pattern,
-        help="FOLD, SVG, CP, OPX or ORI files, - for standard input, or names: see `examples`.",
+        help="FOLD, SVG, CP, OPX or ORI files, folders of such files, - for standard input, or "
+        "names: see `examples`.",
     ),
 ]
 Snap = Annotated[
