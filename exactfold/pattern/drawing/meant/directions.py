@@ -7,7 +7,7 @@ one factor for the multiple of pi, with its tangent in a tower of square roots, 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from math import cos, gcd, lcm, sin
@@ -192,7 +192,7 @@ def _times(a: tuple[int, int], b: tuple[int, int]) -> tuple[int, int]:
 
 
 def _turned(direction: Vector, whole: tuple[int, int]) -> Vector:
-    """The product of a direction of the grid and a Gaussian integer, without common factors in Q."""
+    """The product of a direction of the grid and a Gaussian integer; coprime integers in Q."""
     x, y = direction
     p, q = whole
     u, v = x * p - y * q, x * q + y * p

@@ -8,7 +8,7 @@ far: either it holds for all of their values, or one of them follows from the ot
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from heapq import heappop, heappush
 from typing import Final, TypeAlias
@@ -23,8 +23,8 @@ Coordinate: TypeAlias = tuple[int, int]
 
 _PARALLEL: Final = 1e-5
 """Lines that cross at a smaller angle place no vertex."""
-_NONE: Final = 1e-9
-"""A condition with smaller coefficients is taken to hold for all free coordinates."""
+_LEAST: Final = 1e-9
+"""Smaller coefficients of a condition are rounding errors of floats."""
 
 
 @dataclass(frozen=True)
@@ -54,20 +54,25 @@ class Order:
     matrix: FloatArray
 
 
-def placing_order(places: FloatArray, directions: Mapping[Edge, tuple[float, float]]) -> Order:
+def placing_order(
+    places: FloatArray, directions: Mapping[Edge, tuple[float, float]], noise: float
+) -> Order:
     """An order of all vertices; long edges that cross at large angles come first.
 
-    `directions` are unit vectors along the edges with a given direction.
+    `directions` are unit vectors along the edges with a given direction. A condition with
+    coefficients below `noise` is taken to hold for all free coordinates.
     """
-    search = _Search(places, directions)
+    search = _Search(places, directions, max(noise, _LEAST))
     while (v := search.next()) is not None:
         search.place(v)
     return search.order()
 
 
 class _Search:
-    def __init__(self, places: FloatArray, directions: Mapping[Edge, tuple[float, float]]) -> None:
-        self.places, self.directions = places, directions
+    def __init__(
+        self, places: FloatArray, directions: Mapping[Edge, tuple[float, float]], least: float
+    ) -> None:
+        self.places, self.directions, self.least = places, directions, least
         count = len(places)
         self.forms = np.zeros((count, 2, 8))
         self.free: list[Coordinate] = []
@@ -104,9 +109,7 @@ class _Search:
         known = self.known(v)
         if not known:
             return (), 0.0
-        pairs = [
-            (self._sine(a, b), a, b) for k, a in enumerate(known) for b in known[k + 1 :]
-        ]
+        pairs = [(self._sine(a, b), a, b) for k, a in enumerate(known) for b in known[k + 1 :]]
         best = max(pairs, key=lambda pair: pair[0], default=None)
         if best is None or best[0] < _PARALLEL:
             return (known[0],), self._length(known[0])
@@ -155,7 +158,7 @@ class _Search:
         apart = self.forms[edge[1]] - self.forms[edge[0]]
         off = d[0] * apart[1] - d[1] * apart[0]
         k = int(np.argmax(abs(off)))
-        if abs(off[k]) < _NONE:
+        if abs(off[k]) < self.least:
             return None
         row = off / off[k]
         row[k] = 0

@@ -1,105 +1,51 @@
-"""The exact sheet near a drawing whose edges have given exact angles."""
+"""Exact positions of vertices near a drawing, from exact directions of its edges."""
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from math import hypot
-from typing import Literal, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
 from exactfold._support.arrays import FloatArray
-from exactfold._support.plurals import agreeing, counted
-from exactfold.errors import FoldError, NotADiskError, PatternError, UsageError
-from exactfold.exact.numbers import decimal_above
-from exactfold.exact.surds import Number, Surd, SurdField, rational, simple
-from exactfold.pattern.drawing.meant.directions import Directions, Vector, cross, exact_directions
+from exactfold.exact.surds import Number, Surd
+from exactfold.pattern.drawing.meant.directions import Directions, Vector, cross
 from exactfold.pattern.drawing.meant.placing import Coordinate, Order, Step, placing_order
 from exactfold.pattern.drawing.meant.values import Angles, Edge
-from exactfold.pattern.panel_pattern import PanelPattern
 
-Written: TypeAlias = tuple[tuple[Fraction, Fraction], ...]
-Existence: TypeAlias = Literal["exact", "none"]
+Written: TypeAlias = Sequence[tuple[Fraction, Fraction]]
+"""The points as the drawing states them."""
 
 
-@dataclass(frozen=True)
-class Realized:
-    """The sheet with exact angles near a drawing, or why none was found.
+def exact_positions(
+    written: Written, directions: Directions, bound: Sequence[Edge], noise: float
+) -> list[tuple[Surd, Surd]]:
+    """Positions near the written ones, such that the edges `bound` have the given directions.
 
-    `written` holds the points as the drawing states them, and `sheet` is the exact sheet; no vertex
-    is further from its point than `distance` times the larger side of the drawing. If `existence`
-    is "none", there is no sheet, and `reason` says why.
+    If that is impossible, some of these edges miss their direction; `missed` lists them. The free
+    coordinates are short decimals, rounded far below the noise level `noise`, which is relative to
+    the larger side of the drawing.
     """
-
-    written: Written
-    sheet: PanelPattern | None
-    distance: Fraction
-    existence: Existence
-    reason: str
-
-    @property
-    def bits(self) -> int:
-        """The bits of the longest numerator or denominator among the coordinates."""
-        points = () if self.sheet is None else self.sheet.vertices
-        parts = [part for point in points for c in point for part in _parts(c)]
-        return max((max(abs(p.numerator), p.denominator).bit_length() for p in parts), default=0)
-
-
-def realize(drawn: PanelPattern, angles: Angles, noise: float) -> Realized:
-    """The exact sheet near a drawing whose edges have the given angles.
-
-    `noise` is the noise level of the drawing, relative to its larger side. Free angles become
-    angles with rational tangents, and free coordinates short decimals; both stay far nearer to
-    their values than the noise. All other coordinates follow from the directions of edges, and all
-    edges are checked exactly. Raises `UsageError` if the coordinates of the drawing are irrational.
-
-    >>> square = PanelPattern([(0, 0), (1, 0), (1, 1), (Fraction(1, 1000), 1)],
-    ...                       [(0, 1), (1, 2), (2, 3), (0, 3), (0, 2)])
-    >>> constants = {(0, 1): 0, (1, 2): Fraction(1, 2), (2, 3): 0, (0, 3): Fraction(1, 2),
-    ...              (0, 2): Fraction(1, 4)}
-    >>> made = realize(square, Angles({e: Fraction(c) for e, c in constants.items()}, {}, ()), 1e-3)
-    >>> made.existence, made.distance < Fraction(1, 1000), made.sheet.vertices[3][0].sign()
-    ('exact', True, 1)
-    """
-    written = tuple(_written(point) for point in drawn.vertices)
-    directions = exact_directions(angles, noise / 100)
-    if directions is None:
-        parts = max(c.denominator for c in angles.constants.values())
-        return _none(
-            written,
-            f"some angles are multiples of pi/{parts} that have directions in no small tower of "
-            "square roots",
-        )
-    bound = _bound(angles)
     places = np.array([(float(x), float(y)) for x, y in written])
     units = {edge: _unit(directions.vectors[edge]) for edge in bound}
-    order = placing_order(places, units)
-    free = _free_values(written, places, order, noise)
-    placed = _Placed(directions, free)
+    order = placing_order(places, units, 100 * noise)
+    placed = _Placed(directions, _free_values(written, places, order, noise))
     for step in order.steps:
         placed.place(step)
-    points = placed.points()
-    failed = [edge for edge in bound if cross(directions.vectors[edge], _along(points, edge))]
-    if failed:
-        return _none(written, _constrained(failed, len(bound), angles))
-    return _compared(drawn, written, points)
+    return placed.points()
 
 
-def _written(point: Sequence[Number]) -> tuple[Fraction, Fraction]:
-    x, y = (simple(c) for c in point)
-    if isinstance(x, Surd) or isinstance(y, Surd):
-        raise UsageError("the coordinates of this drawing are irrational and already exact")
-    return Fraction(x), Fraction(y)
+def missed(
+    points: Sequence[tuple[Surd, Surd]], directions: Directions, bound: Sequence[Edge]
+) -> list[Edge]:
+    """The edges among `bound` that do not have their exact direction."""
+    return [edge for edge in bound if cross(directions.vectors[edge], _along(points, edge))]
 
 
-def _none(written: Written, reason: str) -> Realized:
-    return Realized(written, None, Fraction(0), "none", reason)
-
-
-def _bound(angles: Angles) -> list[Edge]:
+def bound_edges(angles: Angles) -> list[Edge]:
     """The edges whose direction is given.
 
     A free angle that only one edge has takes whatever value the positions give it. So this edge is
@@ -239,43 +185,3 @@ def _scaled(form: Form, scale: Number) -> Form:
 def _along(points: Sequence[tuple[Surd, Surd]], edge: Edge) -> Vector:
     (ax, ay), (bx, by) = (points[v] for v in edge)
     return bx - ax, by - ay
-
-
-def _constrained(failed: Sequence[Edge], bound: int, angles: Angles) -> str:
-    i, j = failed[0]
-    left = f"{counted(len(failed), 'edge')} of {bound}, the first {i}-{j},"
-    if any(angles.coefficients.get(edge) for edge in angles.constants):
-        return (
-            f"the positions of the vertices constrain the free angles: {left} "
-            f"{agreeing(len(failed), 'misses')} the exact direction"
-        )
-    return f"no sheet has all these directions: {left} {agreeing(len(failed), 'misses')} its own"
-
-
-def _compared(
-    drawn: PanelPattern, written: Written, points: Sequence[tuple[Surd, Surd]]
-) -> Realized:
-    """The sheet with these points, if it has the panels of the drawing."""
-    try:
-        sheet = PanelPattern([(simple(x), simple(y)) for x, y in points], drawn.edges)
-    except (FoldError, PatternError, NotADiskError) as error:
-        return _none(written, f"the exact positions do not make the sheet that was drawn: {error}")
-    if sheet.faces != drawn.faces:
-        face = next(face for face in drawn.faces if face not in sheet.faces)
-        name = "-".join(map(str, face))
-        return _none(written, f"the exact positions turn over or break panel {name}")
-    return Realized(written, sheet, _distance(written, points), "exact", "")
-
-
-def _distance(written: Written, points: Sequence[tuple[Surd, Surd]]) -> Fraction:
-    """An upper bound, in three digits, of how far points moved, relative to the larger side."""
-    size = max(max(axis) - min(axis) for axis in zip(*written, strict=True))
-    moved = max(
-        hypot(float(x - a), float(y - b)) for (x, y), (a, b) in zip(points, written, strict=True)
-    )
-    above = Fraction(moved) * Fraction(1 + 2.0**-40)  # floats of differences are correctly rounded
-    return Fraction(decimal_above(above / size, 3)) if moved else Fraction(0)
-
-
-def _parts(value: Number) -> Iterator[Fraction]:
-    yield from value.coefficients if isinstance(value, Surd) else (Fraction(value),)
