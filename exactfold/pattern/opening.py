@@ -170,7 +170,7 @@ def opened(raw: bytes, name: str, reading: Reading = PLAIN) -> Opened:
     from exactfold.pattern.drawing.formats.read import parse_drawing
 
     try:
-        drawing = parse_drawing(raw, name)
+        drawing = parse_drawing(raw, name, reading.svg)
     except _FINAL:
         raise
     except (FoldError, UnknownFormatError) as error:

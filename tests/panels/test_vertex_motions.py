@@ -16,7 +16,7 @@ from exactfold._support.verdict import PROVED, REFUTED
 from exactfold.design import match_panels
 from exactfold.exact.surds import RATIONALS
 from exactfold.panels.stars import Star
-from exactfold.panels.vertex_motions import no_half_plane, vertex_motion
+from exactfold.panels.vertex_motions import Fan, vertex_motion
 from exactfold.pattern.panel_pattern import Point
 
 GRID = [(x, y) for x in range(-3, 4) for y in range(-3, 4) if math.gcd(x, y) == 1]
@@ -90,22 +90,23 @@ def test_the_signs_are_those_of_the_field() -> None:
 
 
 @pytest.mark.parametrize("seed", range(40))
-def test_no_half_plane_is_what_it_says(seed: int) -> None:
+def test_folds_in_no_half_plane(seed: int) -> None:
     """Directions span positively if no line through one of them has all others on one side."""
     rng = random.Random(seed)
     star = star_of(directions(rng, rng.randint(1, 7)))
+    fan = Fan(star)
     for size in range(len(star.folds) + 1):
         for chosen in combinations(range(len(star.folds)), size):
             d = [star.directions[k] for k in chosen]
             normals = [(s * y, -s * x) for x, y in d for s in (1, -1)]
             on_a_side = any(all(nx * x + ny * y >= 0 for x, y in d) for nx, ny in normals)
-            found = no_half_plane(star, set(chosen))
+            found = fan.spanning(chosen)
             assert (found is None) is (on_a_side or not d)
             if found is not None:
                 assert set(found) <= set(chosen)
                 assert len(found) in (3, 4)
-                assert no_half_plane(star, set(found)) == found
-                assert all(no_half_plane(star, set(found) - {k}) is None for k in found)
+                assert fan.spanning(found) == found
+                assert all(fan.spanning(set(found) - {k}) is None for k in found)
 
 
 @pytest.mark.parametrize("seed", range(30))

@@ -7,7 +7,17 @@ from typing import Annotated
 
 import typer
 
-from exactfold.app.shell.parameters import Sheet, Snap, distance, flag, names, number
+from exactfold.app.shell.parameters import (
+    Chords,
+    Colours,
+    Dashes,
+    Sheet,
+    Snap,
+    distance,
+    flag,
+    names,
+    number,
+)
 from exactfold.pattern.reading import Reading
 
 
@@ -17,6 +27,9 @@ class ReadingOptions:
 
     snap: Snap = None
     sheet: Sheet = None
+    colours: Colours = None
+    dashes: Dashes = None
+    chords: Chords = None
     relations: Annotated[
         bool,
         flag(
@@ -59,6 +72,9 @@ class ReadingOptions:
         return Reading(
             self.snap,
             self.sheet,
+            colours=self.colours,
+            dashes=self.dashes,
+            chords=self.chords,
             without=tuple(self.without or ()),
             also=tuple(self.also or ()),
             noise=None if self.noise is None else float(self.noise),

@@ -37,6 +37,9 @@ def read(
     number: int | None = None,
     steps: Steps = "all",
     merge: Fraction | None = None,
+    colours: Mapping[str, str] | None = None,
+    dashes: Mapping[str, str] | None = None,
+    chords: int | None = None,
     without: Iterable[str] = (),
     also: Iterable[str] = (),
     noise: float | None = None,
@@ -50,7 +53,9 @@ def read(
     exact; `lines` of the result says how. `letters` of the result has the mountains and valleys of
     the drawing. `snap` is "auto", "exact", or n, which rounds coordinates to multiples of 1/n.
     `number`, from 1, chooses a sheet of a drawing with several. `steps` and `merge` say what is
-    repaired (`exactfold.pattern.STEPS`).
+    repaired (`exactfold.pattern.STEPS`). `colours` and `dashes` give letters to the lines of an SVG
+    file: `colours={"orange": "M"}`, `dashes={"3 2": "V", "solid": "B"}`. Each of its curves is read
+    as `chords` straight lines.
 
     If the digits of a drawing are inexact, the sheet that was meant is inferred
     (docs/import.md, The sheet that was meant), and `meant` of the result says how. `without` names
@@ -72,6 +77,9 @@ def read(
         number,
         steps,
         merge,
+        colours,
+        dashes,
+        chords,
         without=(without,) if isinstance(without, str) else tuple(without),
         also=(also,) if isinstance(also, str) else tuple(also),
         noise=noise,
