@@ -27,7 +27,7 @@ from exactfold.panels.local import LocalMode
 from exactfold.panels.near_misses import NearMiss, NearMissDocument
 from exactfold.panels.subspaces import Leaf
 from exactfold.pattern.described import PanelsDocument, described_panels
-from exactfold.pattern.drawing.meant.sheet import Meant, MeantDocument
+from exactfold.pattern.meant import Meant, MeantDocument
 from exactfold.pattern.near_degeneracy import WarningDocument
 from exactfold.pattern.opening import ReadDocument
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
@@ -63,15 +63,16 @@ class ModeDocument(TypedDict):
 
 
 class AsWrittenDocument(TypedDict):
-    """The count for the digits of an inexact drawing, which are not the sheet that was meant."""
+    """The count for the digits of an inexact drawing."""
 
+    sheet: Literal["as written", "as read", "inferred"]
+    """Whose digits: those of the file, the coordinates after some were recognised, or those of the
+    inferred sheet, if relations nearly hold even there."""
     status: VerdictText
     reason: str
     rigid: bool | None
     distinct: Natural | None
     components: ComponentsDocument | None
-    largest_move: NotNegative
-    """How far recognised coordinates lie from the digits, by the size of the sheet."""
 
 
 class MotionKeys(TypedDict):
@@ -193,7 +194,8 @@ class Decomposition(Page, Ways[Mode], Certified):
     truly fold; there may be others. `near_misses` are loops that nearly close.
 
     `meant` says what was inferred if the digits of the drawing are inexact, and `as_written` is the
-    answer for these digits alone. If nothing was inferred, the status is UNDECIDED.
+    answer for these digits alone. If `doubt` says why an answer would hold for the digits of the
+    sheet only, the status is UNDECIDED, and `as_written` has that answer.
     """
 
     pattern: PanelPattern
@@ -215,6 +217,7 @@ class Decomposition(Page, Ways[Mode], Certified):
     found_true: Counts | None = None
     still: tuple[Edge, ...] = ()
     meant: Meant | None = None
+    doubt: str = ""
     as_written: Decomposition | None = None
     seconds: float = field(default=0.0, compare=False)
 
@@ -269,12 +272,12 @@ class Decomposition(Page, Ways[Mode], Certified):
     def of_digits(self) -> AsWrittenDocument:
         """The key `as_written` of the answer for the sheet that was meant."""
         return {
+            "sheet": digits(self.meant, self.read),
             "status": str(self.status),
             "reason": self.reason,
             "rigid": {PROVED: True, REFUTED: False}.get(self.rigid),
             "distinct": None,
             "components": self._components(),
-            "largest_move": 0.0 if self.read is None else self.read["largest_move"],
         }
 
     def _components(self) -> ComponentsDocument:
@@ -300,8 +303,7 @@ class Decomposition(Page, Ways[Mode], Certified):
     @property
     def known(self) -> Decomposition:
         """This answer, or, if it is doubted, what is known for the digits as they are read."""
-        doubted = self.meant is not None and self.meant.doubt
-        return self.as_written if doubted and self.as_written is not None else self
+        return self.as_written if self.doubt and self.as_written is not None else self
 
     @property
     def ways(self) -> int | None:
@@ -373,6 +375,15 @@ class Part:
     def folds(self) -> bool:
         """Whether some motion of the part is known to fold truly."""
         return bool(self.folding and set(self.folding) != {0})
+
+
+def digits(
+    meant: Meant | None, read: ReadDocument | None
+) -> Literal["as written", "as read", "inferred"]:
+    """Whose digits a sheet has that was opened."""
+    if meant is not None and meant.inferred:
+        return "inferred"
+    return "as read" if read is not None and read["largest_move"] else "as written"
 
 
 def _texts(counts: Counts | None) -> _ByDimension | None:

@@ -24,6 +24,7 @@ from exactfold.errors import (
     PatternError,
     SeveralSheetsError,
     StaleExactCoordinatesError,
+    TooLargeError,
     UnknownFormatError,
     UsageError,
 )
@@ -36,8 +37,8 @@ from exactfold.pattern.reading import PLAIN, Reading, Steps
 
 # Drawings need libraries that take long to load; triangulated sheets are read without them.
 if TYPE_CHECKING:
-    from exactfold.pattern.drawing.meant.sheet import Meant
     from exactfold.pattern.drawing.repair import Sheets
+    from exactfold.pattern.meant import Meant
     from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
 # These errors of the strict reader are final: reading the file as a drawing cannot mend them.
@@ -250,9 +251,43 @@ def meaning(found: Opened, written: Callable[[], Opened]) -> Opened:
     left = left_relations(found.sheet)
     if not left and not reading.overrules:
         return found
-    from exactfold.pattern.drawing.meant.sheet import Meant
+    from exactfold.pattern.meant import Meant, inferred
 
-    return replace(found, meant=Meant(found.sheet, left=left))
+    if isinstance(reading.snap, int):
+        return replace(found, meant=Meant(left=left, reason=f"--snap {reading.snap} leaves them"))
+    try:
+        raw = written()
+    except (FoldError, PatternError) as error:
+        reason = f"the digits as written are no sheet: {error}"
+        return replace(found, meant=Meant(left=left, reason=reason))
+    sheet = panels(raw.sheet) if isinstance(raw.sheet, CreasePattern) else raw.sheet
+    if sheet.field.radicands:
+        return replace(found, meant=Meant(left=left, reason="its coordinates are irrational"))
+    meant = inferred(sheet, reading)
+    if meant.realized is None or meant.realized.sheet is None:
+        meant = replace(meant, left=left)
+        lines = meant.listed if reading.relations else ()
+        return replace(found, meant=meant, lines=found.lines + lines)
+    exact = meant.realized.sheet
+    lines = tuple(line for line in raw.lines if not line.startswith("coordinates kept"))
+    return replace(
+        raw,
+        sheet=_triangles(exact),
+        lines=(*lines, *meant.lines, *(meant.listed if reading.relations else ())),
+        largest_move=meant.distance or 0.0,
+        field_name=exact.field_name,
+        meant=meant,
+        reading=reading,
+        again=found.again,
+    )
+
+
+def _triangles(exact: PanelPattern) -> CreasePattern | PanelPattern:
+    """The sheet, triangulated if its coordinates are short enough for that."""
+    try:
+        return triangulated(exact) or exact
+    except TooLargeError:
+        return exact
 
 
 def _attempts(drawing: Drawing, steps: Steps, merge: Fraction | None) -> list[Collection[str]]:

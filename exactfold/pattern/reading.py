@@ -59,7 +59,9 @@ class Reading:
     @property
     def as_written(self) -> Reading:
         """The same reading with the digits as written, and nothing inferred."""
-        return replace(self, snap="exact", without=(), also=(), noise=None, unit=None)
+        return replace(
+            self, snap="exact", without=(), also=(), noise=None, unit=None, relations=False
+        )
 
 
 PLAIN = Reading()

@@ -72,14 +72,14 @@ class ReadingOptions:
         return Reading(
             self.snap,
             self.sheet,
+            colours=self.colours,
+            dashes=self.dashes,
+            chords=self.chords,
             without=tuple(self.without or ()),
             also=tuple(self.also or ()),
             noise=None if self.noise is None else float(self.noise),
             unit=self.unit,
             relations=self.relations,
-            colours=self.colours,
-            dashes=self.dashes,
-            chords=self.chords,
         )
 
 

@@ -84,7 +84,7 @@ def answer(result: BranchCount) -> Text:
     true motion
     """
     took = f" ({result.seconds:.2f} s)"
-    if result.meant is not None and result.meant.inferred:
+    if result.meant is not None and result.meant.inferred and not result.doubt:
         plain = answer(replace(result, meant=None))
         return Text.assemble(f"{result.meant.name}: ", plain)
     if result.status is not PROVED:

@@ -59,7 +59,7 @@ def panels_answer(result: Decomposition) -> Text:
     that can be folded independently
     """
     took = f" ({result.seconds:.2f} s)"
-    if result.meant is not None and result.meant.inferred:
+    if result.meant is not None and result.meant.inferred and not result.doubt:
         plain = panels_answer(replace(result, meant=None))
         return Text.assemble(f"{result.meant.name}: ", plain)
     if result.rigid is PROVED:

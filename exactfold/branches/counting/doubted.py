@@ -20,19 +20,24 @@ def doubted(result: B, opened: Opened) -> B: ...
 @overload
 def doubted(result: Decomposition, opened: Opened) -> Decomposition: ...
 def doubted(result: BranchCount | Decomposition, opened: Opened) -> BranchCount | Decomposition:
-    """The answer for an open sheet, UNDECIDED if relations between its creases nearly hold.
+    """The answer for an open sheet, UNDECIDED if it would hold for the digits of the sheet only.
 
-    What is known for the digits of such a sheet is `as_written` of the answer.
+    That is so if relations between its creases nearly hold, or if a loop of folds nearly closes.
+    What is known for the digits is `as_written` of the answer.
     """
     result = replace(result, meant=opened.meant)
-    if not opened.doubt:
+    doubt = opened.doubt
+    families = result.families if isinstance(result, BranchCount) else result
+    if not doubt and opened.reading.snap != "exact" and families is not None:
+        doubt = families.warning or ""
+    if not doubt:
         return result
     if not isinstance(result, BranchCount):
         return replace(
             result,
             status=UNDECIDED,
             rigid=UNDECIDED,
-            reason=opened.doubt,
+            reason=doubt,
             second_order=None,
             true=None,
             found=None,
@@ -42,13 +47,13 @@ def doubted(result: BranchCount | Decomposition, opened: Opened) -> BranchCount 
             modes=(),
             modes_count=None,
             parts=(),
-            near_misses=(),
-            as_written=replace(result, meant=None),
+            doubt=doubt,
+            as_written=result,
         )
     return replace(
         result,
         status=UNDECIDED,
-        reason=opened.doubt,
+        reason=doubt,
         why="",
         distinct=None,
         with_multiplicity=None,
@@ -64,5 +69,6 @@ def doubted(result: BranchCount | Decomposition, opened: Opened) -> BranchCount 
         letters={},
         connected_components=None,
         families=None,
-        as_written=replace(result, meant=None),
+        doubt=doubt,
+        as_written=result,
     )

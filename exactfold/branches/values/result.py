@@ -33,7 +33,7 @@ if TYPE_CHECKING:  # counting branches does not load what panels need
         Power,
     )
     from exactfold.panels.result import AsWrittenDocument, Decomposition, MotionKeys
-    from exactfold.pattern.drawing.meant.sheet import Meant
+    from exactfold.pattern.meant import Meant
     from exactfold.pattern.opening import ReadDocument
 
 
@@ -96,7 +96,8 @@ class BranchCount(Page, Ways[Branch], Certified):
     computed them. The counts are then None, except for a single vertex.
 
     `meant` says what was inferred if the digits of the drawing are inexact, and `as_written` is the
-    answer for these digits alone. If nothing was inferred, the status is UNDECIDED.
+    answer for these digits alone. If `doubt` says why an answer would hold for the digits of the
+    sheet only, the status is UNDECIDED, and `as_written` has that answer.
 
     A certificate is written from `proof`. `open_questions` says what is missing; if the status is
     PROVED, it names folds with the letter "U". `letters` are those of the file, by fold; it is
@@ -127,6 +128,7 @@ class BranchCount(Page, Ways[Branch], Certified):
     connected_components: ConnectedComponents | None = None
     families: Decomposition | None = None
     meant: Meant | None = None
+    doubt: str = ""
     as_written: BranchCount | Decomposition | None = None
     seconds: float = field(default=0.0, compare=False)
 
@@ -174,8 +176,7 @@ class BranchCount(Page, Ways[Branch], Certified):
     @property
     def known(self) -> BranchCount:
         """This answer, or, if it is doubted, what is known for the digits as they are read."""
-        doubted = self.meant is not None and self.meant.doubt
-        return self.as_written if doubted and isinstance(self.as_written, BranchCount) else self
+        return self.as_written if isinstance(self.as_written, BranchCount) and self.doubt else self
 
     @property
     def warning(self) -> str | None:
@@ -289,13 +290,15 @@ class BranchCount(Page, Ways[Branch], Certified):
 
     def of_digits(self) -> AsWrittenDocument:
         """The key `as_written` of the answer for the sheet that was meant."""
+        from exactfold.panels.result import digits  # imported here: a count does not need it
+
         return {
+            "sheet": digits(self.meant, self.read),
             "status": str(self.status),
             "reason": self.reason,
             "rigid": self.distinct == 0 if self.status is PROVED else None,
             "distinct": self.distinct,
             "components": self._families()["components"],
-            "largest_move": 0.0 if self.read is None else self.read["largest_move"],
         }
 
     def _families(self) -> MotionKeys:

@@ -18,7 +18,7 @@ from exactfold.design.refutations.sign_tree import Tree
 from exactfold.exact.numbers import format_rational
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import described_panels
-from exactfold.pattern.drawing.meant.sheet import Meant
+from exactfold.pattern.meant import Meant
 from exactfold.pattern.opening import panels
 
 

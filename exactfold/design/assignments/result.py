@@ -30,7 +30,7 @@ from exactfold.design.refutations.refutation import Letters, Refutation
 from exactfold.design.refutations.sign_tree import Tree
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.described import PatternDocument, described
-from exactfold.pattern.drawing.meant.sheet import Meant, MeantDocument
+from exactfold.pattern.meant import Meant, MeantDocument
 from exactfold.pattern.near_degeneracy import WarningDocument, warnings
 
 _Decided: TypeAlias = Annotated[str, Keywords(enum=["M", "V", "F"])]

@@ -32,8 +32,8 @@ from exactfold.panels.decomposition import groups_of
 from exactfold.panels.stars import Star, stars
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import PanelsDocument, described_panels
-from exactfold.pattern.drawing.meant.sheet import Meant, MeantDocument
 from exactfold.pattern.loading import PatternLike, open_sheet
+from exactfold.pattern.meant import Meant, MeantDocument
 from exactfold.pattern.opening import panels
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 

@@ -100,11 +100,13 @@ def _tests(sheet: Sheet, places: _Places) -> Iterator[tuple[Kind, str, _Terms, f
         for v, w in (edge, edge[::-1]):
             (border if edge in boundary else around).setdefault(v, []).append(w)
     for v, (i, j) in ((v, sorted(near)) for v, near in border.items() if len(near) == 2):
-        yield _test("border", f"border@{v}:{i}-{j}", places, v, ((i, 1), (j, -1)))
+        yield _test("border", f"border@{v}", places, v, ((i, 1), (j, -1)))
     for v, near in around.items():
+        if v in border:
+            continue  # nothing has to close at a vertex of the boundary
         for i, j in combinations(sorted(near), 2):
             yield _test("straight", f"straight@{v}:{i}-{j}", places, v, ((i, 1), (j, -1)))
-        if v not in border and len(near) == 4:
+        if len(near) == 4:
             turned = sorted(near, key=lambda w: _angle(places, v, w))
             signs = [(w, (-1) ** k) for k, w in enumerate(turned)]
             yield _test("kawasaki", f"kawasaki@{v}", places, v, signs)

@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, Literal, TypeAlias, TypedDict
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any, Final, TypedDict
 
 from exactfold._support.documents import Natural, NotNegative
 from exactfold._support.plurals import counted
+from exactfold.errors import NotApplicableError
+from exactfold.pattern.drawing.meant.left import left_relations
 from exactfold.pattern.drawing.meant.values import Kind, Relation
+from exactfold.pattern.meant_sheet import Existence
 
 if TYPE_CHECKING:
-    from exactfold.pattern.drawing.meant.left import Sheet
+    from exactfold.pattern.meant_sheet import Realized
+    from exactfold.pattern.panel_pattern import PanelPattern
+    from exactfold.pattern.reading import Reading
 
-Existence: TypeAlias = Literal["exact", "box", "none"]
-"""How it is proved that a sheet with all relations exists: by its exact points, by a box of points
-that contains one, or not at all."""
 _KINDS: Final[tuple[tuple[str, tuple[Kind, ...]], ...]] = (
     ("straight", ("straight",)),
     ("Kawasaki", ("kawasaki",)),
@@ -71,10 +74,10 @@ class Meant:
     chance. `independent` of the `relations` imply all, and leave `free_angles` angles free. A sheet
     with all relations lies within `distance` of the drawing; `existence` says how that is proved.
     `left` are relations that the sheet of the answer nearly has. `reason` says why no sheet was
-    inferred. `written` is the sheet with the digits as they are written.
+    inferred. `realized` has the sheet with the digits as written, and the exact one. `implied` maps
+    a relation that was deleted to those that imply it all the same.
     """
 
-    written: Sheet
     noise: float | None = None
     clear: float | None = None
     gap: float | None = None
@@ -86,6 +89,8 @@ class Meant:
     existence: Existence = "none"
     left: tuple[Relation, ...] = ()
     reason: str = ""
+    realized: Realized | None = field(default=None, repr=False)
+    implied: Mapping[str, tuple[str, ...]] = field(default_factory=dict, hash=False)
 
     @property
     def inferred(self) -> bool:
@@ -133,7 +138,26 @@ class Meant:
             f"within {self.distance or 0:.1e} of the drawing there is a sheet with all of them - "
             "PROVED"
         )
+        for name, others in self.implied.items():
+            lines.append(f"{name} holds all the same, because of {', '.join(others)}")
         return tuple(lines)
+
+    @property
+    def listed(self) -> tuple[str, ...]:
+        """The relations, or those that nearly hold if none was inferred, one line each."""
+        shown = self.relations if self.inferred else self.left
+        return tuple(f"{one.name} is off by {one.defect:.1e}" for one in shown)
+
+    def certificate(self) -> dict[str, Any]:
+        """The certificate that the sheet exists near the drawing and has all relations.
+
+        Raises `NotApplicableError` if no sheet was inferred.
+        """
+        if self.realized is None or not self.inferred:
+            raise NotApplicableError(f"no sheet was inferred from the drawing: {self.reason}")
+        from exactfold.pattern.meant_sheet import certificate
+
+        return certificate(self.realized, self.relations)
 
     def to_dict(self) -> MeantDocument:
         """The key `meant` of JSON."""
@@ -170,3 +194,40 @@ def kinds(relations: Iterable[Relation]) -> str:
     counts = Counter(relation.kind for relation in relations)
     numbers = [(sum(counts[kind] for kind in group), name) for name, group in _KINDS]
     return ", ".join(f"{number} {name}" for number, name in numbers if number)
+
+
+def inferred(written: PanelPattern, reading: Reading) -> Meant:
+    """The sheet that was meant by a drawing with inexact digits, or why none is inferred.
+
+    `written` is the sheet with the digits as written; its coordinates are rational. Raises the
+    errors of `infer` for relations that do not exist or contradict each other.
+    """
+    from exactfold.pattern.drawing.meant.inference import infer
+    from exactfold.pattern.meant_sheet import realize
+
+    points = [(Fraction(x), Fraction(y)) for x, y in written.vertices]  # type: ignore[arg-type]
+    overruled = {"without": reading.without, "also": reading.also}
+    found = infer(
+        points,
+        written.edges,
+        written.boundary_edges,
+        **{name: value for name, value in overruled.items() if value},
+    )
+    known = Meant(
+        noise=found.noise,
+        clear=found.clear,
+        gap=found.gap,
+        chance=found.chance,
+        relations=found.relations,
+        independent=found.independent,
+        reason=found.reason,
+        implied=found.implied,
+    )
+    if found.angles is None:
+        return known
+    made = realize(written, found.angles, found.noise)
+    known = replace(known, free_angles=len(found.angles.free), realized=made, reason=made.reason)
+    if made.sheet is None:
+        return known
+    left = left_relations(made.sheet)
+    return replace(known, distance=float(made.distance), existence=made.existence, left=left)
