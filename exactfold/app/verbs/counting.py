@@ -84,9 +84,6 @@ def read(
         also=(also,) if isinstance(also, str) else tuple(also),
         noise=noise,
         unit=unit,
-        colours=colours,
-        dashes=dashes,
-        chords=chords,
     )
     return open_sheet(sheet, reading)
 
