@@ -138,7 +138,8 @@ def exact_sheets(
     def made(distance: Fraction) -> Sheets:
         after, ended = repaired(exact.drawing, merge=max(distance, least), steps=steps)
         try:
-            return Sheets(sheets(after), exact, (*_noted(distance, near), *begun, *ended))
+            found, cut = sheets(after)
+            return Sheets(found, exact, (*_noted(distance, near), *begun, *ended, *cut))
         except (FoldError, PatternError) as error:
             dropped = sum(repair.count for repair in ended if repair.step == "dangling")
             if after.lines and 2 * dropped > (whole := dropped + len(after.lines)):
