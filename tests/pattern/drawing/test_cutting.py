@@ -26,7 +26,8 @@ def picture(*lines):
     return read_svg(
         svg(
             "".join(
-                f'<line x1="{a}" y1="{b}" x2="{c}" y2="{d}" stroke="{COLOURS[letter]}"/>'
+                f'<line x1="{float(a)}" y1="{float(b)}" x2="{float(c)}" y2="{float(d)}" '
+                f'stroke="{COLOURS[letter]}"/>'
                 for a, b, c, d, letter in lines
             )
         )
@@ -178,19 +179,17 @@ def test_random_slits_keep_every_crease_and_every_direction_round_a_vertex(seed)
     """A grid with diagonals, and slits along its lines that begin at the edge and grow as trees."""
     rng, n = random.Random(seed), 5
     spots = [(x, y) for x in range(n + 1) for y in range(n + 1)]
+
+    def on_rim(spot):
+        return not (0 < spot[0] < n and 0 < spot[1] < n)
+
     place = {
-        (x, y): (
-            3 * x + (rng.choice((0, 1)) if 0 < x < n and 0 < y < n else 0),
-            3 * y + (rng.choice((0, 1)) if 0 < x < n and 0 < y < n else 0),
-        )
-        for x, y in spots
+        spot: tuple(Fraction(33 * c + 7 * rng.randrange(2) * (not on_rim(spot)), 10) for c in spot)
+        for spot in spots
     }
     edges = {((x, y), (x + 1, y)) for x in range(n) for y in range(n + 1)}
     edges |= {((x, y), (x, y + 1)) for x in range(n + 1) for y in range(n)}
     edges |= {((x, y), (x + 1, y + 1)) for x in range(n) for y in range(n)}
-
-    def on_rim(spot):
-        return not (0 < spot[0] < n and 0 < spot[1] < n)
 
     rim = {
         (a, b)
