@@ -23,7 +23,7 @@ from exactfold.pattern.drawing.formats.svg_path import (
     path_lines,
 )
 from exactfold.pattern.drawing.formats.svg_strokes import Stroke, lettered
-from exactfold.pattern.drawing.formats.svg_tree import NAMESPACE, NUMBER, plain_tree
+from exactfold.pattern.drawing.formats.svg_tree import MEANING, NAMESPACE, NUMBER, plain_tree
 from exactfold.pattern.drawing.segments import Place, drawing_of
 
 _LENGTH: Final = re.compile(rf"({NUMERAL})\s*([a-z]*)\Z")
@@ -76,7 +76,7 @@ def read_svg(text: str, reading: SvgReading | None = None) -> Drawing:
         if values.get("visibility") in ("hidden", "collapse"):
             omitted["with hidden visibility"] += 1
             continue
-        if colour in ("none", "transparent"):
+        if colour in ("none", "transparent") or _is_zero(values.get("stroke-width", "1")):
             omitted["without stroke"] += 1
             continue
         name = f"{tag} {seen[tag]}" + (f" (id {shown(own['id'])})" if "id" in own else "")
@@ -94,7 +94,19 @@ def read_svg(text: str, reading: SvgReading | None = None) -> Drawing:
             str(values.get(key, "1")) not in ("1", "1.0") for key in ("opacity", "stroke-opacity")
         )
         dashes = str(values.get("stroke-dasharray", "none"))
-        strokes.append(Stroke(name, colour, dashes, moved, found.unbent, found.bent, faint, fault))
+        strokes.append(
+            Stroke(
+                name,
+                str(values.get(MEANING, "")),
+                colour,
+                dashes,
+                moved,
+                found.unbent,
+                found.bent,
+                faint,
+                fault,
+            )
+        )
     letters, notes = lettered(strokes, reading)
     drawn = [(stroke, x) for stroke, x in zip(strokes, letters, strict=True) if x]
     for stroke, _ in drawn:
@@ -176,6 +188,13 @@ def _lines(tag: str, own: Mapping[str, str], name: str, chords: int) -> PathLine
     except (MalformedDrawingError, NumberError, TooLargeError) as error:
         raise type(error)(f"{name}: {error}") from None
     return None
+
+
+def _is_zero(width: object) -> bool:
+    try:
+        return _length({"width": str(width)}, "width") == 0
+    except (MalformedDrawingError, NumberError):
+        return False  # a percentage, say
 
 
 def _sides(places: list[Place]) -> list[tuple[Place, Place]]:
