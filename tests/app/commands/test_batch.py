@@ -78,6 +78,25 @@ def test_a_line_for_each_file_and_the_worst_exit_code(tmp_path: Path) -> None:
     assert run("count", good, good).exit_code == PROVED
 
 
+def test_a_folder_stands_for_the_drawings_in_it(tmp_path: Path) -> None:
+    folder = tmp_path / "mine"
+    (folder / "below").mkdir(parents=True)
+    (folder / "notes.txt").write_text("no drawing")
+    squares(folder, 1)
+    squares(folder / "below", 2)
+    out = tmp_path / "o.jsonl"
+    assert run("count", folder, "two-vertex", "--jobs", 1, "--jsonl", out).exit_code == PROVED
+    expected = [folder / "0.fold", folder / "below" / "0.fold", folder / "below" / "1.fold"]
+    assert [line["name"] for line in lines(out)] == [*map(str, expected), "two-vertex"]
+
+
+def test_a_folder_without_drawings_is_wrong_usage(tmp_path: Path) -> None:
+    (tmp_path / "notes.txt").write_text("no drawing")
+    result = run("count", tmp_path)
+    assert result.exit_code == USAGE
+    assert f"the folder {tmp_path} has no file that ends in cp, " in " ".join(result.stderr.split())
+
+
 def test_the_same_from_one_process_and_from_two(tmp_path: Path) -> None:
     paths = squares(tmp_path, 5)
     found = []
