@@ -19,13 +19,15 @@ class Reading:
 
     `snap` says how coordinates become exact. `number`, from 1, chooses one of several sheets.
     `steps` names the steps of repair, and points closer than `merge` times the size of the drawing
-    are merged.
+    are merged. With `force`, a sheet is read even if creases of the drawing are missing in it, or
+    if it has no folds.
     """
 
     snap: Snap | None = None
     number: int | None = None
     steps: Steps = "all"
     merge: Fraction | None = None
+    force: bool = False
 
     @property
     def repairs(self) -> bool:

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from exactfold.app.shell.parameters import Sheet, Snap
+from exactfold.app.shell.parameters import Force, Sheet, Snap
 from exactfold.pattern.reading import Reading
 
 
@@ -12,8 +12,9 @@ class ReadingOptions:
 
     snap: Snap = None
     sheet: Sheet = None
+    force: Force = False
 
     @property
     def reading(self) -> Reading:
         """These options as the value that `open_pattern` takes."""
-        return Reading(self.snap, self.sheet)
+        return Reading(self.snap, self.sheet, force=self.force)

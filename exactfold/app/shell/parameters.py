@@ -199,6 +199,14 @@ Snap = Annotated[
 Sheet = Annotated[
     int | None, number("Take the N-th sheet of a drawing with several sheets.", "N", "--sheet")
 ]
+Force = Annotated[
+    bool,
+    flag(
+        "--force",
+        text="Read a sheet even if creases of the drawing are missing in it, or if it has no "
+        "folds. Without this option, such a drawing is refused with exit code 3.",
+    ),
+]
 Json = Annotated[bool, flag("--json", text="Print one JSON object.")]
 Signs = Annotated[
     str | None,

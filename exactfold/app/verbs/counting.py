@@ -37,6 +37,7 @@ def read(
     number: int | None = None,
     steps: Steps = "all",
     merge: Fraction | None = None,
+    force: bool = False,
 ) -> Opened:
     """Read a sheet from any source; the attribute `sheet` of the result is the pattern.
 
@@ -46,7 +47,8 @@ def read(
     exact; `lines` of the result says how. `letters` of the result has the mountains and valleys of
     the drawing. `snap` is "auto", "exact", or n, which rounds coordinates to multiples of 1/n.
     `number`, from 1, chooses a sheet of a drawing with several. `steps` and `merge` say what is
-    repaired (`exactfold.pattern.STEPS`).
+    repaired (`exactfold.pattern.STEPS`). If creases of the drawing are missing in the sheet, or if
+    it has no folds, it is read only with `force`.
 
     Raises `InputError`, whose message names the file and what is wrong with it.
 
@@ -57,7 +59,7 @@ def read(
     >>> miura.sheet, len(miura.letters)
     (<PanelPattern: 9 interior vertices, 24 folds, 16 panels>, 24)
     """
-    return open_sheet(sheet, Reading(snap, number, steps, merge))
+    return open_sheet(sheet, Reading(snap, number, steps, merge, force))
 
 
 @overload
