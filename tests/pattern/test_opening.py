@@ -186,7 +186,9 @@ def test_square_roots_that_are_wrong_are_refused(key, value, error, words) -> No
 def test_messages_begin_with_the_name(tmp_path: Path) -> None:
     path = tmp_path / "s.cp"
     path.write_text("1 0 0 1 0")
-    with pytest.raises(InputError, match=f"^{path}: the lines of the drawing enclose no face$"):
+    with pytest.raises(
+        InputError, match=f"^{path}: the lines of the drawing enclose no face: draw"
+    ):
         open_pattern(path)
     with pytest.raises(InputError, match=r"^mine: the lines"):
         open_pattern(path, name="mine")

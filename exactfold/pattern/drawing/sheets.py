@@ -61,7 +61,9 @@ def sheets(drawing: Drawing) -> tuple[Drawing, ...]:
     """
     parts = _parts(drawing)
     if not parts:
-        raise MalformedPatternError("the lines of the drawing enclose no face")
+        raise MalformedPatternError(
+            "the lines of the drawing enclose no face: draw the boundary of the sheet"
+        )
     places = floats(drawing.points)
     _check_all(drawing, parts, places)
     for part in parts:

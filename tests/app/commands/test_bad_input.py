@@ -48,7 +48,7 @@ BAD = {
         "DegenerateFaceError",
         "face 0",
     ),
-    "vertex pulled across": (with_vertex(4, [0.5, -1]), "OverlapError", "face 0"),
+    "vertex pulled across": (with_vertex(4, [0.5, -1]), "FoldedStateError", "faces 0 and 1"),
     "overlap": (
         {
             "vertices_coords": [[0, 0], [4, 0], [4, 4], [1, 1], [5, 0.5], [2, 4]],
