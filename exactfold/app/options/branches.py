@@ -1,6 +1,6 @@
 """The options of the commands for single branches, and checks of which go together."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated
 
@@ -142,9 +142,11 @@ class ExportOptions(ReadingOptions):
     force: Annotated[
         bool,
         flag(
-            "--force", text="Also write a branch that is enclosed but not proved; see also --all."
+            "--force",
+            text="Also write a branch that is enclosed but not proved; see also --all. Also read a "
+            "sheet in which creases of the drawing are missing.",
         ),
-    ] = False
+    ] = field(default=False, kw_only=True)
     boundary_heights: BoundaryHeights = None
     everything: Annotated[
         bool,
