@@ -288,7 +288,7 @@ def _why(star: Star, given: str, fan: Fan) -> str:
             f"it needs a {other}, and as soon as a free fold is one, {_folds(kind, folds, free)} "
             f"{_lie(folds, free)} on one side of a line"
         )
-    return f"all its folds are {kind}s: it needs a {other}"
+    return f"all its folds are {kind}s, and it needs a {other}"
 
 
 def _folds(kind: str, folds: list[Edge], free: bool) -> str:

@@ -72,7 +72,7 @@ def test_a_vertex_that_folds_in_every_respect() -> None:
 @pytest.mark.parametrize(
     ("around", "letters", "reason"),
     [
-        (MIURA, "MMMM", "all its folds are mountains: it needs a valley"),
+        (MIURA, "MMMM", "all its folds are mountains, and it needs a valley"),
         (
             MIURA,
             "MVVM",
