@@ -2,19 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import hypot
-from typing import Literal, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 from exactfold._support.plurals import counted
-from exactfold.errors import FoldError, NotADiskError, PatternError, UsageError
-from exactfold.exact.numbers import decimal_above
+from exactfold.checker.sheets.meant import MEANT, MeantClaims, RelationClaim
+from exactfold.errors import (
+    FoldError,
+    NotADiskError,
+    NotApplicableError,
+    PatternError,
+    UsageError,
+)
+from exactfold.exact.numbers import decimal_above, format_rational
 from exactfold.exact.surds import Number, Surd, simple
 from exactfold.pattern.drawing.meant.directions import exact_directions
 from exactfold.pattern.drawing.meant.positions import bound_edges, exact_positions, missed
-from exactfold.pattern.drawing.meant.values import Angles
+from exactfold.pattern.drawing.meant.values import Angles, Relation
+from exactfold.pattern.panel_entries import panels_document
 from exactfold.pattern.panel_pattern import PanelPattern
 
 Written: TypeAlias = tuple[tuple[Fraction, Fraction], ...]
@@ -25,12 +33,12 @@ Existence: TypeAlias = Literal["exact", "none"]
 class Realized:
     """The sheet with exact angles near a drawing, or why none was found.
 
-    `written` holds the points as the drawing states them, and `sheet` is the exact sheet; no vertex
-    is further from its point than `distance` times the larger side of the drawing. If `existence`
-    is "none", there is no sheet, and `reason` says why.
+    `drawn` is the drawing as written, and `sheet` is the exact sheet; no vertex is further from its
+    written point than `distance` times the larger side of the drawing. If `existence` is "none", no
+    sheet was found, and `reason` says why.
     """
 
-    written: Written
+    drawn: PanelPattern
     sheet: PanelPattern | None
     distance: Fraction
     existence: Existence
@@ -66,7 +74,7 @@ def realize(drawn: PanelPattern, angles: Angles, noise: float) -> Realized:
     if directions is None:
         parts = max(c.denominator for c in angles.constants.values())
         return _none(
-            written,
+            drawn,
             f"some angles are multiples of pi/{parts} that have directions in no small tower of "
             "square roots",
         )
@@ -75,12 +83,52 @@ def realize(drawn: PanelPattern, angles: Angles, noise: float) -> Realized:
     if failed := missed(points, directions, bound):
         i, j = failed[0]
         return _none(
-            written,
+            drawn,
             f"the positions of the vertices constrain the free angles: {len(failed)} of "
             f"{counted(len(bound), 'edge')}, the first {i}-{j}, cannot have the given directions "
             "for these values of the free angles",
         )
     return _compared(drawn, written, points)
+
+
+def certificate(made: Realized, relations: Iterable[Relation]) -> dict[str, Any]:
+    """The certificate of an exact sheet with its relations, for `exactfold.checker`.
+
+    Raises `NotApplicableError` if there is no exact sheet.
+    """
+    if made.sheet is None:
+        raise NotApplicableError(f"no certificate, as no exact sheet was found: {made.reason}")
+    sheet = made.sheet
+    claims: MeantClaims = {
+        "interior": len(sheet.interior),
+        "border": len(sheet.boundary_set),
+        "folds": len(sheet.folds),
+        "panels": len(sheet.faces),
+        "drawn": made.drawn.sha256,
+        "within": format_rational(made.distance),
+        "relations": [_claim(relation) for relation in relations],
+        "sha256": sheet.sha256,
+    }
+    return {
+        "format": MEANT.format,
+        "version": MEANT.version,
+        "drawn": panels_document(made.drawn),
+        "pattern": panels_document(sheet),
+        "claims": claims,
+    }
+
+
+def _claim(relation: Relation) -> RelationClaim:
+    """The relation with sorted terms, the first of which has a positive number."""
+    terms = sorted([i, j, factor] for (i, j), factor in relation.terms)
+    if terms[0][2] < 0:
+        terms = [[i, j, -factor] for i, j, factor in terms]
+    return {
+        "kind": relation.kind,
+        "name": relation.name,
+        "terms": terms,
+        "parts": relation.parts,
+    }
 
 
 def _written(point: Sequence[Number]) -> tuple[Fraction, Fraction]:
@@ -90,8 +138,8 @@ def _written(point: Sequence[Number]) -> tuple[Fraction, Fraction]:
     return Fraction(x), Fraction(y)
 
 
-def _none(written: Written, reason: str) -> Realized:
-    return Realized(written, None, Fraction(0), "none", reason)
+def _none(drawn: PanelPattern, reason: str) -> Realized:
+    return Realized(drawn, None, Fraction(0), "none", reason)
 
 
 def _compared(
@@ -101,12 +149,12 @@ def _compared(
     try:
         sheet = PanelPattern([(simple(x), simple(y)) for x, y in points], drawn.edges)
     except (FoldError, PatternError, NotADiskError) as error:
-        return _none(written, f"the exact positions do not make the sheet that was drawn: {error}")
+        return _none(drawn, f"the exact positions do not make the sheet that was drawn: {error}")
     if sheet.faces != drawn.faces:
         face = next(face for face in drawn.faces if face not in sheet.faces)
         name = "-".join(map(str, face))
-        return _none(written, f"the exact positions turn over or break panel {name}")
-    return Realized(written, sheet, _distance(written, points), "exact", "")
+        return _none(drawn, f"the exact positions turn over or break panel {name}")
+    return Realized(drawn, sheet, _distance(written, points), "exact", "")
 
 
 def _distance(written: Written, points: Sequence[tuple[Surd, Surd]]) -> Fraction:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Literal, TypeAlias
 
@@ -21,6 +21,11 @@ class Reading:
     `steps` names the steps of repair, and points closer than `merge` times the size of the drawing
     are merged. `colours` and `dashes` give letters to the lines of an SVG file, such as
     {"orange": "M"} and {"3 2": "V", "solid": "B"}; its curves become `chords` straight lines each.
+
+    The others overrule what is inferred from a drawing with inexact digits. `without` names
+    relations that were not meant, `also` relations that were. `noise` is the noise level, as a
+    share of the size, and `unit` is n for a grid of angles pi / n. `relations` lists the relations
+    among the lines of the result.
     """
 
     snap: Snap | None = None
@@ -30,6 +35,11 @@ class Reading:
     colours: Mapping[str, str] | None = None
     dashes: Mapping[str, str] | None = None
     chords: int | None = None
+    without: tuple[str, ...] = ()
+    also: tuple[str, ...] = ()
+    noise: float | None = None
+    unit: int | None = None
+    relations: bool = False
 
     @property
     def repairs(self) -> bool:
@@ -40,6 +50,18 @@ class Reading:
     def svg(self) -> SvgReading:
         """The choices for SVG files."""
         return SvgReading(self.colours, self.dashes, self.chords)
+
+    @property
+    def overrules(self) -> bool:
+        """Whether something was said about the sheet that is meant, which is inferred then."""
+        return bool(self.without or self.also) or (self.noise, self.unit) != (None, None)
+
+    @property
+    def as_written(self) -> Reading:
+        """The same reading with the digits as written, and nothing inferred."""
+        return replace(
+            self, snap="exact", without=(), also=(), noise=None, unit=None, relations=False
+        )
 
 
 PLAIN = Reading()

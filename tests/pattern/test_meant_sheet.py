@@ -57,8 +57,8 @@ def check_exact(made: Realized, angles: Angles, noise: float) -> PanelPattern:
         for one, other in pairwise(edges if terms else ()):
             (ax, ay), (bx, by) = (difference(sheet, edge) for edge in (one, other))
             assert ax * by - ay * bx == 0
-    size = max(max(axis) - min(axis) for axis in zip(*made.written, strict=True))
-    for (x, y), (a, b) in zip(sheet.vertices, made.written, strict=True):
+    size = max(max(axis) - min(axis) for axis in zip(*made.drawn.vertices, strict=True))
+    for (x, y), (a, b) in zip(sheet.vertices, made.drawn.vertices, strict=True):
         moved = ball((x - a) * (x - a) + (y - b) * (y - b), 200)
         assert moved <= ball((made.distance * size) ** 2, 200)
     assert made.distance < 3 * noise
