@@ -56,8 +56,9 @@ def _grouped(found: Vertices, rows: Sequence[VertexFacts]) -> list[str]:
 
 def vertices_answer(found: Vertices) -> Text:
     """Whether all vertices start to fold with their letters, in one sentence."""
-    status = UNDECIDED if found.starts is UNDECIDED else found.starts
-    return Text.assemble(f"{found.headline} - ", status_text(status), f" ({found.seconds:.2f} s)")
+    sheet = f"{found.meant.name}: " if found.meant is not None and found.meant.inferred else ""
+    took = f" ({found.seconds:.2f} s)"
+    return Text.assemble(f"{sheet}{found.headline} - ", status_text(found.starts), took)
 
 
 def advice(found: Vertices, facts: VertexFacts) -> list[str]:

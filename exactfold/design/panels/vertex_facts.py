@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import combinations
 from math import degrees, pi
-from typing import Final
+from typing import Final, NamedTuple
 
 from flint import arb
 
@@ -27,7 +27,16 @@ _MEANT: Final = 1e-3
 _FLIPPED: Final = {"M": "V", "V": "M"}
 _MOST_FLIPS: Final = 4
 _MOST_CHOICES: Final = 64
+_MOST_PAIRS: Final = 5
 _BITS: Final = 64
+
+
+class _Pair(NamedTuple):
+    """The places of two nearly straight folds, and by which angle they miss a straight line."""
+
+    one: int
+    other: int
+    off: float
 
 
 @dataclass(frozen=True)
@@ -113,9 +122,10 @@ def _facts(sheet: PanelPattern, star: Star, letters: Letters, exactly: bool) -> 
     starts, able = _answers(fan, given)
     reason = _why(star, given, fan) if not starts or not able else ""
     verdict = PROVED if starts else REFUTED
-    mended = None if exactly else _straightened(star)
-    if mended is not None and _answers(Fan(mended[0]), given) != (starts, able):
-        verdict, reason = UNDECIDED, _open_text(mended[1], starts)
+    for straight, pairs in () if exactly else _straightened(star):
+        if _answers(Fan(straight), given) != (starts, able):
+            verdict, reason = UNDECIDED, _open_text(star, pairs, starts)
+            break
     flat = star.only(f for f, x in zip(star.folds, given, strict=True) if x != "F")
     kawasaki, off = _alternating(flat)
     kept = given.replace("F", "")
@@ -170,18 +180,22 @@ def _forced(star: Star, given: str, fan: Fan) -> dict[Edge, str]:
     return forced
 
 
-def _straightened(star: Star) -> tuple[Star, list[tuple[Edge, Edge, float]]] | None:
-    """The star with nearly straight pairs made straight, and these pairs; None without such
-    pairs.
-    """
-    directions, pairs = list(star.directions), []
-    for i, j in combinations(range(len(directions)), 2):
-        off = _bend(star.directions[i], star.directions[j])
-        if off and off < NEAR:
-            x, y = directions[i]
-            directions[j] = (-x, -y)
-            pairs.append((star.folds[i], star.folds[j], off))
-    return (Star(star.vertex, star.folds, tuple(directions)), pairs) if pairs else None
+def _straightened(star: Star) -> Iterator[tuple[Star, tuple[_Pair, ...]]]:
+    """The star with nearly straight pairs made straight: one, several, or all of them."""
+    pairs = tuple(
+        _Pair(i, j, off)
+        for i, j in combinations(range(len(star.folds)), 2)
+        if 0 < (off := _bend(star.directions[i], star.directions[j])) < NEAR
+    )
+    for size in range(1, len(pairs) + 1):
+        if 1 < size < len(pairs) > _MOST_PAIRS:
+            continue
+        for chosen in combinations(pairs, size):
+            directions = list(star.directions)
+            for pair in chosen:
+                x, y = directions[pair.one]
+                directions[pair.other] = (-x, -y)
+            yield Star(star.vertex, star.folds, tuple(directions)), chosen
 
 
 def _bend(a: Point, b: Point) -> float:
@@ -336,13 +350,13 @@ def _geometry_text(star: Star, moving: Iterable[Edge]) -> str:
     return f"the folds {_named(moving)} cannot move together while the others stay flat"
 
 
-def _open_text(pairs: list[tuple[Edge, Edge, float]], starts: bool) -> str:
-    one, other, off = pairs[0]
+def _open_text(star: Star, pairs: tuple[_Pair, ...], starts: bool) -> str:
+    pair = pairs[0]
+    folds = _named((star.folds[pair.one], star.folds[pair.other]), " and ")
     written, straight = ("starts", "does not") if starts else ("does not start", "does")
     return (
-        f"folds {_named((one, other), ' and ')} miss a straight line by {degrees(off):.1g} "
-        f"degrees: the vertex {written} to fold as it is written, and with a straight line it "
-        f"{straight}"
+        f"folds {folds} miss a straight line by {degrees(pair.off):.1g} degrees: the vertex "
+        f"{written} to fold as it is written, and with a straight line it {straight}"
     )
 
 

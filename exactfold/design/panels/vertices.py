@@ -28,6 +28,7 @@ from exactfold.panels.vertex_motions import Fan
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import PanelsDocument, described_panels
 from exactfold.pattern.loading import PatternLike, open_sheet
+from exactfold.pattern.meant import Meant, MeantDocument
 from exactfold.pattern.opening import panels
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
@@ -90,6 +91,8 @@ class VerticesDocument(TypedDict):
     """The number of vertices with Maekawa's condition."""
     vertices: list[VertexDocument]
     reason: str
+    meant: MeantDocument | None
+    """What was inferred if the digits of the drawing are inexact; else null."""
     seconds: NotNegative
 
 
@@ -101,12 +104,14 @@ class Vertices:
     folding of the sheet near the flat state has these letters. If it is PROVED, the vertices may
     still not fold together: that is what `match` and `count` decide. `letters` has a letter for
     every fold; if no fold is a mountain or a valley, `starts` is PROVED where it is not open.
-    `facts` has one entry for each interior vertex.
+    `facts` has one entry for each interior vertex. `meant` says what was inferred if the digits of
+    the drawing are inexact.
     """
 
     pattern: PanelPattern
     letters: Letters
     facts: tuple[VertexFacts, ...]
+    meant: Meant | None = None
     seconds: float = field(default=0.0, compare=False)
 
     @property
@@ -253,6 +258,7 @@ class Vertices:
             "maekawa": sum(v.maekawa is True for v in self.facts),
             "vertices": [self._document(v) for v in self.facts],
             "reason": self.reason,
+            "meant": None if self.meant is None else self.meant.to_dict(),
             "seconds": round(self.seconds, 3),
         }
 
@@ -301,7 +307,7 @@ def vertices(pattern: PatternLike, letters: Mapping[Edge, str] | str | None = No
     given = opened.letters if letters is None else letters
     asked = by_fold(sheet.folds, given)
     facts = vertex_facts(sheet, asked, exactly=opened.reading.snap == "exact")
-    return Vertices(sheet, asked, facts, time.perf_counter() - start)
+    return Vertices(sheet, asked, facts, opened.meant, time.perf_counter() - start)
 
 
 def _which(some: Sequence[VertexFacts], count: int) -> str:

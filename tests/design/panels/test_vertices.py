@@ -5,7 +5,7 @@ from __future__ import annotations
 import pickle
 import random
 from fractions import Fraction
-from itertools import combinations
+from itertools import combinations, product
 from math import atan2, cos, degrees, gcd, pi
 
 import pytest
@@ -207,6 +207,20 @@ def test_where_a_nearly_straight_line_decides_the_answer_is_open() -> None:
     assert facts_of(bent, "MVMV").starts is REFUTED  # with or without the line
     clear: list[Point] = [(1, 0), (0, 1), (-1, 0), (Fraction(1, 100), -1)]
     assert facts_of(clear, "VMMM").starts is PROVED
+
+
+def test_one_of_several_nearly_straight_lines_may_decide() -> None:
+    """Straight on one side, a line keeps the vertex; with both lines straight, nothing folds."""
+    tiny = Fraction(1, 10**9)
+    both: list[Point] = [(1, 0), (tiny, 1), (-1, -tiny), (0, -1)]
+    for letters in map("".join, product("MV", repeat=4)):
+        answers = {facts_of(both, letters, exactly=True).starts}
+        for one in (0, tiny):
+            for other in (0, tiny):
+                bent: list[Point] = [(1, 0), (one, 1), (-1, -other), (0, -1)]
+                answers.add(facts_of(bent, letters, exactly=True).starts)
+        starts = facts_of(both, letters).starts
+        assert starts is (UNDECIDED if len(answers) > 1 else answers.pop())
 
 
 def test_the_snap_exact_takes_nearly_straight_folds_as_they_are() -> None:
