@@ -69,8 +69,8 @@ DOCUMENTS: Final = {
     "info": (
         "exactfold info --json",
         "app.commands.info:BranchesFactsDocument",
-        "branches.counting.motion_facts:DecomposedFactsDocument",
-        "branches.counting.motion_facts:PanelFactsDocument",
+        "app.commands.info:DecomposedInfoDocument",
+        "app.commands.info:PanelInfoDocument",
     ),
     "convert": ("exactfold convert --json", "app.commands.convert:ConvertDocument"),
     "check": ("exactfold check --json", "app.verbs.check_document:CheckDocument"),

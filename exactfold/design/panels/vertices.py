@@ -96,6 +96,21 @@ class VerticesDocument(TypedDict):
     seconds: NotNegative
 
 
+class VerticesSummary(TypedDict):
+    """What is known of the vertices of a sheet, each by itself, in short."""
+
+    starts: VerdictText
+    """Whether every vertex starts to fold with its letters."""
+    refuted: list[Natural]
+    """The vertices that cannot have their letters."""
+    never: list[Natural]
+    """The vertices that do not fold with any letters."""
+    kawasaki: Natural
+    """The number of vertices with Kawasaki's condition."""
+    maekawa: Natural
+    """The number of vertices with Maekawa's condition."""
+
+
 @dataclass(frozen=True, repr=False)
 class Vertices:
     """What is known of each vertex of a sheet by itself (docs/vertices.md).
@@ -245,6 +260,17 @@ class Vertices:
         stars = (star_at(self.pattern, v) for v in self.pattern.interior)
         return {star.vertex: (star, Fan(star)) for star in stars}
 
+    @property
+    def summary(self) -> VerticesSummary:
+        """The facts in short, as in `exactfold info --json`."""
+        return {
+            "starts": str(self.starts),
+            "refuted": [v.vertex for v in self.refuted],
+            "never": [v.vertex for v in self.unable],
+            "kawasaki": sum(v.kawasaki for v in self.facts),
+            "maekawa": sum(v.maekawa is True for v in self.facts),
+        }
+
     def to_dict(self, name: str | None = None) -> VerticesDocument:
         """The object that `exactfold vertices --json` prints: `schema("vertices")`."""
         return {
@@ -254,8 +280,8 @@ class Vertices:
             "status": str(self.status),
             "starts": str(self.starts),
             "letters": {_name(e): x for e, x in self.letters.items()},
-            "kawasaki": sum(v.kawasaki for v in self.facts),
-            "maekawa": sum(v.maekawa is True for v in self.facts),
+            "kawasaki": self.summary["kawasaki"],
+            "maekawa": self.summary["maekawa"],
             "vertices": [self._document(v) for v in self.facts],
             "reason": self.reason,
             "meant": None if self.meant is None else self.meant.to_dict(),
