@@ -61,10 +61,20 @@ class ModeDocument(TypedDict):
     by: str
 
 
+class FreedomDocument(TypedDict):
+    """Proved bounds for the largest dimension of a family of true motions."""
+
+    least: Natural
+    most: Natural
+    first_order: Natural | None
+    """The dimension of the first-order motions; null where it was not needed."""
+
+
 class MotionKeys(TypedDict):
     """The keys of a count that belong to motions of rigid panels."""
 
     components: ComponentsDocument | None
+    degrees_of_freedom: FreedomDocument | None
     modes_count: Natural | None
     modes: list[ModeDocument]
     flat_folds: list[FoldText]
@@ -251,6 +261,7 @@ class Decomposition(Page, Ways[Mode], Certified):
                 "found": _texts(self.found),
                 "found_true": _texts(self.found_true),
             },
+            "degrees_of_freedom": None if self.freedom is None else self.freedom.to_dict(),
             "modes_count": self.modes_count,
             "modes": [mode.to_dict() for mode in self.modes],
             "flat_folds": [f"{i}-{j}" for i, j in self.flat],
@@ -258,6 +269,20 @@ class Decomposition(Page, Ways[Mode], Certified):
             "free_folds": [f"{i}-{j}" for i, j in self.free],
             "near_misses": [miss.to_dict() for miss in self.near_misses],
         }
+
+    @property
+    def freedom(self) -> Freedom | None:
+        """Bounds for the degrees of freedom near the flat sheet; None if nothing bounds them."""
+        bounds = [part.freest for part in self.parts]
+        dimensions = [part.dimension for part in self.parts]
+        if None in bounds:
+            return None
+        free = len(self.free)
+        return Freedom(
+            free + sum(part.least for part in self.parts),
+            free + sum(bound or 0 for bound in bounds),
+            None if None in dimensions else free + sum(size or 0 for size in dimensions),
+        )
 
     @property
     def ways(self) -> int | None:
@@ -280,12 +305,29 @@ class Decomposition(Page, Ways[Mode], Certified):
 
 
 @dataclass(frozen=True)
+class Freedom:
+    """Proved bounds for the degrees of freedom: the largest dimension of a family of true motions.
+
+    `first_order` is the dimension of the first-order motions, or None where it was not needed.
+    """
+
+    least: int
+    most: int
+    first_order: int | None
+
+    def to_dict(self) -> FreedomDocument:
+        """The object of these bounds in the JSON output."""
+        return {"least": self.least, "most": self.most, "first_order": self.first_order}
+
+
+@dataclass(frozen=True)
 class Part:
     """A part of the sheet that moves independently: vertices joined by folds that may fold.
 
     If some vertices have more than four folds, `spaces` are the leaves, and `spaces_fold` says of
     each whether it is shown to fold. `dimension` is the dimension of the first-order motions, or
-    None where it was not needed. `found` are the components that were found, if not all are known
+    None where it was not needed. `most` is an upper bound for the dimension of true motions, where
+    these are not all known. `found` are the components that were found, if not all are known
     or not all are known to fold. `still` are the folds that are flat in every motion to second
     order.
     """
@@ -299,6 +341,7 @@ class Part:
     spaces_fold: tuple[bool, ...] = ()
     modes: tuple[Mode, ...] = ()
     dimension: int | None = None
+    most: int | None = None
     near_misses: tuple[NearMiss, ...] = ()
     reason: str = ""
     found: tuple[FoundComponent, ...] = ()
@@ -324,6 +367,25 @@ class Part:
         return {
             d: max(known.get(d, 0), by_components.get(d, 0)) for d in {**known, **by_components}
         } or None
+
+    @property
+    def freest(self) -> int | None:
+        """An upper bound for the dimension of true motions; None if nothing bounds it."""
+        return self.most if self.true is None else max(self.true)
+
+    @property
+    def least(self) -> int:
+        """A dimension that some family of true motions is proved to have.
+
+        Modes that move no common vertex fold independently.
+        """
+        apart: set[int] = set()
+        number = 0
+        for mode in sorted(self.modes, key=lambda mode: len(mode.active)):
+            if mode.extends.verdict is PROVED and not apart.intersection(mode.active):
+                apart.update(mode.active)
+                number += 1
+        return max(number, *(self.folding or {0: 1}))
 
     @property
     def folds(self) -> bool:
