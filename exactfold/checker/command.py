@@ -37,6 +37,7 @@ from .motion.certificate import MOTION
 from .motion.loops import LOOPS
 from .motion.panels.certificate import PANEL_MOTION
 from .panels.certificate import PANELS
+from .sheets.meant import MEANT
 
 USAGE = "usage: python exactfold/checker CERTIFICATE [WORKERS]"
 
@@ -50,6 +51,7 @@ DOCUMENTS: tuple[DocumentKind[Any], ...] = (
     PANEL_LETTERS,
     MOTION,
     PANEL_MOTION,
+    MEANT,
 )
 """The kinds with one JSON object in each file."""
 

@@ -31,9 +31,7 @@ MOST_REDUCTION = 3_000_000
 MOST_FOUND = 20_000_000
 
 
-def by_spaces(
-    pattern: PanelPattern, moving: Mapping[int, Star], clock: Clock = UNLIMITED
-) -> Part:
+def by_spaces(pattern: PanelPattern, moving: Mapping[int, Star], clock: Clock = UNLIMITED) -> Part:
     """The motions of a part with vertices of any degree: linear spaces, and which of them fold.
 
     The dimension of the first-order motions is exact. The part is not decomposed if several forms

@@ -17,14 +17,13 @@ from exactfold.checker.panels.claims import (
     SupportClaim,
 )
 from exactfold.errors import NotApplicableError, TooManyModesError
-from exactfold.exact.numbers import format_rational
-from exactfold.exact.surds import Number, SurdField
 from exactfold.panels.decomposition import MOST_LISTED
 from exactfold.panels.elementary import ModeSearch, Support
 from exactfold.panels.extension import Loops, extension
 from exactfold.panels.local import LocalMode, local_modes
 from exactfold.panels.result import Counts, Decomposition, Mode, Part
 from exactfold.panels.stars import Star, stars
+from exactfold.pattern.panel_entries import panels_document
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
 
@@ -82,25 +81,6 @@ def certificate_of_panels(result: Decomposition) -> Document:
         "claims": claims,
         "provenance": {"method": result.theory, "python": platform.python_version()},
     }
-
-
-def panels_document(pattern: PanelPattern) -> Document:
-    """The vertices, as exact numbers in their field, and the edges."""
-    field = pattern.field
-    return {
-        "radicands": [[format_rational(c) for c in r] for r in field.radicands],
-        "vertices": [[number_document(x, field) for x in point] for point in pattern.vertices],
-        "edges": _pairs(pattern.edges),
-    }
-
-
-def number_document(value: Number, field: SurdField) -> list[str]:
-    """The coefficients of a number in a field.
-
-    >>> number_document(2, SurdField(()).adjoined(3))
-    ['2', '0']
-    """
-    return [format_rational(c) for c in field.number(value).coefficients]
 
 
 def _spaces(part: Part) -> PartClaim:

@@ -143,9 +143,7 @@ def groups_of(moving: Mapping[int, Star]) -> list[tuple[int, ...]]:
     return sorted(tuple(sorted(group)) for group in nx.connected_components(graph))
 
 
-def _part(
-    pattern: PanelPattern, moving: Mapping[int, Star], listed: int, clock: Clock
-) -> Part:
+def _part(pattern: PanelPattern, moving: Mapping[int, Star], listed: int, clock: Clock) -> Part:
     vertices = tuple(moving)
     few = all(len(star.folds) <= 4 for star in moving.values())
     try:
@@ -161,9 +159,7 @@ def _part(
         return Part(vertices, theory, None, None, dimension=size, most=most, reason=reason)
 
 
-def _by_modes(
-    pattern: PanelPattern, moving: Mapping[int, Star], listed: int, clock: Clock
-) -> Part:
+def _by_modes(pattern: PanelPattern, moving: Mapping[int, Star], listed: int, clock: Clock) -> Part:
     """A part by the structure theorem: its elementary modes, and which of them extend."""
     search = ModeSearch(moving, pattern.field, clock)
     supports = search.supports(MOST_SUPPORTS)

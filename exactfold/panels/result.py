@@ -27,6 +27,7 @@ from exactfold.panels.local import LocalMode
 from exactfold.panels.near_misses import NearMiss, NearMissDocument
 from exactfold.panels.subspaces import Leaf
 from exactfold.pattern.described import PanelsDocument, described_panels
+from exactfold.pattern.meant import Meant, MeantDocument
 from exactfold.pattern.near_degeneracy import WarningDocument
 from exactfold.pattern.opening import ReadDocument
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
@@ -70,6 +71,19 @@ class FreedomDocument(TypedDict):
     """The dimension of the first-order motions; null where it was not needed."""
 
 
+class AsWrittenDocument(TypedDict):
+    """The count for the digits of an inexact drawing."""
+
+    sheet: Literal["as written", "as read", "inferred"]
+    """Whose digits: those of the file, the coordinates after some were recognised, or those of the
+    inferred sheet, if relations nearly hold even there."""
+    status: VerdictText
+    reason: str
+    rigid: bool | None
+    distinct: Natural | None
+    components: ComponentsDocument | None
+
+
 class MotionKeys(TypedDict):
     """The keys of a count that belong to motions of rigid panels."""
 
@@ -105,6 +119,10 @@ class CountKeys(MotionKeys):
     rigid: bool | None
     exceptional_vertices: list[Natural]
     read: ReadDocument | None
+    meant: MeantDocument | None
+    """The sheet that an inexact drawing means; null if no relation nearly holds."""
+    as_written: AsWrittenDocument | None
+    """What is known for the digits alone, if they are not the sheet that was meant."""
 
 
 class PanelCountKeys(CountKeys):
@@ -184,6 +202,10 @@ class Decomposition(Page, Ways[Mode], Certified):
     proved; there are at least this many. If `true` is None, `found_true` is the same for the
     components that are known to fold truly. If no such component is known, `modes` are modes that
     truly fold; there may be others. `near_misses` are loops that nearly close.
+
+    `meant` says what was inferred if the digits of the drawing are inexact, and `as_written` is the
+    answer for these digits alone. If `doubt` says why an answer would hold for the digits of the
+    sheet only, the status is UNDECIDED, and `as_written` has that answer.
     """
 
     pattern: PanelPattern
@@ -204,6 +226,9 @@ class Decomposition(Page, Ways[Mode], Certified):
     found: Counts | None = None
     found_true: Counts | None = None
     still: tuple[Edge, ...] = ()
+    meant: Meant | None = None
+    doubt: str = ""
+    as_written: Decomposition | None = None
     seconds: float = field(default=0.0, compare=False)
 
     WRITER: ClassVar = "exactfold.panels.certificate:certificate_of_panels"
@@ -246,21 +271,37 @@ class Decomposition(Page, Ways[Mode], Certified):
             "rigid": {PROVED: True, REFUTED: False}.get(self.rigid),
             "exceptional_vertices": [],
             "read": None if self.read is None else {**self.read},
+            "meant": None if self.meant is None else self.meant.to_dict(),
+            "as_written": None if self.as_written is None else self.as_written.of_digits(),
             **self.keys(),
         }
         if self.status is PROVED:
             return {**keys, "status": "proved", "by": "enumeration"}
         return {**keys, "status": "undecided", "by": None}
 
+    def of_digits(self) -> AsWrittenDocument:
+        """The key `as_written` of the answer for the sheet that was meant."""
+        return {
+            "sheet": digits(self.meant, self.read),
+            "status": str(self.status),
+            "reason": self.reason,
+            "rigid": {PROVED: True, REFUTED: False}.get(self.rigid),
+            "distinct": None,
+            "components": self._components(),
+        }
+
+    def _components(self) -> ComponentsDocument:
+        return {
+            "second_order": _texts(self.second_order),
+            "true": _texts(self.true),
+            "found": _texts(self.found),
+            "found_true": _texts(self.found_true),
+        }
+
     def keys(self) -> MotionKeys:
         """The keys of JSON that belong to motions of panels."""
         return {
-            "components": {
-                "second_order": _texts(self.second_order),
-                "true": _texts(self.true),
-                "found": _texts(self.found),
-                "found_true": _texts(self.found_true),
-            },
+            "components": self._components(),
             "degrees_of_freedom": None if self.freedom is None else self.freedom.to_dict(),
             "modes_count": self.modes_count,
             "modes": [mode.to_dict() for mode in self.modes],
@@ -283,6 +324,11 @@ class Decomposition(Page, Ways[Mode], Certified):
             free + sum(bound or 0 for bound in bounds),
             None if None in dimensions else free + sum(size or 0 for size in dimensions),
         )
+
+    @property
+    def known(self) -> Decomposition:
+        """This answer, or, if it is doubted, what is known for the digits as they are read."""
+        return self.as_written if self.doubt and self.as_written is not None else self
 
     @property
     def ways(self) -> int | None:
@@ -391,6 +437,15 @@ class Part:
     def folds(self) -> bool:
         """Whether some motion of the part is known to fold truly."""
         return bool(self.folding and set(self.folding) != {0})
+
+
+def digits(
+    meant: Meant | None, read: ReadDocument | None
+) -> Literal["as written", "as read", "inferred"]:
+    """Whose digits a sheet has that was opened."""
+    if meant is not None and meant.inferred:
+        return "inferred"
+    return "as read" if read is not None and read["largest_move"] else "as written"
 
 
 def _texts(counts: Counts | None) -> _ByDimension | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -118,20 +118,25 @@ def stars(pattern: PanelPattern, flat: Iterable[Edge] = ()) -> Mapping[int, Star
     waiting = dict.fromkeys(pattern.interior)
     while waiting:
         v, _ = waiting.popitem()
-        around = [(edge_of(v, u), u) for u in pattern.stars[v] if edge_of(v, u) not in gone]
-        star = Star(
-            v,
-            tuple(edge for edge, _ in around),
-            tuple(pattern.direction(v, u) for _, u in around),
-        )
-        kept = star.foldable() if around else ()
-        for k, (edge, u) in enumerate(around):
+        star = star_at(pattern, v, gone)
+        kept = star.foldable() if star.folds else ()
+        for k, edge in enumerate(star.folds):
             if k not in kept:
                 gone.add(edge)
-                if u in pattern.stars:
+                if (u := sum(edge) - v) in pattern.stars:
                     waiting[u] = None
         remaining[v] = star.only(star.folds[k] for k in kept)
     return MappingProxyType({v: remaining[v] for v in pattern.interior if remaining[v].folds})
+
+
+def star_at(pattern: PanelPattern, vertex: int, flat: Container[Edge] = ()) -> Star:
+    """All folds at an interior vertex but for those that are held flat."""
+    ends = [u for u in pattern.stars[vertex] if edge_of(vertex, u) not in flat]
+    return Star(
+        vertex,
+        tuple(edge_of(vertex, u) for u in ends),
+        tuple(pattern.direction(vertex, u) for u in ends),
+    )
 
 
 def edge_of(i: int, j: int) -> Edge:

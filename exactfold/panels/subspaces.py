@@ -68,13 +68,15 @@ def leaves(
     times one dimension, times the square of the degree of the field. It also raises this error when
     the clock has passed.
     """
-    search = _SubspaceSearch(stars, most, clock)
+    search = SubspaceSearch(stars, most, clock)
     solutions = search.solved(dict(rows), size)
     return [leaf for leaf in solutions if leaf.size]
 
 
-class _SubspaceSearch:
-    def __init__(self, stars: Mapping[int, Star], most: int, clock: Clock) -> None:
+class SubspaceSearch:
+    """The splitting of spaces of motions, with a limit on its work; `TooManyModesError` beyond."""
+
+    def __init__(self, stars: Mapping[int, Star], most: int, clock: Clock = UNLIMITED) -> None:
         self.stars = stars
         self.most = most
         self.clock = clock
@@ -86,10 +88,10 @@ class _SubspaceSearch:
         for part, part_size in independent_parts(rows, size, self.stars):
             part_leaves = _maximal(self._split(part, part_size))
             total = [_sum(a, b) for a in total for b in part_leaves]
-            self._count(len(total))
+            self.count(len(total))
         return total
 
-    def _count(self, steps: int) -> None:
+    def count(self, steps: int) -> None:
         """Add to the work done. A limit of work makes the search end in the same way on every
         machine, unless the clock ends it before.
         """
@@ -120,7 +122,7 @@ class _SubspaceSearch:
             before = size
             weight = common_field(x for row in rows.values() for x in row).dimension ** 2
             for v in sorted({v for edge in rows for v in edge if v in self.stars}):
-                self._count(len(self.stars[v].folds) * size * weight)
+                self.count(len(self.stars[v].folds) * size * weight)
                 squares = squares_of(self.stars[v], rows, size)
                 if is_semidefinite(squares):
                     rows, size = imposed(rows, size, *(functional for _, functional in squares))
@@ -140,7 +142,7 @@ def reduced(
     It is unchanged if that takes more than `most` steps, or if the clock has passed.
     """
     with suppress(TooManyModesError):
-        rows, size, _, _ = _SubspaceSearch(stars, most, clock).reduced(rows, size)
+        rows, size, _, _ = SubspaceSearch(stars, most, clock).reduced(rows, size)
     return rows, size
 
 
@@ -228,6 +230,15 @@ def _row_space(rows: Sequence[Sequence[Entry]], size: int) -> tuple[list[Vector]
             terms = [fmpq(k == here) for k in range(len(rows))]
         coordinates.append(terms)
     return basis, [terms[: len(basis)] for terms in coordinates]
+
+
+def row_rank(rows: Sequence[Sequence[Entry]], size: int) -> int:
+    """The rank of a matrix of exact numbers.
+
+    >>> row_rank([[fmpq(1), fmpq(2)], [fmpq(2), fmpq(4)]], 2)
+    1
+    """
+    return len(_row_space(rows, size)[0])
 
 
 def _diagonalised(form: Sequence[Sequence[Entry]]) -> list[tuple[Entry, Vector]]:

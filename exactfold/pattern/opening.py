@@ -24,18 +24,21 @@ from exactfold.errors import (
     PatternError,
     SeveralSheetsError,
     StaleExactCoordinatesError,
+    TooLargeError,
     UnknownFormatError,
     UsageError,
 )
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.drawing.bounds import check_common_denominator, read_bytes
 from exactfold.pattern.drawing.drawing import Drawing, Snap
+from exactfold.pattern.drawing.meant.left import left_relations
 from exactfold.pattern.fold import FoldFile, parse_bytes
 from exactfold.pattern.reading import PLAIN, Reading, Steps
 
 # Drawings need libraries that take long to load; triangulated sheets are read without them.
 if TYPE_CHECKING:
     from exactfold.pattern.drawing.repair import Sheets
+    from exactfold.pattern.meant import Meant
     from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
 # These errors of the strict reader are final: reading the file as a drawing cannot mend them.
@@ -66,6 +69,10 @@ class Opened(Picture):
     file needed nothing. `snapped` is the largest change of a coordinate by `snap`. `again` reads
     the sheet once more with another `Reading` than `reading`; it is None for a sheet that was not
     read from a file.
+
+    `meant` is None if no relation between creases holds nearly but not exactly. Otherwise the
+    digits of the file are inexact, and `meant` says what was inferred from them: either `sheet` is
+    the sheet that was meant, or `doubt` says why answers hold for these digits only.
     """
 
     sheet: CreasePattern | PanelPattern
@@ -74,11 +81,17 @@ class Opened(Picture):
     snapped: Fraction = Fraction(0)
     largest_move: float = 0.0
     field_name: str = "Q"
+    meant: Meant | None = None
     reading: Reading = field(default=PLAIN, repr=False, compare=False)
     again: Callable[[Reading], Opened] | None = field(default=None, repr=False, compare=False)
 
     def __repr__(self) -> str:
         return f"<Opened: {self.sheet!r}, in {self.field_name}>"
+
+    @property
+    def doubt(self) -> str:
+        """Why answers about the sheet hold for these digits only; empty if they do not."""
+        return "" if self.meant is None else self.meant.doubt
 
     @property
     def letters(self) -> dict[Edge, str]:
@@ -149,14 +162,15 @@ def opened(raw: bytes, name: str, reading: Reading = PLAIN) -> Opened:
             strict = error
         else:
             again = partial(opened, raw, name)
-            lines = _meant(file, name)
-            return Opened(
+            lines = _joined(file, name)
+            found = Opened(
                 file.pattern, file.assignment, lines, file.snapped, reading=reading, again=again
             )
+            return meaning(found, lambda: found)
     from exactfold.pattern.drawing.formats.read import parse_drawing
 
     try:
-        drawing = parse_drawing(raw, name)
+        drawing = parse_drawing(raw, name, reading.svg)
     except _FINAL:
         raise
     except (FoldError, UnknownFormatError) as error:
@@ -172,7 +186,7 @@ def opened(raw: bytes, name: str, reading: Reading = PLAIN) -> Opened:
         raise
 
 
-def _meant(file: FoldFile, name: str) -> tuple[str, ...]:
+def _joined(file: FoldFile, name: str) -> tuple[str, ...]:
     """The remark on letters F and J in a sheet of triangles that may mean panels of triangles.
 
     J has this meaning by itself. F has it only beside M and V: if no fold has a direction, F says
@@ -211,11 +225,69 @@ def from_drawing(drawing: Drawing, reading: Reading = PLAIN) -> Opened:
         try:
             sheets = exact_sheets(drawing, snap=rule, merge=reading.merge, steps=chosen)
             again = partial(from_drawing, drawing)
-            return replace(_chosen(drawing, sheets, reading.number), reading=reading, again=again)
+            found = replace(_chosen(drawing, sheets, reading.number), reading=reading, again=again)
+            return meaning(found, lambda: from_drawing(drawing, reading.as_written))
         except (FoldError, PatternError):
             if k == len(attempts):
                 raise
     raise UsageError("no steps of repair were given: name at least one, or give 'all'")
+
+
+def meaning(found: Opened, written: Callable[[], Opened]) -> Opened:
+    """The sheet that was meant, if the digits of `found` are inexact; `found` itself if not.
+
+    Digits are inexact if relations between creases hold nearly but not exactly. `written` reads the
+    sheet with its digits as written. If no sheet can be inferred, `found` is returned, and its
+    `doubt` says why.
+    """
+    reading = found.reading
+    if reading.snap == "exact":
+        if reading.overrules:
+            raise UsageError(
+                "--snap exact takes the digits as written: leave out --without, --also, --noise "
+                "and --unit"
+            )
+        return found
+    left = left_relations(found.sheet)
+    if not left and not reading.overrules:
+        return found
+    from exactfold.pattern.meant import Meant, inferred
+
+    if isinstance(reading.snap, int):
+        return replace(found, meant=Meant(left=left, reason=f"--snap {reading.snap} leaves them"))
+    try:
+        raw = written()
+    except (FoldError, PatternError) as error:
+        reason = f"the digits as written are no sheet: {error}"
+        return replace(found, meant=Meant(left=left, reason=reason))
+    sheet = panels(raw.sheet) if isinstance(raw.sheet, CreasePattern) else raw.sheet
+    if sheet.field.radicands:
+        return replace(found, meant=Meant(left=left, reason="its coordinates are irrational"))
+    meant = inferred(sheet, reading)
+    if meant.realized is None or meant.realized.sheet is None:
+        meant = replace(meant, left=left)
+        lines = meant.listed if reading.relations else ()
+        return replace(found, meant=meant, lines=found.lines + lines)
+    exact = meant.realized.sheet
+    lines = tuple(line for line in raw.lines if not line.startswith("coordinates kept"))
+    return replace(
+        raw,
+        sheet=_triangles(exact),
+        lines=(*lines, *meant.lines, *(meant.listed if reading.relations else ())),
+        largest_move=meant.distance or 0.0,
+        field_name=exact.field_name,
+        meant=meant,
+        reading=reading,
+        again=found.again,
+    )
+
+
+def _triangles(exact: PanelPattern) -> CreasePattern | PanelPattern:
+    """The sheet, triangulated if its coordinates are short enough for that."""
+    try:
+        return triangulated(exact) or exact
+    except TooLargeError:
+        return exact
 
 
 def _attempts(drawing: Drawing, steps: Steps, merge: Fraction | None) -> list[Collection[str]]:

@@ -16,9 +16,9 @@ from exactfold.checker.core.towers import Number
 from exactfold.checker.panels.lines import Line, lines_at
 from exactfold.checker.sheets.panels import read_panels
 from exactfold.motion import follow_panels, prove_panels
-from exactfold.panels.certificate import panels_document
 from exactfold.pattern.families import single_vertex
 from exactfold.pattern.opening import panels
+from exactfold.pattern.panel_entries import panels_document
 from exactfold.pattern.panel_pattern import PanelPattern
 
 Change = Callable[[Document, Document], None]

@@ -6,8 +6,10 @@ import random
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 from itertools import pairwise
+from math import atan2
 
 from exactfold.exact.surds import RATIONALS, Number
+from exactfold.panels.stars import Star, star_at
 from exactfold.pattern.panel_pattern import Edge, PanelPattern, Point
 
 Place = Callable[[int, int], tuple[Number, Number]]
@@ -171,3 +173,26 @@ def joined_twists() -> PanelPattern:
     folds = [(0, 1), (1, 2), (2, 3), (0, 3), (4, 5), (5, 6), (6, 7), (4, 7), (2, 8), (4, 8)]
     folds += [(corner, 9 + k) for k, (corner, _) in enumerate(ends)]
     return outlined([*((Fraction(x), Fraction(y)) for x, y in points), *rim], folds, 9)
+
+
+def one_vertex(around: Sequence[Point]) -> PanelPattern:
+    """Folds in rational directions from one vertex, the last one, to the sides of a square."""
+    ends: list[tuple[Fraction, Fraction]] = []
+    for x, y in around:
+        scale = 10 / Fraction(max(abs(x), abs(y)))
+        ends.append((x * scale, y * scale))
+    ten = Fraction(10)
+    corners = [(ten, ten), (-ten, ten), (-ten, -ten), (ten, -ten)]
+    rim = sorted({*ends, *corners}, key=lambda p: atan2(p[1], p[0]))
+    count = len(rim)
+    sides = [(k, (k + 1) % count) for k in range(count)]
+    return PanelPattern(
+        [*rim, (Fraction(0), Fraction(0))], sides + [(rim.index(end), count) for end in ends]
+    )
+
+
+def star_of(sheet: PanelPattern | Sequence[Point]) -> Star:
+    """All folds of the only vertex of a sheet, or folds in these directions."""
+    if isinstance(sheet, PanelPattern):
+        return star_at(sheet, sheet.interior[0])
+    return Star(0, tuple((0, k + 1) for k in range(len(sheet))), tuple(sheet))

@@ -9,7 +9,7 @@ from pathlib import Path
 from exactfold.app.commands.branch import given_signs
 from exactfold.app.options.motions import ActuateOptions
 from exactfold.app.shell.json_numbers import numbers_by_name
-from exactfold.app.shell.patterns import read
+from exactfold.app.shell.patterns import read, verdict
 from exactfold.app.shell.shell import EXIT, Bar, name_of, one_at_least
 from exactfold.branches.counting.find import BranchFinder
 from exactfold.design.actuation.actuate import actuate
@@ -28,7 +28,8 @@ class Driven(ActuateOptions):
         `UsageError` if neither `signs` nor `up` is given.
         """
         with Bar("reading") as bar:
-            pattern = read(self.file, self.reading, "actuate").pattern
+            read_sheet = read(self.file, self.reading, "actuate")
+            pattern = read_sheet.pattern
             one_at_least("either --signs or --up", self.signs, self.up)
             torques = None if self.torques is None else torques_in(self.torques, pattern)
             actuation = actuate(
@@ -44,7 +45,7 @@ class Driven(ActuateOptions):
             from exactfold.app import report
 
             report.show(report.actuation_report(actuation, everything=self.everything))
-        return EXIT[actuation.status]
+        return EXIT[verdict(read_sheet.opened, actuation.status)]
 
 
 def torques_in(path: Path, pattern: CreasePattern) -> dict[Edge, Fraction]:

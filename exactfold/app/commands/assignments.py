@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 
 from exactfold.app.options.branches import AssignmentsOptions
-from exactfold.app.shell.patterns import read
+from exactfold.app.shell.patterns import read, verdict
 from exactfold.app.shell.shell import EXIT, Bar, name_of, say
 from exactfold.certificates.entries import write_certificate
 from exactfold.design.circles.assignment_list import AllAssignments
@@ -23,8 +23,8 @@ class Listed(AssignmentsOptions):
         Raises the errors of `read` and `all_assignments`.
         """
         with Bar("reading") as bar:
-            pattern = read(self.file, self.reading, "assignments").pattern
-            assignments = all_assignments(pattern, progress=bar)
+            read_sheet = read(self.file, self.reading, "assignments")
+            assignments = all_assignments(read_sheet.pattern, progress=bar)
             self._write(assignments, bar)
         if self.as_json:
             print(json.dumps(assignments.to_dict(name_of(self.file))))
@@ -32,7 +32,7 @@ class Listed(AssignmentsOptions):
             from exactfold.app import report
 
             report.show(report.assignments_report(assignments, everything=self.everything))
-        return EXIT[assignments.status]
+        return EXIT[verdict(read_sheet.opened, assignments.status)]
 
     def _write(self, assignments: AllAssignments, bar: Bar) -> None:
         if self.certificate is None:

@@ -11,7 +11,7 @@ from exactfold._support.verdict import PROVED
 from exactfold.app.commands.driving import Angles, driven_angles
 from exactfold.app.options.branches import BranchOptions
 from exactfold.app.shell.given import Given
-from exactfold.app.shell.patterns import read
+from exactfold.app.shell.patterns import Triangulated, read
 from exactfold.app.shell.shell import Bar, name_of, one_at_least, say
 from exactfold.branches.counting.find import BranchFinder
 from exactfold.branches.values.branch import Branch
@@ -45,9 +45,11 @@ class Asked(BranchOptions):
 
         if self.drive is not None:
             return self._driven(driven_angles(self.drive))
-        proved, rows = True, []
+        rows = []
         with Bar("reading") as bar:
-            finder = self.given.finder(self._read(bar))
+            read_sheet = self._read(bar)
+            proved = not read_sheet.opened.doubt
+            finder = self.given.finder(read_sheet.pattern)
             for name, result in self._found(finder, bar):
                 proved &= result.status is PROVED
                 if self.as_json:
@@ -70,7 +72,8 @@ class Asked(BranchOptions):
         if self._is_many or self.given.curvature is not None:
             raise UsageError("--drive goes with --signs or --up, and with --rim")
         with Bar("reading") as bar:
-            pattern = self._read(bar)
+            read_sheet = self._read(bar)
+            pattern = read_sheet.pattern
             finder = self.given.finder(pattern)
             boundary_heights = (
                 None if self.given.boundary_heights is None else finder.boundary_heights
@@ -87,13 +90,14 @@ class Asked(BranchOptions):
             print(json.dumps(driven.to_dict(self.name)))
         else:
             report.show(report.branch_report(driven.branch, driven))
-        return driven.branch.status is PROVED and status is PROVED
+        sure = not read_sheet.opened.doubt
+        return sure and driven.branch.status is PROVED and status is PROVED
 
-    def _read(self, bar: Bar) -> CreasePattern:
-        pattern = read(self.pattern, self.reading, "branch").pattern
+    def _read(self, bar: Bar) -> Triangulated:
+        read_sheet = read(self.pattern, self.reading, "branch")
         one_at_least("one of --signs, --up and --batch", self.signs, self.up, self.batch)
         bar("setting up")
-        return pattern
+        return read_sheet
 
     @property
     def _is_many(self) -> bool:

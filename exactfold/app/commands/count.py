@@ -57,6 +57,7 @@ class Asked(CountOptions):
                 result, written, everything=self.everything, verbose=self.verbose
             )
             report.show(panels)
+            self._of_digits(result)
         else:
             shown = report.count_report(
                 result,
@@ -66,7 +67,12 @@ class Asked(CountOptions):
                 verbose=self.verbose,
             )
             report.show(shown)
+            self._of_digits(result)
         return EXIT[result.status]
+
+    def _of_digits(self, result: BranchCount | Decomposition) -> None:
+        if result.as_written is not None:
+            report.show(report.digits_line(result.as_written))
 
     def _shapes(self) -> int:
         """Count the shapes with given angle deficits."""

@@ -19,7 +19,7 @@ from exactfold.app.pictures.multiples import MOST
 from exactfold.app.pictures.picture_files import checked_picture, write_picture
 from exactfold.app.pictures.way_sheets import number_listed, sheet_of_ways, why_no_way
 from exactfold.app.shell.given import Given
-from exactfold.app.shell.patterns import located, read_any
+from exactfold.app.shell.patterns import located, read_any, verdict
 from exactfold.app.shell.shell import EXIT, STDIN, Bar, apart, name_of, say, tell
 from exactfold.branches.counting.ways import count_opened, decompose_opened
 from exactfold.branches.values.result import BranchCount
@@ -127,6 +127,11 @@ class Wanted(DrawOptions):
             return pattern_picture(drawing, title=self._title), PROVED
         if self._is_plain:
             return pattern_picture(opened.sheet, opened.assignment, title=self._title), PROVED
+        text, status = self._way(opened, bar)
+        return text, verdict(opened, status)
+
+    def _way(self, opened: Opened, bar: Bar) -> tuple[str, Verdict]:
+        """The picture of the ways that were named, and the verdict on them."""
         sheet = opened.sheet
         branches = isinstance(sheet, CreasePattern) and has_branches(sheet)
         if self.everything:
@@ -213,10 +218,9 @@ class Wanted(DrawOptions):
     def _counted(self, opened: Opened, bar: Bar) -> BranchCount | Decomposition:
         bar("solving")
         if isinstance(opened.sheet, CreasePattern) and has_branches(opened.sheet):
-            return count_opened(opened, progress=bar)
-        ways = decompose_opened(
-            opened, progress=bar
-        )  # triangulated sheets, too: their modes can be drawn
+            return count_opened(opened, progress=bar).known
+        # triangulated sheets, too: their modes can be drawn
+        ways = decompose_opened(opened, progress=bar).known
         if ways.warning is not None:
             say(f"warning: {ways.warning}")
         return ways

@@ -14,7 +14,7 @@ from exactfold.app.commands.driving import driven_angles
 from exactfold.app.options.motions import FoldOptions
 from exactfold.app.pictures.picture_files import checked_picture, write_picture
 from exactfold.app.shell.given import Given
-from exactfold.app.shell.patterns import read_any
+from exactfold.app.shell.patterns import read_any, verdict
 from exactfold.app.shell.shell import EXIT, Bar, name_of, say
 from exactfold.branches.values.branch import Branch
 from exactfold.errors import UndecidedBranchError, UsageError
@@ -87,7 +87,7 @@ class Wanted(FoldOptions):
         if isinstance(motion, Motion) and motion.branch.status is not PROVED:
             say(f"the branch is not proved: {motion.branch.reason}")
             return EXIT[motion.branch.status]
-        return EXIT[PROVED if proof is None else proof.status]
+        return EXIT[verdict(opened, PROVED if proof is None else proof.status)]
 
     def _check_outputs(self) -> None:
         """Raise `UsageError` for a wrong ending, `UnwritableFileError` for a missing folder."""
@@ -191,7 +191,7 @@ class Wanted(FoldOptions):
             "branches of triangulated sheets with four corners, or with more and --rim, and this "
             "sheet folds along modes of rigid panels: name them by --component or --modes",
         )
-        ways = decompose_opened(opened, progress=bar)
+        ways = decompose_opened(opened, progress=bar).known
         if ways.warning is not None:
             say(f"warning: {ways.warning}")
         bar("following")

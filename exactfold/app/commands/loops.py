@@ -8,7 +8,8 @@ import shlex
 from contextlib import ExitStack
 
 from exactfold.app.options.motions import MotionsOptions
-from exactfold.app.shell.patterns import read
+from exactfold.app.options.reading import overruling
+from exactfold.app.shell.patterns import read, verdict
 from exactfold.app.shell.resuming import require_file, resumable
 from exactfold.app.shell.shell import EXIT, Bar, apart, interruptible, name_of
 from exactfold.branches.counting.on_dask import LOCAL
@@ -31,6 +32,7 @@ class Wanted(MotionsOptions):
         for name in ("workers", "dask", "snap", "sheet"):
             if value := getattr(self, name):
                 words += [f"--{name}", str(value)]
+        words += overruling(self.reading)
         return shlex.join(words)
 
     def answer(self) -> int:
@@ -48,7 +50,8 @@ class Wanted(MotionsOptions):
             raise UsageError("--resume continues a file: it goes with --certificate")
         apart(self.certificate, self.file)
         with Bar("reading") as bar:
-            pattern = read(self.file, self.reading, "motions").pattern
+            read_sheet = read(self.file, self.reading, "motions")
+            pattern = read_sheet.pattern
             with ExitStack() as stack:
                 if self.certificate is not None:
                     require_file(self.certificate, self.resume)
@@ -71,4 +74,4 @@ class Wanted(MotionsOptions):
             print(json.dumps(loops.to_dict(name_of(self.file))))
         else:
             report.show(report.motions_report(loops))
-        return EXIT[loops.status]
+        return EXIT[verdict(read_sheet.opened, loops.status)]

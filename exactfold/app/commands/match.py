@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Mapping
+from dataclasses import replace
 
 from exactfold._support.plurals import counted
 from exactfold._support.verdict import PROVED, REFUTED
@@ -53,11 +54,13 @@ class Asked(MatchOptions):
             opened = read_any(self.file, self.reading)
             letters = self._letters(opened.sheet, opened)
             if isinstance(opened.sheet, PanelPattern) or opened.sheet.Ve > 4:
-                if isinstance(opened.sheet, CreasePattern) and can_pop(opened.sheet):
+                popping = isinstance(opened.sheet, CreasePattern) and can_pop(opened.sheet)
+                if popping and not opened.doubt:
                     over = match_boundary(
                         opened.sheet, letters, most=self.most or _RIMS, progress=bar
                     )
                     if over.status is PROVED:
+                        over = replace(over, meant=opened.meant)
                         self._write(over, bar)
                         bar.close()
                         return self._over_a_boundary(over)
@@ -67,11 +70,12 @@ class Asked(MatchOptions):
                 return self._started(started)
             pattern = triangles(opened, "match")
             _in_reach(pattern)
-            if not has_branches(pattern):
+            if not has_branches(pattern) and opened.meant is None:
                 warn(pattern)
             bar("signs")
             matched = match(pattern, letters, most=self.most or _HALVES, progress=bar)
-            if not matched.matches:
+            matched = matched.about(opened.meant)
+            if not matched.matches and not opened.doubt:
                 bar("nearest branches")
                 nearest = nearest_branches(matched, tries=self.tries, progress=bar)
             self._write(matched, bar)

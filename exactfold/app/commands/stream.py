@@ -9,11 +9,13 @@ from pathlib import Path
 
 from exactfold._support.processes import available_cores
 from exactfold.app.options.patterns import CountOptions
+from exactfold.app.options.reading import overruling
 from exactfold.app.shell.patterns import read
 from exactfold.app.shell.resuming import require_file, resumable
 from exactfold.app.shell.shell import Bar, apart, interruptible
 from exactfold.branches.counting.by_theorem import IN_MEMORY, is_too_many, too_many
 from exactfold.branches.counting.collect import check_countable
+from exactfold.branches.counting.doubted import doubted
 from exactfold.branches.counting.on_dask import LOCAL, dask_engine
 from exactfold.branches.counting.stream import StreamedCount, stream_branches
 from exactfold.errors import (
@@ -46,6 +48,7 @@ class Streaming:
         for name in ("workers", "dask", "snap", "sheet", "seed", "certificate"):
             if value := getattr(self.asked, name):  # the seed is 0 by default, the others None
                 words += [f"--{name}", str(value)]
+        words += overruling(self.asked.reading)
         return shlex.join(words)
 
     def run(self) -> StreamedCount:
@@ -66,7 +69,8 @@ class Streaming:
             require_file(self.file, self.asked.resume)
             with resumable(self.file, self.again), interruptible():
                 result = self._streamed(file.pattern, bar)
-                return replace(result, snapped=file.opened.snapped, read=file.opened.read)
+                result = replace(result, snapped=file.opened.snapped, read=file.opened.read)
+                return doubted(result, file.opened)
 
     def _streamed(self, pattern: CreasePattern, bar: Bar) -> StreamedCount:
         dask, workers = self.asked.dask, self.asked.workers

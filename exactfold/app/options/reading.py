@@ -1,8 +1,23 @@
 """The options of every command that reads a drawing: how it becomes an exact sheet."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from fractions import Fraction
+from typing import Annotated
 
-from exactfold.app.shell.parameters import Sheet, Snap
+import typer
+
+from exactfold.app.shell.parameters import (
+    Chords,
+    Colours,
+    Dashes,
+    Sheet,
+    Snap,
+    distance,
+    flag,
+    names,
+    number,
+)
 from exactfold.pattern.reading import Reading
 
 
@@ -12,8 +27,71 @@ class ReadingOptions:
 
     snap: Snap = None
     sheet: Sheet = None
+    colours: Colours = None
+    dashes: Dashes = None
+    chords: Chords = None
+    relations: Annotated[
+        bool,
+        flag(
+            "--relations",
+            text="List the relations between creases of the sheet that was meant, and by how much "
+            "the drawing misses each.",
+        ),
+    ] = False
+    without: Annotated[
+        Sequence[str] | None,
+        typer.Option(
+            parser=names,
+            metavar="NAMES",
+            help="Relations that were not meant, such as straight@12,kawasaki@7.",
+        ),
+    ] = None
+    also: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="RELATION",
+            help="A relation that was meant, too, such as 'parallel 3-4,8-9'; repeat for more.",
+        ),
+    ] = None
+    noise: Annotated[
+        Fraction | None,
+        typer.Option(
+            parser=distance,
+            metavar="EPS",
+            help="How inexact the drawing is, as a share of its size. Default: measured.",
+        ),
+    ] = None
+    unit: Annotated[
+        int | None,
+        number("Angles are multiples of 180 degrees / N. Default: found.", "N"),
+    ] = None
 
     @property
     def reading(self) -> Reading:
         """These options as the value that `open_pattern` takes."""
-        return Reading(self.snap, self.sheet)
+        return Reading(
+            self.snap,
+            self.sheet,
+            colours=self.colours,
+            dashes=self.dashes,
+            chords=self.chords,
+            without=tuple(self.without or ()),
+            also=tuple(self.also or ()),
+            noise=None if self.noise is None else float(self.noise),
+            unit=self.unit,
+            relations=self.relations,
+        )
+
+
+def overruling(reading: Reading) -> list[str]:
+    """The options that overrule what is inferred, as words of a command."""
+    words = []
+    if reading.without:
+        words += ["--without", ",".join(reading.without)]
+    for relation in reading.also:
+        words += ["--also", relation]
+    if reading.noise is not None:
+        words += ["--noise", repr(reading.noise)]
+    if reading.unit is not None:
+        words += ["--unit", str(reading.unit)]
+    return words

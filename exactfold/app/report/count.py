@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Group
@@ -83,6 +84,9 @@ def answer(result: BranchCount) -> Text:
     true motion
     """
     took = f" ({result.seconds:.2f} s)"
+    if result.meant is not None and result.meant.inferred and not result.doubt:
+        plain = answer(replace(result, meant=None))
+        return Text.assemble(f"{result.meant.name}: ", plain)
     if result.status is not PROVED:
         return _undecided(result, took)
     if result.distinct == 0:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Group
@@ -58,6 +59,9 @@ def panels_answer(result: Decomposition) -> Text:
     that can be folded independently
     """
     took = f" ({result.seconds:.2f} s)"
+    if result.meant is not None and result.meant.inferred and not result.doubt:
+        plain = panels_answer(replace(result, meant=None))
+        return Text.assemble(f"{result.meant.name}: ", plain)
     if result.rigid is PROVED:
         return Text.assemble(
             "rigid - ", status_text(PROVED), took, "; no fold can fold while the panels stay rigid"
@@ -129,7 +133,7 @@ def _notes(result: Decomposition, everything: bool) -> list[str]:
         notes.append(f"{counted(len(result.free), 'fold')} from boundary to boundary, each free")
     if result.second_order is None and result.modes:
         notes.append("each mode listed below truly folds, and there may be others")
-    if result.second_order is None and result.rigid is not PROVED:
+    if result.second_order is None and result.rigid is not PROVED and not result.as_written:
         notes.append(
             "even so, it is often known whether the sheet starts to fold with given mountains and "
             "valleys: see `exactfold match`"

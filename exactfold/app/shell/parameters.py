@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from fractions import Fraction
 from pathlib import Path
@@ -119,6 +120,11 @@ def numbers(text: object) -> tuple[int, ...]:
     return tuple(whole(1)(part.strip()) for part in str(text).split(","))
 
 
+def names(text: object) -> tuple[str, ...]:
+    """The names in a list such as straight@12,kawasaki@7."""
+    return tuple(name for part in str(text).split(",") if (name := part.strip()))
+
+
 def sizes(text: object) -> tuple[int, ...]:
     """The sorted sizes in a list of numbers and ranges such as 2-5,8; each is at least 1."""
     try:
@@ -166,6 +172,19 @@ def snapping(text: object) -> Snapping:
     return "exact" if text == "exact" else whole(1)(text)
 
 
+def letter_map(text: object) -> dict[str, str]:
+    """The letters in a list such as red=M,#00f=V, by the texts before them."""
+    given, end = {}, 0
+    for match in _LETTER.finditer(str(text)):
+        if match.start() != end:
+            break
+        given[match[1].strip()], end = match[2].upper(), match.end()
+    if end < len(str(text)) or not given:
+        raise typer.BadParameter(f"{text!r} is not a list such as red=M,blue=V")
+    return given
+
+
+_LETTER = re.compile(r"([^=]+)=\s*(\w)\s*(?:,|\Z)")
 _ONE = "A FOLD, SVG, CP, OPX or ORI file, - for standard input, or a name: see `examples`."
 
 Pattern = Annotated[
@@ -198,6 +217,25 @@ Snap = Annotated[
 ]
 Sheet = Annotated[
     int | None, number("Take the N-th sheet of a drawing with several sheets.", "N", "--sheet")
+]
+Colours = Annotated[
+    dict[str, str] | None,
+    typer.Option(
+        parser=letter_map,
+        metavar="COLOUR=LETTER,...",
+        help="Give letters to the lines of an SVG file by colour, such as orange=M,#00f=V,black=U.",
+    ),
+]
+Dashes = Annotated[
+    dict[str, str] | None,
+    typer.Option(
+        parser=letter_map,
+        metavar="DASHES=LETTER,...",
+        help="Give letters by dashes, such as '3 2=V,5 1 1 1=M' or dashed=V,dash-dotted=M,solid=B.",
+    ),
+]
+Chords = Annotated[
+    int | None, number("Read each curve of an SVG file as N straight lines.", "N", "--chords")
 ]
 Json = Annotated[bool, flag("--json", text="Print one JSON object.")]
 Signs = Annotated[

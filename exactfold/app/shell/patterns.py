@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from exactfold._support.verdict import UNDECIDED, Verdict
 from exactfold.app.shell.shell import STDIN, said, say
 from exactfold.errors import UnreadableFileError
 from exactfold.pattern.crease_pattern import CreasePattern
@@ -45,7 +46,7 @@ def read(path: Path, reading: Reading, needs: str) -> Triangulated:
     """
     opened = read_any(path, reading)
     pattern = triangles(opened, needs)
-    if not has_branches(pattern):
+    if not has_branches(pattern) and opened.meant is None:
         warn(pattern)
     return Triangulated(pattern, opened)
 
@@ -58,9 +59,16 @@ def read_any(path: Path, reading: Reading = PLAIN) -> Opened:
     opened = open_pattern(located(path), reading, name=said(path))
     for line in opened.lines:
         say(line)
-    if isinstance(opened.sheet, CreasePattern) and has_branches(opened.sheet):
+    if opened.doubt:
+        say(f"warning: {opened.doubt}; --snap exact takes the digits as written")
+    elif isinstance(opened.sheet, CreasePattern) and has_branches(opened.sheet):
         warn(opened.sheet)
     return opened
+
+
+def verdict(opened: Opened, status: Verdict) -> Verdict:
+    """The verdict of an answer about the sheet: UNDECIDED if it holds for its digits only."""
+    return UNDECIDED if opened.doubt else status
 
 
 def warn(pattern: CreasePattern) -> None:

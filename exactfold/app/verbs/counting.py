@@ -37,6 +37,13 @@ def read(
     number: int | None = None,
     steps: Steps = "all",
     merge: Fraction | None = None,
+    colours: Mapping[str, str] | None = None,
+    dashes: Mapping[str, str] | None = None,
+    chords: int | None = None,
+    without: Iterable[str] = (),
+    also: Iterable[str] = (),
+    noise: float | None = None,
+    unit: int | None = None,
 ) -> Opened:
     """Read a sheet from any source; the attribute `sheet` of the result is the pattern.
 
@@ -46,7 +53,15 @@ def read(
     exact; `lines` of the result says how. `letters` of the result has the mountains and valleys of
     the drawing. `snap` is "auto", "exact", or n, which rounds coordinates to multiples of 1/n.
     `number`, from 1, chooses a sheet of a drawing with several. `steps` and `merge` say what is
-    repaired (`exactfold.pattern.STEPS`).
+    repaired (`exactfold.pattern.STEPS`). `colours` and `dashes` give letters to the lines of an SVG
+    file: `colours={"orange": "M"}`, `dashes={"3 2": "V", "solid": "B"}`. Each of its curves is read
+    as `chords` straight lines.
+
+    If the digits of a drawing are inexact, the sheet that was meant is inferred
+    (docs/import.md, The sheet that was meant), and `meant` of the result says how. `without` names
+    relations that were not meant, as in "straight@12", and `also` relations that were, as in
+    "parallel 3-4,8-9". `noise` is the noise level as a share of the size, and `unit` is n if the
+    angles are multiples of pi / n. With snap "exact", nothing is inferred.
 
     Raises `InputError`, whose message names the file and what is wrong with it.
 
@@ -57,7 +72,20 @@ def read(
     >>> miura.sheet, len(miura.letters)
     (<PanelPattern: 9 interior vertices, 24 folds, 16 panels>, 24)
     """
-    return open_sheet(sheet, Reading(snap, number, steps, merge))
+    reading = Reading(
+        snap,
+        number,
+        steps,
+        merge,
+        colours,
+        dashes,
+        chords,
+        without=(without,) if isinstance(without, str) else tuple(without),
+        also=(also,) if isinstance(also, str) else tuple(also),
+        noise=noise,
+        unit=unit,
+    )
+    return open_sheet(sheet, reading)
 
 
 @overload

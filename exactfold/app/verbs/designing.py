@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from exactfold._support.progress import Progress
@@ -57,15 +58,17 @@ def match(
     opened = open_sheet(sheet)
     pattern = opened.sheet
     wanted = by_fold(pattern.folds, asked_letters(opened, letters))
-    if isinstance(pattern, CreasePattern) and pattern.Ve > 4 and can_pop(pattern):
+    popping = isinstance(pattern, CreasePattern) and pattern.Ve > 4 and can_pop(pattern)
+    if popping and not opened.doubt:
         over = match_boundary(pattern, wanted, progress=progress, **_at_most(most))
         if over.status is PROVED:
-            return over
+            return replace(over, meant=opened.meant)
     if not isinstance(pattern, CreasePattern) or pattern.Ve > 4:
         return match_panels(opened, wanted, progress=progress)
     if pattern.interior and pattern.Ve == 3:
         raise NotCountedError("this sheet is rigid: it has three vertices on its boundary")
-    return match_branches(pattern, wanted, progress=progress, **_at_most(most))
+    found = match_branches(pattern, wanted, progress=progress, **_at_most(most))
+    return found.about(opened.meant)
 
 
 def actuate(

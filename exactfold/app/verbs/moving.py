@@ -99,7 +99,7 @@ def follow(
     if isinstance(sheet, BranchCount):
         if not isinstance(way, int):
             raise UsageError("name a way of the count by its number, as in `follow(result, 3)`")
-        start = listed(sheet, way), side or 1
+        start = listed(sheet.known, way), side or 1
         return _along(start, None, until, frames, by, held, through_branch_points, progress)
     if not isinstance(sheet, Decomposition):
         opened = open_sheet(sheet)
@@ -109,7 +109,7 @@ def follow(
                 start, drive_found, until, frames, by, held, through_branch_points, progress
             )
         letters = None if letters is None else asked_letters(opened, letters)
-        sheet = decompose_opened(opened, progress=progress)
+        sheet = decompose_opened(opened, progress=progress).known
     asked.refuse_of_panels(through_branch_points)
     wanted = None if letters is None else by_fold(sheet.pattern.folds, letters)
     rates = modes_with(sheet, way, wanted)

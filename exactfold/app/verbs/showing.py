@@ -141,7 +141,7 @@ def _way(
     if isinstance(sheet, BranchCount):
         if way is None:
             raise UsageError("name a way of the count by its number, as in `draw(result, 3)`")
-        return branch_way(listed(sheet, way), way)
+        return branch_way(listed(sheet.known, way), way)
     if not isinstance(sheet, Decomposition):
         opened = open_sheet(sheet)
         pattern = opened.sheet
@@ -150,7 +150,7 @@ def _way(
             branch, side = the_branch(opened, way, signs, up, letters, progress=progress)
             return branch_way(branch, way).turned(side)
         letters = None if letters is None else asked_letters(opened, letters)
-        sheet = decompose_opened(opened, progress=progress)
+        sheet = decompose_opened(opened, progress=progress).known
     if signs is not None or up is not None:
         raise UsageError("signs and up are for branches: choose a mode of this sheet by way")
     wanted = None if letters is None else by_fold(sheet.pattern.folds, letters)

@@ -262,7 +262,7 @@ def _branches(
     foldable = pattern.foldable_vertices
     if chosen is None and len(foldable) <= MOST_LISTED:
         count = count_opened(opened, progress=progress)
-        return _Branches(pattern, tuple(count), count)  # type: ignore[arg-type]
+        return _Branches(pattern, tuple(count.known), count)  # type: ignore[arg-type]
     finder = BranchFinder(pattern)
     if chosen is not None:
         vectors = [finder.signs(signs, None) for signs in dict.fromkeys(chosen)]
@@ -312,7 +312,8 @@ def _panels(
         why_nothing_follows,
     )
 
-    ways = decompose_opened(opened, progress=progress)
+    answer = decompose_opened(opened, progress=progress)
+    ways = answer.known
     modes = panel_modes(ways)
     by_number = {mode.number: mode for mode in modes}
     components = panel_components(ways, modes)
@@ -330,12 +331,12 @@ def _panels(
         notes.append(f"no motion can be followed: {why_nothing_follows(ways, modes)}")
     facts: Facts = {
         "kind": "panels",
-        "answer": _SECONDS.sub("", panels_answer(ways).plain),
-        "status": str(ways.status),
-        "complete": ways.true is not None
+        "answer": _SECONDS.sub("", panels_answer(answer).plain),
+        "status": str(answer.status),
+        "complete": answer.true is not None
         and Counter(component.dimension for component in shown)
-        == {dimension: number for dimension, number in ways.true.items() if dimension},
-        "reason": ways.reason,
+        == {dimension: number for dimension, number in answer.true.items() if dimension},
+        "reason": answer.reason,
         "notes": notes,
     }
     return Known(opened, name, FollowingPanels(ways, frames, proving), tuple(listed), facts)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED
 from exactfold.branches.counting.collect import count_branches, not_convex
+from exactfold.branches.counting.doubted import doubted
 from exactfold.branches.counting.registry import METHODS, choose
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.loading import PatternLike, open_sheet
@@ -62,24 +63,38 @@ def count_ways(
 def count_opened(
     opened: Opened, *, method: str = "auto", seed: int = 0, progress: Progress | None = None
 ) -> BranchCount | Decomposition:
-    """`count_ways` for a sheet that is already open."""
+    """`count_ways` for a sheet that is already open.
+
+    If relations between creases hold nearly but not exactly, and no sheet was inferred that has
+    them, the answer is UNDECIDED, and its `as_written` says what is known for the digits.
+    """
+    return doubted(_counted(opened, method, seed, progress), opened)
+
+
+def _counted(
+    opened: Opened, method: str, seed: int, progress: Progress | None
+) -> BranchCount | Decomposition:
     sheet = opened.sheet
     if isinstance(sheet, CreasePattern) and sheet.interior:
         known = has_branches(sheet)
         if known or sheet.is_convex:
             result = count_branches(sheet, method=method, seed=seed, progress=progress)
-            families = None if known else decompose_opened(opened, progress=progress)
+            families = None if known else _decomposed(opened, progress)
             result = replace(result, snapped=opened.snapped, read=opened.read)
             return replace(result, letters=opened.letters, families=families)
-        ways = decompose_opened(opened, progress=progress)
+        ways = _decomposed(opened, progress)
         if ways.status is PROVED:
             return ways
         return replace(ways, reason=f"{ways.reason}; {not_convex(sheet)}")
-    return decompose_opened(opened, progress=progress)
+    return _decomposed(opened, progress)
 
 
 def decompose_opened(opened: Opened, *, progress: Progress | None = None) -> Decomposition:
     """The motions of an open sheet whose faces are treated as rigid panels; see `decompose`."""
+    return doubted(_decomposed(opened, progress), opened)
+
+
+def _decomposed(opened: Opened, progress: Progress | None) -> Decomposition:
     from exactfold.panels.decomposition import decompose  # imported here: branches do not need it
 
     sheet = opened.sheet

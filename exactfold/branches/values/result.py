@@ -32,7 +32,8 @@ if TYPE_CHECKING:  # counting branches does not load what panels need
         LetteredWay,
         Power,
     )
-    from exactfold.panels.result import Decomposition, MotionKeys
+    from exactfold.panels.result import AsWrittenDocument, Decomposition, MotionKeys
+    from exactfold.pattern.meant import Meant
     from exactfold.pattern.opening import ReadDocument
 
 
@@ -94,6 +95,10 @@ class BranchCount(Page, Ways[Branch], Certified):
     connected components they have. `families` are their irreducible components, if `count_ways`
     computed them. The counts are then None, except for a single vertex.
 
+    `meant` says what was inferred if the digits of the drawing are inexact, and `as_written` is the
+    answer for these digits alone. If `doubt` says why an answer would hold for the digits of the
+    sheet only, the status is UNDECIDED, and `as_written` has that answer.
+
     A certificate is written from `proof`. `open_questions` says what is missing; if the status is
     PROVED, it names folds with the letter "U". `letters` are those of the file, by fold; it is
     empty if the file has none. `len(result)`, iteration and `result["+-"]` or `result[3]` refer to
@@ -122,6 +127,9 @@ class BranchCount(Page, Ways[Branch], Certified):
     letters: Mapping[Edge, str] = field(default_factory=dict)
     connected_components: ConnectedComponents | None = None
     families: Decomposition | None = None
+    meant: Meant | None = None
+    doubt: str = ""
+    as_written: BranchCount | Decomposition | None = None
     seconds: float = field(default=0.0, compare=False)
 
     WRITER: ClassVar = "exactfold.branches.certificates.listing:certificate"
@@ -166,8 +174,15 @@ class BranchCount(Page, Ways[Branch], Certified):
         return groups
 
     @property
+    def known(self) -> BranchCount:
+        """This answer, or, if it is doubted, what is known for the digits as they are read."""
+        return self.as_written if isinstance(self.as_written, BranchCount) and self.doubt else self
+
+    @property
     def warning(self) -> str | None:
         """A warning about the pattern to read before the count; see `near_degenerate`."""
+        if self.meant is not None:
+            return None
         near_degeneracy = near_degenerate(self.pattern)
         if near_degeneracy is None and self.families is not None:
             return self.families.warning
@@ -268,7 +283,22 @@ class BranchCount(Page, Ways[Branch], Certified):
             "rigid": self.distinct == 0 if self.status is PROVED else None,
             "exceptional_vertices": list(self.exceptional_vertices),
             "read": None if self.read is None else {**self.read},
+            "meant": None if self.meant is None else self.meant.to_dict(),
+            "as_written": None if self.as_written is None else self.as_written.of_digits(),
             **self._families(),
+        }
+
+    def of_digits(self) -> AsWrittenDocument:
+        """The key `as_written` of the answer for the sheet that was meant."""
+        from exactfold.panels.result import digits  # imported here: a count does not need it
+
+        return {
+            "sheet": digits(self.meant, self.read),
+            "status": str(self.status),
+            "reason": self.reason,
+            "rigid": self.distinct == 0 if self.status is PROVED else None,
+            "distinct": self.distinct,
+            "components": self._families()["components"],
         }
 
     def _families(self) -> MotionKeys:

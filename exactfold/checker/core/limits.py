@@ -34,6 +34,7 @@ MOST_TRANSFORMS = 2 * 10**7  # characters of the transforms of all elements
 # --- sheets of certificates ----------------------------------------------------------------------
 MOST_ABOVE = 1 << 27  # pairs of edges with overlapping x-ranges, whose boxes are compared
 MOST_MEETINGS = 1 << 20  # pairs of edges whose boxes meet, compared exactly
+MOST_PARTS = 360  # parts of pi in a relation of angles
 
 # --- listings and proofs of one branch -----------------------------------------------------------
 MOST_BITS = 1 << 14  # bits of a box in a listing, and digits of each of its numbers

@@ -127,7 +127,7 @@ class _BoundaryMatchSearch(SignSearch["Branch | None"]):
             tuple(self.open),
             self.tree(),
             listed,
-            time.perf_counter() - self.start,
+            seconds=time.perf_counter() - self.start,
         )
 
     def _is_listed(self) -> bool:

@@ -18,6 +18,7 @@ from exactfold.design.refutations.sign_tree import Tree
 from exactfold.exact.numbers import format_rational
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import described_panels
+from exactfold.pattern.meant import Meant
 from exactfold.pattern.opening import panels
 
 
@@ -34,7 +35,8 @@ class BoundaryMatch(Certified):
 
     `sheet` is the pattern without the folds and vertices inside triangulated triangles; its vertex
     v is vertex `labels[v]` of the pattern. `leaves` counts the sign vectors for which boundary
-    heights were searched for.
+    heights were searched for. `meant` says what was inferred if the digits of the drawing are
+    inexact.
     """
 
     pattern: CreasePattern
@@ -47,6 +49,7 @@ class BoundaryMatch(Certified):
     open_signs: tuple[Mapping[int, int], ...]
     tree: Tree[Branch | None]
     listed: bool = False
+    meant: Meant | None = None
     seconds: float = field(default=0.0, compare=False)
 
     WRITER: ClassVar = "exactfold.design.assignments.certificate:match_certificate"
@@ -153,6 +156,7 @@ class BoundaryMatch(Certified):
             "together": None,
             "never": None,
             "vertices": [] if self.starts is not REFUTED else sorted(self.conflicts),
+            "meant": None if self.meant is None else self.meant.to_dict(),
             "seconds": round(self.seconds, 3),
         }
 

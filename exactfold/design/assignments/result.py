@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Annotated, ClassVar, Literal, TypeAlias, TypedDict
 
@@ -22,7 +22,7 @@ from exactfold._support.documents import (
 from exactfold._support.notebook import Page
 from exactfold._support.plurals import counted
 from exactfold._support.results import Certified, Ways
-from exactfold._support.verdict import Verdict
+from exactfold._support.verdict import UNDECIDED, Verdict
 from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.letters import SIGNS, UPSIDE_DOWN
 from exactfold.design.assignments.why import fold_text, vertex_conflicts
@@ -30,6 +30,7 @@ from exactfold.design.refutations.refutation import Letters, Refutation
 from exactfold.design.refutations.sign_tree import Tree
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.described import PatternDocument, described
+from exactfold.pattern.meant import Meant, MeantDocument
 from exactfold.pattern.near_degeneracy import WarningDocument, warnings
 
 _Decided: TypeAlias = Annotated[str, Keywords(enum=["M", "V", "F"])]
@@ -102,6 +103,8 @@ class MatchDocument(TypedDict):
     nearest: NearestDocument | None
     """The sides of branches that differ least; null where there are matches."""
     warnings: list[WarningDocument]
+    meant: MeantDocument | None
+    """The sheet that an inexact drawing means; null if no relation nearly holds."""
     seconds: NotNegative
 
 
@@ -164,7 +167,8 @@ class Match(Page, Ways[MatchedRay], Certified):
     no vectors. `sheet` is the pattern without the folds and vertices inside triangulated triangles;
     its vertex v is vertex `labels[v]` of the pattern. `leaves` is the number of sign vectors that
     were not refuted; for each of them both rays were found and compared, and `compared` holds them.
-    `tree` holds all of this in the order of the search, and `certificate` writes it.
+    `tree` holds all of this in the order of the search, and `certificate` writes it. `meant` says
+    what was inferred if the digits of the drawing are inexact.
     """
 
     pattern: CreasePattern
@@ -179,12 +183,29 @@ class Match(Page, Ways[MatchedRay], Certified):
     leaves: int
     tree: Tree[Compared]
     compared: tuple[Compared, ...] = ()
+    meant: Meant | None = None
 
     WRITER: ClassVar = "exactfold.design.assignments.certificate:match_certificate"
 
     def listed(self) -> tuple[MatchedRay, ...]:
         """`matches`."""
         return self.matches
+
+    def about(self, meant: Meant | None) -> Match:
+        """This answer for a sheet that was read; UNDECIDED if it holds for its digits only."""
+        matched = replace(self, meant=meant)
+        if meant is None or not meant.doubt:
+            return matched
+        return replace(
+            matched,
+            status=UNDECIDED,
+            matches=(),
+            refutations=(),
+            reasons=(meant.doubt,),
+            open_signs=(),
+            leaves=0,
+            compared=(),
+        )
 
     @property
     def reason(self) -> str:
@@ -233,6 +254,7 @@ class Match(Page, Ways[MatchedRay], Certified):
             ],
             "nearest": nearest,
             "warnings": warnings(self.pattern),
+            "meant": None if self.meant is None else self.meant.to_dict(),
             "seconds": round(seconds, 3),
         }
 

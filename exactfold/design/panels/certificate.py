@@ -20,9 +20,9 @@ from exactfold.design.panels.refutation import PanelRefutation, held
 from exactfold.design.panels.regular_motion import regular_motion
 from exactfold.errors import NotApplicableError
 from exactfold.exact.surds import Number, exact
-from exactfold.panels.certificate import number_document, panels_document
 from exactfold.panels.extension import Loops, extension
 from exactfold.panels.stars import Star, bracket, stars
+from exactfold.pattern.panel_entries import number_document, panels_document
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
 _BITS: Final = 62
@@ -82,6 +82,11 @@ def _refuted(matched: PanelMatch, moving: Mapping[int, Star]) -> tuple[Document,
         return {"refuted": [], "tree": [["flat", i, j]]}, REFUTED
     part = min(parts, key=lambda part: part.truly is not REFUTED)
     own = {v: moving[v] for v in part.vertices}
+    if part.by_list:
+        raise NotApplicableError(
+            "no certificate can be written: the complete list of motions refutes the letters, and "
+            "that list has a certificate of its own (`exactfold count --certificate`)"
+        )
     if not part.refutations:
         return {"refuted": [], "tree": _open_loops(matched, own, part.named)}, part.truly
     sets = [_set(matched, own, refutation) for refutation in part.refutations]

@@ -33,6 +33,7 @@ from exactfold.panels.stars import Star, stars
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import PanelsDocument, described_panels
 from exactfold.pattern.loading import PatternLike, open_sheet
+from exactfold.pattern.meant import Meant, MeantDocument
 from exactfold.pattern.opening import panels
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
@@ -83,6 +84,8 @@ class StartingDocument(TypedDict):
     the sheet starts to fold, or is too large."""
     vertices: list[Natural]
     """Named in the reasons."""
+    meant: MeantDocument | None
+    """The sheet that an inexact drawing means; null if no relation nearly holds."""
     seconds: NotNegative
 
 
@@ -101,7 +104,7 @@ class PanelMatch(Certified):
     letters by themselves (`PanelRefutation.holds`). `parts` are the answers for the parts of the
     sheet that move independently of each other. `first_order` says which folds can bend their way
     together to first order, and which never can; it is None if the sheet starts to fold or is too
-    large.
+    large. `meant` says what was inferred if the digits of the drawing are inexact.
     """
 
     pattern: PanelPattern
@@ -115,6 +118,7 @@ class PanelMatch(Certified):
     vertices: tuple[int, ...]
     parts: tuple[PartAnswer, ...]
     first_order: Together | None = None
+    meant: Meant | None = None
     seconds: float = field(default=0.0, compare=False)
 
     WRITER: ClassVar = "exactfold.design.assignments.certificate:match_certificate"
@@ -128,6 +132,24 @@ class PanelMatch(Certified):
     def status(self) -> Verdict:
         """PROVED if the question is answered, whatever the answer; else UNDECIDED."""
         return UNDECIDED if self.starts is UNDECIDED else PROVED
+
+    def about(self, meant: Meant | None) -> PanelMatch:
+        """This answer for a sheet that was read; UNDECIDED if it holds for its digits only."""
+        matched = replace(self, meant=meant)
+        if meant is None or not meant.doubt:
+            return matched
+        return replace(
+            matched,
+            starts=UNDECIDED,
+            truly=UNDECIDED,
+            reasons=(meant.doubt, f"the digits alone: {self.lines[0]}"),
+            densities={},
+            ways=None,
+            refutations=(),
+            vertices=(),
+            parts=(),
+            first_order=None,
+        )
 
     @property
     def assignment(self) -> dict[Edge, str]:
@@ -169,6 +191,7 @@ class PanelMatch(Certified):
             "together": None if first is None else [names[e] for e in first.together],
             "never": None if first is None else [names[e] for e in first.never],
             "vertices": list(self.vertices),
+            "meant": None if self.meant is None else self.meant.to_dict(),
             "seconds": round(self.seconds, 3),
         }
 
@@ -227,7 +250,7 @@ def match_panels(
         if progress is not None:
             progress("first order", 0, 1)
         matched = replace(matched, first_order=_first_order(moving, asked, dead, free))
-    return replace(matched, seconds=time.perf_counter() - start)
+    return replace(matched.about(opened.meant), seconds=time.perf_counter() - start)
 
 
 def _first_order(

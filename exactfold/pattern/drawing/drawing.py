@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Literal, NamedTuple, TypeAlias
 
@@ -9,6 +10,7 @@ if TYPE_CHECKING:
     from exactfold.exact.surds import Number
 from exactfold._support.notebook import Picture
 from exactfold._support.plurals import counted
+from exactfold.errors import UsageError
 
 Point: TypeAlias = "tuple[Number, Number]"
 Snap: TypeAlias = "Literal['auto', 'exact'] | int"
@@ -23,6 +25,22 @@ class Line(NamedTuple):
     start: int
     end: int
     letter: str
+
+
+@dataclass(frozen=True)
+class SvgReading:
+    """The choices with which an SVG file is read.
+
+    `colours` and `dashes` give letters to lines. Each curve is read as `chords` straight lines.
+    """
+
+    colours: Mapping[str, str] | None = None
+    dashes: Mapping[str, str] | None = None
+    chords: int | None = None
+
+    def __post_init__(self) -> None:
+        if self.chords is not None and self.chords < 1:
+            raise UsageError(f"the number of chords of a curve is {self.chords}, not at least 1")
 
 
 @dataclass(frozen=True)

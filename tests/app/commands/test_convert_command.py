@@ -216,3 +216,37 @@ def test_standard_output_takes_the_file(tmp_path: Path) -> None:
     assert run("convert", path, path).exit_code == USAGE
     assert run("convert", path, "-", "--steps", "merge", "--repair").exit_code == USAGE
     assert "there is no step 'mend'" in run("convert", path, "-", "--steps", "mend").stderr
+
+
+ORANGE = (
+    '<svg xmlns="http://www.w3.org/2000/svg"><rect width="4" height="4" stroke="black"/>'
+    '<line x1="1" x2="3" y2="4" stroke="orange"/>'
+    '<line y1="1" x2="4" y2="3" stroke="black" stroke-dasharray="3,2"/></svg>'
+)
+
+
+@pytest.mark.parametrize(
+    ("options", "letters"),
+    [
+        ([], "UUUU"),
+        (["--colours", "orange=M , rgb(0,0,0)=U"], "MMUU"),
+        (["--dashes", "3,2=V"], "UUVV"),
+        (["--dashes", "3 2=V", "--colours", "#ffa500=m"], "MMVV"),
+    ],
+)
+def test_letters_by_colour_and_by_dashes(tmp_path: Path, options: list[str], letters: str) -> None:
+    path, out = tmp_path / "orange.svg", tmp_path / "out.fold"
+    path.write_text(ORANGE)
+    result = run("convert", path, out, "--repair", *options)
+    assert result.exit_code == PROVED, result.stderr
+    made = json.loads(out.read_text())["edges_assignment"]
+    assert "".join(sorted(letter for letter in made if letter != "B")) == letters
+
+
+@pytest.mark.parametrize("text", ["", "red", "red=", "=M", "red=MV", "red=M;blue=V", "red=M,,"])
+def test_what_is_no_map_of_letters(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "orange.svg"
+    path.write_text(ORANGE)
+    result = run("info", path, "--colours", text)
+    assert result.exit_code == USAGE
+    assert "is not a list such as red=M,blue=V" in " ".join(result.stderr.split())

@@ -30,7 +30,7 @@ COUNT_KEYS = {
 }
 PANEL_KEYS = {
     *("theory", "rigid", "components", "modes_count", "modes", "flat_folds", "free_folds"),
-    *("near_misses", "read", "still_folds", "pieces", "letters"),
+    *("near_misses", "meant", "as_written", "read", "still_folds", "pieces", "letters"),
     "exceptional_vertices",
 }
 EXTRA_KEYS = {"reason", "why", "open_questions", "settings", "dimension", "degree", "true_bounds"}

@@ -13,6 +13,7 @@ from exactfold.branches import count_branches, count_many
 from exactfold.exact.numbers import as_rational
 from exactfold.pattern import near_degenerate, read_fold, write_fold
 from exactfold.pattern.data import SHEETS, example_path
+from exactfold.pattern.reading import Reading
 
 
 @pytest.fixture
@@ -39,9 +40,9 @@ def warning(text: str) -> str:
 def test_a_vertex_that_is_almost_flat_is_named(
     moved: Path, command: str, more: tuple[str, ...]
 ) -> None:
-    result = run(command, moved, *more)
-    assert result.exit_code == PROVED
-    (line,) = result.stderr.splitlines()
+    exact = run(command, moved, *more, "--snap", "exact")
+    assert exact.exit_code == PROVED
+    (line,) = exact.stderr.splitlines()
     assert line.startswith(
         "exactfold: warning: vertex 4 is within 1e-13 of (1/2, 1/2), but not at it"
     )
@@ -51,7 +52,7 @@ def test_a_vertex_that_is_almost_flat_is_named(
     again = run(command, moved, *more, "--snap", snap)
     assert (again.exit_code, again.stderr) == (PROVED, "")
     if command == "count" and more:
-        assert json.loads(result.stdout)["distinct"] == 4
+        assert json.loads(exact.stdout)["distinct"] == 4
         assert json.loads(again.stdout)["distinct"] == 3
 
 
@@ -69,7 +70,7 @@ def test_json_has_the_warning_that_is_said(
     moved: Path, tmp_path: Path, command: tuple[str, ...]
 ) -> None:
     name, *more = (part.format(tmp_path) for part in command)
-    result = run(name, moved, *more)
+    result = run(name, moved, *more, "--snap", "exact")
     assert result.exit_code == PROVED
     (found,) = json.loads(result.stdout)["warnings"]
     assert found == {"vertices": [4], "snap": 10, "text": warning(result.stderr)}
@@ -82,8 +83,8 @@ def test_a_batch_names_the_patterns_with_a_warning(
 ) -> None:
     monkeypatch.chdir(moved.parent)  # short names are shown on one line
     good, out = "two-vertex", Path("o.jsonl")
-    text = warning(run("info", moved.name).stderr)
-    given = ("count", good, moved.name, "--jobs", jobs)
+    text = warning(run("info", moved.name, "--snap", "exact").stderr)
+    given = ("count", good, moved.name, "--jobs", jobs, "--snap", "exact")
     result = run(*given, "--jsonl", out)
     assert (result.exit_code, result.stderr) == (PROVED, "")
     shown = " ".join(result.stdout.split())
@@ -113,7 +114,7 @@ def test_python_callers_find_the_warning(moved: Path) -> None:
     assert found is not None
     assert count_branches(read_fold(moved)).warning == found.text
     assert found.text in count_branches(read_fold(moved))._repr_html_()
-    ((_, result),) = count_many([moved])
+    ((_, result),) = count_many([moved], reading=Reading("exact"))
     assert result.warning == found.text
     assert count_branches("flat-vertex").warning is None
     assert "warning" not in count_branches("flat-vertex")._repr_html_()

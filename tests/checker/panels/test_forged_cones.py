@@ -17,7 +17,7 @@ from exactfold.checker.panels.cones import Place, cone_motion
 from exactfold.checker.panels.leaves import complete
 from exactfold.checker.panels.reduction import BITS, enclosed, reduced, rest_of
 from exactfold.checker.panels.spaces import Leaf, Spaces
-from exactfold.panels.certificate import panels_document
+from exactfold.pattern.panel_entries import panels_document
 from exactfold.pattern.panel_pattern import PanelPattern
 
 

@@ -20,8 +20,9 @@ from exactfold.checker.panels.cones import cone_motion
 from exactfold.checker.panels.leaves import _folds, _independent, _rank, _sum, extends
 from exactfold.checker.panels.reduction import BITS, Joined, enclosed, inside, reduced, rest_of
 from exactfold.checker.panels.spaces import Motion, Spaces
-from exactfold.panels.certificate import certificate_of_panels, panels_document
+from exactfold.panels.certificate import certificate_of_panels
 from exactfold.panels.decomposition import decompose
+from exactfold.pattern.panel_entries import panels_document
 from exactfold.pattern.panel_pattern import PanelPattern
 
 RATIONAL = Tower()

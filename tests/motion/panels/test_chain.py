@@ -9,7 +9,7 @@ from exactfold.checker.motion.panels.places import _middle
 from exactfold.checker.sheets.panels import read_panels
 from exactfold.motion.panels.chain import Turned, hinged, moved, product, size, spun, still
 from exactfold.motion.panels.places import Placing
-from exactfold.panels.certificate import panels_document
+from exactfold.pattern.panel_entries import panels_document
 
 ORDER = 6
 

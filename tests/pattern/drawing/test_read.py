@@ -11,9 +11,13 @@ from exactfold.errors import (
     NotFoldError,
     UnknownFormatError,
     UnreadableFileError,
+    UsageError,
 )
-from exactfold.pattern.drawing.drawing import Drawing
+from exactfold.pattern.data import example_path
+from exactfold.pattern.drawing.drawing import Drawing, SvgReading
 from exactfold.pattern.drawing.formats.read import READERS, parse_drawing, read_drawing
+from exactfold.pattern.opening import open_pattern
+from exactfold.pattern.reading import Reading
 
 WRITERS = {
     "fold": as_fold,
@@ -118,3 +122,14 @@ def test_a_damaged_file_is_read_or_refused_but_never_a_traceback(ending, data):
     assert isinstance(drawing, Drawing)
     assert all(i != j for i, j, _ in drawing.lines)
     assert max(v for line in drawing.lines for v in line[:2]) < len(drawing.points)
+
+
+@pytest.mark.parametrize(
+    "reading", [{"colours": {"red": "M"}}, {"dashes": {"solid": "M"}}, {"chords": 2}]
+)
+def test_choices_for_svg_files(reading):
+    message = r"colours, dashes and chords are for SVG files, and a\.cp is CP"
+    with pytest.raises(UsageError, match=message):
+        parse_drawing(as_cp(SQUARE), "a.cp", SvgReading(**reading))
+    with pytest.raises(UsageError, match=r"two-vertex\.fold is FOLD"):
+        open_pattern(example_path("two-vertex"), Reading(**reading))

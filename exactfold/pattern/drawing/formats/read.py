@@ -9,9 +9,9 @@ from os import PathLike
 from pathlib import PurePath
 from typing import Final
 
-from exactfold.errors import UnknownFormatError
+from exactfold.errors import UnknownFormatError, UsageError
 from exactfold.pattern.drawing.bounds import check_drawing, read_bytes
-from exactfold.pattern.drawing.drawing import Drawing
+from exactfold.pattern.drawing.drawing import Drawing, SvgReading
 from exactfold.pattern.drawing.formats.cp import read_cp
 from exactfold.pattern.drawing.formats.fold_drawing import read_fold_drawing
 from exactfold.pattern.drawing.formats.opx import read_opx
@@ -49,12 +49,12 @@ def read_drawing(path: str | PathLike[str]) -> Drawing:
     return parse_drawing(read_bytes(path), PurePath(path).name)
 
 
-def parse_drawing(content: str | bytes, name: str) -> Drawing:
+def parse_drawing(content: str | bytes, name: str, reading: SvgReading | None = None) -> Drawing:
     """The drawing in the content of a file; if the content shows no format, `name` decides.
 
     Bytes are decoded as UTF-8, as UTF-16 if there is a byte order mark, or as an XML declaration
-    says. Raises `UnknownFormatError`, whose message lists the formats, and `TooLargeError`. Also
-    raises the errors of the reader of the format.
+    says. `reading` has the choices for SVG files. Raises `UnknownFormatError`,
+    whose message lists the formats, `TooLargeError`, and the errors of the reader of the format.
 
     >>> parse_drawing("1 0 0 1 0", "edge").source
     'read edge: CP, 1 line (1 boundary)'
@@ -65,7 +65,12 @@ def parse_drawing(content: str | bytes, name: str) -> Drawing:
     """
     text = content if isinstance(content, str) else _decoded(content, name)
     text = text.removeprefix("\ufeff")
-    drawing = READERS[_format(text, name)](text)
+    key = _format(text, name)
+    if reading not in (None, SvgReading()) and key != "svg":
+        raise UsageError(
+            f"colours, dashes and chords are for SVG files, and {name} is {key.upper()}"
+        )
+    drawing = read_svg(text, reading) if key == "svg" else READERS[key](text)
     check_drawing(drawing)
     return replace(drawing, source=f"read {name}: {drawing.source}, {summary(drawing)}")
 

@@ -5,33 +5,27 @@ from __future__ import annotations
 import io
 import re
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping
-from colorsys import rgb_to_hsv
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import Any, Final
 from xml.etree import ElementTree
 
 from exactfold._support.plurals import counted
-from exactfold.errors import MalformedDrawingError, NumberError
+from exactfold.errors import MalformedDrawingError, NumberError, TooLargeError
 from exactfold.exact.numbers import parse_rational, shown
-from exactfold.pattern.drawing.drawing import Drawing
+from exactfold.pattern.drawing.drawing import Drawing, SvgReading
 from exactfold.pattern.drawing.formats.markup import xml_root
 from exactfold.pattern.drawing.formats.svg_path import NUMBER as NUMERAL
-from exactfold.pattern.drawing.formats.svg_path import STRAIGHT, path_lines
+from exactfold.pattern.drawing.formats.svg_path import (
+    PathLines,
+    arc_places,
+    check_chords,
+    path_lines,
+)
+from exactfold.pattern.drawing.formats.svg_strokes import Stroke, lettered
 from exactfold.pattern.drawing.formats.svg_tree import NAMESPACE, NUMBER, plain_tree
-from exactfold.pattern.drawing.segments import Place, Segment, drawing_of
+from exactfold.pattern.drawing.segments import Place, drawing_of
 
-_COLOURS: Final = {
-    (0, 0, 0): "B",
-    (255, 0, 0): "M",
-    (0, 0, 255): "V",
-    (0, 255, 0): "C",
-    (0, 128, 0): "C",  # the colour that SVG calls green
-    (255, 255, 0): "F",
-    (255, 0, 255): "U",
-}
-_HUES: Final = {0: "M", 60: "F", 120: "C", 240: "V", 300: "U", 360: "M"}
-_NEAR: Final = 20  # degrees of hue
 _LENGTH: Final = re.compile(rf"({NUMERAL})\s*([a-z]*)\Z")
 _UNITS: Final = {
     "": Fraction(1),
@@ -43,71 +37,104 @@ _UNITS: Final = {
     "pc": Fraction(16),
 }
 _POINTS: Final = re.compile(rf"[\s,]*({NUMERAL})")
+_NAMED: Final = 5
 _VIEW: Final = ("width", "height", "viewBox", "x", "y")
 _FAULTS: Final = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
 
 
-def read_svg(text: str) -> Drawing:
+def read_svg(text: str, reading: SvgReading | None = None) -> Drawing:
     """The drawing in an SVG file: straight lines with stroke colours; y upwards.
 
     The colours are those of Origami Simulator: black is the boundary B, red M, blue V, green a cut
     C, yellow F and magenta U. Opacity, which is a fold angle there, is not read. Similar colours
-    count as these, with a remark; lines in other colours are left out. Styles come from attributes,
-    `style` and CSS classes. Groups and transforms apply. The elements `line`, `polyline`,
-    `polygon`, `rect` and `path` are read. The size of the picture (`width`, `height`, `viewBox`) is
-    not applied. Numbers are read from their text; only transforms are products of floats.
+    count as these, with a remark; lines in other colours are left out. `lettered` says what becomes
+    of a drawing without these colours, and how the maps of `reading` change letters. Styles come
+    from attributes, `style` and CSS classes. Groups and transforms apply. The elements `line`,
+    `polyline`, `polygon`, `rect` and `path` are read. The size of the picture (`width`, `height`,
+    `viewBox`) is not applied. Numbers are read from their text; only transforms are products of
+    floats.
 
-    Raises `MalformedDrawingError`, also for a file without lines and for curves. For a curve the
-    message names the element.
+    `reading.chords` says as how many straight lines a curve is read.
+
+    Raises `UsageError` for maps that do not fit. Raises `MalformedDrawingError`, also for a file
+    without lines, and for curves if there is no number of chords; the message names the elements.
 
     >>> drawing = read_svg('<svg><g stroke="red"><line x2="0.1" y2="3"/></g></svg>')
     >>> drawing.points[1], drawing.lines[0].letter
     ((Fraction(1, 10), Fraction(-3, 1)), 'M')
     """
-    segments: list[Segment] = []
+    strokes: list[Stroke] = []
     omitted: Counter[str] = Counter()
-    taken: Counter[tuple[str, str]] = Counter()
     seen: Counter[str] = Counter()
-    unbent = faint = 0
+    reading = reading or SvgReading()
     shapes, given = _shapes(text)
     for shape in shapes:
         values, tag = shape.values, shape.values["attributes"]["tag"]
         own = given[int(values["attributes"][NUMBER])]
         seen[tag] += 1
-        stroke = str(values.get("stroke", "none")).partition("!")[0].strip().lower()
+        colour = str(values.get("stroke", "none")).partition("!")[0].strip().lower()
         if values.get("visibility") in ("hidden", "collapse"):
             omitted["with hidden visibility"] += 1
             continue
-        if stroke in ("none", "transparent"):
+        if colour in ("none", "transparent"):
             omitted["without stroke"] += 1
             continue
-        letter, exactly = _letter(stroke)
-        if not letter:
-            omitted[f"of colour {shown(stroke)}"] += 1
-            continue
-        if not exactly:
-            taken[stroke, letter] += 1
         name = f"{tag} {seen[tag]}" + (f" (id {shown(own['id'])})" if "id" in own else "")
-        lines, curves = _lines(tag, own, name)
-        if lines is None:
+        fault: Exception | None = None
+        try:
+            found = _lines(tag, own, name, reading.chords or 1)
+            move = _mover(shape.transform)
+        except (MalformedDrawingError, NumberError, TooLargeError) as error:
+            found, fault = PathLines([]), error  # it matters only if the stroke has a letter
+        if found is None:
             omitted[f"of the kind {tag}"] += 1
             continue
-        unbent += curves
-        faint += letter in "MV" and any(
+        moved = [(move(start), move(end)) for start, end in found.lines]
+        faint = any(
             str(values.get(key, "1")) not in ("1", "1.0") for key in ("opacity", "stroke-opacity")
         )
-        move = _mover(shape.transform)
-        segments += [(move(start), move(end), letter) for start, end in lines]
+        dashes = str(values.get("stroke-dasharray", "none"))
+        strokes.append(Stroke(name, colour, dashes, moved, found.unbent, found.bent, faint, fault))
+    letters, notes = lettered(strokes, reading)
+    drawn = [(stroke, x) for stroke, x in zip(strokes, letters, strict=True) if x]
+    for stroke, _ in drawn:
+        if stroke.fault is not None:
+            raise stroke.fault
+    remarks_on_curves = _curves([stroke for stroke, _ in drawn], reading.chords)
+    segments = [(*ends, letter) for stroke, letter in drawn for ends in stroke.lines]
     remarks = [f"left out {counted(omitted[why], 'element')} {why}" for why in sorted(omitted)]
-    remarks += [
-        f"took {counted(number, 'element')} of colour {shown(stroke)} for {letter}"
-        for (stroke, letter), number in sorted(taken.items())
-    ]
+    remarks += notes + remarks_on_curves
+    angled = sum(stroke.faint and letter in "MV" for stroke, letter in drawn)
+    if angled:
+        remarks.append(f"did not read the opacity of {counted(angled, 'element')} as fold angles")
+    return drawing_of(segments, "SVG", remarks)
+
+
+def _curves(strokes: Sequence[Stroke], chords: int | None) -> list[str]:
+    """Remarks on the curves of strokes; raises `MalformedDrawingError` if they have no chords."""
+    unbent = sum(stroke.unbent for stroke in strokes)
+    bent = [stroke for stroke in strokes if stroke.bent]
+    remarks = []
     if unbent:
         remarks.append(f"read {counted(unbent, 'curve')} as straight, within 1/1000 of the length")
-    if faint:
-        remarks.append(f"did not read the opacity of {counted(faint, 'element')} as fold angles")
-    return drawing_of(segments, "SVG", remarks)
+    if not bent:
+        return remarks
+    number = sum(len(stroke.bent) for stroke in bent)
+    names = ", ".join(f"{len(stroke.bent)} in {stroke.name}" for stroke in bent[:_NAMED])
+    more = f", ... {len(bent) - _NAMED} more" if len(bent) > _NAMED else ""
+    where = f"{counted(number, 'curve')} ({names}{more})"
+    if chords is None:
+        raise MalformedDrawingError(
+            f"{bent[0].name}: {bent[0].bent[0]}; creases must be straight, and the drawing has "
+            f"{where}: `--chords 8` reads each as 8 straight lines, and the answer is about that "
+            "sheet"
+        )
+    check_chords(number, chords)
+    remarks.append(
+        f"read {where} as {counted(chords, 'chord')} each: all answers are about the sheet with "
+        "these straight lines and rigid panels, not about the curved one"
+    )
+    return remarks
 
 
 def _shapes(text: str) -> tuple[Iterator[Any], list[Mapping[str, str]]]:
@@ -132,47 +159,23 @@ def _shapes(text: str) -> tuple[Iterator[Any], list[Mapping[str, str]]]:
     return (element for element in picture.elements() if isinstance(element, Shape)), given
 
 
-def _letter(stroke: str) -> tuple[str, bool]:
-    """The letter of a colour (empty if it has none), and whether it is exactly that colour."""
-    from svgelements import Color
-
-    try:
-        colour = Color(stroke)
-    except _FAULTS:
-        return "", False
-    rgb = (colour.red, colour.green, colour.blue)
-    if rgb == (0, 0, 0) and stroke != "black" and not re.match(r"#|rgb|hsl", stroke):
-        return "", False  # the library returns black for unknown colours
-    if rgb in _COLOURS:
-        return _COLOURS[rgb], True
-    hue, saturation, value = rgb_to_hsv(*(component / 255 for component in rgb))
-    if value < 0.25:
-        return "B", False
-    near = min(_HUES, key=lambda pure: abs(360 * hue - pure))
-    if saturation < 0.5 or abs(360 * hue - near) > _NEAR:
-        return "", False
-    return _HUES[near], False
-
-
-def _lines(
-    tag: str, own: Mapping[str, str], name: str
-) -> tuple[list[tuple[Place, Place]] | None, int]:
-    """The lines of an element (None if its kind is not read), and how many were curves."""
+def _lines(tag: str, own: Mapping[str, str], name: str, chords: int) -> PathLines | None:
+    """The lines of an element; None if its kind is not read."""
     try:
         if tag == "path":
-            return path_lines(own.get("d", ""))
+            return path_lines(own.get("d", ""), chords)
         if tag == "line":
             x1, y1, x2, y2 = (_length(own, key) for key in ("x1", "y1", "x2", "y2"))
-            return [((x1, y1), (x2, y2))], 0
+            return PathLines([((x1, y1), (x2, y2))])
         if tag == "rect":
-            return _sides(_corners(own)), 0
+            return _rectangle(own, chords)
         if tag == "polygon":
-            return _sides(_points(own.get("points", ""))), 0
+            return PathLines(_sides(_points(own.get("points", ""))))
         if tag == "polyline":
-            return _sides(_points(own.get("points", "")))[:-1], 0
-    except (MalformedDrawingError, NumberError) as error:
+            return PathLines(_sides(_points(own.get("points", "")))[:-1])
+    except (MalformedDrawingError, NumberError, TooLargeError) as error:
         raise type(error)(f"{name}: {error}") from None
-    return None, 0
+    return None
 
 
 def _sides(places: list[Place]) -> list[tuple[Place, Place]]:
@@ -180,13 +183,25 @@ def _sides(places: list[Place]) -> list[tuple[Place, Place]]:
     return [(a, b) for a, b in zip(places, closed, strict=True)]
 
 
-def _corners(own: Mapping[str, str]) -> list[Place]:
-    x, y, width, height, rx, ry = (
-        _length(own, key) for key in ("x", "y", "width", "height", "rx", "ry")
-    )
-    if rx or ry:
-        raise MalformedDrawingError(f"the corners are rounded; {STRAIGHT}")
-    return [(x, y), (x + width, y), (x + width, y + height), (x, y + height)]
+def _rectangle(own: Mapping[str, str], chords: int) -> PathLines:
+    """The sides of a rectangle; each rounded corner becomes `chords` chords."""
+    x, y, width, height = (_length(own, key) for key in ("x", "y", "width", "height"))
+    stated = [_length(own, key) for key in ("rx", "ry") if own.get(key, "auto") != "auto"]
+    radii = stated or [Fraction(0)]
+    rx, ry = min(radii[0], width / 2), min(radii[-1], height / 2)
+    if not rx * ry:
+        return PathLines(_sides([(x, y), (x + width, y), (x + width, y + height), (x, y + height)]))
+    right, low = x + width, y + height
+    corners = [
+        ((right - rx, y), (right, y + ry)),
+        ((right, low - ry), (right - rx, low)),
+        ((x + rx, low), (x, low - ry)),
+        ((x, y + ry), (x + rx, y)),
+    ]
+    places: list[Place] = []
+    for start, end in corners:
+        places += [start, *arc_places(start, [rx, ry, *map(Fraction, (0, 0, 1))], end, chords)]
+    return PathLines(_sides(places), 0, ("a rounded corner",) * 4)
 
 
 def _points(text: str) -> list[Place]:

@@ -22,6 +22,7 @@ _DROPPED: Final = ("style", "text", "tspan", "title", "desc", "image", "metadata
 _LINK: Final = "{http://www.w3.org/1999/xlink}href"
 _STYLED: Final = (
     "stroke",
+    "stroke-dasharray",
     "color",
     "display",
     "visibility",

@@ -1,8 +1,9 @@
 """Relations between the angles of edges, and the angles that satisfy all of them exactly.
 
-The angle of an edge (i, j), i < j, is that of the vector from vertex i to vertex j, modulo pi.
-Closing conditions at the flat sheet depend on these angles alone, and every relation that people
-draw by is linear in them, with integer coefficients.
+The angle of an edge (i, j), i < j, is that of the vector from vertex i to vertex j. A relation
+holds modulo pi, so that the sense of an edge does not matter to it. Closing conditions at the flat
+sheet depend on these angles alone, and every relation that people draw by is linear in them, with
+integer coefficients.
 """
 
 from __future__ import annotations
@@ -24,7 +25,8 @@ class Relation:
 
     `terms` holds the edges and their integers, and `name` is what people type, such as
     "straight@12:3-17". `defect` says by how much the drawing misses the relation: the angle in
-    radians, times the shortest of the edges, divided by the size of the drawing.
+    radians, times the shortest of the edges, divided by the size of the drawing. It is 0 only if
+    the digits of the drawing satisfy the relation exactly.
     """
 
     kind: Kind
@@ -38,10 +40,13 @@ class Relation:
 class Angles:
     """Edge angles that satisfy all accepted relations, as functions of free angles.
 
-    The angle of an edge is pi times its constant plus the sum of its coefficients times the free
-    angles. `free` holds the values of the free angles in the drawing, in radians.
+    The angle of an edge (i, j), i < j, is pi times its constant plus the sum of its coefficients
+    times the free angles. It lies near that of the drawn vector from i to j, modulo 2 pi. `free`
+    holds values of the free angles, in radians, that fit the drawing best; each free angle is the
+    angle of the edge in `free_edges`.
     """
 
     constants: Mapping[Edge, Fraction]
     coefficients: Mapping[Edge, tuple[tuple[int, Fraction], ...]]
     free: tuple[float, ...]
+    free_edges: tuple[Edge, ...] = ()

@@ -10,7 +10,7 @@ from forge_panel_motions import at_rest, given, of_lines, stopped
 from forge_panels import bent
 
 from exactfold.checker.core.reading import CertificateError
-from exactfold.panels.certificate import panels_document
+from exactfold.pattern.panel_entries import panels_document
 from exactfold.pattern.panel_pattern import PanelPattern
 
 

@@ -1,0 +1,35 @@
+"""What is known for the digits of an inexact drawing, beside the sheet that was meant."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from rich.text import Text
+
+from exactfold.branches.values.result import BranchCount
+
+if TYPE_CHECKING:
+    from exactfold.panels.result import Decomposition
+
+_SHEETS = {
+    "as written": "the digits as written: ",
+    "as read": "the coordinates as they were read: ",
+    "inferred": "the digits of the inferred sheet: ",
+}
+
+
+def digits_line(result: BranchCount | Decomposition) -> Text:
+    """The answer for the digits of a drawing, in one sentence."""
+    which = result.of_digits()["sheet"]
+    plain = replace(result, meant=None)
+    if isinstance(plain, BranchCount):
+        from exactfold.app.report.count import answer
+
+        said = answer(plain)
+    else:
+        from exactfold.app.report.panels import panels_answer
+
+        said = panels_answer(plain)
+    end = " (--snap exact)" if which == "as written" else ""
+    return Text.assemble(_SHEETS[which], said, end)

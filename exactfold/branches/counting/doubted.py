@@ -1,0 +1,74 @@
+"""What a count says of a drawing with inexact digits from which no sheet could be inferred."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, TypeVar, overload
+
+from exactfold._support.verdict import UNDECIDED
+from exactfold.branches.values.result import BranchCount
+
+if TYPE_CHECKING:
+    from exactfold.panels.result import Decomposition
+    from exactfold.pattern.opening import Opened
+
+B = TypeVar("B", bound=BranchCount)
+
+
+@overload
+def doubted(result: B, opened: Opened) -> B: ...
+@overload
+def doubted(result: Decomposition, opened: Opened) -> Decomposition: ...
+def doubted(result: BranchCount | Decomposition, opened: Opened) -> BranchCount | Decomposition:
+    """The answer for an open sheet, UNDECIDED if it would hold for the digits of the sheet only.
+
+    That is so if relations between its creases nearly hold, or if a loop of folds nearly closes.
+    What is known for the digits is `as_written` of the answer.
+    """
+    result = replace(result, meant=opened.meant)
+    doubt = opened.doubt
+    families = result.families if isinstance(result, BranchCount) else result
+    if not doubt and opened.reading.snap != "exact" and families is not None:
+        doubt = families.warning or ""
+    if not doubt:
+        return result
+    if not isinstance(result, BranchCount):
+        return replace(
+            result,
+            status=UNDECIDED,
+            rigid=UNDECIDED,
+            reason=doubt,
+            second_order=None,
+            true=None,
+            found=None,
+            found_true=None,
+            flat=(),
+            still=(),
+            modes=(),
+            modes_count=None,
+            parts=(),
+            doubt=doubt,
+            as_written=result,
+        )
+    return replace(
+        result,
+        status=UNDECIDED,
+        reason=doubt,
+        why="",
+        distinct=None,
+        with_multiplicity=None,
+        real=None,
+        nonreal=None,
+        true_branches=UNDECIDED,
+        true_bounds=None,
+        dimension=None,
+        degree=None,
+        branches=(),
+        open_questions=(),
+        proof=None,
+        letters={},
+        connected_components=None,
+        families=None,
+        doubt=doubt,
+        as_written=result,
+    )

@@ -1,0 +1,150 @@
+"""Relations that an exact sheet nearly has: its digits may be rounded, and what they say is noise.
+
+Floats propose where to look, and exact arithmetic tells nearly from exactly. Nothing here is part
+of a proof.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import combinations
+from math import atan2, cos, hypot, lcm, pi, sin
+from typing import TYPE_CHECKING, Final, Protocol
+
+from exactfold.pattern.drawing.meant.values import Edge, Kind, Relation
+
+if TYPE_CHECKING:
+    from exactfold.exact.surds import Number
+
+NEAREST: Final = 1e-5
+"""No relation whose defect is larger is near."""
+_CHANCE: Final = 0.05
+"""So many near relations, at most, are expected by chance."""
+_STEPS: Final = 10**5
+"""Coordinates on a grid of at most so many steps across the sheet are exact."""
+_TRUST: Final = 1e-9
+"""Angles from floats are good to this; smaller defects are computed exactly."""
+
+
+class Sheet(Protocol):
+    """A sheet of triangles or of panels."""
+
+    @property
+    def vertices(self) -> Sequence[tuple[Number, Number]]:
+        """The exact points."""
+
+    @property
+    def edges(self) -> tuple[Edge, ...]:
+        """All edges."""
+
+    @property
+    def boundary_edges(self) -> tuple[Edge, ...]:
+        """The edges round the sheet."""
+
+
+def left_relations(sheet: Sheet) -> tuple[Relation, ...]:
+    """The relations that the sheet nearly has but does not have exactly, the nearest first.
+
+    These are straight paths through a vertex, straight borders, and sums of Kawasaki at vertices
+    with four folds. The limit of the defect is 1e-5, or lower in large sheets, so that at most 0.05
+    relations of random angles are expected below the limit. Coordinates on a grid of at most
+    100,000 steps are taken as exact.
+
+    >>> from exactfold.pattern.families import two_vertex
+    >>> left_relations(two_vertex())
+    ()
+    >>> from exactfold.pattern.crease_pattern import CreasePattern
+    >>> rounded = CreasePattern([(0, 0), (1, 0), (1, 1), (0, 1), ("1/3", "0.333333333334")],
+    ...     [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)])
+    >>> [(near.name, round(near.defect, 14)) for near in left_relations(rounded)]
+    [('kawasaki@4', 4.2e-13), ('straight@4:0-2', 7.1e-13)]
+    """
+    if _is_on_a_grid(sheet):
+        return ()
+    places = [(float(x), float(y)) for x, y in sheet.vertices]
+    size = max(max(column) - min(column) for column in zip(*places, strict=True))
+    tests = list(_tests(sheet, places))
+    shortest = [min(_length(places, edge) for edge, _ in terms) for _, _, terms, _ in tests]
+    expected = sum(2 * size / (pi * length) for length in shortest)  # below a defect of 1
+    limit = min(NEAREST, _CHANCE / expected) if expected else NEAREST
+    near = []
+    for (kind, name, terms, off), length in zip(tests, shortest, strict=True):
+        if off * length / size >= limit:
+            continue
+        if off < _TRUST:
+            off = _exact(sheet.vertices, terms)
+        if off:
+            near.append(Relation(kind, name, terms, 1, off * length / size))
+    return tuple(sorted(near, key=lambda relation: relation.defect))
+
+
+_Terms = tuple[tuple[Edge, int], ...]
+_Places = Sequence[tuple[float, float]]
+
+
+def _is_on_a_grid(sheet: Sheet) -> bool:
+    common, columns = 1, ([x for x, _ in sheet.vertices], [y for _, y in sheet.vertices])
+    for value in (c for column in columns for c in column):
+        common = lcm(common, getattr(value, "denominator", 0))
+        if not 0 < common <= _STEPS**2:
+            return False
+    return all(common * (max(column) - min(column)) <= _STEPS for column in columns)
+
+
+def _tests(sheet: Sheet, places: _Places) -> Iterator[tuple[Kind, str, _Terms, float]]:
+    """Every relation that is looked for: kind, name, terms, and by how many radians it misses."""
+    boundary = set(sheet.boundary_edges)
+    border: dict[int, list[int]] = {}
+    around: dict[int, list[int]] = {}
+    for edge in sheet.edges:
+        for v, w in (edge, edge[::-1]):
+            (border if edge in boundary else around).setdefault(v, []).append(w)
+    for v, (i, j) in ((v, sorted(near)) for v, near in border.items() if len(near) == 2):
+        yield _test("border", f"border@{v}", places, v, ((i, 1), (j, -1)))
+    for v, near in around.items():
+        if v in border:
+            continue  # nothing has to close at a vertex of the boundary
+        for i, j in combinations(sorted(near), 2):
+            yield _test("straight", f"straight@{v}:{i}-{j}", places, v, ((i, 1), (j, -1)))
+        if len(near) == 4:
+            turned = sorted(near, key=lambda w: _angle(places, v, w))
+            signs = [(w, (-1) ** k) for k, w in enumerate(turned)]
+            yield _test("kawasaki", f"kawasaki@{v}", places, v, signs)
+
+
+def _test(
+    kind: Kind, name: str, places: _Places, v: int, signs: Sequence[tuple[int, int]]
+) -> tuple[Kind, str, _Terms, float]:
+    total = sum(sign * _angle(places, v, w) for w, sign in signs)
+    off = abs(atan2(sin(total), abs(cos(total))))
+    if kind != "kawasaki" and cos(total) > 0:
+        off = pi / 2  # two edges on the same side of the vertex form no path
+    return kind, name, tuple((_edge(v, w), sign) for w, sign in signs), off
+
+
+def _exact(vertices: Sequence[tuple[Number, Number]], terms: _Terms) -> float:
+    """The angle by which a sum misses a multiple of pi, from exact coordinates; 0 if it does not.
+
+    The product of the directions, conjugated where the sign is negative, is real if the sum is a
+    multiple of pi.
+    """
+    x: Number = 1
+    y: Number = 0
+    for (i, j), sign in terms:
+        (ax, ay), (bx, by) = vertices[i], vertices[j]
+        u, w = bx - ax, (by - ay) * sign
+        x, y = x * u - y * w, x * w + y * u
+    return abs(float(y / x)) if x else pi / 2
+
+
+def _angle(places: _Places, v: int, w: int) -> float:
+    return atan2(places[w][1] - places[v][1], places[w][0] - places[v][0])
+
+
+def _length(places: _Places, edge: Edge) -> float:
+    (ax, ay), (bx, by) = places[edge[0]], places[edge[1]]
+    return hypot(bx - ax, by - ay)
+
+
+def _edge(v: int, w: int) -> Edge:
+    return (v, w) if v < w else (w, v)

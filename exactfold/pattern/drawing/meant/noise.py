@@ -1,0 +1,146 @@
+"""The noise level of a drawing: below it relations are meant, above it nothing is near."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise
+from math import lcm, lgamma, log
+from typing import Final
+
+GAP: Final = 100.0
+"""The noise is believed only if nothing else is off by less than this many times the noise."""
+TOLERANCE: Final = 30.0
+"""A relation holds if it is missed by at most this many times the noise."""
+CHANCE: Final = 1e-3
+"""So many relations by chance are allowed for each relation that is found."""
+_FINEST: Final = 1e-16
+_EASILY: Final = 0.003
+_ALIKE: Final = 1e-6
+_EXCESS: Final = 0.02
+_UNLIKELY: Final = 1e-4
+_FINER: Final = 1.02
+"""Counts of near relations are told apart if one is this many times the other."""
+
+
+@dataclass(frozen=True)
+class Noise:
+    """The noise level `eps` of a drawing, and how far it stands out; lengths over the size.
+
+    `clear` is the smallest defect above the noise. `chance` is the number of relations that are
+    expected to be within the tolerance by chance. `near` counts the defects, from the smallest on,
+    that chance does not explain. `reason` says why the level is not believed.
+    """
+
+    eps: float
+    clear: float
+    chance: float
+    near: int
+    reason: str = ""
+
+    @property
+    def gap(self) -> float:
+        """How many times the noise the next larger defect is."""
+        return self.clear / self.eps
+
+    @property
+    def tolerance(self) -> float:
+        """A relation of any kind holds if it is missed by no more than this."""
+        return TOLERANCE * self.eps
+
+
+def noise_level(
+    found: Sequence[tuple[float, float]], densities: Sequence[float], floor: float, beyond: float
+) -> Noise | None:
+    """The noise level of a drawing; None if it misses no relation narrowly.
+
+    `found` has the defect and the density of each relation that may be near, and `densities` those
+    of all places where there might be one (`local_relations`). `floor` is the last digit of the
+    coordinates, and relations that are no longer near are missed by at least `beyond`.
+
+    Defects that are exactly 0 say nothing about noise. The others are cut into levels where one is
+    `GAP` times the one before. A level is believed if chance explains less than `CHANCE` of its
+    defects. The noise is the largest defect of the highest level that is believed.
+
+    The expected number of chance relations is the larger of two estimates: for independent uniform
+    rays, and for defects as dense as those above the level are.
+    """
+    missed = sorted((defect, density) for defect, density in found if defect)
+    if not missed:
+        return None
+    defects = [max(defect, floor) for defect, _ in missed]
+    above = [*defects[1:], beyond]
+    ends = [k for k, (eps, clear) in enumerate(zip(defects, above, strict=True), 1) if clear > eps]
+
+    def expected(end: int) -> float:
+        eps = defects[end - 1]
+        seen = max((k / defect for k, defect in enumerate(defects[end:], 1)), default=0.0)
+        return max(sum(min(1.0, density * eps) for density in densities), eps * seen)
+
+    clear_ends = [0, *(k for k in ends if above[k - 1] >= GAP * defects[k - 1])]
+    for start, end in reversed([*pairwise(clear_ends)]):
+        if (chance := expected(end)) < CHANCE * (end - start):
+            return Noise(defects[end - 1], above[end - 1], chance, end)
+    near = 0
+    for end in ends:
+        if end > _FINER * near and _suspicious(missed[:end], defects[end - 1], densities):
+            near = end
+    if not near:
+        return None
+    eps, clear, chance = defects[near - 1], above[near - 1], expected(near)
+    return Noise(eps, clear, chance, near, _refusal(eps, clear, chance, near))
+
+
+def _suspicious(
+    missed: Sequence[tuple[float, float]], eps: float, densities: Sequence[float]
+) -> bool:
+    """Whether there are more near relations than chance explains, though perhaps of no clear level.
+
+    Relations of edges so short that chance makes them easily are left out. Defects that agree count
+    once, as they are copies of one place in a repeating pattern.
+    """
+    expected = sum(density for density in densities if density * eps < _EASILY) * eps
+    copies = {round(log(defect) / _ALIKE) for defect, density in missed if density * eps < _EASILY}
+    hits = len(copies)
+    if not hits or not expected:
+        return bool(hits)
+    return expected < _EXCESS * hits and hits * log(expected) - lgamma(hits + 1) < log(_UNLIKELY)
+
+
+def _refusal(eps: float, clear: float, chance: float, near: int) -> str:
+    if clear < GAP * eps:
+        return (
+            f"no gap: relations are missed by up to {eps:.1g} of the size, and others by "
+            f"{clear:.1g}; only {clear / eps:.2g} times more, and {GAP:g} times is needed"
+        )
+    return (
+        f"chance: {chance:.1g} relations are expected by chance, and {near} were found; chance may "
+        f"explain {CHANCE:g} of them"
+    )
+
+
+def last_digit(points: Iterable[tuple[Fraction, Fraction]], size: float) -> float:
+    """Half of the last decimal digit of the coordinates, over the size, at least 1e-16.
+
+    By so much rounding moves a coordinate.
+    Fractions without a finite decimal are crossings that were computed exactly, and coordinates
+    below 1e-9 of the size are noise about zero; both are ignored.
+    """
+    common = 1
+    for point in points:
+        for c in point:
+            if common % c.denominator and abs(c) > 1e-9 * size:
+                longer = lcm(common, c.denominator)
+                if _decimals(longer) is not None:
+                    common = longer
+    return max(_FINEST, 0.5 * 10.0 ** -(_decimals(common) or 0) / size)
+
+
+def _decimals(denominator: int) -> int | None:
+    """The number of decimals of a fraction; None if there is no finite decimal."""
+    twos = (denominator & -denominator).bit_length() - 1
+    rest, fives = denominator >> twos, 0
+    while rest % 5 == 0:
+        rest, fives = rest // 5, fives + 1
+    return max(twos, fives) if rest == 1 else None

@@ -1,0 +1,187 @@
+"""Exact positions of vertices near a drawing, from exact directions of its edges."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from math import hypot
+from typing import TypeAlias
+
+import numpy as np
+
+from exactfold._support.arrays import FloatArray
+from exactfold.exact.surds import Number, Surd
+from exactfold.pattern.drawing.meant.directions import Directions, Vector, cross
+from exactfold.pattern.drawing.meant.placing import Coordinate, Order, Step, placing_order
+from exactfold.pattern.drawing.meant.values import Angles, Edge
+
+Written: TypeAlias = Sequence[tuple[Fraction, Fraction]]
+"""The points as the drawing states them."""
+
+
+def exact_positions(
+    written: Written, directions: Directions, bound: Sequence[Edge], noise: float
+) -> list[tuple[Surd, Surd]]:
+    """Positions near the written ones, such that the edges `bound` have the given directions.
+
+    If that is impossible, some of these edges miss their direction; `missed` lists them. The free
+    coordinates are short decimals, rounded far below the noise level `noise`, which is relative to
+    the larger side of the drawing.
+    """
+    places = np.array([(float(x), float(y)) for x, y in written])
+    units = {edge: _unit(directions.vectors[edge]) for edge in bound}
+    order = placing_order(places, units, 100 * noise)
+    placed = _Placed(directions, _free_values(written, places, order, noise))
+    for step in order.steps:
+        placed.place(step)
+    return placed.points()
+
+
+def missed(
+    points: Sequence[tuple[Surd, Surd]], directions: Directions, bound: Sequence[Edge]
+) -> list[Edge]:
+    """The edges among `bound` that do not have their exact direction."""
+    return [edge for edge in bound if cross(directions.vectors[edge], _along(points, edge))]
+
+
+def bound_edges(angles: Angles) -> list[Edge]:
+    """The edges whose direction is given.
+
+    A free angle that only one edge has takes whatever value the positions give it. So this edge is
+    left out, and then the same holds for the free angles that are left with one edge.
+    """
+    left = {edge: {k for k, _ in angles.coefficients.get(edge, ())} for edge in angles.constants}
+    uses = Counter(k for free in left.values() for k in free)
+    waiting = list(left)
+    while waiting:
+        edge = waiting.pop()
+        if edge in left and any(uses[k] == 1 for k in left[edge]):
+            gone = left.pop(edge)
+            uses.subtract(gone)
+            waiting += [other for other, free in left.items() if free & gone]
+    return list(left)
+
+
+def _unit(vector: Vector) -> tuple[float, float]:
+    x, y = float(vector[0]), float(vector[1])
+    length = hypot(x, y)
+    return x / length, y / length
+
+
+def _free_values(
+    written: Written, places: FloatArray, order: Order, noise: float
+) -> dict[Coordinate, Fraction]:
+    """Short decimals for the free coordinates, with which all points are nearest to the drawing."""
+    size = float(np.ptp(places, axis=0).max())
+    start = np.array([places[v, axis] for v, axis in order.free])
+    off = places.reshape(-1) - order.matrix @ start
+    moves = np.linalg.lstsq(order.matrix, off, rcond=None)[0]
+    digits = 0
+    while 10.0**-digits * 4 > noise * size and digits < 40:
+        digits += 1
+    return {
+        (v, axis): round(written[v][axis] + Fraction(float(move)), digits)
+        for (v, axis), move in zip(order.free, moves, strict=True)
+    }
+
+
+Form: TypeAlias = dict[Coordinate | None, Surd]
+"""A sum of multiples of open coordinates; the constant stands at None."""
+
+
+class _Placed:
+    """Places the vertices exactly; free coordinates that follow from others are open at first."""
+
+    def __init__(self, directions: Directions, free: Mapping[Coordinate, Fraction]) -> None:
+        self.field, self.vectors, self.free = directions.field, directions.vectors, free
+        self.forms: dict[int, tuple[Form, Form]] = {}
+        self.solved: dict[Coordinate, Form] = {}
+        self.inverses: dict[tuple[Vector, Vector], Surd] = {}
+
+    def place(self, step: Step) -> None:
+        """Do one step; a condition that must hold anyway is checked later."""
+        v = step.vertex
+        opened = [self._open(coordinate) for coordinate in step.free]
+        if not step.lines:
+            self.forms[v] = (opened[0], opened[1])
+        else:
+            first = step.lines[0]
+            d, start = self.vectors[first], self._of(first[0] + first[1] - v)
+            if len(step.lines) == 1:
+                axis = step.free[0][1]
+                along = _sum(opened[0], start[axis], -1, 1 / d[axis])
+            else:
+                second = step.lines[1]
+                e, other = self.vectors[second], self._of(second[0] + second[1] - v)
+                apart = [_sum(other[k], start[k], -1) for k in (0, 1)]
+                along = _sum(
+                    _scaled(apart[1], e[0]), _scaled(apart[0], e[1]), -1, self._inverse(e, d)
+                )
+            self.forms[v] = (
+                _sum(start[0], along, d[0]),
+                _sum(start[1], along, d[1]),
+            )
+        for edge, open_one in step.checks:
+            if open_one is not None:
+                self._solve(edge, open_one)
+
+    def points(self) -> list[tuple[Surd, Surd]]:
+        """All points; a coordinate that is still open is set to 0."""
+        zero = self.field.number(0)
+        points = []
+        for v in range(len(self.forms)):
+            x, y = self._of(v)
+            points.append((x.get(None, zero), y.get(None, zero)))
+        return points
+
+    def _open(self, coordinate: Coordinate) -> Form:
+        if coordinate in self.free:
+            return {None: self.field.number(self.free[coordinate])}
+        return {coordinate: self.field.number(1)}
+
+    def _inverse(self, e: Vector, d: Vector) -> Surd:
+        if (e, d) not in self.inverses:
+            self.inverses[e, d] = 1 / cross(e, d)
+        return self.inverses[e, d]
+
+    def _of(self, v: int) -> tuple[Form, Form]:
+        x, y = self.forms[v]
+        self.forms[v] = self._known(x), self._known(y)
+        return self.forms[v]
+
+    def _known(self, form: Form) -> Form:
+        """The form, once all solved coordinates are replaced."""
+        while any(c in self.solved for c in form):
+            for c in [c for c in form if c in self.solved]:
+                factor = form[c]
+                rest = {k: x for k, x in form.items() if k != c}
+                form = _sum(rest, self.solved[c], factor)
+        return form
+
+    def _solve(self, edge: Edge, open_one: Coordinate) -> None:
+        """Let one open coordinate follow from the others by the direction of an edge."""
+        d = self.vectors[edge]
+        a, b = self._of(edge[0]), self._of(edge[1])
+        apart = [_sum(b[k], a[k], -1) for k in (0, 1)]
+        off = _sum(_scaled(apart[1], d[0]), _scaled(apart[0], d[1]), -1)
+        if factor := off.pop(open_one, None):
+            self.solved[open_one] = _scaled(off, -1 / factor)
+
+
+def _sum(a: Form, b: Form, factor: Number = 1, scale: Number = 1) -> Form:
+    """(a + factor b) scale, without the coefficients that are 0."""
+    total = dict(a)
+    for key, value in b.items():
+        term = value * factor
+        total[key] = total[key] + term if key in total else term
+    return {key: value * scale for key, value in total.items() if value}
+
+
+def _scaled(form: Form, scale: Number) -> Form:
+    return {key: value * scale for key, value in form.items()} if scale else {}
+
+
+def _along(points: Sequence[tuple[Surd, Surd]], edge: Edge) -> Vector:
+    (ax, ay), (bx, by) = (points[v] for v in edge)
+    return bx - ax, by - ay

@@ -1,0 +1,233 @@
+"""The sheet that was meant: what is inferred from a drawing whose digits are inexact."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any, Final, TypedDict
+
+from exactfold._support.documents import Natural, NotNegative
+from exactfold._support.plurals import counted
+from exactfold.errors import NotApplicableError
+from exactfold.pattern.drawing.meant.left import left_relations
+from exactfold.pattern.drawing.meant.values import Kind, Relation
+from exactfold.pattern.meant_sheet import Existence
+
+if TYPE_CHECKING:
+    from exactfold.pattern.meant_sheet import Realized
+    from exactfold.pattern.panel_pattern import PanelPattern
+    from exactfold.pattern.reading import Reading
+
+_KINDS: Final[tuple[tuple[str, tuple[Kind, ...]], ...]] = (
+    ("straight", ("straight",)),
+    ("Kawasaki", ("kawasaki",)),
+    ("border", ("border",)),
+    ("grid or mirrored", ("grid", "parallel", "mirrored", "sectors")),
+)
+"""The kinds of relations in words."""
+
+
+class RelationDocument(TypedDict):
+    """A relation between the angles of edges."""
+
+    name: str
+    """What --without takes."""
+    kind: Kind
+    defect: NotNegative
+    """By how much the drawing misses it: an angle times the shortest edge over the size."""
+
+
+class MeantDocument(TypedDict):
+    """The sheet that was meant by an inexact drawing, and how it was inferred."""
+
+    eps: NotNegative | None
+    """The noise level: relations that were meant miss by about so much of the size."""
+    clear: NotNegative | None
+    """The least defect of a relation that was not meant."""
+    gap: NotNegative | None
+    """How many times larger that is than the greatest defect of a relation that was meant."""
+    chance: NotNegative | None
+    """The number of relations that are expected by chance."""
+    relations: list[RelationDocument]
+    independent: Natural
+    """So many of the relations imply all of them."""
+    free_angles: Natural
+    distance: NotNegative | None
+    """The largest distance of a vertex from the drawing, by its size."""
+    existence: Existence
+    """How a sheet with all relations was proved to exist."""
+    left: list[RelationDocument]
+    """Relations that the sheet of the answer nearly has; if there are any, the answer holds for
+    these digits only."""
+    reason: str
+    """Why no sheet was inferred; empty if one was."""
+
+
+@dataclass(frozen=True)
+class Meant:
+    """What is known of the sheet that an inexact drawing means.
+
+    `noise` is the noise level, and no other relation is off by less than `clear`; the quotient of
+    `clear` and the greatest defect is `gap`. `chance` is the expected number of relations by
+    chance. `independent` of the `relations` imply all, and leave `free_angles` angles free. A sheet
+    with all relations lies within `distance` of the drawing; `existence` says how that is proved.
+    `left` are relations that the sheet of the answer nearly has. `reason` says why no sheet was
+    inferred. `realized` has the sheet with the digits as written, and the exact one. `implied` maps
+    a relation that was deleted to those that imply it all the same.
+    """
+
+    noise: float | None = None
+    clear: float | None = None
+    gap: float | None = None
+    chance: float | None = None
+    relations: tuple[Relation, ...] = ()
+    independent: int = 0
+    free_angles: int = 0
+    distance: float | None = None
+    existence: Existence = "none"
+    left: tuple[Relation, ...] = ()
+    reason: str = ""
+    realized: Realized | None = field(default=None, repr=False)
+    implied: Mapping[str, tuple[str, ...]] = field(default_factory=dict, hash=False)
+
+    @property
+    def inferred(self) -> bool:
+        """Whether the sheet of the answer is the sheet that was meant, not the drawing itself."""
+        return self.existence == "exact"
+
+    @property
+    def doubt(self) -> str:
+        """Why an answer about this sheet is one about its digits only; empty if it is not."""
+        if not self.left:
+            return ""
+        least = self.left[0]
+        if len(self.left) == 1:
+            near = f"one relation nearly holds, {least.name}"
+        else:
+            near = f"{len(self.left)} relations nearly hold, such as {least.name}"
+        text = (
+            f"{near}, off by {least.defect:.1g} of the size, so that answers hold only for these "
+            "digits"
+        )
+        return f"{text}: {self.reason}" if self.reason else text
+
+    @property
+    def name(self) -> str:
+        """What the sheet of the answer is."""
+        return f"the sheet that was meant, within {self.distance or 0:.1e} of the drawing"
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """What was inferred, one sentence each."""
+        if not self.inferred:
+            return ()
+        lines = []
+        if self.noise is not None and self.clear is not None:
+            lines.append(
+                f"the drawing is inexact by {self.noise:.0e} of its size; nothing else is off by "
+                f"less than {self.clear:.0e}"
+            )
+        chance = f"; by chance {self.chance:.0e} expected" if self.chance is not None else ""
+        lines.append(
+            f"{counted(len(self.relations), 'relation')} of angles ({kinds(self.relations)}), "
+            f"{self.independent} independent{chance}"
+        )
+        lines.append(
+            f"within {self.distance or 0:.1e} of the drawing there is a sheet with all of them - "
+            "PROVED"
+        )
+        for name, others in self.implied.items():
+            lines.append(f"{name} holds all the same, because of {', '.join(others)}")
+        return tuple(lines)
+
+    @property
+    def listed(self) -> tuple[str, ...]:
+        """The relations, or those that nearly hold if none was inferred, one line each."""
+        shown = self.relations if self.inferred else self.left
+        return tuple(f"{one.name} is off by {one.defect:.1e}" for one in shown)
+
+    def certificate(self) -> dict[str, Any]:
+        """The certificate that the sheet exists near the drawing and has all relations.
+
+        Raises `NotApplicableError` if no sheet was inferred.
+        """
+        if self.realized is None or not self.inferred:
+            raise NotApplicableError(f"no sheet was inferred from the drawing: {self.reason}")
+        from exactfold.pattern.meant_sheet import certificate
+
+        return certificate(self.realized, self.relations)
+
+    def to_dict(self) -> MeantDocument:
+        """The key `meant` of JSON."""
+        return {
+            "eps": self.noise,
+            "clear": self.clear,
+            "gap": self.gap,
+            "chance": self.chance,
+            "relations": [document(relation) for relation in self.relations],
+            "independent": self.independent,
+            "free_angles": self.free_angles,
+            "distance": self.distance,
+            "existence": self.existence,
+            "left": [document(relation) for relation in self.left],
+            "reason": self.reason,
+        }
+
+    def __repr__(self) -> str:
+        what = f"{self.independent} independent" if self.inferred else "nothing inferred"
+        return f"<Meant: {counted(len(self.relations), 'relation')}, {what}>"
+
+
+def document(relation: Relation) -> RelationDocument:
+    """A relation as JSON."""
+    return {"name": relation.name, "kind": relation.kind, "defect": relation.defect}
+
+
+def kinds(relations: Iterable[Relation]) -> str:
+    """How many relations of each kind there are, in words.
+
+    >>> kinds([Relation("border", "border@1:0-2", (), 1, 0.0)])
+    '1 border'
+    """
+    counts = Counter(relation.kind for relation in relations)
+    numbers = [(sum(counts[kind] for kind in group), name) for name, group in _KINDS]
+    return ", ".join(f"{number} {name}" for number, name in numbers if number)
+
+
+def inferred(written: PanelPattern, reading: Reading) -> Meant:
+    """The sheet that was meant by a drawing with inexact digits, or why none is inferred.
+
+    `written` is the sheet with the digits as written; its coordinates are rational. Raises the
+    errors of `infer` for relations that do not exist or contradict each other.
+    """
+    from exactfold.pattern.drawing.meant.inference import infer
+    from exactfold.pattern.meant_sheet import realize
+
+    points = [(Fraction(x), Fraction(y)) for x, y in written.vertices]  # type: ignore[arg-type]
+    overruled = {"without": reading.without, "also": reading.also}
+    found = infer(
+        points,
+        written.edges,
+        written.boundary_edges,
+        **{name: value for name, value in overruled.items() if value},
+    )
+    known = Meant(
+        noise=found.noise,
+        clear=found.clear,
+        gap=found.gap,
+        chance=found.chance,
+        relations=found.relations,
+        independent=found.independent,
+        reason=found.reason,
+        implied=found.implied,
+    )
+    if found.angles is None:
+        return known
+    made = realize(written, found.angles, found.noise)
+    known = replace(known, free_angles=len(found.angles.free), realized=made, reason=made.reason)
+    if made.sheet is None:
+        return known
+    left = left_relations(made.sheet)
+    return replace(known, distance=float(made.distance), existence=made.existence, left=left)

@@ -1,0 +1,71 @@
+"""Relations that a sheet nearly has are told from those that it has, and from chance."""
+
+import random
+from fractions import Fraction
+
+import pytest
+
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.data import EXAMPLES
+from exactfold.pattern.degenerate import DEGENERATE
+from exactfold.pattern.drawing.meant.left import left_relations
+from exactfold.pattern.loading import open_sheet
+from exactfold.pattern.opening import panels
+from exactfold.pattern.panel_pattern import PanelPattern
+
+KITE = [(0, 0), (3, 0), (2, 2), (0, 1)]
+SQUARE = [(0, 0), (1, 0), (1, 1), (0, 1)]
+FAN = [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)]
+
+
+@pytest.mark.parametrize("name", [*EXAMPLES, *DEGENERATE])
+def test_exact_sheets_have_no_relation_nearly(name):
+    sheet = open_sheet(name).sheet if name in EXAMPLES else DEGENERATE[name]()
+    assert left_relations(sheet) == ()
+
+
+def test_the_defect_is_an_angle_times_the_shortest_edge_over_the_size():
+    off = Fraction("1e-8")
+    sheet = CreasePattern([*KITE, (Fraction(1, 2) + off, Fraction(1, 2) - off)], FAN)
+    (near,) = left_relations(sheet)
+    assert (near.kind, near.name, near.parts) == ("straight", "straight@4:0-2", 1)
+    assert dict(near.terms) == {(0, 4): 1, (2, 4): -1}
+    short, long = 0.5 * 2**0.5, 1.5 * 2**0.5
+    assert near.defect == pytest.approx(1e-8 * 2**0.5 * (1 / short + 1 / long) * short / 3)
+    assert left_relations(panels(sheet)) == (near,)
+
+
+def test_defects_far_below_floats_are_seen():
+    off = Fraction(1, 10**40)
+    (near,) = left_relations(CreasePattern([*KITE, (Fraction(1, 2) + off, Fraction(1, 2))], FAN))
+    assert near.defect == pytest.approx(1e-40 * 0.5**0.5 * 4 / 3 / 3, rel=1e-6)
+
+
+def test_a_border_that_is_nearly_straight():
+    bent = CreasePattern([(0, 0), (1, "-1e-12"), (2, 0), (1, 1)], [(0, 1, 3), (1, 2, 3)])
+    assert [near.name for near in left_relations(bent)] == ["border@1"]
+
+
+@pytest.mark.parametrize(("height", "defects"), [(0, []), ("1e-11", [1e-11 / 3 * 3 / 7])])
+def test_a_sum_of_kawasaki(height, defects):
+    star = [(3, height), (0, 3), (-4, 3), (-3, -4), (0, 0)]  # two opposite sectors of 90 degrees
+    edges = [(0, 1), (1, 2), (2, 3), (0, 3), (0, 4), (1, 4), (2, 4), (3, 4)]
+    near = left_relations(PanelPattern(star, edges))
+    assert [relation.name for relation in near] == ["kawasaki@4"] * len(defects)
+    assert [relation.defect for relation in near] == pytest.approx(defects, rel=1e-6)
+
+
+def test_few_random_sheets_have_near_relations():
+    """At most 0.05 are expected for each sheet, and this seed has fewer."""
+    rng, near = random.Random(1), 0
+    for _ in range(200):
+        x, y = (Fraction(rng.randrange(1, 10**15), 10**15) for _ in "xy")
+        near += len(left_relations(CreasePattern([*SQUARE, (x, y)], FAN)))
+    assert near == 0
+
+
+@pytest.mark.parametrize(("digits", "number"), [(4, 0), (12, 1)])
+def test_coordinates_on_a_coarse_grid_are_exact(digits, number):
+    third = Fraction(round(Fraction(10**digits, 3)), 10**digits)
+    sheet = CreasePattern([*SQUARE, (third, third + Fraction(1, 10**digits))], FAN)
+    assert len([n for n in left_relations(sheet) if n.kind == "straight"]) == number

@@ -1,0 +1,195 @@
+"""Exact sheets near drawings with noise, whose angles are given."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from fractions import Fraction
+from itertools import pairwise
+
+import pytest
+from flint import arb, ctx
+from noisy_sheets import angles_of, with_noise
+from panel_sheets import chicken_wire, mesh, miura, tiling
+
+from exactfold.errors import UsageError
+from exactfold.exact.surds import ball
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.data import example_path
+from exactfold.pattern.drawing.meant.values import Angles, Edge
+from exactfold.pattern.meant_sheet import Realized, realize
+from exactfold.pattern.opening import open_pattern, panels
+from exactfold.pattern.panel_pattern import PanelPattern
+
+SQUARE = [(0, 1), (1, 2), (2, 3), (0, 3)]
+
+
+def example(name: str) -> PanelPattern:
+    sheet = open_pattern(example_path(name)).sheet
+    return panels(sheet) if isinstance(sheet, CreasePattern) else sheet
+
+
+def off_grid(sheet: PanelPattern, edge: Edge, constant: Fraction) -> arb:
+    """A ball of 200 bits round the sine of the angle between an edge and a multiple of pi."""
+    before, ctx.prec = ctx.prec, 200
+    try:
+        (ax, ay), (bx, by) = (sheet.vertices[v] for v in edge)
+        turn = arb(constant.numerator) / constant.denominator
+        x, y = ball(bx - ax, 400), ball(by - ay, 400)
+        return (x * turn.sin_pi() - y * turn.cos_pi()) / (x * x + y * y).sqrt()
+    finally:
+        ctx.prec = before
+
+
+def check_exact(made: Realized, angles: Angles, noise: float) -> PanelPattern:
+    """All edges have their angles exactly, and no point is far from where it was drawn."""
+    assert made.existence == "exact", made.reason
+    sheet = made.sheet
+    assert sheet is not None
+    along: dict[tuple[tuple[int, Fraction], ...], list[Edge]] = {}
+    for edge, constant in angles.constants.items():
+        terms = angles.coefficients.get(edge, ())
+        along.setdefault(terms, []).append(edge)
+        if not terms:
+            sine = off_grid(sheet, edge, constant)
+            assert sine.contains(0)
+            assert sine.rad() < 1e-50
+    for terms, edges in along.items():
+        for one, other in pairwise(edges if terms else ()):
+            (ax, ay), (bx, by) = (difference(sheet, edge) for edge in (one, other))
+            assert ax * by - ay * bx == 0
+    size = max(max(axis) - min(axis) for axis in zip(*made.drawn.vertices, strict=True))
+    for (x, y), (a, b) in zip(sheet.vertices, made.drawn.vertices, strict=True):
+        moved = ball((x - a) * (x - a) + (y - b) * (y - b), 200)
+        assert moved <= ball((made.distance * size) ** 2, 200)
+    assert made.distance < 3 * noise
+    return sheet
+
+
+def difference(sheet: PanelPattern, edge: Edge) -> tuple[object, object]:
+    (ax, ay), (bx, by) = (sheet.vertices[v] for v in edge)
+    return bx - ax, by - ay
+
+
+@pytest.mark.parametrize("noise", [1e-12, 1e-9, 1e-6])
+@pytest.mark.parametrize(
+    "sheet",
+    [
+        lambda: miura(4, 5),
+        lambda: tiling(3, 3),
+        lambda: mesh(3, 3, 1),
+        lambda: chicken_wire(3, 3),
+        lambda: example("bird-base"),
+        lambda: example("hypar-2"),
+        lambda: example("square-twist"),
+        lambda: example("flapping-bird"),
+    ],
+)
+def test_noise_on_exact_sheets(sheet: Callable[[], PanelPattern], noise: float) -> None:
+    angles = angles_of(sheet(), 48)
+    made = realize(with_noise(sheet(), noise), angles, noise)
+    found = check_exact(made, angles, noise)
+    assert found.faces == sheet().faces
+    assert made.bits <= 80
+
+
+def test_noise_below_the_last_digit_of_floats() -> None:
+    angles = angles_of(miura(4, 5), 48)
+    drawn = with_noise(miura(4, 5), 1e-16)
+    made = realize(drawn, angles, 1e-16)
+    check_exact(made, angles, 1e-15)
+
+
+def test_halved_angles_and_sums() -> None:
+    """A kite: its diagonal has the mean of the angles of two sides, which are free."""
+    third = (Fraction("9.9"), Fraction("4.1000001"))
+    points = [
+        (Fraction(0), Fraction(0)),
+        (Fraction(8), Fraction(1)),
+        third,
+        (Fraction(5), Fraction(7)),
+    ]
+    kite = PanelPattern(points, [*SQUARE, (0, 2)])
+    half = Fraction(1, 2)
+    low, high = 0.12435499454676144, 0.9505468408120751  # atan(1/8), atan(7/5)
+    angles = Angles(
+        {edge: Fraction(0) for edge in [(0, 1), (0, 2), (0, 3)]},
+        {(0, 1): ((0, Fraction(1)),), (0, 3): ((1, Fraction(1)),), (0, 2): ((0, half), (1, half))},
+        (low, high),
+    )
+    made = realize(kite, angles, 1e-3)
+    assert made.existence == "exact"
+    assert made.sheet is not None
+    (ax, ay), (bx, by), (cx, cy) = (difference(made.sheet, e) for e in [(0, 1), (0, 2), (0, 3)])
+    # (B^2 / (A C)) is real and positive
+    re, im = bx * bx - by * by, 2 * bx * by
+    u, v = ax * cx - ay * cy, ax * cy + ay * cx
+    assert im * u - re * v == 0
+    assert re * u + im * v > 0
+
+
+# --- sheets that do not exist, or that are not the sheet that was drawn ---------------------------
+
+
+def test_angles_that_no_tower_of_square_roots_holds() -> None:
+    square = PanelPattern([(0, 0), (1, 0), (1, 1), (0, 1)], SQUARE)
+    angles = Angles({(0, 1): Fraction(1, 9)}, {}, ())
+    made = realize(square, angles, 1e-9)
+    assert (made.existence, made.sheet, made.bits) == ("none", None, 0)
+    assert made.reason == (
+        "some angles are multiples of pi/9 that have directions in no small tower of square roots"
+    )
+
+
+def test_directions_that_no_sheet_has() -> None:
+    """A square with a diagonal at 45 degrees, and another diagonal that is meant at 60 degrees."""
+    points = [(0, 0), (2, 0), (2, 2), (0, 2), (1, 1)]
+    drawn = PanelPattern(points, [*SQUARE, (0, 4), (1, 4), (2, 4), (3, 4)])
+    angles = angles_of(drawn, 4)
+    constants = {**angles.constants, (3, 4): Fraction(3, 4) + Fraction(1, 12)}
+    made = realize(drawn, Angles(constants, {}, ()), 1e-3)
+    assert made.existence == "none"
+    assert made.reason == (
+        "the exact positions do not make the sheet that was drawn: vertices 0 and 1 are at the "
+        "same point"
+    )
+
+
+def test_positions_that_constrain_free_angles() -> None:
+    """A square with a diagonal at a free angle: only one angle leads from corner to corner."""
+    points = [(0, 0), (2, 0), (2, 2), (0, 2), (1, 1)]
+    drawn = PanelPattern(points, [*SQUARE, (0, 4), (1, 4), (2, 4), (3, 4)])
+    constants = {**angles_of(drawn, 4).constants, (0, 4): Fraction(0), (2, 4): Fraction(0)}
+    one = ((0, Fraction(1)),)
+    made = realize(drawn, Angles(constants, {(0, 4): one, (2, 4): one}, (0.7853981,)), 1e-6)
+    assert made.existence == "none"
+    assert made.reason.startswith("the positions of the vertices constrain the free angles: 1 of 8")
+
+
+def test_a_sheet_that_collapses() -> None:
+    """Three sides of a thin triangle, all meant to be horizontal."""
+    drawn = PanelPattern([(0, 0), (2, 0), (1, Fraction(1, 1000))], [(0, 1), (1, 2), (0, 2)])
+    angles = Angles({edge: Fraction(0) for edge in drawn.edges}, {}, ())
+    made = realize(drawn, angles, 1e-3)
+    assert made.existence == "none"
+    assert made.reason == (
+        "the exact positions do not make the sheet that was drawn: vertex 2, an end of edge 0-2, "
+        "lies inside edge 0-1"
+    )
+
+
+def test_a_panel_that_turns_over() -> None:
+    """A square with a narrow triangle on one side, whose tip is meant on the other side."""
+    tip = (Fraction(1), Fraction(-1, 1000))
+    points = [(0, 0), (2, 0), (2, 2), (0, 2), tip]
+    drawn = PanelPattern(points, [*SQUARE, (0, 4), (1, 4)])
+    turned = Fraction(1, 48)
+    angles = Angles({**angles_of(drawn, 4).constants, (0, 4): turned, (1, 4): -turned}, {}, ())
+    made = realize(drawn, angles, 1e-3)
+    assert made.existence == "none"
+    assert made.reason == "the exact positions turn over or break panel 0-1-2-3"
+
+
+def test_irrational_coordinates_are_refused() -> None:
+    sheet = example("bird-base")
+    with pytest.raises(UsageError, match="irrational and already exact"):
+        realize(sheet, angles_of(sheet, 8), 1e-9)
