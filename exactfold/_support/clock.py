@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import Final
 
 from exactfold.errors import TooManyModesError
+
+LIMIT: Final = 60.0
+"""The seconds that a command takes for one sheet, unless another limit is asked for."""
 
 
 @dataclass(frozen=True)
@@ -20,14 +24,19 @@ class Clock:
     """
 
     limit: float | None = None
+    _share: float = field(default=1.0, repr=False)
     _start: float = field(default_factory=time.monotonic, repr=False, compare=False)
+
+    def share(self, part: float) -> Clock:
+        """The clock of a search that may take this part of the time, so that some is left after."""
+        return replace(self, _share=part * self._share)
 
     @property
     def left(self) -> float | None:
         """The seconds that are left, at least 0; None if there is no limit."""
         if self.limit is None:
             return None
-        return max(0.0, self.limit - (time.monotonic() - self._start))
+        return max(0.0, self._start + self._share * self.limit - time.monotonic())
 
     @property
     def passed(self) -> bool:
@@ -45,5 +54,5 @@ class Clock:
             raise TooManyModesError(self.said)
 
 
-UNLIMITED = Clock()
+UNLIMITED: Final = Clock()
 """The clock without a limit."""

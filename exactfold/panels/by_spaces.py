@@ -36,8 +36,8 @@ def by_spaces(pattern: PanelPattern, moving: Mapping[int, Star], clock: Clock = 
 
     The dimension of the first-order motions is exact. The part is not decomposed if several forms
     remain on a space and are not shown to be one component, if there are too many spaces, if the
-    dimension is too large, or if the clock has passed. Then the result contains the components that were found, and the folds
-    that stay flat to second order.
+    dimension is too large, or if the clock has passed. Then the result contains the components that
+    were found, and the folds that stay flat to second order.
     """
     rows, size = first_order(moving)
     small, left = reduced(moving, rows, size, MOST_REDUCTION, clock)

@@ -57,7 +57,7 @@ class _Kinds:
 
 
 class Proposals:
-    """A depth-first search for motions, with a fixed number of steps; it ends when the clock passed.
+    """A depth-first search for motions, with a fixed number of steps and a clock.
 
     On each space of motions, a semidefinite form leaves its kernel, a form of inertia (1, 1) splits
     the space, and other forms remain. Where no form splits the space any more, Newton's method

@@ -25,6 +25,7 @@ from exactfold.panels.extension import Extension
 from exactfold.panels.found import FoundComponent
 from exactfold.panels.local import LocalMode
 from exactfold.panels.near_misses import NearMiss, NearMissDocument
+from exactfold.panels.partial import Drawn, DrawnDocument, Freedom, FreedomDocument
 from exactfold.panels.subspaces import Leaf
 from exactfold.pattern.described import PanelsDocument, described_panels
 from exactfold.pattern.meant import Meant, MeantDocument
@@ -62,15 +63,6 @@ class ModeDocument(TypedDict):
     by: str
 
 
-class FreedomDocument(TypedDict):
-    """Proved bounds for the largest dimension of a family of true motions."""
-
-    least: Natural
-    most: Natural
-    first_order: Natural | None
-    """The dimension of the first-order motions; null where it was not needed."""
-
-
 class AsWrittenDocument(TypedDict):
     """The count for the digits of an inexact drawing."""
 
@@ -89,6 +81,8 @@ class MotionKeys(TypedDict):
 
     components: ComponentsDocument | None
     degrees_of_freedom: FreedomDocument | None
+    drawn: DrawnDocument | None
+    """The answer for the letters of the drawing; null if all ways are known."""
     modes_count: Natural | None
     modes: list[ModeDocument]
     flat_folds: list[FoldText]
@@ -201,7 +195,8 @@ class Decomposition(Page, Ways[Mode], Certified):
     If `second_order` is None, `found` is {dimension: number} of the components that were found and
     proved; there are at least this many. If `true` is None, `found_true` is the same for the
     components that are known to fold truly. If no such component is known, `modes` are modes that
-    truly fold; there may be others. `near_misses` are loops that nearly close.
+    truly fold; there may be others. `drawn` is the answer for the letters of the drawing, if it was
+    asked for. `near_misses` are loops that nearly close.
 
     `meant` says what was inferred if the digits of the drawing are inexact, and `as_written` is the
     answer for these digits alone. If `doubt` says why an answer would hold for the digits of the
@@ -229,6 +224,7 @@ class Decomposition(Page, Ways[Mode], Certified):
     meant: Meant | None = None
     doubt: str = ""
     as_written: Decomposition | None = None
+    drawn: Drawn | None = None
     seconds: float = field(default=0.0, compare=False)
 
     WRITER: ClassVar = "exactfold.panels.certificate:certificate_of_panels"
@@ -303,6 +299,7 @@ class Decomposition(Page, Ways[Mode], Certified):
         return {
             "components": self._components(),
             "degrees_of_freedom": None if self.freedom is None else self.freedom.to_dict(),
+            "drawn": None if self.drawn is None else self.drawn.to_dict(),
             "modes_count": self.modes_count,
             "modes": [mode.to_dict() for mode in self.modes],
             "flat_folds": [f"{i}-{j}" for i, j in self.flat],
@@ -316,7 +313,7 @@ class Decomposition(Page, Ways[Mode], Certified):
         """Bounds for the degrees of freedom near the flat sheet; None if nothing bounds them."""
         bounds = [part.freest for part in self.parts]
         dimensions = [part.dimension for part in self.parts]
-        if None in bounds:
+        if None in bounds or self.doubt:
             return None
         free = len(self.free)
         return Freedom(
@@ -348,22 +345,6 @@ class Decomposition(Page, Ways[Mode], Certified):
     def __repr__(self) -> str:
         counts = "" if self.second_order is None else f", {dict(self.second_order)}"
         return f"<Decomposition: {self.status}{counts}, {self.pattern!r}>"
-
-
-@dataclass(frozen=True)
-class Freedom:
-    """Proved bounds for the degrees of freedom: the largest dimension of a family of true motions.
-
-    `first_order` is the dimension of the first-order motions, or None where it was not needed.
-    """
-
-    least: int
-    most: int
-    first_order: int | None
-
-    def to_dict(self) -> FreedomDocument:
-        """The object of these bounds in the JSON output."""
-        return {"least": self.least, "most": self.most, "first_order": self.first_order}
 
 
 @dataclass(frozen=True)
