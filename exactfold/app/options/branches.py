@@ -6,11 +6,13 @@ from typing import Annotated, TypeAlias
 
 import typer
 
+from exactfold._support.clock import LIMIT
 from exactfold.app.options.reading import ReadingOptions
 from exactfold.app.shell.parameters import (
     BoundaryHeights,
     Curvature,
     Json,
+    Limit,
     Pattern,
     Place,
     PrescribedAngles,
@@ -102,6 +104,7 @@ class MatchOptions(ReadingOptions):
         Path | None,
         written("Write a certificate, if the answer is proved.", "OUT.json"),
     ] = None
+    limit: Limit = LIMIT
     as_json: Json = False
     everything: Annotated[bool, flag("--all", text="List every branch and reason.")] = False
 
