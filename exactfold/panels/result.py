@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Annotated, ClassVar, Literal, TypeAlias, TypedDict
+from typing import Annotated, ClassVar, Literal, Protocol, TypeAlias, TypedDict
 
 from exactfold._support.documents import (
     Empty,
@@ -73,6 +73,13 @@ class AsWrittenDocument(TypedDict):
     rigid: bool | None
     distinct: Natural | None
     components: ComponentsDocument | None
+
+
+class OfDigits(Protocol):
+    """A count for the digits of an inexact drawing."""
+
+    def of_digits(self) -> AsWrittenDocument:
+        """The key `as_written` of the answer for the sheet that was meant."""
 
 
 class MotionKeys(TypedDict):
@@ -218,7 +225,7 @@ class Decomposition(Page, Ways[Mode], Certified):
     still: tuple[Edge, ...] = ()
     meant: Meant | None = None
     doubt: str = ""
-    as_written: Decomposition | None = None
+    as_written: OfDigits | None = None
     seconds: float = field(default=0.0, compare=False)
 
     WRITER: ClassVar = "exactfold.panels.certificate:certificate_of_panels"
@@ -303,7 +310,8 @@ class Decomposition(Page, Ways[Mode], Certified):
     @property
     def known(self) -> Decomposition:
         """This answer, or, if it is doubted, what is known for the digits as they are read."""
-        return self.as_written if self.doubt and self.as_written is not None else self
+        known = self.as_written
+        return known if self.doubt and isinstance(known, Decomposition) else self
 
     @property
     def ways(self) -> int | None:

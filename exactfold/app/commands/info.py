@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from exactfold.app import report
 from exactfold.app.options.patterns import InfoOptions
-from exactfold.app.shell.patterns import read_any, warn
+from exactfold.app.shell.patterns import read_any
 from exactfold.app.shell.shell import Bar, name_of
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.opening import has_branches, panels
@@ -53,7 +53,6 @@ def show_info(asked: InfoOptions) -> None:
             if has_branches(sheet):
                 data = _of_branches(facts, name)
             else:
-                warn(sheet)
                 both = _motions(panels(sheet))
                 expected = report.expectation(facts, both)
                 data = {**facts.to_dict(name), **both.keys(), "expected": expected}

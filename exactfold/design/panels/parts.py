@@ -10,7 +10,7 @@ from typing import Final
 from exactfold._support.plurals import counted
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.design.panels.candidates import MotionSearch
-from exactfold.design.panels.cells import Cell, CellSearch
+from exactfold.design.panels.cells import Cell, CellSearch, OpenLoop
 from exactfold.design.panels.first_order_program import FirstOrderProgram
 from exactfold.design.panels.proof import proved_motion
 from exactfold.design.panels.refutation import PanelRefutation
@@ -31,7 +31,8 @@ class PartAnswer:
 
     `starts` is about motions to second order, and `truly` about true motions of the panels. `ways`
     is the number of cells with these letters, or None if it is not known. `densities` is one such
-    motion, approximately. `named` are the vertices that the reason names.
+    motion, approximately. `named` are the vertices that the reason names. `loop` is the loop that
+    refutes the letters, if one does.
     """
 
     vertices: tuple[int, ...]
@@ -42,6 +43,7 @@ class PartAnswer:
     densities: Mapping[Edge, float] = field(default_factory=dict)
     refutations: tuple[PanelRefutation, ...] = ()
     named: tuple[int, ...] = ()
+    loop: OpenLoop | None = None
 
 
 def answered(pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters) -> PartAnswer:
@@ -74,7 +76,7 @@ def answered(pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters
     if few:
         return _by_cells(pattern, moving, letters)
     if (loop := _loop(pattern, moving, letters)) is not None:
-        return PartAnswer(vertices, REFUTED, REFUTED, loop[1], named=loop[0])
+        return PartAnswer(vertices, REFUTED, REFUTED, loop.text, named=loop.loop, loop=loop)
     if start is not None and (near := MotionSearch(program).found(start)) is not None:
         proved = proved_motion(moving, letters, near)
         if proved is not None:
@@ -127,13 +129,14 @@ def _by_cells(pattern: PanelPattern, moving: Mapping[int, Star], letters: Letter
         return PartAnswer(vertices, UNDECIDED, UNDECIDED, f"{_where(vertices)}: {error}")
     if not cells:
         text = "no choice of a mode at each vertex makes the vertices fit together"
-        loop = search.open_loops[0] if search.open_loops else None
+        loop = min(search.open_loops, key=lambda one: abs(one.off), default=None)
         return PartAnswer(
             vertices,
             REFUTED,
             REFUTED,
             loop.text if loop else text,
             named=loop.loop if loop else (),
+            loop=loop,
         )
     known: Loops = {}
     folding: list[Verdict] = []
@@ -166,9 +169,7 @@ def _extends(
     return UNDECIDED if UNDECIDED in verdicts else PROVED
 
 
-def _loop(
-    pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters
-) -> tuple[tuple[int, ...], str] | None:
+def _loop(pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters) -> OpenLoop | None:
     """Why the vertices with at most four folds cannot have these letters; None if they can.
 
     Only these vertices are considered. Folds that lead to other vertices have no condition there.
@@ -182,7 +183,7 @@ def _loop(
             return None
     except (TooManyModesError, UndecidedDensityError):
         return None
-    return search.open_loops[0].loop, search.open_loops[0].text
+    return min(search.open_loops, key=lambda loop: abs(loop.off))
 
 
 def _first_order_text(named: Iterable[int]) -> str:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import combinations
-from math import atan2, cos, hypot, lcm, pi, sin
+from math import atan2, cos, exp, hypot, lcm, pi, sin
 from typing import TYPE_CHECKING, Final, Protocol
 
 from exactfold.pattern.drawing.meant.values import Edge, Kind, Relation
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
 NEAREST: Final = 1e-5
 """No relation whose defect is larger is near."""
-_CHANCE: Final = 0.05
-"""So many near relations, at most, are expected by chance."""
+_CHANCE: Final = 1e-4
+"""Relations are near if random angles have so many as near with a lower probability."""
 _STEPS: Final = 10**5
 """Coordinates on a grid of at most so many steps across the sheet are exact."""
 _TRUST: Final = 1e-9
@@ -46,9 +46,9 @@ def left_relations(sheet: Sheet) -> tuple[Relation, ...]:
     """The relations that the sheet nearly has but does not have exactly, the nearest first.
 
     These are straight paths through a vertex, straight borders, and sums of Kawasaki at vertices
-    with four folds. The limit of the defect is 1e-5, or lower in large sheets, so that at most 0.05
-    relations of random angles are expected below the limit. Coordinates on a grid of at most
-    100,000 steps are taken as exact.
+    with four folds, with a defect of at most 1e-5. If k relations have at most the defect of the
+    k-th, and random angles have k or more as near with a probability of at least 1e-4, these k are
+    not near. Coordinates on a grid of at most 100,000 steps are taken as exact.
 
     >>> from exactfold.pattern.families import two_vertex
     >>> left_relations(two_vertex())
@@ -66,16 +66,34 @@ def left_relations(sheet: Sheet) -> tuple[Relation, ...]:
     tests = list(_tests(sheet, places))
     shortest = [min(_length(places, edge) for edge, _ in terms) for _, _, terms, _ in tests]
     expected = sum(2 * size / (pi * length) for length in shortest)  # below a defect of 1
-    limit = min(NEAREST, _CHANCE / expected) if expected else NEAREST
     near = []
     for (kind, name, terms, off), length in zip(tests, shortest, strict=True):
-        if off * length / size >= limit:
+        if off * length / size >= NEAREST:
             continue
         if off < _TRUST:
             off = _exact(sheet.vertices, terms)
         if off:
             near.append(Relation(kind, name, terms, 1, off * length / size))
-    return tuple(sorted(near, key=lambda relation: relation.defect))
+    near.sort(key=lambda relation: relation.defect)
+    believed = [k for k, one in enumerate(near, 1) if _chance(expected * one.defect, k) < _CHANCE]
+    return tuple(near[: max(believed, default=0)])
+
+
+def _chance(mean: float, number: int) -> float:
+    """An upper bound (Chernoff's) of the probability of `number` or more events, if so many are
+    expected as `mean` says.
+    """
+    return exp(number - mean) * (mean / number) ** number if number > mean else 1.0
+
+
+def nearly(relations: tuple[Relation, ...]) -> str:
+    """How many relations nearly hold, and the nearest of them, in words."""
+    least = relations[0]
+    if len(relations) == 1:
+        near = f"one relation nearly holds, {least.name}"
+    else:
+        near = f"{len(relations)} relations nearly hold, such as {least.name}"
+    return f"{near}, off by {least.defect:.1g} of the size"
 
 
 _Terms = tuple[tuple[Edge, int], ...]
