@@ -64,12 +64,14 @@ def leaves(stars: Mapping[int, Star], rows: Rows, size: int, most: int) -> list[
     Raises `TooManyModesError` if this takes more than `most` steps. A step is one fold of a vertex
     times one dimension, times the square of the degree of the field.
     """
-    search = _SubspaceSearch(stars, most)
+    search = SubspaceSearch(stars, most)
     solutions = search.solved(dict(rows), size)
     return [leaf for leaf in solutions if leaf.size]
 
 
-class _SubspaceSearch:
+class SubspaceSearch:
+    """The splitting of spaces of motions, with a limit on its work; `TooManyModesError` beyond."""
+
     def __init__(self, stars: Mapping[int, Star], most: int) -> None:
         self.stars = stars
         self.most = most
@@ -81,10 +83,10 @@ class _SubspaceSearch:
         for part, part_size in independent_parts(rows, size, self.stars):
             part_leaves = _maximal(self._split(part, part_size))
             total = [_sum(a, b) for a in total for b in part_leaves]
-            self._count(len(total))
+            self.count(len(total))
         return total
 
-    def _count(self, steps: int) -> None:
+    def count(self, steps: int) -> None:
         """Add to the work done. A limit of work makes the search end in the same way on every
         machine.
         """
@@ -114,7 +116,7 @@ class _SubspaceSearch:
             before = size
             weight = common_field(x for row in rows.values() for x in row).dimension ** 2
             for v in sorted({v for edge in rows for v in edge if v in self.stars}):
-                self._count(len(self.stars[v].folds) * size * weight)
+                self.count(len(self.stars[v].folds) * size * weight)
                 squares = squares_of(self.stars[v], rows, size)
                 if is_semidefinite(squares):
                     rows, size = imposed(rows, size, *(functional for _, functional in squares))
@@ -129,7 +131,7 @@ class _SubspaceSearch:
 def reduced(stars: Mapping[int, Star], rows: Rows, size: int, most: int) -> tuple[Rows, int]:
     """The space after all semidefinite forms; unchanged if that takes more than `most` steps."""
     with suppress(TooManyModesError):
-        rows, size, _, _ = _SubspaceSearch(stars, most).reduced(rows, size)
+        rows, size, _, _ = SubspaceSearch(stars, most).reduced(rows, size)
     return rows, size
 
 
@@ -217,6 +219,15 @@ def _row_space(rows: Sequence[Sequence[Entry]], size: int) -> tuple[list[Vector]
             terms = [fmpq(k == here) for k in range(len(rows))]
         coordinates.append(terms)
     return basis, [terms[: len(basis)] for terms in coordinates]
+
+
+def row_rank(rows: Sequence[Sequence[Entry]], size: int) -> int:
+    """The rank of a matrix of exact numbers.
+
+    >>> row_rank([[fmpq(1), fmpq(2)], [fmpq(2), fmpq(4)]], 2)
+    1
+    """
+    return len(_row_space(rows, size)[0])
 
 
 def _diagonalised(form: Sequence[Sequence[Entry]]) -> list[tuple[Entry, Vector]]:

@@ -82,6 +82,11 @@ def _refuted(matched: PanelMatch, moving: Mapping[int, Star]) -> tuple[Document,
         return {"refuted": [], "tree": [["flat", i, j]]}, REFUTED
     part = min(parts, key=lambda part: part.truly is not REFUTED)
     own = {v: moving[v] for v in part.vertices}
+    if part.by_list:
+        raise NotApplicableError(
+            "no certificate can be written: the complete list of motions refutes the letters, and "
+            "that list has a certificate of its own (`exactfold count --certificate`)"
+        )
     if not part.refutations:
         return {"refuted": [], "tree": _open_loops(matched, own, part.named)}, part.truly
     sets = [_set(matched, own, refutation) for refutation in part.refutations]

@@ -5,7 +5,7 @@ Floating point proposes what exact arithmetic verifies.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 from functools import cached_property
 from heapq import heapify, heappop, heappush
@@ -27,6 +27,7 @@ from exactfold.pattern.panel_pattern import Edge, Point
 _TIGHT = 1e-7
 _PLACES = 40
 _SHORT = 1e-6
+_INNER = 0.1
 _MOST_WORK = 2_000_000
 SIDES = {"V": 1, "M": -1}
 
@@ -147,6 +148,31 @@ class FirstOrderProgram:
         if solution.status != 0 or not solution.x[-1] > _TIGHT:
             return None
         return dict(zip(self.folds, map(float, solution.x[:-1]), strict=True))
+
+    def extreme_motions(
+        self, inner: Mapping[Edge, float], number: int
+    ) -> Iterator[dict[Edge, float]]:
+        """Motions with the letters at random vertices of the linear program; the seed is fixed.
+
+        `inner` is a motion in which each fold with a letter bends its way by some amount. In the
+        motions found it bends its way by at least a tenth of the least of these amounts, no density
+        exceeds 1, and a random linear function is the largest.
+        """
+        sides = [SIDES.get(self.letters[edge], 0) for edge in self.folds]
+        ways = [s * inner[edge] for s, edge in zip(sides, self.folds, strict=True) if s]
+        least = _INNER * min(ways, default=0.0)
+        bounds = [(least if s > 0 else -1.0, -least if s < 0 else 1.0) for s in sides]
+        random = np.random.default_rng(1)
+        for _ in range(number):
+            solution = linprog(
+                random.standard_normal(len(self.folds)),
+                A_eq=self.matrix,
+                b_eq=np.zeros(self.matrix.shape[0]),
+                bounds=bounds,
+                method="highs",
+            )
+            if solution.status == 0:
+                yield dict(zip(self.folds, map(float, solution.x), strict=True))
 
     def refutation(self, wanted: Iterable[Edge] | None = None) -> PanelRefutation | None:
         """Vectors that show that not all wanted folds can bend their way; None if none are found.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from itertools import islice
+from itertools import chain, islice
 from typing import Final
 
 from exactfold._support.plurals import counted
@@ -12,17 +12,22 @@ from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.design.panels.candidates import MotionSearch
 from exactfold.design.panels.cells import Cell, CellSearch, OpenLoop
 from exactfold.design.panels.first_order_program import FirstOrderProgram
-from exactfold.design.panels.proof import proved_motion
+from exactfold.design.panels.lettered_spaces import LetteredSpaces, truly_begin
+from exactfold.design.panels.proof import ProvedMotion, proved_motion
 from exactfold.design.panels.refutation import PanelRefutation
 from exactfold.design.panels.vertex_reasons import VertexReason, vertex_reason
 from exactfold.design.refutations.refutation import Letters
 from exactfold.errors import TooManyModesError
+from exactfold.exact.surds import Number
 from exactfold.panels.densities import UndecidedDensityError
 from exactfold.panels.extension import Loops, extension
 from exactfold.panels.stars import Star
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
 _MOST_CELLS: Final = 64
+_MOST_STARTS: Final = 8
+_MOST_FOLDS: Final = 1_200
+"""From so many folds on, the search starts once only; with fewer folds it starts more often."""
 
 
 @dataclass(frozen=True)
@@ -31,8 +36,10 @@ class PartAnswer:
 
     `starts` is about motions to second order, and `truly` about true motions of the panels. `ways`
     is the number of cells with these letters, or None if it is not known. `densities` is one such
-    motion, approximately. `named` are the vertices that the reason names. `loop` is the loop that
-    refutes the letters, if one does.
+    motion, approximately, and `motion` is the same exactly if it was found in a linear space.
+    `by_list` says that the complete list of motions refutes the letters.
+    `named` are the vertices that the reason names. `loop` is the
+    loop that refutes the letters, if one does.
     """
 
     vertices: tuple[int, ...]
@@ -44,6 +51,8 @@ class PartAnswer:
     refutations: tuple[PanelRefutation, ...] = ()
     named: tuple[int, ...] = ()
     loop: OpenLoop | None = None
+    motion: Mapping[Edge, Number] = field(default_factory=dict, repr=False)
+    by_list: bool = False
 
 
 def answered(pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters) -> PartAnswer:
@@ -51,7 +60,8 @@ def answered(pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters
 
     The order is: single vertices; vectors that refute all first-order motions; loops of vertices
     with at most four folds, which are the complete answer if there are no other vertices; a
-    candidate in floating point and its proof.
+    candidate in floating point and its proof; the linear spaces of all motions, split as `count`
+    splits them, which are a complete answer if they are few enough.
     """
     vertices = tuple(moving)
     few = all(len(star.folds) <= 4 for star in moving.values())
@@ -77,11 +87,12 @@ def answered(pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters
         return _by_cells(pattern, moving, letters)
     if (loop := _loop(pattern, moving, letters)) is not None:
         return PartAnswer(vertices, REFUTED, REFUTED, loop.text, named=loop.loop, loop=loop)
-    if start is not None and (near := MotionSearch(program).found(start)) is not None:
-        proved = proved_motion(moving, letters, near)
-        if proved is not None:
-            truly = PROVED if proved.folds else UNDECIDED
-            return PartAnswer(vertices, PROVED, truly, densities=proved.densities)
+    if start is not None and (proved := _found(program, start)) is not None:
+        truly = PROVED if proved.folds else UNDECIDED
+        return PartAnswer(vertices, PROVED, truly, densities=proved.densities)
+    by_spaces = _by_spaces(pattern, moving, letters)
+    if by_spaces is not None:
+        return by_spaces
     if start is None:
         text = "neither a first-order motion with these letters nor a refutation of one was found"
     else:
@@ -90,6 +101,55 @@ def answered(pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters
             "them was proved"
         )
     return PartAnswer(vertices, UNDECIDED, UNDECIDED, f"{_where(vertices)}: {text}")
+
+
+def _found(program: FirstOrderProgram, start: Mapping[Edge, float]) -> ProvedMotion | None:
+    """A proved motion, searched for from a first-order motion and then from several others."""
+    search, folds = MotionSearch(program), len(program.folds)
+    number = min(_MOST_STARTS, _MOST_FOLDS // folds)
+    for begin in chain([start], program.extreme_motions(start, number)):
+        if (near := search.found(begin)) is not None:
+            proved = proved_motion(program.stars, program.letters, near)
+            if proved is not None:
+                return proved
+    return None
+
+
+def _by_spaces(
+    pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters
+) -> PartAnswer | None:
+    """The answer of the complete list of spaces of motions; None if it is not obtained."""
+    vertices = tuple(moving)
+    try:
+        starts, motion = LetteredSpaces(moving, letters).motion()
+    except TooManyModesError:
+        return None
+    if starts is PROVED:
+        truly = PROVED if truly_begin(pattern, moving, motion) else UNDECIDED
+        densities = {edge: float(x) for edge, x in motion.items() if x}
+        return PartAnswer(vertices, PROVED, truly, densities=densities, motion=motion)
+    if starts is UNDECIDED:
+        return None
+    text = "the list of its motions to second order is complete, and none has these letters"
+    return PartAnswer(
+        vertices,
+        REFUTED,
+        UNDECIDED if _weakly(moving, letters) else REFUTED,
+        f"{_where(vertices)}: {text}",
+        by_list=True,
+    )
+
+
+def _weakly(moving: Mapping[int, Star], letters: Letters) -> bool:
+    """Whether some motion to second order, not 0, may have no fold bend against its letter.
+
+    If none has, no true motion has the letters, because its terms of lowest order are such a
+    motion.
+    """
+    try:
+        return LetteredSpaces(moving, letters).moves_weakly()
+    except TooManyModesError:
+        return True
 
 
 def _stuck(moving: Mapping[int, Star], letters: Letters) -> list[VertexReason]:

@@ -66,7 +66,7 @@ def read_svg(text: str, reading: SvgReading | None = None) -> Drawing:
     strokes: list[Stroke] = []
     omitted: Counter[str] = Counter()
     seen: Counter[str] = Counter()
-    chords = (reading and reading.chords) or 1
+    reading = reading or SvgReading()
     shapes, given = _shapes(text)
     for shape in shapes:
         values, tag = shape.values, shape.values["attributes"]["tag"]
@@ -82,7 +82,7 @@ def read_svg(text: str, reading: SvgReading | None = None) -> Drawing:
         name = f"{tag} {seen[tag]}" + (f" (id {shown(own['id'])})" if "id" in own else "")
         fault: Exception | None = None
         try:
-            found = _lines(tag, own, name, chords)
+            found = _lines(tag, own, name, reading.chords or 1)
             move = _mover(shape.transform)
         except (MalformedDrawingError, NumberError, TooLargeError) as error:
             found, fault = PathLines([]), error  # it matters only if the stroke has a letter
@@ -95,12 +95,12 @@ def read_svg(text: str, reading: SvgReading | None = None) -> Drawing:
         )
         dashes = str(values.get("stroke-dasharray", "none"))
         strokes.append(Stroke(name, colour, dashes, moved, found.unbent, found.bent, faint, fault))
-    letters, notes = lettered(strokes, reading or SvgReading())
+    letters, notes = lettered(strokes, reading)
     drawn = [(stroke, x) for stroke, x in zip(strokes, letters, strict=True) if x]
     for stroke, _ in drawn:
         if stroke.fault is not None:
             raise stroke.fault
-    remarks_on_curves = _curves([stroke for stroke, _ in drawn], reading and reading.chords)
+    remarks_on_curves = _curves([stroke for stroke, _ in drawn], reading.chords)
     segments = [(*ends, letter) for stroke, letter in drawn for ends in stroke.lines]
     remarks = [f"left out {counted(omitted[why], 'element')} {why}" for why in sorted(omitted)]
     remarks += notes + remarks_on_curves
