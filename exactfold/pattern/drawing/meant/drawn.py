@@ -129,9 +129,14 @@ class Drawn:
         self, kind: Kind, name: str, terms: Sequence[tuple[Edge, int]], parts: int = 1
     ) -> Relation:
         """A relation with its defect in the drawing."""
-        gathered: dict[Edge, int] = {}
-        for edge, factor in terms:
-            gathered[edge] = gathered.get(edge, 0) + factor
-        kept = tuple((edge, factor) for edge, factor in gathered.items() if factor)
+        kept = tuple(gathered(terms).items())
         short = self.shortest(edge for edge, _ in kept)
         return Relation(kind, name, kept, parts, abs(self.residual(kept, parts)) * short)
+
+
+def gathered(terms: Iterable[tuple[Edge, int]]) -> dict[Edge, int]:
+    """The terms of a sum, each edge once."""
+    total: dict[Edge, int] = {}
+    for edge, factor in terms:
+        total[edge] = total.get(edge, 0) + factor
+    return {edge: factor for edge, factor in total.items() if factor}
