@@ -124,7 +124,7 @@ def _decomposed(opened: Opened, progress: Progress | None) -> Decomposition:
     sheet = opened.sheet
     pattern = panels(sheet) if isinstance(sheet, CreasePattern) else sheet
     ways = replace(decompose(pattern, progress=progress), read=opened.read)
-    if not ways.near_misses or opened.again is None:
+    if not ways.nearly_closing or opened.again is None:
         return ways
     from exactfold.panels.near_misses import snapped_misses
 

@@ -13,7 +13,6 @@ from exactfold.errors import TooManyModesError
 from exactfold.exact.surds import SurdField, sign
 from exactfold.panels.densities import Density, Roots
 from exactfold.panels.local import LocalMode, local_modes
-from exactfold.panels.near_misses import NEAR
 from exactfold.panels.stars import Star
 from exactfold.pattern.panel_pattern import Edge
 
@@ -49,11 +48,6 @@ class OpenLoop:
 
     loop: tuple[int, ...]
     off: float
-
-    @property
-    def nearly(self) -> bool:
-        """Whether the loop nearly closes, so that the digits of the sheet decide."""
-        return abs(self.off) < NEAR
 
     @property
     def text(self) -> str:

@@ -29,6 +29,7 @@ from exactfold.design.panels.together import Together, going_together
 from exactfold.design.refutations.asked import by_fold
 from exactfold.design.refutations.refutation import Letters
 from exactfold.panels.decomposition import groups_of
+from exactfold.panels.near_misses import near_limit
 from exactfold.panels.stars import Star, stars
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import PanelsDocument, described_panels
@@ -140,7 +141,9 @@ class PanelMatch(Certified):
         the letters.
         """
         matched = replace(self, meant=opened.meant)
-        nearly = [part.loop.text for part in self.parts if part.loop and part.loop.nearly]
+        limit = near_limit(None if opened.meant is None else opened.meant.noise)
+        loops = [part.loop for part in self.parts if part.loop is not None]
+        nearly = [loop.text for loop in loops if abs(loop.off) < limit]
         doubt = opened.doubt
         if not doubt and nearly and opened.reading.snap != "exact":
             doubt = nearly[0]

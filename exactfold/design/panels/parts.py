@@ -38,8 +38,8 @@ class PartAnswer:
     is the number of cells with these letters, or None if it is not known. `densities` is one such
     motion, approximately, and `motion` is the same exactly if it was found in a linear space.
     `by_list` says that the complete list of motions refutes the letters.
-    `named` are the vertices that the reason names. `loop` is the
-    loop that refutes the letters, if one does.
+    `named` are the vertices that the reason names. `loop` is the loop that refutes the letters, if
+    one does.
     """
 
     vertices: tuple[int, ...]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import combinations
-from math import atan2, cos, exp, hypot, lcm, pi, sin
+from math import atan2, cos, exp, hypot, lcm, log, pi, sin
 from typing import TYPE_CHECKING, Final, Protocol
 
 from exactfold.pattern.drawing.meant.values import Edge, Kind, Relation
@@ -16,12 +16,12 @@ from exactfold.pattern.drawing.meant.values import Edge, Kind, Relation
 if TYPE_CHECKING:
     from exactfold.exact.surds import Number
 
-NEAREST: Final = 1e-5
+NEAREST: Final = 1e-3
 """No relation whose defect is larger is near."""
 _CHANCE: Final = 1e-4
 """Relations are near if random angles have so many as near with a lower probability."""
-_STEPS: Final = 10**5
-"""Coordinates on a grid of at most so many steps across the sheet are exact."""
+_STEPS: Final = 30
+"""On a grid of so many steps across the sheet, no relation misses by less than `NEAREST`."""
 _TRUST: Final = 1e-9
 """Angles from floats are good to this; smaller defects are computed exactly."""
 
@@ -46,9 +46,9 @@ def left_relations(sheet: Sheet) -> tuple[Relation, ...]:
     """The relations that the sheet nearly has but does not have exactly, the nearest first.
 
     These are straight paths through a vertex, straight borders, and sums of Kawasaki at vertices
-    with four folds, with a defect of at most 1e-5. If k relations have at most the defect of the
-    k-th, and random angles have k or more as near with a probability of at least 1e-4, these k are
-    not near. Coordinates on a grid of at most 100,000 steps are taken as exact.
+    with four folds, with a defect of at most 1e-3. If k relations have at most the defect of the
+    k-th, and chance may bring k / 2 as near with a probability of at least 1e-4, these k are
+    not near.
 
     >>> from exactfold.pattern.families import two_vertex
     >>> left_relations(two_vertex())
@@ -75,7 +75,9 @@ def left_relations(sheet: Sheet) -> tuple[Relation, ...]:
         if off:
             near.append(Relation(kind, name, terms, 1, off * length / size))
     near.sort(key=lambda relation: relation.defect)
-    believed = [k for k, one in enumerate(near, 1) if _chance(expected * one.defect, k) < _CHANCE]
+    # Two relations at a vertex may follow from each other, so k relations are k / 2 events.
+    chances = [_chance(expected * one.defect, (k + 2) // 2) for k, one in enumerate(near)]
+    believed = [k for k, chance in enumerate(chances, 1) if chance < _CHANCE]
     return tuple(near[: max(believed, default=0)])
 
 
@@ -83,7 +85,7 @@ def _chance(mean: float, number: int) -> float:
     """An upper bound (Chernoff's) of the probability of `number` or more events, if so many are
     expected as `mean` says.
     """
-    return exp(number - mean) * (mean / number) ** number if number > mean else 1.0
+    return exp(number - mean + number * log(mean / number)) if number > mean else 1.0
 
 
 def nearly(relations: tuple[Relation, ...]) -> str:
@@ -104,7 +106,7 @@ def _is_on_a_grid(sheet: Sheet) -> bool:
     common, columns = 1, ([x for x, _ in sheet.vertices], [y for _, y in sheet.vertices])
     for value in (c for column in columns for c in column):
         common = lcm(common, getattr(value, "denominator", 0))
-        if not 0 < common <= _STEPS**2:
+        if not 0 < common <= 10**6:
             return False
     return all(common * (max(column) - min(column)) <= _STEPS for column in columns)
 
