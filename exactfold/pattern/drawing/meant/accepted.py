@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from exactfold.pattern.drawing.meant.drawn import Drawn, gathered
-from exactfold.pattern.drawing.meant.noise import CHANCE
+from exactfold.pattern.drawing.meant.noise import is_rare
 from exactfold.pattern.drawing.meant.system import System
 from exactfold.pattern.drawing.meant.values import Edge, Relation
 
@@ -26,11 +26,13 @@ class Accepted:
     Each relation becomes an equation between real angles near the drawn ones: the sum of angles is
     the multiple of pi / `parts` that is nearest to the drawn sum. `contradicting` holds relations
     that no sheet has together with those before them. `chance` is the number of relations expected
-    by chance.
+    by chance. A relation may be missed by up to `tolerance`, and digits cannot tell a defect below
+    `floor` from 0; both are lengths over the size.
     """
 
     drawn: Drawn
     tolerance: float
+    floor: float
     relations: list[Relation] = field(default_factory=list)
     contradicting: list[Relation] = field(default_factory=list)
     chance: float = 0.0
@@ -59,25 +61,40 @@ class Accepted:
         """Accepts what was found, as far as chance hardly finds so much.
 
         The trials stand with the surest first. Relations are accepted up to the last trial by which
-        chance explains less than `CHANCE` of those found, and so are all that hold exactly as
-        written. Relations that follow from others are left out.
+        chance explains few of those found (`is_rare`). The same holds for those that are
+        satisfied exactly, but for these chance has to hit the last digit. Relations that follow
+        from others are left out.
         """
-        expected, hits, last = 0.0, 0, 0
-        for number, (probability, relation) in enumerate(trials, 1):
-            if relation is None or relation.defect:
-                expected += probability
-                hits += relation is not None
-                if expected < CHANCE * hits:
-                    last, chance = number, expected
-        if last:
-            self.chance += chance
+        sharper = min(1.0, self.floor / self.tolerance)
+        last = self._last([(p, r is not None) for p, r in trials])
+        last_exact = self._last([(sharper * p, _is_exact(r)) for p, r in trials])
         for number, (_, relation) in enumerate(trials, 1):
-            if (
-                relation is not None
-                and (number <= last or not relation.defect)
-                and not self.is_implied(relation.terms, relation.parts)
-            ):
+            believed = number <= (last_exact if _is_exact(relation) else last)
+            if relation and believed and not self.is_implied(relation.terms, relation.parts):
                 self.add([relation])
+
+    def _last(self, trials: Sequence[tuple[float, bool]]) -> int:
+        """How many trials there are up to the last one by which chance explains few of the hits."""
+        expected, hits, last, chance = 0.0, 0, 0, 0.0
+        for number, (probability, hit) in enumerate(trials, 1):
+            expected += probability
+            hits += hit
+            if is_rare(expected, hits):
+                last, chance = number, expected
+        self.chance += chance
+        return last
+
+    def reasons(self, relation: Relation) -> tuple[str, ...]:
+        """The names of accepted relations that imply a relation, or that contradict it."""
+        lengths = self.drawn.lengths
+        # Each relation gets an unknown of its own, its index, which is never solved for.
+        system: System[Edge | int] = System(lambda u: None if isinstance(u, int) else lengths[u])
+        for number, known in enumerate(self.relations):
+            terms: dict[Edge | int, int] = {**dict(known.terms), number: -1}
+            system.add(terms, self.drawn.turns(known.terms, known.parts))
+        target: dict[Edge | int, int] = {**dict(relation.terms)}
+        left, _ = system.rest(target, self.drawn.turns(relation.terms, relation.parts))
+        return tuple(self.relations[u].name for u in sorted(u for u in left if isinstance(u, int)))
 
     def free(self) -> list[Edge]:
         """The edges whose angles are free so far, the longest first.
@@ -87,3 +104,7 @@ class Accepted:
         """
         free = [edge for edge in self.drawn.edges if not self.system.is_solved(edge)]
         return sorted(free, key=lambda edge: -self.drawn.lengths[edge])
+
+
+def _is_exact(relation: Relation | None) -> bool:
+    return relation is not None and not relation.defect

@@ -10,7 +10,7 @@ from typing import Final, NamedTuple
 
 from exactfold.pattern.drawing.meant.accepted import Accepted, Trial
 from exactfold.pattern.drawing.meant.drawn import Drawn
-from exactfold.pattern.drawing.meant.noise import CHANCE
+from exactfold.pattern.drawing.meant.noise import is_rare
 from exactfold.pattern.drawing.meant.values import Edge, Relation
 
 UNITS: Final = (*range(1, 61), 64, 72, 80, 90, 96, 120, 144, 180)
@@ -44,10 +44,9 @@ def add_distant(accepted: Accepted, unit: int | None = None) -> Grid | None:
     if grid is not None:
         accepted.believe(list(_on_grid(accepted, grid, forced=unit is not None)))
     if grid is None or grid.reference is not None or grid.unit % _EXACT:
-        accepted.add(
-            trial.relation
-            for trial in _on_grid(accepted, Grid(_EXACT, None), forced=True)
-            if trial.relation is not None and not trial.relation.defect
+        trials = _on_grid(accepted, Grid(_EXACT, None), forced=False)
+        accepted.believe(
+            [trial for trial in trials if not (trial.relation and trial.relation.defect)]
         )
     accepted.believe(list(_paired(accepted, 1, (1,), drawn, None)))
     reference = None if grid is None else grid.reference
@@ -107,7 +106,7 @@ def _chosen(accepted: Accepted, edges: Sequence[Edge], unit: int | None) -> Grid
     trials = list(_on_grid(accepted, best, forced=False))
     expected = best.unit * sum(trial.probability for trial in trials)
     hits = sum(trial.relation is not None for trial in trials)
-    return best if expected < CHANCE * hits else None
+    return best if is_rare(expected, hits) else None
 
 
 def _distinct(accepted: Accepted, edges: Iterable[Edge]) -> Iterator[Edge]:

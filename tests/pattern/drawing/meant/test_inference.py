@@ -15,10 +15,10 @@ from exactfold.pattern.random_squares import sample_random_square
 Points = list[tuple[Fraction, Fraction]]
 
 
-def miura(columns: int = 4, rows: int = 3) -> PanelPattern:
-    """A sheet of parallelograms whose zigzags go up and down."""
+def miura(columns: int = 4, rows: int = 3, rise: Fraction = Fraction(1, 3)) -> PanelPattern:
+    """A sheet of parallelograms whose zigzags go up and down; its columns are numbered upwards."""
     points = {
-        (i, j): (Fraction(7 * i, 5), Fraction(j) + Fraction(i % 2, 3))
+        (i, j): (Fraction(7 * i, 5), Fraction(j) + i % 2 * rise)
         for i in range(columns + 1)
         for j in range(rows + 1)
     }
