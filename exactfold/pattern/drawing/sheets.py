@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import networkx as nx
@@ -14,7 +14,7 @@ from exactfold._support.plurals import agreeing, counted
 from exactfold.errors import DisconnectedError, FoldError, MalformedPatternError
 from exactfold.pattern.drawing.cutting import pieces
 from exactfold.pattern.drawing.drawing import Drawing, Line
-from exactfold.pattern.drawing.mending import Repair, floats, repair, used, with_lines
+from exactfold.pattern.drawing.mending import Repair, floats, lost, repair, used, with_lines
 
 _NAMED: Final = 5
 
@@ -48,7 +48,9 @@ def bordered(drawing: Drawing) -> tuple[Drawing, list[Repair]]:
         "taken for the boundary"
     )
     at = [line.start for line in changed]
-    return with_lines(drawing, lines), repair("border", len(changed), at, drawing.points, sentence)
+    made = repair("border", len(changed), at, drawing.points, sentence)
+    missed = lost(drawing, changed)
+    return with_lines(drawing, lines), [replace(each, lost=missed) for each in made]
 
 
 def sheets(drawing: Drawing) -> tuple[tuple[Drawing, ...], list[Repair]]:
@@ -66,7 +68,9 @@ def sheets(drawing: Drawing) -> tuple[tuple[Drawing, ...], list[Repair]]:
     """
     parts = _parts(drawing)
     if not parts:
-        raise MalformedPatternError("the lines of the drawing enclose no face")
+        raise MalformedPatternError(
+            "the lines of the drawing enclose no face: draw the boundary of the sheet"
+        )
     places = floats(drawing.points)
     _check_all(drawing, parts, places)
     made: list[Drawing] = []
