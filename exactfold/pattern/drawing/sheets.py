@@ -174,12 +174,17 @@ def _check_all(drawing: Drawing, parts: Sequence[_Part], places: FloatArray) -> 
 
 
 def _check_nested(part: _Part, near: Sequence[_Part], places: FloatArray) -> None:
-    """Raises an error if a part with creases round it lies inside another part."""
+    """Raises an error if a part lies inside another one and is neither a hole nor a sheet there.
+
+    Its outline tells: a hole and a sheet have boundary lines. Lines without a letter are a boundary
+    inside a frame, which is a part of one panel.
+    """
     boundary = {frozenset(pair) for pair in _sides(part.outline)}
-    if all(line.letter in "BC" for line in part.lines if frozenset(line[:2]) in boundary):
-        return
-    v = part.outline[0]
-    if any(_nested(part, other, places) for other in near):
+    letters = {line.letter for line in part.lines if frozenset(line[:2]) in boundary}
+    round_it = [other for other in near if _nested(part, other, places)]
+    framed = letters <= {*"BCU"} and all(len(other.faces) == 1 for other in round_it)
+    if round_it and not framed and not letters <= {*"BC"}:
+        v = part.outline[0]
         raise DisconnectedError(
             f"creases near ({places[v][0]:.6g}, {places[v][1]:.6g}) lie inside a panel, and no "
             "line joins them to the rest (leave out a frame round the drawing; a hole is drawn "

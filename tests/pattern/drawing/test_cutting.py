@@ -6,7 +6,13 @@ from fractions import Fraction
 import pytest
 from drawings import svg
 
-from exactfold.errors import FoldError, MalformedPatternError, NotADiskError, SeveralSheetsError
+from exactfold.errors import (
+    DisconnectedError,
+    FoldError,
+    MalformedPatternError,
+    NotADiskError,
+    SeveralSheetsError,
+)
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.drawing.cutting import pieces
 from exactfold.pattern.drawing.drawing import Drawing, Line
@@ -14,7 +20,7 @@ from exactfold.pattern.drawing.formats.svg import read_svg
 from exactfold.pattern.opening import from_drawing, panels
 from exactfold.pattern.reading import Reading
 
-COLOURS = {"B": "black", "M": "red", "V": "blue", "C": "lime", "F": "yellow"}
+COLOURS = {"B": "black", "M": "red", "V": "blue", "C": "lime", "U": "magenta"}
 
 
 def square(x, y, size, letter="B"):
@@ -92,6 +98,19 @@ def test_frames_and_holes_inside_a_panel_do_not_matter():
     framed = opened(*sheet, *more)
     assert framed.sheet == plain.sheet
     assert "2 pieces without creases are left out" in framed.lines[-1]
+
+
+def test_a_frame_of_lines_without_letters():
+    unlettered = [(*line[:4], "U") for line in [*square(0, 0, 4), *STAR]]
+    framed = opened(*square(-1, -1, 9, "U"), *unlettered)
+    assert shape(framed.sheet) == (1, 4, 4)
+    assert "1 piece without creases is left out" in framed.lines[-1]
+    inside = [*square(-1, -1, 9, "U"), (-1, 6, 8, 6, "U"), *unlettered]
+    with pytest.raises(DisconnectedError, match="lie inside a panel, and no line joins them"):
+        opened(*inside)
+    lettered = [(*line[:4], "M") for line in [*square(0, 0, 4), *STAR]]
+    with pytest.raises(DisconnectedError, match="lie inside a panel, and no line joins them"):
+        opened(*square(-1, -1, 9), *lettered)
 
 
 # --- holes ---------------------------------------------------------------------------------------

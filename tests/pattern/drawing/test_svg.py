@@ -401,6 +401,14 @@ def test_strokes_that_are_solid(dashes):
     )
 
 
+def test_other_colours_than_those_of_origami_simulator_are_not_taken_for_its_cuts():
+    pair = (
+        '<line x2="1" stroke="{}"/><line x2="2" stroke="#40f90d"/><line x2="3" stroke="#ffb806"/>'
+    )
+    assert letters(pair.format("purple")) == [*"UUU"]
+    assert letters(pair.format("red")) == [*"MCF"]
+
+
 def test_a_cut_by_its_colour_stays_a_cut():
     assert letters('<line x2="1" stroke="black"/><line x2="2" stroke="lime"/>') == ["U", "C"]
 

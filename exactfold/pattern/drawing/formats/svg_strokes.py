@@ -87,22 +87,22 @@ def lettered(strokes: Sequence[Stroke], reading: SvgReading) -> tuple[list[str],
     ]
     plain: list[int] = []
     remarks: list[str] = []
-    if not {"M", "V", "U"} & set(letters):
+    known = {k for k in range(len(strokes)) if by_map[k] or by_dashes[k] or named[k]}
+    sure = known | {k for k, (_, exactly) in enumerate(usual) if exactly}
+    told = {x for k, x in enumerate(letters) if not by_dashes[k] and (x in ("M", "V") or k in sure)}
+    if not {"M", "V", "U"} & told:
         plain = [
             k
-            for k, stroke in enumerate(strokes)
-            if not by_map[k]
-            and not by_dashes[k]
-            and not named[k]
-            and _usual(stroke.colour)[0] in ("B", "")
+            for k, (letter, exactly) in enumerate(usual)
+            if k not in known
+            and not _pale(strokes[k].colour)
+            and (letter in ("", "B") or not exactly)
         ]
-        plain = [k for k in plain if not _pale(strokes[k].colour)]
         guessed = {} if reading.dashes else _by_convention({k: patterns[k] for k in plain})
         for k in plain:
             letters[k] = guessed.get(k, "U")
         remarks = _one_colour([strokes[k] for k in plain], bool(guessed))
     letters = [own or letter for own, letter in zip(by_dashes, letters, strict=True)]
-    sure = {k for k in range(len(strokes)) if by_map[k] or by_dashes[k] or named[k] or usual[k][1]}
     sure |= {*plain}
     omitted = Counter(s.colour for s, x in zip(strokes, letters, strict=True) if not x)
     taken = Counter(
