@@ -97,6 +97,7 @@ def test_what_is_not_drawn_is_left_out():
     assert drawn(drawing) == places([(("0", "0"), ("8", "0"), "M")])
     assert drawing.remarks == (
         "left out 1 element of the kind circle",
+        "left out 1 element of the kind text",
         "left out 1 element with hidden visibility",
         "left out 2 elements without stroke",
     )

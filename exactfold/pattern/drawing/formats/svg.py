@@ -67,7 +67,8 @@ def read_svg(text: str, reading: SvgReading | None = None) -> Drawing:
     omitted: Counter[str] = Counter()
     seen: Counter[str] = Counter()
     reading = reading or SvgReading()
-    shapes, given = _shapes(text)
+    shapes, given, words = _shapes(text)
+    omitted.update({"of the kind text": words} if words else {})
     for shape in shapes:
         values, tag = shape.values, shape.values["attributes"]["tag"]
         own = given[int(values["attributes"][NUMBER])]
@@ -149,10 +150,11 @@ def _curves(strokes: Sequence[Stroke], chords: int | None) -> list[str]:
     return remarks
 
 
-def _shapes(text: str) -> tuple[Iterator[Any], list[Mapping[str, str]]]:
+def _shapes(text: str) -> tuple[Iterator[Any], list[Mapping[str, str]], int]:
     """The shapes that are drawn, with styles and transforms resolved, in the units of the file.
 
     The second value holds the attributes of all elements as written; a shape has its number in it.
+    The third is the number of texts.
     """
     from svgelements import SVG, Shape  # here: loading it takes longer than reading a pattern
 
@@ -163,12 +165,13 @@ def _shapes(text: str) -> tuple[Iterator[Any], list[Mapping[str, str]]]:
         )
     for key in _VIEW:
         root.attrib.pop(key, None)
+    words = sum(element.tag in ("text", f"{{{NAMESPACE}}}text") for element in root.iter())
     root, given = plain_tree(root)
     try:
         picture = SVG.parse(io.StringIO(ElementTree.tostring(root, "unicode")), reify=False)
     except _FAULTS as error:
         raise MalformedDrawingError(f"the SVG cannot be read: {error}") from None
-    return (element for element in picture.elements() if isinstance(element, Shape)), given
+    return (element for element in picture.elements() if isinstance(element, Shape)), given, words
 
 
 def _lines(tag: str, own: Mapping[str, str], name: str, chords: int) -> PathLines | None:
