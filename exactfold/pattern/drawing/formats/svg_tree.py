@@ -147,7 +147,8 @@ class _Styles:
         text = first + "".join(part.partition("*/")[2] for part in others)
         text = "\n".join(line.partition("//")[0] for line in text.split("\n"))
         self._single: dict[str, dict[str, str]] = {}
-        self._compound: dict[tuple[_Simple, ...], dict[str, str]] = {}
+        self._compound: list[tuple[tuple[_Simple, ...], Mapping[str, str]]] = []
+        self._by_mark: dict[str, list[int]] = {}
         for rule in text.split("}"):
             selectors, _, body = rule.partition("{")
             if declared := _declarations(body):
@@ -159,7 +160,9 @@ class _Styles:
         words = selector.replace(">", " ").split()
         parts = tuple(match for word in words if (match := _simple(word)))
         if len(parts) == len(words) > 0 and not _SINGLE.match(selector):
-            self._compound.setdefault(parts, {}).update(declared)
+            mark = max(parts[-1], default="")
+            self._by_mark.setdefault(mark, []).append(len(self._compound))
+            self._compound.append((parts, declared))
             if len(self._compound) > MOST_SELECTORS:
                 raise TooLargeError(
                     f"the style sheet of the SVG file has more than {MOST_SELECTORS} selectors "
@@ -175,7 +178,8 @@ class _Styles:
         for name in element.get("class", "").split(" "):
             declared |= self._single.get(f".{name}", {})
             declared |= self._single.get(f"{_tag(element)}.{name}", {})
-        for (*outer, last), found in self._compound.items():
+        for k in sorted(k for mark in ("", *own) for k in self._by_mark.get(mark, ())):
+            (*outer, last), found = self._compound[k]
             if last <= own and _are_round(outer, above):
                 declared |= found
         return declared
