@@ -1,5 +1,6 @@
 """Cuts: pieces, slits that open, holes that matter and holes that do not."""
 
+import json
 import random
 from fractions import Fraction
 
@@ -17,7 +18,7 @@ from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.drawing.cutting import pieces
 from exactfold.pattern.drawing.drawing import Drawing, Line
 from exactfold.pattern.drawing.formats.svg import read_svg
-from exactfold.pattern.opening import from_drawing, panels
+from exactfold.pattern.opening import from_drawing, open_pattern, panels
 from exactfold.pattern.reading import Reading
 
 COLOURS = {"B": "black", "M": "red", "V": "blue", "C": "lime", "U": "magenta"}
@@ -111,6 +112,22 @@ def test_a_frame_of_lines_without_letters():
     lettered = [(*line[:4], "M") for line in [*square(0, 0, 4), *STAR]]
     with pytest.raises(DisconnectedError, match="lie inside a panel, and no line joins them"):
         opened(*square(-1, -1, 9), *lettered)
+
+
+def test_a_file_of_triangles_with_a_cut_is_a_drawing(tmp_path):
+    triangles = {
+        "vertices_coords": [[0, 0], [4, 0], [4, 4], [0, 4], [2, 2]],
+        "edges_vertices": [[0, 1], [1, 2], [2, 3], [3, 0], [0, 4], [1, 4], [2, 4], [3, 4]],
+        "edges_assignment": [*"BBBBMVMV"],
+        "faces_vertices": [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]],
+    }
+    path = tmp_path / "cut.fold"
+    path.write_text(json.dumps(triangles))
+    assert shape(open_pattern(path).sheet) == (1, 4, 4)
+    path.write_text(json.dumps({**triangles, "edges_assignment": [*"BBBBMVMC"]}))
+    found = open_pattern(path)
+    assert shape(found.sheet) == (0, 3, 4)
+    assert "cuts (1 line) are opened" in found.lines[-1]
 
 
 # --- holes ---------------------------------------------------------------------------------------
