@@ -14,6 +14,7 @@ from exactfold.errors import (
     NotADiskError,
     SeveralSheetsError,
 )
+from exactfold.panels import decompose
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.drawing.cutting import pieces
 from exactfold.pattern.drawing.drawing import Drawing, Line
@@ -281,3 +282,15 @@ def test_slits_that_are_too_close_to_other_lines_are_refused():
     drawing = Drawing(points, tuple(Line(*line) for line in lines), "a test")
     with pytest.raises(FoldError, match=r"the slits near \(0, 0\) are too close to other lines"):
         pieces(drawing, faces, drawing.lines)
+
+
+def test_an_open_slit_has_the_ways_of_a_wedge():
+    """The same creases, once with a slit and once with a wedge that was cut out by hand."""
+    creases = [(4, 2, 6, 2, "M"), (4, 0, 4, 4, "V"), (0, 1, 6, 1, "M"), (0, 0, 4, 2, "M")]
+    rim = [(0, 0, 6, 0, "B"), (6, 0, 6, 4, "B"), (6, 4, 0, 4, "B")]
+    slit = [*rim, (0, 4, 0, 0, "B"), (0, 2, 4, 2, "C"), (2, 0, 2, 4, "M"), *creases]
+    wedge = [*rim, (0, 0, 0, 1.5, "B"), (0, 1.5, 2, 1.5, "B"), (2, 1.5, 4, 2, "B")]
+    wedge += [(4, 2, 2, 2.5, "B"), (2, 2.5, 0, 2.5, "B"), (0, 2.5, 0, 4, "B"), *creases]
+    wedge += [(2, 0, 2, 1.5, "M"), (2, 2.5, 2, 4, "M")]
+    ways = [decompose(opened(*lines).sheet) for lines in (slit, wedge)]
+    assert ways[0].second_order == ways[1].second_order == {6: 2}
