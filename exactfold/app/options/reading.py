@@ -32,6 +32,9 @@ class ReadingOptions:
     colours: Colours = None
     dashes: Dashes = None
     chords: Chords = None
+    box: Annotated[
+        bool, flag("--box", text="Take the rectangle round the drawing for the edge of the paper.")
+    ] = False
     relations: Annotated[
         bool,
         flag(
@@ -83,6 +86,7 @@ class ReadingOptions:
             unit=self.unit,
             relations=self.relations,
             force=self.force,
+            box=self.box,
         )
 
 
