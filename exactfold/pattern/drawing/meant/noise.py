@@ -11,7 +11,7 @@ from typing import Final
 
 GAP: Final = 100.0
 """The noise is believed only if nothing else is off by less than this many times the noise."""
-TOLERANCE: Final = 30.0
+TOLERANCE: Final = 10.0
 """A relation holds if it is missed by at most this many times the noise."""
 CHANCE: Final = 1e-3
 """So many relations by chance are allowed for each relation that is found."""
