@@ -10,7 +10,7 @@ from typing import Final, NamedTuple
 
 from exactfold.pattern.drawing.meant.accepted import Accepted, Trial
 from exactfold.pattern.drawing.meant.drawn import Drawn
-from exactfold.pattern.drawing.meant.noise import is_rare
+from exactfold.pattern.drawing.meant.noise import LOOKED_FOR, is_rare
 from exactfold.pattern.drawing.meant.values import Edge, Relation
 
 UNITS: Final = (*range(1, 61), 64, 72, 80, 90, 96, 120, 144, 180)
@@ -116,7 +116,7 @@ def _is_clear(accepted: Accepted, edges: Sequence[Edge], grid: Grid) -> bool:
             off, spread, step = _off_grid(accepted, edge, grid)
             expected += grid.unit * min(1.0, 2 * spread / step)
             hits += off <= spread
-            if is_rare(expected, hits):
+            if is_rare(expected, hits, unlikely=LOOKED_FOR):
                 return True
     return False
 

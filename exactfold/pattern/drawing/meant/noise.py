@@ -21,6 +21,8 @@ _EASILY: Final = 0.003
 _ALIKE: Final = 1e-6
 _EXCESS: Final = 0.02
 _UNLIKELY: Final = 1e-4
+LOOKED_FOR: Final = 1e-5
+"""What is looked for in many ways is believed only if chance brings it less often than this."""
 _FINER: Final = 1.02
 """Counts of near relations are told apart if one is this many times the other."""
 
@@ -91,14 +93,16 @@ def noise_level(
     return Noise(eps, clear, chance, near, _refusal(eps, clear, chance, near))
 
 
-def is_rare(expected: float, hits: int, share: float = CHANCE) -> bool:
-    """Whether chance explains less than a share of the hits, and hardly ever brings as many.
+def is_rare(
+    expected: float, hits: int, *, share: float = CHANCE, unlikely: float = _UNLIKELY
+) -> bool:
+    """Whether chance explains less than a share of the hits, and is unlikely to bring as many.
 
     With expected hits m, chance brings k hits or more with a probability of at most m^k / k!.
     """
     if not hits or not expected:
         return bool(hits)
-    return expected < share * hits and hits * log(expected) - lgamma(hits + 1) < log(_UNLIKELY)
+    return expected < share * hits and hits * log(expected) - lgamma(hits + 1) < log(unlikely)
 
 
 def stated_level(
@@ -131,7 +135,7 @@ def _suspicious(
     expected = sum(density for density in densities if density * eps < _EASILY) * eps
     copies = {round(log(defect) / _ALIKE) for defect, density in missed if density * eps < _EASILY}
     hits = len(copies)
-    return is_rare(expected, hits, _EXCESS)
+    return is_rare(expected, hits, share=_EXCESS)
 
 
 def _refusal(eps: float, clear: float, chance: float, near: int) -> str:
