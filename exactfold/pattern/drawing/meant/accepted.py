@@ -69,7 +69,7 @@ class Accepted:
         last = self._last([(p, r is not None) for p, r in trials])
         last_exact = self._last([(sharper * p, _is_exact(r)) for p, r in trials])
         for number, (_, relation) in enumerate(trials, 1):
-            believed = number <= (last_exact if _is_exact(relation) else last)
+            believed = number <= (max(last, last_exact) if _is_exact(relation) else last)
             if relation and believed and not self.is_implied(relation.terms, relation.parts):
                 self.add([relation])
 

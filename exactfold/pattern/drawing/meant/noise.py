@@ -19,10 +19,12 @@ FINEST: Final = 1e-16
 """No noise level is finer; angles are compared in double precision."""
 _EASILY: Final = 0.003
 _ALIKE: Final = 1e-6
-_EXCESS: Final = 0.02
+_EXCESS: Final = 0.05
 _UNLIKELY: Final = 1e-4
 LOOKED_FOR: Final = 1e-5
 """What is looked for in many ways is believed only if chance brings it less often than this."""
+_VISIBLE: Final = 1e-3
+"""What is missed by a larger share of the size can be seen, and is no noise."""
 _FINER: Final = 1.02
 """Counts of near relations are told apart if one is this many times the other."""
 
@@ -85,6 +87,8 @@ def noise_level(
             return Noise(defects[end - 1], above[end - 1], chance, end)
     near = 0
     for end in ends:
+        if defects[end - 1] > _VISIBLE:
+            break
         if end > _FINER * near and _suspicious(missed[:end], defects[end - 1], densities):
             near = end
     if not near:
@@ -135,18 +139,18 @@ def _suspicious(
     expected = sum(density for density in densities if density * eps < _EASILY) * eps
     copies = {round(log(defect) / _ALIKE) for defect, density in missed if density * eps < _EASILY}
     hits = len(copies)
-    return is_rare(expected, hits, share=_EXCESS)
+    return is_rare(expected, hits, share=_EXCESS, unlikely=LOOKED_FOR)
 
 
 def _refusal(eps: float, clear: float, chance: float, near: int) -> str:
     if clear < GAP * eps:
         return (
-            f"no gap: relations are missed by up to {eps:.1g} of the size, and others by "
-            f"{clear:.1g}; only {clear / eps:.2g} times more, and {GAP:g} times is needed"
+            f"no gap: relations are missed by up to {eps:.1g} of the size, and others by only "
+            f"{clear / eps:.2g} times more; {GAP:g} times is needed"
         )
     return (
-        f"chance: {chance:.1g} relations are expected by chance, and {near} were found; chance may "
-        f"explain {CHANCE:g} of them"
+        f"chance: {near} relations are missed by up to {eps:.1g} of the size, and {chance:.1g} are "
+        f"expected to be by chance; at most {CHANCE:g} times as many may be"
     )
 
 
