@@ -24,7 +24,7 @@ from exactfold.exact.surds import Number, Surd, simple
 from exactfold.pattern.drawing.meant.constructing import constructed
 from exactfold.pattern.drawing.meant.directions import Directions, in_a_tower, parts_of
 from exactfold.pattern.drawing.meant.peeling import Lines
-from exactfold.pattern.drawing.meant.positions import bound_edges, placed_together
+from exactfold.pattern.drawing.meant.positions import Point, bound_edges, placed_together
 from exactfold.pattern.drawing.meant.refining import refined
 from exactfold.pattern.drawing.meant.values import Angles, Edge, Relation
 from exactfold.pattern.panel_entries import panels_document
@@ -81,28 +81,37 @@ def realize(drawn: PanelPattern, angles: Angles, noise: float) -> Realized:
             f"some angles are multiples of pi/{parts}, and these have directions in no small tower "
             "of square roots",
         )
+    points = _exact_points(written, angles, noise)
+    return _none(drawn, points) if isinstance(points, str) else _compared(drawn, written, points)
+
+
+def _exact_points(written: Written, angles: Angles, noise: float) -> list[Point] | str:
+    """Exact positions near the written ones, or the reason why there are none."""
     bound = bound_edges(angles)
     places = np.array([(float(x), float(y)) for x, y in written])
+    whole = {edge: edge for edge in bound}
+    directions = Directions(angles, angles.free, noise)
+    points = placed_together(written, places, directions, whole, noise)
+    if points is not None:
+        return points
+    if not any(angles.coefficients.get(edge) for edge in bound):
+        return "no sheet near the drawing has all these directions"
     near = refined(places, angles, bound, noise)
     if not near.exists:
-        return _none(
-            drawn,
+        return (
             "no sheet near the drawing seems to have all relations: in floats, edges still miss "
-            f"their directions by {near.off:.1g} of the size",
+            f"their directions by {near.off:.1g} of the size"
         )
     directions = Directions(angles, near.free, noise)
-    points = placed_together(written, near.places, directions, {e: e for e in bound}, noise)
+    points = placed_together(written, places, directions, whole, noise)
     if points is None:
         directions = Directions(angles, near.free, noise)
         lines = _lines(directions, angles, near.free, bound)
         points = constructed(written, near.places, directions, lines, bound, noise)
-    if points is None:
-        return _none(
-            drawn,
-            "the positions of the vertices determine some free angles, and no order was found in "
-            "which they follow from each other by linear equations",
-        )
-    return _compared(drawn, written, points)
+    return points or (
+        "the positions of the vertices determine some free angles, and no order was found in which "
+        "they follow from each other by linear equations"
+    )
 
 
 def _lines(
@@ -112,7 +121,8 @@ def _lines(
     units, powers = {}, {}
     for edge in bound:
         terms = angles.coefficients.get(edge, ())
-        angle = float(angles.constants[edge]) * pi + sum(float(a) * free[k] for k, a in terms)
+        constant = angles.constants[edge] % 1  # equal keys give equal vectors
+        angle = float(constant) * pi + sum(float(a) * free[k] for k, a in terms)
         units[edge] = cos(angle), sin(angle)
         powers[edge] = {k: directions.power(edge, k) for k, _ in terms}
     return Lines({edge: directions.key(edge) for edge in bound}, units, powers)

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from typing import Final, NamedTuple
 
 import numpy as np
-from scipy.linalg import svd
+from scipy.linalg import qr, solve_triangular
 
 from exactfold._support.arrays import FloatArray
 from exactfold.pattern.drawing.meant.values import Edge
@@ -22,9 +22,10 @@ from exactfold.pattern.drawing.meant.values import Edge
 _PARALLEL: Final = 1e-5
 """Lines that cross at a smaller angle place no vertex."""
 _ZERO: Final = 1e-8
-"""Smaller singular values belong to conditions that follow from others."""
+"""Smaller pivots belong to conditions that follow from others."""
 _WEIGHT: Final = 1e-4
 """A condition with a smaller part in a dependence is not known to follow from others."""
+_NO_PARTS: Final[FloatArray] = np.zeros(0)
 
 
 class Condition(NamedTuple):
@@ -87,9 +88,9 @@ class _Search:
         self.left = set(range(len(places)))
         self.at: dict[int, dict[Condition, None]] = {v: {} for v in self.left}
         self.users: dict[int, dict[Condition, None]] = {}
-        self.known: set[tuple[int, int, Hashable]] = set()
+        self.known: dict[tuple[int, int, Hashable], Condition] = {}
         self.steps: list[VertexStep | AngleStep] = []
-        self.null: tuple[dict[Condition, int], FloatArray] | None = None
+        self.null: dict[Condition, FloatArray] | None = None
         for i, j in bound:
             self._add(Condition(i, j, (i, j)))
         self.waiting = sorted(self.left, key=lambda v: -len(self.at[v]))
@@ -128,13 +129,16 @@ class _Search:
             chosen.append(first)
             start = first.i + first.j - v
             for line in group:
-                self._remove(line)
+                parts = self._remove(line)
                 other = line.i + line.j - v
                 if other != start:
-                    self._add(Condition(min(start, other), max(start, other), line.edge))
+                    turned = (line.i == v) != (start < other)
+                    self._add(
+                        Condition(min(start, other), max(start, other), line.edge),
+                        -parts if turned else parts,
+                    )
         self.left.discard(v)
         self.steps.append(VertexStep(v, tuple(chosen)))
-        self.null = None
 
     def angle(self) -> bool:
         """Take out a free angle, if one can come last."""
@@ -146,70 +150,79 @@ class _Search:
                     self.longing.discard(k)
                     self._remove(line)
                     self.steps.append(AngleStep(k, line))
-                    self.null = None
                     return True
         return False
 
     def drop(self) -> bool:
-        """Leave out a condition that follows from the others, at a vertex with few conditions."""
+        """Leave out a condition that follows from the others, at a vertex with few directions."""
         if self.null is None:
             self.null = self._dependences()
-        rows, null = self.null
-        best: tuple[float, float] | None = None
+        best: tuple[int, float] | None = None
         chosen = None
-        for v in self.left if null.shape[1] else ():
+        for v in self.left:
             directions = len({self.lines.keys[line.edge] for line in self.at[v]})
             for line in self.at[v]:
-                weight = float(abs(null[rows[line]]).max())
-                rank = (-directions, weight)
-                if weight > _WEIGHT and (best is None or rank > best):
+                rank = -directions, float(abs(self.null[line]).max(initial=0.0))
+                if rank[1] > _WEIGHT and (best is None or rank > best):
                     best, chosen = rank, line
         if chosen is None:
             return False
-        row = null[rows[chosen]]
-        k = int(np.argmax(abs(row)))
-        rest = null - np.outer(null[:, k], row / row[k])
-        null = np.linalg.qr(np.delete(rest, k, axis=1))[0]
-        self._remove(chosen)
-        self.null = {line: row for line, row in rows.items() if line != chosen}, null
+        parts = self._remove(chosen)
+        k = int(np.argmax(abs(parts)))
+        rest = np.array(list(self.null.values()))
+        rest = np.delete(rest - np.outer(rest[:, k], parts / parts[k]), k, axis=1)
+        rest /= np.maximum(np.linalg.norm(rest, axis=0), _WEIGHT)
+        self.null = dict(zip(self.null, rest, strict=True))
         return True
 
-    def _dependences(self) -> tuple[dict[Condition, int], FloatArray]:
-        """The row of each condition, and a basis of the sums of conditions that vanish."""
-        rows = {line: row for row, line in enumerate(self.conditions())}
+    def _dependences(self) -> dict[Condition, FloatArray]:
+        """The part of each condition in each sum of conditions that vanishes; a basis of these."""
+        rows = list(self.conditions())
         vertices = {v: k for k, v in enumerate(sorted(self.left))}
         angles = {k: n for n, k in enumerate(sorted(self.longing))}
-        slopes = np.zeros((len(rows), 2 * len(vertices) + len(angles)))
-        for line, row in rows.items():
+        slopes = np.zeros((2 * len(vertices) + len(angles), len(rows)))
+        for row, line in enumerate(rows):
             c, s = self.lines.units[line.edge]
             i, j = 2 * vertices[line.i], 2 * vertices[line.j]
-            slopes[row, [i, i + 1, j, j + 1]] = s, -c, -s, c
+            slopes[[i, i + 1, j, j + 1], row] = s, -c, -s, c
             x, y = self.places[line.j] - self.places[line.i]
             for k, power in self.lines.powers[line.edge].items():
-                slopes[row, 2 * len(vertices) + angles[k]] = -power * (c * x + s * y)
+                slopes[2 * len(vertices) + angles[k], row] = -power * (c * x + s * y)
         if not rows:
-            return rows, np.zeros((0, 0))
-        left, values, _ = svd(slopes, full_matrices=True, lapack_driver="gesdd")
-        rank = int(np.count_nonzero(values > _ZERO * max(values[0], 1)))
-        return rows, left[:, rank:]
+            return {}
+        upper, pivots = qr(slopes, mode="r", pivoting=True)
+        heights = abs(np.diag(upper))
+        rank = int(np.count_nonzero(heights > _ZERO * max(heights.max(), 1)))
+        null = np.zeros((len(rows), len(rows) - rank))
+        null[pivots[:rank]] = -solve_triangular(upper[:rank, :rank], upper[:rank, rank:])
+        null[pivots[rank:]] = np.eye(len(rows) - rank)
+        null /= np.linalg.norm(null, axis=0)
+        return dict(zip(rows, null, strict=True))
 
-    def _add(self, line: Condition) -> None:
+    def _add(self, line: Condition, parts: FloatArray = _NO_PARTS) -> None:
+        """Add a condition, with its parts in the sums that vanish, once there are any."""
         key = line.i, line.j, self.lines.keys[line.edge]
         if key in self.known:
+            if self.null is not None:
+                self.null[self.known[key]] = self.null[self.known[key]] + parts
             return
-        self.known.add(key)
+        self.known[key] = line
+        if self.null is not None:
+            self.null[line] = parts
         for v in line[:2]:
             self.at[v][line] = None
         for k in self.lines.powers[line.edge]:
             self.users.setdefault(k, {})[line] = None
 
-    def _remove(self, line: Condition) -> None:
-        self.known.discard((line.i, line.j, self.lines.keys[line.edge]))
+    def _remove(self, line: Condition) -> FloatArray:
+        """Remove a condition, and return its parts in the sums that vanish."""
+        del self.known[line.i, line.j, self.lines.keys[line.edge]]
         for v in line[:2]:
             del self.at[v][line]
             self.waiting.append(v)
         for k in self.lines.powers[line.edge]:
             del self.users[k][line]
+        return _NO_PARTS if self.null is None else self.null.pop(line)
 
     def _length(self, line: Condition) -> float:
         return float(np.hypot(*(self.places[line.j] - self.places[line.i])))

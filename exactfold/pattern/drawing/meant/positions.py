@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from math import ceil, hypot, log10
-from typing import TypeAlias
+from typing import Final, TypeAlias
 
 import numpy as np
 
@@ -19,6 +19,10 @@ from exactfold.pattern.drawing.meant.values import Angles, Edge
 Written: TypeAlias = Sequence[tuple[Fraction, Fraction]]
 """The points as the drawing states them."""
 Point: TypeAlias = tuple[Surd, Surd]
+_FAR: Final = 1000
+"""Positions that are off by so many times the noise are not near the drawing."""
+_ROUGH: Final = 1e-9
+"""Positions that floats find to be off by less may be near it, whatever the noise is."""
 
 
 def placed_together(
@@ -31,16 +35,17 @@ def placed_together(
     """Positions near the written ones, such that the lines `bound` have given directions.
 
     Each line is a pair of vertices, and belongs to an edge that has the direction of this line.
-    `places` are such positions in floats. The free coordinates are short decimals, rounded far
-    below the noise level `noise`, which is relative to the larger side of the drawing. None if the
-    equations for the positions have no solution with the directions that the free angles have.
+    `places` are the written positions in floats. The free coordinates are short decimals, rounded
+    far below the noise level `noise`, which is relative to the larger side of the drawing. None if
+    the equations for the positions have no solution near the drawing with these directions.
     """
     vectors = {line: directions.vector(edge) for line, edge in bound.items()}
     units = {line: _unit(vector) for line, vector in vectors.items()}
     order = placing_order(places, units, 100 * noise)
-    if not np.all(np.isfinite(order.matrix)):
+    free = _free_values(written, places, order, noise)
+    if free is None:
         return None
-    placed = _Placed(directions.field, vectors, _free_values(written, order, noise))
+    placed = _Placed(directions.field, vectors, free)
     for step in order.steps:
         placed.place(step)
     points = placed.points()
@@ -72,13 +77,21 @@ def _unit(vector: Vector) -> tuple[float, float]:
     return x / length, y / length
 
 
-def _free_values(written: Written, order: Order, noise: float) -> dict[Coordinate, Fraction]:
-    """Short decimals for the free coordinates, with which all points are nearest to the drawing."""
-    places = np.array([(float(x), float(y)) for x, y in written])
+def _free_values(
+    written: Written, places: FloatArray, order: Order, noise: float
+) -> dict[Coordinate, Fraction] | None:
+    """Short decimals for the free coordinates, with which all points are nearest to the drawing.
+
+    None if floats show that they are not near it.
+    """
     size = float(np.ptp(places, axis=0).max())
     start = np.array([places[v, axis] for v, axis in order.free])
     off = places.reshape(-1) - order.matrix @ start
+    if not np.all(np.isfinite(off)):
+        return None
     moves = np.linalg.lstsq(order.matrix, off, rcond=None)[0]
+    if abs(off - order.matrix @ moves).max() > max(_FAR * noise, _ROUGH) * size:
+        return None
     digits = decimals(noise * size / 4)
     return {
         (v, axis): round(written[v][axis] + Fraction(float(move)), digits)
@@ -168,11 +181,10 @@ class _Placed:
 
     def _known(self, form: Form) -> Form:
         """The form, once all solved coordinates are replaced."""
-        while any(c in self.solved for c in form):
-            for c in [c for c in form if c in self.solved]:
-                factor = form[c]
-                rest = {k: x for k, x in form.items() if k != c}
-                form = _sum(rest, self.solved[c], factor)
+        while (solved := next((c for c in form if c in self.solved), None)) is not None:
+            rest = dict(form)
+            factor = rest.pop(solved)
+            form = _sum(rest, self.solved[solved], factor)
         return form
 
     def _solve(self, edge: Edge, open_one: Coordinate) -> None:
