@@ -22,6 +22,7 @@ from exactfold.pattern.drawing.meant.positions import (
     Written,
     decimals,
     placed_together,
+    too_long,
 )
 from exactfold.pattern.drawing.meant.values import Edge
 
@@ -79,7 +80,7 @@ class _Making:
         return True
 
     def place(self, step: VertexStep) -> bool:
-        """Place one vertex; False if its two lines are parallel."""
+        """Place one vertex; False if its two lines are parallel, or if numbers become too long."""
         field = self.directions.field
         x, y = (field.number(self._short(step.vertex, axis)) for axis in (0, 1))
         if not step.lines:
@@ -95,8 +96,9 @@ class _Making:
             if not turn:
                 return False
             along = cross((bx - ax, by - ay), e) / turn
-        self.points[step.vertex] = ax + along * d[0], ay + along * d[1]
-        return True
+        point = ax + along * d[0], ay + along * d[1]
+        self.points[step.vertex] = point
+        return not any(map(too_long, point))
 
     def vector(self, line: Condition) -> Vector:
         """The vector from one vertex of a line to the other."""
