@@ -139,7 +139,8 @@ class Directions:
     def _halve(self, k: int, vector: Vector, angle: float, halvings: int) -> None:
         """Halve the angle of a vector several times, and take it for a free angle."""
         for _ in range(halvings):
-            x, y = vector
+            scale = lcm(*(int(c.q) for part in vector for c in part.parts))
+            x, y = vector[0] * scale, vector[1] * scale
             square = x * x + y * y
             field = self.field.adjoined(square)
             length = field.square_root(square)

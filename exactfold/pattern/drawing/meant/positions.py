@@ -21,6 +21,8 @@ Written: TypeAlias = Sequence[tuple[Fraction, Fraction]]
 Point: TypeAlias = tuple[Surd, Surd]
 _MOST_BITS: Final = 1 << 13
 """The longest numerators and denominators of coordinates."""
+TOO_LONG: Final = f"its coordinates have numbers of more than {_MOST_BITS} bits"
+NO_PLACES: Final = "no sheet near the drawing has all these directions"
 _FAR: Final = 1000
 """Positions that are off by so many times the noise are not near the drawing."""
 _ROUGH: Final = 1e-9
@@ -33,27 +35,26 @@ def placed_together(
     directions: Directions,
     bound: Mapping[Edge, Edge],
     noise: float,
-) -> list[Point] | None:
+) -> list[Point] | str:
     """Positions near the written ones, such that the lines `bound` have given directions.
 
     Each line is a pair of vertices, and belongs to an edge that has the direction of this line.
     `places` are the written positions in floats. The free coordinates are short decimals, rounded
-    far below the noise level `noise`, which is relative to the larger side of the drawing. None if
-    the equations for the positions have no solution near the drawing with these directions, or
-    none with numbers of a useful length.
+    far below the noise level `noise`, which is relative to the larger side of the drawing. Returns
+    `NO_PLACES` or `TOO_LONG` if there are no such positions.
     """
     vectors = {line: directions.vector(edge) for line, edge in bound.items()}
     units = {line: _unit(vector) for line, vector in vectors.items()}
     order = placing_order(places, units, 100 * noise)
     free = _free_values(written, places, order, noise)
     if free is None:
-        return None
+        return NO_PLACES
     placed = _Placed(directions.field, vectors, free)
     if not all(placed.place(step) for step in order.steps):
-        return None
+        return TOO_LONG
     points = placed.points()
     off = any(cross(vector, _along(points, line)) for line, vector in vectors.items())
-    return None if off else points
+    return NO_PLACES if off else points
 
 
 def bound_edges(angles: Angles) -> list[Edge]:
