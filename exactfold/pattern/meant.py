@@ -140,8 +140,8 @@ class Meant:
         if self.left_out:
             lines.append(
                 f"{counted(len(self.left_out), 'more relation')} such as {self.left_out[0].name} "
-                f"nearly {agreeing(len(self.left_out), 'holds')}, but no exact sheet with all of "
-                "them was found; no condition at a vertex needs them"
+                f"{agreeing(len(self.left_out), 'is')} nearly true, but no exact sheet with all "
+                "relations was found; no condition at a vertex needs them"
             )
         for name, others in self.implied.items():
             lines.append(f"{name} holds all the same, because of {', '.join(others)}")
