@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Final, TypeAlias
 
+from exactfold._support.clock import UNLIMITED, Clock
 from exactfold._support.plurals import counted
 from exactfold.errors import TooManyModesError
 from exactfold.exact.surds import SurdField
@@ -86,7 +87,10 @@ class ModeSearch:
     drawing may be rounded.
     """
 
-    def __init__(self, stars: Mapping[int, Star], ground: SurdField) -> None:
+    def __init__(
+        self, stars: Mapping[int, Star], ground: SurdField, clock: Clock = UNLIMITED
+    ) -> None:
+        self._clock = clock
         self.roots = Roots(ground)
         self.stars = stars
         self.modes = {v: local_modes(star) for v, star in stars.items()}
@@ -146,6 +150,7 @@ class ModeSearch:
                     ended.append(state)
                     continue
                 self._steps += 1
+                self._clock.check()
                 for mode in self.modes[vertex]:
                     new = self._joined(state, mode, allowed)
                     if new is not None:

@@ -7,6 +7,7 @@ import time
 from collections.abc import Mapping
 from dataclasses import replace
 
+from exactfold._support.clock import Clock
 from exactfold._support.plurals import counted
 from exactfold._support.verdict import PROVED, REFUTED
 from exactfold.app.options.branches import MatchOptions
@@ -49,6 +50,7 @@ class Asked(MatchOptions):
         `match`, and `UsageError` if the letters do not fit the folds or the file has none.
         """
         begin = time.perf_counter()
+        clock = Clock(self.limit)
         nearest = None
         with Bar("reading") as bar:
             opened = read_any(self.file, self.reading)
@@ -64,7 +66,7 @@ class Asked(MatchOptions):
                         self._write(over, bar)
                         bar.close()
                         return self._over_a_boundary(over)
-                started = match_panels(opened, letters, progress=bar)
+                started = match_panels(opened, letters, progress=bar, clock=clock)
                 self._write(started, bar)
                 bar.close()
                 return self._started(started)

@@ -10,6 +10,7 @@ from exactfold.app.shell.parameters import (
     Chords,
     Colours,
     Dashes,
+    Force,
     Sheet,
     Snap,
     distance,
@@ -25,6 +26,7 @@ class ReadingOptions:
 
     snap: Snap = None
     sheet: Sheet = None
+    force: Force = False
     colours: Colours = None
     dashes: Dashes = None
     chords: Chords = None
@@ -77,6 +79,7 @@ class ReadingOptions:
             noise=None if self.noise is None else float(self.noise),
             unit=self.unit,
             relations=self.relations,
+            force=self.force,
         )
 
 

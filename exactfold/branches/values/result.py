@@ -308,6 +308,8 @@ class BranchCount(Page, Ways[Branch], Certified):
             return self.families.keys()
         return {
             "components": None,
+            "degrees_of_freedom": None,
+            "drawn": None,
             "modes_count": None,
             "modes": [],
             "flat_folds": [],

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Annotated, Any, ClassVar, Literal, TypedDict
 
+from exactfold._support.clock import UNLIMITED, Clock
 from exactfold._support.documents import (
     Assignment,
     FoldText,
@@ -215,6 +216,7 @@ def match_panels(
     letters: Mapping[Edge, str] | str | None = None,
     *,
     progress: Progress | None = None,
+    clock: Clock = UNLIMITED,
 ) -> PanelMatch:
     """Whether rigid panels start to fold with given mountains and valleys, with a proof.
 
@@ -228,8 +230,8 @@ def match_panels(
     The answer no is proved at one vertex, by vectors (`PanelRefutation`), or by loops that do not
     close. The answer yes is proved by exact modes if all vertices have at most four folds, and
     otherwise by balls or bounds around a candidate (docs/assignment.md, Rigid panels). If neither
-    succeeds, the answer is UNDECIDED. Raises `UsageError` for letters that do not fit, and the
-    errors of `open_pattern`.
+    succeeds, or if the clock has passed, the answer is UNDECIDED. Raises `UsageError` for letters
+    that do not fit, and the errors of `open_pattern`.
 
     >>> from exactfold.design import match_panels
     >>> matched = match_panels("bird-base")
@@ -255,24 +257,28 @@ def match_panels(
     for number, group in enumerate(groups if not dead else ()):
         if progress is not None:
             progress("parts of the sheet", number, len(groups))
-        parts.append(answered(sheet, {v: moving[v] for v in group}, asked))
+        parts.append(answered(sheet, {v: moving[v] for v in group}, asked, clock))
     matched = _result(sheet, asked, dead, free, parts)
     if matched.starts is not PROVED:
         if progress is not None:
             progress("first order", 0, 1)
-        matched = replace(matched, first_order=_first_order(moving, asked, dead, free))
+        matched = replace(matched, first_order=_first_order(moving, asked, dead, free, clock))
     return replace(matched.about(opened), seconds=time.perf_counter() - start)
 
 
 def _first_order(
-    moving: Mapping[int, Star], asked: Letters, dead: Iterable[Edge], free: Iterable[Edge]
+    moving: Mapping[int, Star],
+    asked: Letters,
+    dead: Iterable[Edge],
+    free: Iterable[Edge],
+    clock: Clock,
 ) -> Together | None:
     """What can move together to first order, completed by the folds outside all moving stars.
 
     Folds that the flat closure keeps flat never move, and folds from boundary to boundary always
     can.
     """
-    inside = going_together(moving, asked)
+    inside = None if clock.passed else going_together(moving, asked, clock)
     if inside is None:
         return None
     together, never = sorted({*inside.together, *free}), sorted({*inside.never, *dead})

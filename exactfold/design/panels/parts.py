@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from itertools import chain, islice
 from typing import Final
 
+from exactfold._support.clock import UNLIMITED, Clock
 from exactfold._support.plurals import counted
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.design.panels.candidates import MotionSearch
@@ -55,8 +56,13 @@ class PartAnswer:
     by_list: bool = False
 
 
-def answered(pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters) -> PartAnswer:
-    """The answer for one part; cheap proofs are tried first.
+def answered(
+    pattern: PanelPattern,
+    moving: Mapping[int, Star],
+    letters: Letters,
+    clock: Clock = UNLIMITED,
+) -> PartAnswer:
+    """The answer for one part; cheap proofs are tried first, until the clock has passed.
 
     The order is: single vertices; vectors that refute all first-order motions; loops of vertices
     with at most four folds, which are the complete answer if there are no other vertices; a
@@ -71,7 +77,7 @@ def answered(pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters
         return PartAnswer(vertices, PROVED, PROVED, ways=None)
     if stuck := _stuck(moving, letters):
         return _refused_at(vertices, moving, stuck)
-    program = FirstOrderProgram(moving, letters)
+    program = FirstOrderProgram(moving, letters, clock)
     start = program.motion()
     if start is None and (refutation := program.refutation()) is not None:
         named = tuple(refutation.planes)
@@ -90,7 +96,7 @@ def answered(pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters
     if start is not None and (proved := _found(program, start)) is not None:
         truly = PROVED if proved.folds else UNDECIDED
         return PartAnswer(vertices, PROVED, truly, densities=proved.densities)
-    by_spaces = _by_spaces(pattern, moving, letters)
+    by_spaces = _by_spaces(pattern, moving, letters, clock)
     if by_spaces is not None:
         return by_spaces
     if start is None:
@@ -100,6 +106,8 @@ def answered(pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters
             "some first-order motions have these letters, but no motion to second order that has "
             "them was proved"
         )
+    if clock.passed:
+        text += f"; {clock.said}"
     return PartAnswer(vertices, UNDECIDED, UNDECIDED, f"{_where(vertices)}: {text}")
 
 
@@ -116,12 +124,12 @@ def _found(program: FirstOrderProgram, start: Mapping[Edge, float]) -> ProvedMot
 
 
 def _by_spaces(
-    pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters
+    pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters, clock: Clock
 ) -> PartAnswer | None:
     """The answer of the complete list of spaces of motions; None if it is not obtained."""
     vertices = tuple(moving)
     try:
-        starts, motion = LetteredSpaces(moving, letters).motion()
+        starts, motion = LetteredSpaces(moving, letters, clock=clock).motion()
     except TooManyModesError:
         return None
     if starts is PROVED:
