@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from exactfold.pattern.drawing.meant.drawn import Drawn, gathered
-from exactfold.pattern.drawing.meant.noise import is_rare
+from exactfold.pattern.drawing.meant.noise import LOOKED_FOR, is_rare
 from exactfold.pattern.drawing.meant.system import System
 from exactfold.pattern.drawing.meant.values import Edge, Relation
 
@@ -69,7 +69,7 @@ class Accepted:
         last = self._last([(p, r is not None) for p, r in trials])
         last_exact = self._last([(sharper * p, _is_exact(r)) for p, r in trials])
         for number, (_, relation) in enumerate(trials, 1):
-            believed = number <= (last_exact if _is_exact(relation) else last)
+            believed = number <= (max(last, last_exact) if _is_exact(relation) else last)
             if relation and believed and not self.is_implied(relation.terms, relation.parts):
                 self.add([relation])
 
@@ -79,7 +79,7 @@ class Accepted:
         for number, (probability, hit) in enumerate(trials, 1):
             expected += probability
             hits += hit
-            if is_rare(expected, hits):
+            if is_rare(expected, hits, unlikely=LOOKED_FOR):
                 last, chance = number, expected
         self.chance += chance
         return last

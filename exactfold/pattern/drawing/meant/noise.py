@@ -11,7 +11,7 @@ from typing import Final
 
 GAP: Final = 100.0
 """The noise is believed only if nothing else is off by less than this many times the noise."""
-TOLERANCE: Final = 30.0
+TOLERANCE: Final = 10.0
 """A relation holds if it is missed by at most this many times the noise."""
 CHANCE: Final = 1e-3
 """So many relations by chance are allowed for each relation that is found."""
@@ -19,8 +19,12 @@ FINEST: Final = 1e-16
 """No noise level is finer; angles are compared in double precision."""
 _EASILY: Final = 0.003
 _ALIKE: Final = 1e-6
-_EXCESS: Final = 0.02
+_EXCESS: Final = 0.05
 _UNLIKELY: Final = 1e-4
+LOOKED_FOR: Final = 1e-5
+"""What is looked for in many ways is believed only if chance brings it less often than this."""
+_VISIBLE: Final = 1e-3
+"""What is missed by a larger share of the size can be seen, and is no noise."""
 _FINER: Final = 1.02
 """Counts of near relations are told apart if one is this many times the other."""
 
@@ -83,6 +87,8 @@ def noise_level(
             return Noise(defects[end - 1], above[end - 1], chance, end)
     near = 0
     for end in ends:
+        if defects[end - 1] > _VISIBLE:
+            break
         if end > _FINER * near and _suspicious(missed[:end], defects[end - 1], densities):
             near = end
     if not near:
@@ -91,14 +97,16 @@ def noise_level(
     return Noise(eps, clear, chance, near, _refusal(eps, clear, chance, near))
 
 
-def is_rare(expected: float, hits: int, share: float = CHANCE) -> bool:
-    """Whether chance explains less than a share of the hits, and hardly ever brings as many.
+def is_rare(
+    expected: float, hits: int, *, share: float = CHANCE, unlikely: float = _UNLIKELY
+) -> bool:
+    """Whether chance explains less than a share of the hits, and is unlikely to bring as many.
 
     With expected hits m, chance brings k hits or more with a probability of at most m^k / k!.
     """
     if not hits or not expected:
         return bool(hits)
-    return expected < share * hits and hits * log(expected) - lgamma(hits + 1) < log(_UNLIKELY)
+    return expected < share * hits and hits * log(expected) - lgamma(hits + 1) < log(unlikely)
 
 
 def stated_level(
@@ -131,18 +139,18 @@ def _suspicious(
     expected = sum(density for density in densities if density * eps < _EASILY) * eps
     copies = {round(log(defect) / _ALIKE) for defect, density in missed if density * eps < _EASILY}
     hits = len(copies)
-    return is_rare(expected, hits, _EXCESS)
+    return is_rare(expected, hits, share=_EXCESS, unlikely=LOOKED_FOR)
 
 
 def _refusal(eps: float, clear: float, chance: float, near: int) -> str:
     if clear < GAP * eps:
         return (
-            f"no gap: relations are missed by up to {eps:.1g} of the size, and others by "
-            f"{clear:.1g}; only {clear / eps:.2g} times more, and {GAP:g} times is needed"
+            f"no gap: relations are missed by up to {eps:.1g} of the size, and others by only "
+            f"{clear / eps:.2g} times more; {GAP:g} times is needed"
         )
     return (
-        f"chance: {chance:.1g} relations are expected by chance, and {near} were found; chance may "
-        f"explain {CHANCE:g} of them"
+        f"chance: {near} relations are missed by up to {eps:.1g} of the size, and {chance:.1g} are "
+        f"expected to be by chance; at most {CHANCE:g} times as many may be"
     )
 
 
