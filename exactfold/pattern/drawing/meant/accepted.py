@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from fractions import Fraction
 from typing import NamedTuple
 
 from exactfold.pattern.drawing.meant.drawn import Drawn, gathered
@@ -84,17 +85,20 @@ class Accepted:
         self.chance += chance
         return last
 
-    def reasons(self, relation: Relation) -> tuple[str, ...]:
-        """The names of accepted relations that imply a relation, or that contradict it."""
+    def reasons(self, relations: Iterable[Relation]) -> list[tuple[str, ...]]:
+        """For each relation, the names of accepted relations that imply or contradict it."""
         lengths = self.drawn.lengths
-        # Each relation gets an unknown of its own, its index, which is never solved for.
+        # Each accepted relation has an unknown of its own, its index, which is never solved for.
         system: System[Edge | int] = System(lambda u: None if isinstance(u, int) else lengths[u])
         for number, known in enumerate(self.relations):
             terms: dict[Edge | int, int] = {**dict(known.terms), number: -1}
             system.add(terms, self.drawn.turns(known.terms, known.parts))
-        target: dict[Edge | int, int] = {**dict(relation.terms)}
-        left, _ = system.rest(target, self.drawn.turns(relation.terms, relation.parts))
-        return tuple(self.relations[u].name for u in sorted(u for u in left if isinstance(u, int)))
+        reasons = []
+        for relation in relations:
+            left, _ = system.rest(dict(relation.terms), Fraction(0))
+            numbers = sorted(number for number in left if isinstance(number, int))
+            reasons.append(tuple(self.relations[number].name for number in numbers))
+        return reasons
 
     def free(self) -> list[Edge]:
         """The edges whose angles are free so far, the longest first.
