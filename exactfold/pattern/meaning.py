@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from exactfold.errors import FoldError, PatternError, TooLargeError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
@@ -14,6 +14,10 @@ from exactfold.pattern.opened import Opened, panels, triangulated
 
 if TYPE_CHECKING:  # sheets with exact digits do without it
     from exactfold.pattern.panel_pattern import PanelPattern
+
+
+_TIMES_NOISE: Final = 100
+"""Recognising coordinates must not move one by more than this many times the largest defect."""
 
 
 def meaning(found: Opened, written: Callable[[], Opened]) -> Opened:
@@ -68,11 +72,14 @@ def meaning(found: Opened, written: Callable[[], Opened]) -> Opened:
 def recognised(found: Opened) -> Opened | None:
     """A triangulated sheet with recognised coordinates, if its digits are inexact without them.
 
-    None if its digits are exact, if `snap` or a relation was asked for, or if relations nearly hold
-    even then.
+    None if its digits are exact, if `snap` or a relation was asked for, if relations nearly hold
+    even then, or if a coordinate would move far more than its noise.
     """
     reading = found.reading
-    if reading.snap is not None or reading.overrules or not left_relations(found.sheet):
+    if reading.snap is not None or reading.overrules:
+        return None
+    left = left_relations(found.sheet)
+    if not left:
         return None
     from exactfold.pattern.drawing.coordinates import exact_coordinates
     from exactfold.pattern.panel_pattern import PanelPattern
@@ -81,6 +88,8 @@ def recognised(found: Opened) -> Opened | None:
         return None
     lines = tuple(Line(i, j, found.assignment.get((i, j), "U")) for i, j in found.sheet.edges)
     known = exact_coordinates(Drawing(tuple(found.sheet.vertices), lines, ""), "auto")
+    if known.largest_move > _TIMES_NOISE * left[-1].defect:
+        return None
     try:
         sheet = PanelPattern(known.points, found.sheet.edges)
     except (FoldError, PatternError):
