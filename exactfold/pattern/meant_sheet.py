@@ -61,9 +61,10 @@ def realize(drawn: PanelPattern, angles: Angles, noise: float) -> Realized:
     """The exact sheet near a drawing whose edges have the given angles.
 
     `noise` is the noise level of the drawing, relative to its larger side. Free angles become
-    angles with rational tangents, and free coordinates short decimals; both stay far nearer to
-    their values than the noise. All other coordinates follow from the directions of edges, and all
-    edges are checked exactly. Raises `UsageError` if the coordinates of the drawing are irrational.
+    angles with tangents in the field, and free coordinates short decimals, without leaving the
+    noise. All other coordinates follow from the directions of edges. If the positions determine
+    some of the free angles, these follow, too, where each is found by linear equations. All edges
+    are checked exactly. Raises `UsageError` if the coordinates of the drawing are irrational.
 
     >>> square = PanelPattern([(0, 0), (1, 0), (1, 1), (Fraction(1, 1000), 1)],
     ...                       [(0, 1), (1, 2), (2, 3), (0, 3), (0, 2)])
@@ -92,10 +93,8 @@ def _exact_points(written: Written, angles: Angles, noise: float) -> list[Point]
     whole = {edge: edge for edge in bound}
     directions = Directions(angles, angles.free, noise)
     points = placed_together(written, places, directions, whole, noise)
-    if points is not None:
+    if not isinstance(points, str) or not any(angles.coefficients.get(edge) for edge in bound):
         return points
-    if not any(angles.coefficients.get(edge) for edge in bound):
-        return "no sheet near the drawing has all these directions"
     near = refined(places, angles, bound, noise)
     if not near.exists:
         return (
@@ -104,14 +103,11 @@ def _exact_points(written: Written, angles: Angles, noise: float) -> list[Point]
         )
     directions = Directions(angles, near.free, noise)
     points = placed_together(written, places, directions, whole, noise)
-    if points is None:
+    if isinstance(points, str):
         directions = Directions(angles, near.free, noise)
         lines = _lines(directions, angles, near.free, bound)
         points = constructed(written, near.places, directions, lines, bound, noise)
-    return points or (
-        "the positions of the vertices determine some free angles, and no order was found in which "
-        "they follow from each other by linear equations"
-    )
+    return points
 
 
 def _lines(

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
+from typing import Final
 
 import numpy as np
 
 from exactfold._support.arrays import FloatArray
 from exactfold.pattern.drawing.meant.directions import Directions, Vector, cross
 from exactfold.pattern.drawing.meant.peeling import (
-    AngleStep,
     Condition,
     Lines,
     Peeled,
@@ -18,12 +18,19 @@ from exactfold.pattern.drawing.meant.peeling import (
     peeled,
 )
 from exactfold.pattern.drawing.meant.positions import (
+    TOO_LONG,
     Point,
     Written,
     decimals,
     placed_together,
+    too_long,
 )
 from exactfold.pattern.drawing.meant.values import Edge
+
+NO_ORDER: Final = (
+    "the positions of its vertices determine some free angles, and no order was found in which "
+    "they follow from each other by linear equations"
+)
 
 
 def constructed(
@@ -33,25 +40,28 @@ def constructed(
     lines: Lines,
     bound: Sequence[Edge],
     noise: float,
-) -> list[Point] | None:
+) -> list[Point] | str:
     """Positions such that the edges `bound` have the directions that free angles give them.
 
     `places` are such positions in floats, near the written ones. Each vertex and each free angle
-    follows from those before it, or is chosen as a short number. None if no such order was found,
-    or if it misses an edge.
+    follows from those before it, or is chosen as a short number. Returns `TOO_LONG` if numbers
+    become too long, and `NO_ORDER` if there is no such order, or if it misses an edge.
     """
     order = peeled(places, lines, bound)
     making = _Making(places, directions, noise)
-    if not making.begin(written, order):
-        return None
+    if reason := making.begin(written, order):
+        return reason
     for step in order.steps:
-        if isinstance(step, AngleStep):
-            directions.fix(step.angle, step.line.edge, making.vector(step.line))
-        elif not making.place(step):
-            return None
+        if isinstance(step, VertexStep):
+            if reason := making.place(step):
+                return reason
+        elif any(vector := making.vector(step.line)):
+            directions.fix(step.angle, step.line.edge, vector)
+        else:
+            return NO_ORDER
     points = [making.points[v] for v in range(len(places))]
     vectors = ((edge, making.vector(Condition(*edge, edge))) for edge in bound)
-    return None if any(cross(directions.vector(e), vector) for e, vector in vectors) else points
+    return NO_ORDER if any(cross(directions.vector(e), vector) for e, vector in vectors) else points
 
 
 class _Making:
@@ -61,42 +71,44 @@ class _Making:
         size = float(np.ptp(places, axis=0).max())
         self.digits = decimals(max(noise / 1000, 2.0**-52) * size)
 
-    def begin(self, written: Written, order: Peeled) -> bool:
-        """Place the vertices of the core, whose free angles are all chosen."""
+    def begin(self, written: Written, order: Peeled) -> str:
+        """Place the vertices of the core, whose free angles are all chosen, or say why not."""
         core = sorted(order.vertices)
         number = {v: k for k, v in enumerate(core)}
         bound = {(number[line.i], number[line.j]): line.edge for line in order.core}
         if len(bound) < len(order.core):
-            return False
+            return NO_ORDER
         if not core:
-            return True
+            return ""
         points = placed_together(
             [written[v] for v in core], self.places[core], self.directions, bound, self.noise
         )
-        if points is None:
-            return False
+        if isinstance(points, str):
+            return TOO_LONG if points == TOO_LONG else NO_ORDER
         self.points.update(zip(core, points, strict=True))
-        return True
+        return ""
 
-    def place(self, step: VertexStep) -> bool:
-        """Place one vertex; False if its two lines are parallel."""
+    def place(self, step: VertexStep) -> str:
+        """Place one vertex, or say why not."""
         field = self.directions.field
-        x, y = (field.number(self._short(step.vertex, axis)) for axis in (0, 1))
-        if not step.lines:
-            self.points[step.vertex] = x, y
-            return True
-        (ax, ay), d = self._line(step.vertex, step.lines[0])
-        if len(step.lines) == 1:
-            steep = abs(float(d[1])) > abs(float(d[0]))
-            along = (y - ay) / d[1] if steep else (x - ax) / d[0]
-        else:
-            (bx, by), e = self._line(step.vertex, step.lines[1])
-            turn = cross(d, e)
-            if not turn:
-                return False
-            along = cross((bx - ax, by - ay), e) / turn
-        self.points[step.vertex] = ax + along * d[0], ay + along * d[1]
-        return True
+        point = x, y = (
+            field.number(self._short(step.vertex, 0)),
+            field.number(self._short(step.vertex, 1)),
+        )
+        if step.lines:
+            (ax, ay), d = self._line(step.vertex, step.lines[0])
+            if len(step.lines) == 1:
+                steep = abs(float(d[1])) > abs(float(d[0]))
+                along = (y - ay) / d[1] if steep else (x - ax) / d[0]
+            else:
+                (bx, by), e = self._line(step.vertex, step.lines[1])
+                turn = cross(d, e)
+                if not turn:
+                    return NO_ORDER
+                along = cross((bx - ax, by - ay), e) / turn
+            point = ax + along * d[0], ay + along * d[1]
+        self.points[step.vertex] = point
+        return TOO_LONG if any(map(too_long, point)) else ""
 
     def vector(self, line: Condition) -> Vector:
         """The vector from one vertex of a line to the other."""

@@ -9,17 +9,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
-from math import ceil, cos, gcd, lcm, sin
+from math import ceil, cos, gcd, hypot, lcm, sin
 from typing import Final, TypeAlias
 
 from exactfold.exact.surds import RATIONALS, Number, Surd, SurdField, rational
+from exactfold.pattern.drawing.candidates import reduced_match
 from exactfold.pattern.drawing.meant.values import Angles, Edge
 
 Vector: TypeAlias = tuple[Surd, Surd]
 _MOST_ROOTS: Final = 4
 """Towers with more square roots are not used for directions."""
-_CHANCE: Final = 1e-3
-"""A fraction is believed if one with such a denominator is as near with a smaller probability."""
+_SURE: Final = 10.0
+"""By so many bits a short number must beat chance."""
 _FINEST: Final = 2.0**-50
 """Floats hold free angles no better than so, in radians."""
 
@@ -40,9 +41,10 @@ class Directions:
     """Exact directions of edges, with coordinates in one field.
 
     `free` holds the values of the free angles, in radians. Each free angle becomes one with a
-    rational tangent, unless `fix` gave it a direction before it was used. The tangent is a short
-    fraction that chance does not explain, within four times the `noise` of the value, or else a
-    longer one far nearer to the value.
+    tangent in the field, unless `fix` gave it a direction before it was used. The tangent is a
+    short number that chance does not explain, within four times the `noise` of the value, or else a
+    fraction far nearer to the value. If only a multiple of the angle has such a tangent, the field
+    is extended by the square roots that halve it.
 
     >>> edge = {(0, 1): Fraction(1, 8)}, {(0, 1): ((0, Fraction(1, 2)),)}
     >>> found = Directions(Angles(*edge, (0.2,)), (0.2,), 1e-6)
@@ -62,8 +64,11 @@ class Directions:
         self.scales = {k: lcm(*(c.denominator for c in each)) for k, each in used.items()}
         self._most = {k: max(map(abs, each)) for k, each in used.items()}
         self._fixed: dict[int, Vector] = {}
+        self._short: dict[int, Vector] = {}
         self._whole: dict[int, tuple[int, int]] = {}
         self._vectors: dict[tuple[Fraction, tuple[tuple[int, Fraction], ...]], Vector] = {}
+        for k in self.scales:
+            self._recognise(k)
 
     def key(self, edge: Edge) -> tuple[Fraction, tuple[tuple[int, Fraction], ...]]:
         """What the direction of an edge depends on: edges with equal keys are parallel."""
@@ -103,16 +108,58 @@ class Directions:
             power = self.power(edge, k)
             if k == left_out:
                 continue
-            if k in self._fixed:
-                x, y = self._fixed[k]
-                for _ in range(abs(power)):
-                    total = _product(total, (x, y if power > 0 else -y))
-            else:
-                if k not in self._whole:
-                    share = max(ceil(self._most[k]), 1) * self.scales[k]
-                    self._whole[k] = _gaussian(self.free[k] / self.scales[k], self.noise / share)
-                whole = _times(whole, _power(self._whole[k], power))
+            known = self._fixed.get(k) or self._short.get(k)
+            if known is None:
+                whole = _times(whole, _power(self._fraction(k), power))
+                continue
+            x, y = known
+            for _ in range(abs(power)):
+                total = _product(total, (x, y if power > 0 else -y))
         return _turned(total, whole)
+
+    def _noise(self, k: int) -> float:
+        """The noise of a free angle over its q."""
+        return self.noise / (max(ceil(self._most[k]), 1) * self.scales[k])
+
+    def _recognise(self, k: int) -> None:
+        """Find a short number for the tangent or cotangent of t / q, or of a multiple of it."""
+        halvings = 0
+        while self.scales[k] % (1 << halvings) == 0:
+            angle = self.free[k] / self.scales[k] * (1 << halvings)
+            slope, steep = _slope(angle)
+            within = max(4 * self._noise(k) * (1 << halvings), _FINEST)
+            match = reduced_match(Fraction(slope), Fraction(within), self.field, _SURE)
+            if match is not None:
+                short, one = self.field.number(match.value), self.field.number(1)
+                vector = (short, one) if steep else (one, short)
+                self._halve(k, vector, angle, halvings)
+                return
+            halvings += 1
+
+    def _halve(self, k: int, vector: Vector, angle: float, halvings: int) -> None:
+        """Halve the angle of a vector several times, and take it for a free angle."""
+        for _ in range(halvings):
+            scale = lcm(*(int(c.q) for part in vector for c in part.parts))
+            x, y = vector[0] * scale, vector[1] * scale
+            square = x * x + y * y
+            field = self.field.adjoined(square)
+            length = field.square_root(square)
+            if length is None or len(field.radicands) > _MOST_ROOTS:
+                return
+            self.field, angle = field, angle / 2
+            # (x + length, y) has half the angle of (x, y), and (x - length, y) is at right angles
+            half = [(x + length, field.number(y)), (x - length, field.number(y))]
+            vector = _short(min(half, key=lambda other: _off(other, angle)))
+        self._short[k] = vector
+
+    def _fraction(self, k: int) -> tuple[int, int]:
+        """A Gaussian integer whose angle is that of t / q, nearly."""
+        if k not in self._whole:
+            slope, steep = _slope(self.free[k] / self.scales[k])
+            near = _fraction(Fraction(slope), max(self._noise(k) / 100, _FINEST))
+            p, q = near.numerator, near.denominator
+            self._whole[k] = (p, q) if steep else (q, p)
+        return self._whole[k]
 
 
 def parts_of(angles: Angles) -> int:
@@ -198,24 +245,25 @@ def _short(vector: Vector) -> Vector:
     return (one, y / x) if abs(float(x)) >= abs(float(y)) else (x / y, one)
 
 
-def _gaussian(angle: float, noise: float) -> tuple[int, int]:
-    """A short Gaussian integer whose angle, modulo pi, is nearly the given one.
-
-    >>> _gaussian(0.46365, 1e-5), _gaussian(2.0, 1e-4)
-    ((2, 1), (-254, 555))
-    """
+def _slope(angle: float) -> tuple[float, bool]:
+    """The tangent of an angle, or its cotangent if that is smaller; whether it is the cotangent."""
     x, y = cos(angle), sin(angle)
     steep = abs(y) > abs(x)
-    slope = Fraction(x / y if steep else y / x)
-    within = max(4 * noise, _FINEST)
-    near = _fraction(slope, within)
-    if near.denominator**2 * within > _CHANCE:
-        near = _fraction(slope, max(noise / 100, _FINEST))
-    p, q = near.numerator, near.denominator
-    return (p, q) if steep else (q, p)
+    return (x / y if steep else y / x), steep
+
+
+def _off(vector: Vector, angle: float) -> float:
+    """The sine of the angle between a vector and an angle, without its sign."""
+    x, y = float(vector[0]), float(vector[1])
+    return abs(y * cos(angle) - x * sin(angle)) / max(hypot(x, y), _FINEST)
 
 
 def _fraction(value: Fraction, within: float) -> Fraction:
+    """A short fraction near a value.
+
+    >>> _fraction(Fraction(1, 3), 0.1), _fraction(Fraction("0.46365"), 1e-4)
+    (Fraction(1, 3), Fraction(51, 110))
+    """
     limit = 1
     while abs((near := value.limit_denominator(limit)) - value) > within:
         limit *= 2

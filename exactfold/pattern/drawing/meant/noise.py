@@ -20,6 +20,8 @@ FINEST: Final = 1e-16
 _EASILY: Final = 0.003
 _ALIKE: Final = 1e-6
 _EXCESS: Final = 0.05
+_TRUST: Final = 10.0
+"""How many relations must be expected, but not seen, until rays hardly count as uniform."""
 _UNLIKELY: Final = 1e-4
 LOOKED_FOR: Final = 1e-5
 """What is looked for in many ways is believed only if chance brings it less often than this."""
@@ -67,9 +69,6 @@ def noise_level(
     Defects that are exactly 0 say nothing about noise. The others are cut into levels where one is
     `GAP` times the one before. A level is believed if chance hardly explains its defects
     (`is_rare`). The noise is the largest defect of the highest level that is believed.
-
-    The expected number of chance relations is the larger of two estimates: for independent uniform
-    rays, and for defects as dense as those above the level are.
     """
     missed = sorted((defect, density) for defect, density in found if defect)
     if not missed:
@@ -79,7 +78,7 @@ def noise_level(
     ends = [k for k, (eps, clear) in enumerate(zip(defects, above, strict=True), 1) if clear > eps]
 
     def expected(end: int) -> float:
-        return _expected(defects[end - 1], defects[end:], densities)
+        return _expected(defects[end - 1], defects[end:], densities, beyond)
 
     clear_ends = [0, *(k for k in ends if above[k - 1] >= GAP * defects[k - 1])]
     for start, end in reversed([*pairwise(clear_ends)]):
@@ -89,7 +88,8 @@ def noise_level(
     for end in ends:
         if defects[end - 1] > _VISIBLE:
             break
-        if end > _FINER * near and _suspicious(missed[:end], defects[end - 1], densities):
+        worth = end > _FINER * near or end in clear_ends
+        if worth and _suspicious(missed[:end], defects[end - 1], densities):
             near = end
     if not near:
         return None
@@ -119,13 +119,26 @@ def stated_level(
     tolerance = TOLERANCE * eps
     above = sorted(defect for defect, _ in found if defect > tolerance)
     near = sum(0 < defect <= tolerance for defect, _ in found)
-    return Noise(eps, above[0] if above else beyond, _expected(tolerance, above, densities), near)
+    return Noise(
+        eps, above[0] if above else beyond, _expected(tolerance, above, densities, beyond), near
+    )
 
 
-def _expected(eps: float, above: Sequence[float], densities: Sequence[float]) -> float:
-    """How many relations chance brings within `eps`, if those in `above` are further off."""
+def _expected(
+    eps: float, above: Sequence[float], densities: Sequence[float], beyond: float
+) -> float:
+    """How many relations chance brings within `eps`, if those in `above` are further off.
+
+    Their number is at least that for defects as dense as those in `above`. Uniform rays give
+    another number. The more relations these let expect between `eps` and the first in `above`,
+    where there is none, the less uniform the rays are: the number becomes smaller by the factor
+    that a gamma distribution of the density, of shape `_TRUST`, gives for it.
+    """
+    clear = above[0] if above else beyond
     seen = max((k / defect for k, defect in enumerate(above, 1)), default=0.0)
-    return max(sum(min(1.0, density * eps) for density in densities), eps * seen)
+    uniform = sum(min(1.0, density * eps) for density in densities)
+    unseen = sum(min(1.0, density * clear) for density in densities) - uniform
+    return max(eps * seen, uniform * _TRUST / (_TRUST + unseen))
 
 
 def _suspicious(

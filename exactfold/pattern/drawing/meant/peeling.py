@@ -25,6 +25,8 @@ _ZERO: Final = 1e-8
 """Smaller pivots belong to conditions that follow from others."""
 _WEIGHT: Final = 1e-4
 """A condition with a smaller part in a dependence is not known to follow from others."""
+_MOST_ROWS: Final = 1500
+"""Dependences among more conditions are not looked for."""
 _NO_PARTS: Final[FloatArray] = np.zeros(0)
 
 
@@ -157,14 +159,19 @@ class _Search:
         """Leave out a condition that follows from the others, at a vertex with few directions."""
         if self.null is None:
             self.null = self._dependences()
+        lines = list(self.null)
+        if not lines or not len(self.null[lines[0]]):
+            return False
+        sizes = abs(np.array(list(self.null.values()))).max(axis=1)
         best: tuple[int, float] | None = None
         chosen = None
-        for v in self.left:
-            directions = len({self.lines.keys[line.edge] for line in self.at[v]})
-            for line in self.at[v]:
-                rank = -directions, float(abs(self.null[line]).max(initial=0.0))
-                if rank[1] > _WEIGHT and (best is None or rank > best):
-                    best, chosen = rank, line
+        directions = {
+            v: -len({self.lines.keys[line.edge] for line in at}) for v, at in self.at.items()
+        }
+        for line, size in zip(lines, sizes, strict=True):
+            rank = max(directions[line.i], directions[line.j]), float(size)
+            if size > _WEIGHT and (best is None or rank > best):
+                best, chosen = rank, line
         if chosen is None:
             return False
         parts = self._remove(chosen)
@@ -178,6 +185,8 @@ class _Search:
     def _dependences(self) -> dict[Condition, FloatArray]:
         """The part of each condition in each sum of conditions that vanishes; a basis of these."""
         rows = list(self.conditions())
+        if not 0 < len(rows) <= _MOST_ROWS:
+            return dict.fromkeys(rows, _NO_PARTS)
         vertices = {v: k for k, v in enumerate(sorted(self.left))}
         angles = {k: n for n, k in enumerate(sorted(self.longing))}
         slopes = np.zeros((2 * len(vertices) + len(angles), len(rows)))
@@ -188,8 +197,6 @@ class _Search:
             x, y = self.places[line.j] - self.places[line.i]
             for k, power in self.lines.powers[line.edge].items():
                 slopes[2 * len(vertices) + angles[k], row] = -power * (c * x + s * y)
-        if not rows:
-            return {}
         upper, pivots = qr(slopes, mode="r", pivoting=True)
         heights = abs(np.diag(upper))
         rank = int(np.count_nonzero(heights > _ZERO * max(heights.max(), 1)))

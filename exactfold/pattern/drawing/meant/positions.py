@@ -19,6 +19,10 @@ from exactfold.pattern.drawing.meant.values import Angles, Edge
 Written: TypeAlias = Sequence[tuple[Fraction, Fraction]]
 """The points as the drawing states them."""
 Point: TypeAlias = tuple[Surd, Surd]
+_MOST_BITS: Final = 1 << 13
+"""The longest numerators and denominators of coordinates."""
+TOO_LONG: Final = f"its coordinates have numbers of more than {_MOST_BITS} bits"
+NO_PLACES: Final = "no sheet near the drawing has all these directions"
 _FAR: Final = 1000
 """Positions that are off by so many times the noise are not near the drawing."""
 _ROUGH: Final = 1e-9
@@ -31,26 +35,26 @@ def placed_together(
     directions: Directions,
     bound: Mapping[Edge, Edge],
     noise: float,
-) -> list[Point] | None:
+) -> list[Point] | str:
     """Positions near the written ones, such that the lines `bound` have given directions.
 
     Each line is a pair of vertices, and belongs to an edge that has the direction of this line.
     `places` are the written positions in floats. The free coordinates are short decimals, rounded
-    far below the noise level `noise`, which is relative to the larger side of the drawing. None if
-    the equations for the positions have no solution near the drawing with these directions.
+    far below the noise level `noise`, which is relative to the larger side of the drawing. Returns
+    `NO_PLACES` or `TOO_LONG` if there are no such positions.
     """
     vectors = {line: directions.vector(edge) for line, edge in bound.items()}
     units = {line: _unit(vector) for line, vector in vectors.items()}
     order = placing_order(places, units, 100 * noise)
     free = _free_values(written, places, order, noise)
     if free is None:
-        return None
+        return NO_PLACES
     placed = _Placed(directions.field, vectors, free)
-    for step in order.steps:
-        placed.place(step)
+    if not all(placed.place(step) for step in order.steps):
+        return TOO_LONG
     points = placed.points()
     off = any(cross(vector, _along(points, line)) for line, vector in vectors.items())
-    return None if off else points
+    return NO_PLACES if off else points
 
 
 def bound_edges(angles: Angles) -> list[Edge]:
@@ -99,6 +103,11 @@ def _free_values(
     }
 
 
+def too_long(value: Surd) -> bool:
+    """Whether a number has more bits than are of use."""
+    return any(max(x.p.bit_length(), x.q.bit_length()) > _MOST_BITS for x in value.parts)
+
+
 def decimals(step: float) -> int:
     """The number of decimals with which numbers are rounded to multiples of at most `step`.
 
@@ -128,8 +137,11 @@ class _Placed:
         self.solved: dict[Coordinate, Form] = {}
         self.inverses: dict[tuple[Vector, Vector], Surd] = {}
 
-    def place(self, step: Step) -> None:
-        """Do one step; a condition that must hold anyway is checked later."""
+    def place(self, step: Step) -> bool:
+        """Do one step; False if numbers become too long.
+
+        A condition that must hold anyway is checked later.
+        """
         v = step.vertex
         opened = [self._open(coordinate) for coordinate in step.free]
         if not step.lines:
@@ -154,10 +166,13 @@ class _Placed:
         for edge, open_one in step.checks:
             if open_one is not None:
                 self._solve(edge, open_one)
+        return not any(too_long(x) for form in self.forms[v] for x in form.values())
 
     def points(self) -> list[Point]:
         """All points; a coordinate that is still open is set to 0."""
         zero = self.field.number(0)
+        for coordinate in reversed(self.solved):  # those that were solved last depend on no others
+            self.solved[coordinate] = self._known(self.solved[coordinate])
         points = []
         for v in range(len(self.forms)):
             x, y = self._of(v)

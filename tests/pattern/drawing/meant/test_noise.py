@@ -26,7 +26,8 @@ def test_the_noise_is_the_largest_defect_below_the_gap() -> None:
     found = level([0.0, 1e-12, 3e-12, 2e-12, 0.02, 0.05])
     assert found is not None
     assert (found.eps, found.clear, found.near, found.reason) == (3e-12, 0.02, 3, "")
-    assert found.chance == pytest.approx(PLACES * DENSITY * 3e-12)
+    uniform, unseen = PLACES * DENSITY * 3e-12, PLACES * DENSITY * 0.02
+    assert found.chance == pytest.approx(uniform * 10 / (10 + unseen))
 
 
 def test_the_higher_of_two_noise_levels_counts() -> None:
@@ -49,9 +50,20 @@ def test_noise_without_a_gap_is_refused() -> None:
 
 
 def test_a_gap_that_chance_explains_is_refused() -> None:
-    found = level([1e-4] * 5 + [1.5e-4 + 1e-6 * k for k in range(30)] + [0.05])
+    found = level([5e-4 - 1e-6 * k for k in range(35)] + [0.06])
     assert found is not None
-    assert found.reason.startswith("chance: 35 relations are missed by up to 0.0002 of the size")
+    assert found.reason.startswith("chance: 35 relations are missed by up to 0.0005 of the size")
+    assert found.clear > 100 * found.eps
+
+
+def test_a_gap_in_which_many_more_were_expected_is_believed() -> None:
+    defects = [(4e-5 - 1e-7 * k, 3.0) for k in range(40)] + [(0.06, 3.0)]
+    found = noise_level(defects, [3.0] * 500, 1e-16, 0.1)
+    assert found is not None
+    assert found.reason == ""
+    uniform = 500 * 3.0 * 4e-5
+    assert uniform > 1e-3 * 40, "by uniform rays alone the level would be refused"
+    assert found.chance == pytest.approx(uniform / 10, rel=0.01)
 
 
 def test_defects_that_chance_explains_are_not_near() -> None:
