@@ -7,7 +7,7 @@ from typing import TypedDict
 
 from exactfold.app import report
 from exactfold.app.options.patterns import InfoOptions
-from exactfold.app.shell.patterns import read_any, warn
+from exactfold.app.shell.patterns import read_any
 from exactfold.app.shell.shell import Bar, name_of
 from exactfold.branches.counting.motion_facts import (
     DecomposedFactsDocument,
@@ -67,7 +67,6 @@ def show_info(asked: InfoOptions) -> None:
             if has_branches(sheet):
                 data = _of_branches(facts, alone, name)
             else:
-                warn(sheet)
                 both = panel_facts(panels(sheet))
                 expected = report.expectation(facts, both)
                 data = {**facts.to_dict(name), **both.keys(), "expected": expected, **alone}

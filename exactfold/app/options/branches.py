@@ -1,16 +1,18 @@
 """The options of the commands for single branches, and checks of which go together."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, TypeAlias
 
 import typer
 
+from exactfold._support.clock import LIMIT
 from exactfold.app.options.reading import ReadingOptions
 from exactfold.app.shell.parameters import (
     BoundaryHeights,
     Curvature,
     Json,
+    Limit,
     Pattern,
     Place,
     PrescribedAngles,
@@ -102,6 +104,7 @@ class MatchOptions(ReadingOptions):
         Path | None,
         written("Write a certificate, if the answer is proved.", "OUT.json"),
     ] = None
+    limit: Limit = LIMIT
     as_json: Json = False
     everything: Annotated[bool, flag("--all", text="List every branch and reason.")] = False
 
@@ -155,9 +158,11 @@ class ExportOptions(ReadingOptions):
     force: Annotated[
         bool,
         flag(
-            "--force", text="Also write a branch that is enclosed but not proved; see also --all."
+            "--force",
+            text="Also write a branch that is enclosed but not proved; see also --all. Also read a "
+            "sheet in which creases of the drawing are missing.",
         ),
-    ] = False
+    ] = field(default=False, kw_only=True)
     boundary_heights: BoundaryHeights = None
     everything: Annotated[
         bool,

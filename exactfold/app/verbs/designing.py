@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from exactfold._support.clock import LIMIT, Clock
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED
 from exactfold.app.verbs.choosing import Letters, asked_letters, the_branch
@@ -35,6 +36,7 @@ def match(
     letters: Letters | None = None,
     *,
     most: int | None = None,
+    limit: float | None = LIMIT,
     progress: Progress | None = None,
 ) -> Match | BoundaryMatch | PanelMatch:
     """Find the ways that have given mountains and valleys, or prove that there are none.
@@ -45,8 +47,8 @@ def match(
     corners, a `Match` has all branches with the letters. For one with more corners, a
     `BoundaryMatch` says whether the sheet starts to fold with the letters, and has boundary heights
     with which it does. For rigid panels, a `PanelMatch` says whether they start to fold with the
-    letters. After `most` sign vectors of a triangulated sheet have been tried, the answer is
-    UNDECIDED.
+    letters. After `most` sign vectors of a triangulated sheet have been tried, or after `limit`
+    seconds for rigid panels, the answer is UNDECIDED.
 
     Raises `UsageError` for a file without mountains and valleys and for letters that do not fit,
     `NotCountedError` for a triangle, which is rigid.
@@ -66,7 +68,7 @@ def match(
         if over.status is PROVED:
             return replace(over, meant=opened.meant)
     if not isinstance(pattern, CreasePattern) or pattern.Ve > 4:
-        return match_panels(opened, wanted, progress=progress)
+        return match_panels(opened, wanted, progress=progress, clock=Clock(limit))
     if pattern.interior and pattern.Ve == 3:
         raise NotCountedError("this sheet is rigid: it has three vertices on its boundary")
     found = match_branches(pattern, wanted, progress=progress, **_at_most(most))
