@@ -61,6 +61,12 @@ def vertices_answer(found: Vertices) -> Text:
     return Text.assemble(f"{sheet}{found.headline} - ", status_text(found.starts), took)
 
 
+def vertices_line(found: Vertices) -> Text:
+    """The answer in one line, for a sheet of which not all ways to fold are known."""
+    text = f"each vertex by itself: {found.headline} - "
+    return Text.assemble(text, status_text(found.starts), "; see `exactfold vertices`")
+
+
 def advice(found: Vertices, facts: VertexFacts) -> list[str]:
     """Why a vertex is listed and what would mend it, one text for each cause.
 
