@@ -9,10 +9,11 @@ from typing import Final
 
 import networkx as nx
 
+from exactfold._support.clock import UNLIMITED, Clock
 from exactfold._support.plurals import counted
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.design.panels.candidates import MotionSearch
-from exactfold.design.panels.cells import Cell, CellSearch
+from exactfold.design.panels.cells import Cell, CellSearch, OpenLoop
 from exactfold.design.panels.first_order_program import FirstOrderProgram
 from exactfold.design.panels.lettered_spaces import LetteredSpaces, truly_begin
 from exactfold.design.panels.proof import ProvedMotion, proved_motion
@@ -43,7 +44,7 @@ class PartAnswer:
     motion, approximately, and `motion` is one exactly if it is that of a vertex or was found in a
     linear space. `named` are the vertices that the reason names. `vertex` is a vertex that the
     theorem of Abel et al. refutes, where no vectors do. `by_list` says that the complete list of
-    motions refutes the letters.
+    motions refutes the letters. `loop` is the loop that refutes the letters, if one does.
     """
 
     vertices: tuple[int, ...]
@@ -54,12 +55,18 @@ class PartAnswer:
     densities: Mapping[Edge, float] = field(default_factory=dict)
     refutations: tuple[PanelRefutation, ...] = ()
     named: tuple[int, ...] = ()
+    loop: OpenLoop | None = None
     motion: Mapping[Edge, Number] = field(default_factory=dict, repr=False)
     vertex: int | None = None
     by_list: bool = False
 
 
-def answered(pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters) -> PartAnswer:
+def answered(
+    pattern: PanelPattern,
+    moving: Mapping[int, Star],
+    letters: Letters,
+    clock: Clock = UNLIMITED,
+) -> PartAnswer:
     """The answer for one part of the sheet.
 
     Where some vertex has more than four folds, the part is cut at mountains and valleys that alone
@@ -68,10 +75,10 @@ def answered(pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters
     the letters if and only if both sides have them.
     """
     if all(len(star.folds) <= 4 for star in moving.values()):
-        return _answered(pattern, moving, letters)
+        return _answered(pattern, moving, letters, clock)
     answers: list[PartAnswer] = []
     for vertices in _blocks(moving, letters):
-        answers.append(_answered(pattern, {v: moving[v] for v in vertices}, letters))
+        answers.append(_answered(pattern, {v: moving[v] for v in vertices}, letters, clock))
         if answers[-1].starts is REFUTED:
             return answers[-1]
     if len(answers) == 1:
@@ -91,12 +98,12 @@ def _blocks(moving: Mapping[int, Star], letters: Letters) -> list[tuple[int, ...
     graph = nx.Graph()
     graph.add_nodes_from(moving)
     inner = {e for star in moving.values() for e in star.folds if set(e) <= moving.keys()}
-    graph.add_edges_from(inner)
+    graph.add_edges_from(sorted(inner))
     cuts = [e for e in nx.bridges(graph) if letters[edge_of(*e)] in "MV"]
-    order = list(nx.dfs_preorder_nodes(graph, min(moving)))
+    order = {v: k for k, v in enumerate(nx.dfs_preorder_nodes(graph, min(moving)))}
     graph.remove_edges_from(cuts)
     blocks = [tuple(sorted(block)) for block in nx.connected_components(graph)]
-    return sorted(blocks, key=lambda block: min(map(order.index, block)))
+    return sorted(blocks, key=lambda block: min(order[v] for v in block))
 
 
 def _joined(answers: Iterable[PartAnswer]) -> dict[Edge, float]:
@@ -109,8 +116,10 @@ def _joined(answers: Iterable[PartAnswer]) -> dict[Edge, float]:
     return total
 
 
-def _answered(pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters) -> PartAnswer:
-    """The answer for one block; cheap proofs are tried first.
+def _answered(
+    pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters, clock: Clock
+) -> PartAnswer:
+    """The answer for one block; cheap proofs are tried first, until the clock has passed.
 
     The order is: single vertices; vectors that refute all first-order motions; loops of vertices
     with at most four folds, which are the complete answer if there are no other vertices; a
@@ -133,7 +142,7 @@ def _answered(pattern: PanelPattern, moving: Mapping[int, Star], letters: Letter
         (star,) = moving.values()
         if (motion := vertex_witness(star, letters)) is not None:
             return PartAnswer(vertices, PROVED, PROVED, densities=_floats(motion), motion=motion)
-    program = FirstOrderProgram(moving, letters)
+    program = FirstOrderProgram(moving, letters, clock)
     start = program.motion()
     if start is None and (refutation := program.refutation()) is not None:
         named = tuple(refutation.planes)
@@ -148,11 +157,11 @@ def _answered(pattern: PanelPattern, moving: Mapping[int, Star], letters: Letter
     if few:
         return _by_cells(pattern, moving, letters)
     if (loop := _loop(pattern, moving, letters)) is not None:
-        return PartAnswer(vertices, REFUTED, REFUTED, loop[1], named=loop[0])
+        return PartAnswer(vertices, REFUTED, REFUTED, loop.text, named=loop.loop, loop=loop)
     if start is not None and (proved := _found(program, start)) is not None:
         truly = PROVED if proved.folds else UNDECIDED
         return PartAnswer(vertices, PROVED, truly, densities=proved.densities)
-    by_spaces = _by_spaces(pattern, moving, letters)
+    by_spaces = _by_spaces(pattern, moving, letters, clock)
     if by_spaces is not None:
         return by_spaces
     if start is None:
@@ -162,6 +171,8 @@ def _answered(pattern: PanelPattern, moving: Mapping[int, Star], letters: Letter
             "some first-order motions have these letters, but no motion to second order that has "
             "them was proved"
         )
+    if clock.passed:
+        text += f"; {clock.said}"
     return PartAnswer(vertices, UNDECIDED, UNDECIDED, f"{_where(vertices)}: {text}")
 
 
@@ -178,12 +189,12 @@ def _found(program: FirstOrderProgram, start: Mapping[Edge, float]) -> ProvedMot
 
 
 def _by_spaces(
-    pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters
+    pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters, clock: Clock
 ) -> PartAnswer | None:
     """The answer of the complete list of spaces of motions; None if it is not obtained."""
     vertices = tuple(moving)
     try:
-        starts, motion = LetteredSpaces(moving, letters).motion()
+        starts, motion = LetteredSpaces(moving, letters, clock=clock).motion()
     except TooManyModesError:
         return None
     if starts is PROVED:
@@ -258,13 +269,14 @@ def _by_cells(pattern: PanelPattern, moving: Mapping[int, Star], letters: Letter
         return PartAnswer(vertices, UNDECIDED, UNDECIDED, f"{_where(vertices)}: {error}")
     if not cells:
         text = "no choice of a mode at each vertex makes the vertices fit together"
-        loop = search.open_loops[0] if search.open_loops else None
+        loop = min(search.open_loops, key=lambda one: abs(one.off), default=None)
         return PartAnswer(
             vertices,
             REFUTED,
             REFUTED,
             loop.text if loop else text,
             named=loop.loop if loop else (),
+            loop=loop,
         )
     known: Loops = {}
     folding: list[Verdict] = []
@@ -297,9 +309,7 @@ def _extends(
     return UNDECIDED if UNDECIDED in verdicts else PROVED
 
 
-def _loop(
-    pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters
-) -> tuple[tuple[int, ...], str] | None:
+def _loop(pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters) -> OpenLoop | None:
     """Why the vertices with at most four folds cannot have these letters; None if they can.
 
     Only these vertices are considered. Folds that lead to other vertices have no condition there.
@@ -313,7 +323,7 @@ def _loop(
             return None
     except (TooManyModesError, UndecidedDensityError):
         return None
-    return search.open_loops[0].loop, search.open_loops[0].text
+    return min(search.open_loops, key=lambda loop: abs(loop.off))
 
 
 def _first_order_text(named: Iterable[int]) -> str:
