@@ -75,10 +75,10 @@ def answered(
     the letters if and only if both sides have them.
     """
     if all(len(star.folds) <= 4 for star in moving.values()):
-        return _answered(pattern, moving, letters, clock)
+        return block_answer(pattern, moving, letters, clock)
     answers: list[PartAnswer] = []
-    for vertices in _blocks(moving, letters):
-        answers.append(_answered(pattern, {v: moving[v] for v in vertices}, letters, clock))
+    for vertices in blocks_of(moving, letters):
+        answers.append(block_answer(pattern, {v: moving[v] for v in vertices}, letters, clock))
         if answers[-1].starts is REFUTED:
             return answers[-1]
     if len(answers) == 1:
@@ -90,7 +90,7 @@ def answered(
     return PartAnswer(tuple(moving), PROVED, truly, densities=_joined(answers))
 
 
-def _blocks(moving: Mapping[int, Star], letters: Letters) -> list[tuple[int, ...]]:
+def blocks_of(moving: Mapping[int, Star], letters: Letters) -> list[tuple[int, ...]]:
     """The vertices of the blocks between mountains and valleys that alone join their sides.
 
     Each block but the first shares such a fold with an earlier one.
@@ -116,7 +116,7 @@ def _joined(answers: Iterable[PartAnswer]) -> dict[Edge, float]:
     return total
 
 
-def _answered(
+def block_answer(
     pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters, clock: Clock
 ) -> PartAnswer:
     """The answer for one block; cheap proofs are tried first, until the clock has passed.
