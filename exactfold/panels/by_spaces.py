@@ -53,6 +53,8 @@ def by_spaces(pattern: PanelPattern, moving: Mapping[int, Star], clock: Clock = 
         )
         components, ended = _found(pattern, moving, small, left, clock)
         if not ended:
+            if clock.passed:
+                reason = f"{reason}; {clock.said}"
             return _partial(pattern, moving, (rows, size), (small, left), components, reason, clock)
     try:
         most = MOST_STEPS if components is None else MOST_STEPS_BEYOND

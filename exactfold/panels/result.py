@@ -80,7 +80,7 @@ class MotionKeys(TypedDict):
     """The keys of a count that belong to motions of rigid panels."""
 
     components: ComponentsDocument | None
-    degrees_of_freedom: FreedomDocument | None
+    freedom: FreedomDocument | None
     drawn: DrawnDocument | None
     """The answer for the letters of the drawing; null if all ways are known."""
     modes_count: Natural | None
@@ -298,7 +298,7 @@ class Decomposition(Page, Ways[Mode], Certified):
         """The keys of JSON that belong to motions of panels."""
         return {
             "components": self._components(),
-            "degrees_of_freedom": None if self.freedom is None else self.freedom.to_dict(),
+            "freedom": None if self.freedom is None else self.freedom.to_dict(),
             "drawn": None if self.drawn is None else self.drawn.to_dict(),
             "modes_count": self.modes_count,
             "modes": [mode.to_dict() for mode in self.modes],
