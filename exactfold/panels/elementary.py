@@ -15,7 +15,7 @@ from exactfold.errors import TooManyModesError
 from exactfold.exact.surds import SurdField
 from exactfold.panels.densities import Density, Roots
 from exactfold.panels.local import LocalMode, local_modes
-from exactfold.panels.near_misses import NEAR, NearMiss, near_miss
+from exactfold.panels.near_misses import RECORDED, NearMiss, near_miss
 from exactfold.panels.stars import Star
 from exactfold.pattern.panel_pattern import Edge
 
@@ -200,7 +200,7 @@ class ModeSearch:
                 continue
             ratio = densities[edge].over(density)
             if not ratio.is_one():
-                if abs(ratio.approx - 1) < NEAR and edge not in self.near_misses:
+                if abs(ratio.approx - 1) < RECORDED and edge not in self.near_misses:
                     chosen = _chosen(state.choice)
                     self.near_misses[edge] = near_miss(chosen, mode, root, edge, ratio)
                 return None

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Annotated, ClassVar, Literal, TypeAlias, TypedDict
+from typing import Annotated, ClassVar, Literal, Protocol, TypeAlias, TypedDict
 
 from exactfold._support.documents import (
     Empty,
@@ -24,7 +24,7 @@ from exactfold.panels.elementary import Support
 from exactfold.panels.extension import Extension
 from exactfold.panels.found import FoundComponent
 from exactfold.panels.local import LocalMode
-from exactfold.panels.near_misses import NearMiss, NearMissDocument
+from exactfold.panels.near_misses import NearMiss, NearMissDocument, near_limit
 from exactfold.panels.partial import Drawn, DrawnDocument, Freedom, FreedomDocument
 from exactfold.panels.subspaces import Leaf
 from exactfold.pattern.described import PanelsDocument, described_panels
@@ -74,6 +74,13 @@ class AsWrittenDocument(TypedDict):
     rigid: bool | None
     distinct: Natural | None
     components: ComponentsDocument | None
+
+
+class OfDigits(Protocol):
+    """A count for the digits of an inexact drawing."""
+
+    def of_digits(self) -> AsWrittenDocument:
+        """The key `as_written` of the answer for the sheet that was meant."""
 
 
 class MotionKeys(TypedDict):
@@ -196,7 +203,8 @@ class Decomposition(Page, Ways[Mode], Certified):
     proved; there are at least this many. If `true` is None, `found_true` is the same for the
     components that are known to fold truly. If no such component is known, `modes` are modes that
     truly fold; there may be others. `drawn` is the answer for the letters of the drawing, if it was
-    asked for. `near_misses` are loops that nearly close.
+    asked for. `near_misses` are loops with a product of gains within 1e-3 of 1, and
+    `nearly_closing` those that the noise of the drawing explains, or within 1e-6.
 
     `meant` says what was inferred if the digits of the drawing are inexact, and `as_written` is the
     answer for these digits alone. If `doubt` says why an answer would hold for the digits of the
@@ -223,7 +231,7 @@ class Decomposition(Page, Ways[Mode], Certified):
     still: tuple[Edge, ...] = ()
     meant: Meant | None = None
     doubt: str = ""
-    as_written: Decomposition | None = None
+    as_written: OfDigits | None = None
     drawn: Drawn | None = None
     seconds: float = field(default=0.0, compare=False)
 
@@ -305,7 +313,7 @@ class Decomposition(Page, Ways[Mode], Certified):
             "flat_folds": [f"{i}-{j}" for i, j in self.flat],
             "still_folds": [f"{i}-{j}" for i, j in self.still],
             "free_folds": [f"{i}-{j}" for i, j in self.free],
-            "near_misses": [miss.to_dict() for miss in self.near_misses],
+            "near_misses": [miss.to_dict() for miss in self.nearly_closing],
         }
 
     @property
@@ -325,7 +333,8 @@ class Decomposition(Page, Ways[Mode], Certified):
     @property
     def known(self) -> Decomposition:
         """This answer, or, if it is doubted, what is known for the digits as they are read."""
-        return self.as_written if self.doubt and self.as_written is not None else self
+        known = self.as_written
+        return known if self.doubt and isinstance(known, Decomposition) else self
 
     @property
     def ways(self) -> int | None:
@@ -337,10 +346,16 @@ class Decomposition(Page, Ways[Mode], Certified):
     @property
     def warning(self) -> str | None:
         """A warning about the drawing to read before the result: a loop that nearly closes."""
-        if not self.near_misses:
+        if not (near := self.nearly_closing):
             return None
-        more = len(self.near_misses) - 1
-        return self.near_misses[0].text + (f"; --json lists {more} more" if more else "")
+        more = len(near) - 1
+        return near[0].text + (f"; --json lists {more} more" if more else "")
+
+    @property
+    def nearly_closing(self) -> tuple[NearMiss, ...]:
+        """Those of `near_misses` that the noise of the drawing explains."""
+        limit = near_limit(None if self.meant is None else self.meant.noise)
+        return tuple(miss for miss in self.near_misses if miss.off < limit)
 
     def __repr__(self) -> str:
         counts = "" if self.second_order is None else f", {dict(self.second_order)}"

@@ -18,6 +18,7 @@ from exactfold.errors import (
     FoldedStateError,
     FoldError,
     InputError,
+    MalformedDrawingError,
     MalformedPatternError,
     NotCountedError,
     NumberError,
@@ -45,6 +46,7 @@ if TYPE_CHECKING:
 _FINAL = (NumberError, StaleExactCoordinatesError)
 _OF_EDGES = (MalformedPatternError, DisconnectedError)
 """For these errors of the strict reader, the error of the reader of drawings is raised instead."""
+_FORCE = "`--force` (`force=True` in Python) reads the sheet all the same"
 _LEAST = ("merge", "duplicates", "split", "dangling")
 """Some drawings have no panels without these steps; the other steps only change the panels."""
 
@@ -225,7 +227,7 @@ def from_drawing(drawing: Drawing, reading: Reading = PLAIN) -> Opened:
         try:
             sheets = exact_sheets(drawing, snap=rule, merge=reading.merge, steps=chosen)
             again = partial(from_drawing, drawing)
-            found = replace(_chosen(drawing, sheets, reading.number), reading=reading, again=again)
+            found = replace(_chosen(drawing, sheets, reading), reading=reading, again=again)
             return meaning(found, lambda: from_drawing(drawing, reading.as_written))
         except (FoldError, PatternError):
             if k == len(attempts):
@@ -301,10 +303,16 @@ def _attempts(drawing: Drawing, steps: Steps, merge: Fraction | None) -> list[Co
     return [steps]
 
 
-def _chosen(drawing: Drawing, sheets: Sheets, number: int | None) -> Opened:
-    """The chosen sheet of a drawing, as a pattern."""
+def _chosen(drawing: Drawing, sheets: Sheets, reading: Reading) -> Opened:
+    """The chosen sheet of a drawing, as a pattern.
+
+    Raises `MalformedDrawingError` if creases of the drawing are missing in it, or if it has no
+    folds; with `force`, the first line says so instead.
+    """
+    from exactfold.pattern.drawing.losses import missing
     from exactfold.pattern.panel_pattern import PanelPattern
 
+    number = reading.number
     if number is None and len(sheets.sheets) > 1:
         raise SeveralSheetsError(
             f"the drawing holds {len(sheets.sheets)} sheets: choose one with --sheet N, or "
@@ -320,6 +328,11 @@ def _chosen(drawing: Drawing, sheets: Sheets, number: int | None) -> Opened:
         (min(line.start, line.end), max(line.start, line.end)): line.letter for line in sheet.lines
     }
     lines = [drawing.source, *drawing.remarks, sheets.coordinates.text]
+    loss = missing(drawing, sheets, (number or 1) - 1, folds=bool(pattern.folds))
+    if loss is not None:
+        if not reading.force:
+            raise MalformedDrawingError(f"{loss}; {_FORCE}")
+        lines.insert(0, f"warning: {loss}")
     lines += [str(repair) for repair in sheets.repairs]
     return Opened(
         triangulated(pattern) or pattern,

@@ -19,7 +19,8 @@ class Reading:
 
     `snap` says how coordinates become exact. `number`, from 1, chooses one of several sheets.
     `steps` names the steps of repair, and points closer than `merge` times the size of the drawing
-    are merged. `colours` and `dashes` give letters to the lines of an SVG file, such as
+    are merged. With `force`, a sheet is read even if creases of the drawing are missing in it, or
+    if it has no folds. `colours` and `dashes` give letters to the lines of an SVG file, such as
     {"orange": "M"} and {"3 2": "V", "solid": "B"}; its curves become `chords` straight lines each.
 
     The others overrule what is inferred from a drawing with inexact digits. `without` names
@@ -40,6 +41,7 @@ class Reading:
     noise: float | None = None
     unit: int | None = None
     relations: bool = False
+    force: bool = False
 
     @property
     def repairs(self) -> bool:

@@ -1,8 +1,8 @@
 """The options of the commands for single branches, and checks of which go together."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, TypeAlias
 
 import typer
 
@@ -67,20 +67,23 @@ class BranchOptions(ReadingOptions):
         apart(self.certificate, self.pattern, self.boundary_heights, self.curvature)
 
 
+Letters: TypeAlias = Annotated[
+    str | None,
+    typer.Option(
+        metavar="MVU...|0-4=M,...",
+        help="Use these letters instead of those in the file: M, V, F (flat) or U (free) for "
+        "each fold in the order of `count`; or letters by fold, the others are free. @FILE "
+        "reads them from a file.",
+    ),
+]
+
+
 @dataclass(frozen=True, eq=False, repr=False, match_args=False)
 class MatchOptions(ReadingOptions):
     """The options of `exactfold match`; `UsageError` if the output is the pattern."""
 
     file: Pattern
-    letters: Annotated[
-        str | None,
-        typer.Option(
-            metavar="MVU...|0-4=M,...",
-            help="Use these letters instead of those in the file: M, V, F (flat) or U (free) for "
-            "each fold in the order of `count`; or letters by fold, the others are free. @FILE "
-            "reads them from a file.",
-        ),
-    ] = None
+    letters: Letters = None
     most: Annotated[
         int | None,
         number(
@@ -107,6 +110,16 @@ class MatchOptions(ReadingOptions):
 
     def __post_init__(self) -> None:
         apart(self.certificate, self.file)
+
+
+@dataclass(frozen=True, eq=False, repr=False, match_args=False)
+class VerticesOptions(ReadingOptions):
+    """The options of `exactfold vertices`."""
+
+    file: Pattern
+    letters: Letters = None
+    as_json: Json = False
+    everything: Annotated[bool, flag("--all", text="List every vertex.")] = False
 
 
 @dataclass(frozen=True, eq=False, repr=False, match_args=False)
@@ -145,9 +158,11 @@ class ExportOptions(ReadingOptions):
     force: Annotated[
         bool,
         flag(
-            "--force", text="Also write a branch that is enclosed but not proved; see also --all."
+            "--force",
+            text="Also write a branch that is enclosed but not proved; see also --all. Also read a "
+            "sheet in which creases of the drawing are missing.",
         ),
-    ] = False
+    ] = field(default=False, kw_only=True)
     boundary_heights: BoundaryHeights = None
     everything: Annotated[
         bool,

@@ -164,4 +164,11 @@ class ConvertOptions(ReadingOptions):
     triangulate: Annotated[
         bool, flag("--triangulate", text="Cut panels into triangles by edges with the letter J.")
     ] = False
+    certificate: Annotated[
+        Path | None,
+        written(
+            "Prove that the sheet that was meant lies near the drawing and has its relations, for "
+            "`exactfold check`."
+        ),
+    ] = None
     as_json: Json = False

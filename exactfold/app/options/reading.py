@@ -11,6 +11,7 @@ from exactfold.app.shell.parameters import (
     Chords,
     Colours,
     Dashes,
+    Force,
     Sheet,
     Snap,
     distance,
@@ -27,6 +28,7 @@ class ReadingOptions:
 
     snap: Snap = None
     sheet: Sheet = None
+    force: Force = False
     colours: Colours = None
     dashes: Dashes = None
     chords: Chords = None
@@ -80,6 +82,7 @@ class ReadingOptions:
             noise=None if self.noise is None else float(self.noise),
             unit=self.unit,
             relations=self.relations,
+            force=self.force,
         )
 
 

@@ -248,6 +248,14 @@ Dashes = Annotated[
 Chords = Annotated[
     int | None, number("Read each curve of an SVG file as N straight lines.", "N", "--chords")
 ]
+Force = Annotated[
+    bool,
+    flag(
+        "--force",
+        text="Read a sheet even if creases of the drawing are missing in it, or if it has no "
+        "folds. Without this option, such a drawing is refused with exit code 3.",
+    ),
+]
 Json = Annotated[bool, flag("--json", text="Print one JSON object.")]
 Limit = Annotated[
     float,

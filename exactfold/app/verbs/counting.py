@@ -46,6 +46,7 @@ def read(
     also: Iterable[str] = (),
     noise: float | None = None,
     unit: int | None = None,
+    force: bool = False,
 ) -> Opened:
     """Read a sheet from any source; the attribute `sheet` of the result is the pattern.
 
@@ -57,7 +58,8 @@ def read(
     `number`, from 1, chooses a sheet of a drawing with several. `steps` and `merge` say what is
     repaired (`exactfold.pattern.STEPS`). `colours` and `dashes` give letters to the lines of an SVG
     file: `colours={"orange": "M"}`, `dashes={"3 2": "V", "solid": "B"}`. Each of its curves is read
-    as `chords` straight lines.
+    as `chords` straight lines. If creases of the drawing are missing in the sheet, or if it has no
+    folds, it is read only with `force`.
 
     If the digits of a drawing are inexact, the sheet that was meant is inferred
     (docs/import.md, The sheet that was meant), and `meant` of the result says how. `without` names
@@ -86,6 +88,7 @@ def read(
         also=(also,) if isinstance(also, str) else tuple(also),
         noise=noise,
         unit=unit,
+        force=force,
     )
     return open_sheet(sheet, reading)
 

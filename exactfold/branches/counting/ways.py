@@ -14,7 +14,7 @@ from exactfold.branches.counting.doubted import doubted
 from exactfold.branches.counting.registry import METHODS, choose
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.loading import PatternLike, open_sheet
-from exactfold.pattern.opening import Opened, has_branches, panels
+from exactfold.pattern.opening import Opened, has_branches, panels, triangulated
 from exactfold.pattern.reading import PLAIN, Reading
 
 if TYPE_CHECKING:
@@ -24,6 +24,10 @@ if TYPE_CHECKING:
     from exactfold.panels.result import Decomposition
     from exactfold.pattern.drawing.drawing import Snap
     from exactfold.pattern.panel_pattern import PanelPattern
+
+_MOST_MODES = 100
+_MOST_SPACES = 30
+"""The digits as written are counted beside the sheet that was meant up to so many vertices."""
 
 __all__ = ["METHODS", "count_opened", "count_ways", "decompose_opened"]
 
@@ -76,7 +80,27 @@ def count_opened(
     If relations between creases hold nearly but not exactly, and no sheet was inferred that has
     them, the answer is UNDECIDED, and its `as_written` says what is known for the digits.
     """
-    return doubted(_counted(opened, method, seed, progress, clock), opened)
+    result = doubted(_counted(opened, method, seed, progress, clock), opened)
+    written = _written(opened)
+    if written is None or result.doubt:
+        return result
+    return replace(result, as_written=_counted(written, method, seed, progress, clock))
+
+
+def _written(opened: Opened) -> Opened | None:
+    """The sheet with the digits as written, if another one was inferred and it is counted fast.
+
+    It is counted if at most 100 vertices may fold, each with at most four folds, or at most 30
+    vertices with any number of folds.
+    """
+    if opened.meant is None or opened.meant.realized is None or not opened.meant.inferred:
+        return None
+    from exactfold.panels.stars import stars
+
+    drawn = opened.meant.realized.drawn
+    moving = stars(drawn)
+    few = _MOST_MODES if all(len(star.folds) <= 4 for star in moving.values()) else _MOST_SPACES
+    return Opened(triangulated(drawn) or drawn) if len(moving) <= few else None
 
 
 def _counted(
@@ -110,7 +134,7 @@ def _decomposed(opened: Opened, progress: Progress | None, clock: Clock) -> Deco
     sheet = opened.sheet
     pattern = panels(sheet) if isinstance(sheet, CreasePattern) else sheet
     ways = replace(decompose(pattern, progress=progress, clock=clock), read=opened.read)
-    if not ways.near_misses or opened.again is None or clock.passed:
+    if not ways.nearly_closing or opened.again is None or clock.passed:
         return ways
     from exactfold.panels.near_misses import snapped_misses
 

@@ -30,12 +30,13 @@ from exactfold.design.panels.together import Together, going_together
 from exactfold.design.refutations.asked import by_fold
 from exactfold.design.refutations.refutation import Letters
 from exactfold.panels.decomposition import groups_of
+from exactfold.panels.near_misses import near_limit
 from exactfold.panels.stars import Star, stars
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import PanelsDocument, described_panels
 from exactfold.pattern.loading import PatternLike, open_sheet
 from exactfold.pattern.meant import Meant, MeantDocument
-from exactfold.pattern.opening import panels
+from exactfold.pattern.opening import Opened, panels
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
 
@@ -134,16 +135,26 @@ class PanelMatch(Certified):
         """PROVED if the question is answered, whatever the answer; else UNDECIDED."""
         return UNDECIDED if self.starts is UNDECIDED else PROVED
 
-    def about(self, meant: Meant | None) -> PanelMatch:
-        """This answer for a sheet that was read; UNDECIDED if it holds for its digits only."""
-        matched = replace(self, meant=meant)
-        if meant is None or not meant.doubt:
+    def about(self, opened: Opened) -> PanelMatch:
+        """This answer for a sheet that was read; UNDECIDED if it holds for its digits only.
+
+        That is so if relations between creases nearly hold, or if a loop that nearly closes refutes
+        the letters.
+        """
+        matched = replace(self, meant=opened.meant)
+        limit = near_limit(None if opened.meant is None else opened.meant.noise)
+        loops = [part.loop for part in self.parts if part.loop is not None]
+        nearly = [loop.text for loop in loops if abs(loop.off) < limit]
+        doubt = opened.doubt
+        if not doubt and nearly and opened.reading.snap != "exact":
+            doubt = nearly[0]
+        if not doubt:
             return matched
         return replace(
             matched,
             starts=UNDECIDED,
             truly=UNDECIDED,
-            reasons=(meant.doubt, f"the digits alone: {self.lines[0]}"),
+            reasons=(doubt, f"the digits alone: {self.lines[0]}"),
             densities={},
             ways=None,
             refutations=(),
@@ -252,7 +263,7 @@ def match_panels(
         if progress is not None:
             progress("first order", 0, 1)
         matched = replace(matched, first_order=_first_order(moving, asked, dead, free, clock))
-    return replace(matched.about(opened.meant), seconds=time.perf_counter() - start)
+    return replace(matched.about(opened), seconds=time.perf_counter() - start)
 
 
 def _first_order(

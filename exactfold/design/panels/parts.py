@@ -11,7 +11,7 @@ from exactfold._support.clock import UNLIMITED, Clock
 from exactfold._support.plurals import counted
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.design.panels.candidates import MotionSearch
-from exactfold.design.panels.cells import Cell, CellSearch
+from exactfold.design.panels.cells import Cell, CellSearch, OpenLoop
 from exactfold.design.panels.first_order_program import FirstOrderProgram
 from exactfold.design.panels.lettered_spaces import LetteredSpaces, truly_begin
 from exactfold.design.panels.proof import ProvedMotion, proved_motion
@@ -39,7 +39,8 @@ class PartAnswer:
     is the number of cells with these letters, or None if it is not known. `densities` is one such
     motion, approximately, and `motion` is the same exactly if it was found in a linear space.
     `by_list` says that the complete list of motions refutes the letters.
-    `named` are the vertices that the reason names.
+    `named` are the vertices that the reason names. `loop` is the loop that refutes the letters, if
+    one does.
     """
 
     vertices: tuple[int, ...]
@@ -50,6 +51,7 @@ class PartAnswer:
     densities: Mapping[Edge, float] = field(default_factory=dict)
     refutations: tuple[PanelRefutation, ...] = ()
     named: tuple[int, ...] = ()
+    loop: OpenLoop | None = None
     motion: Mapping[Edge, Number] = field(default_factory=dict, repr=False)
     by_list: bool = False
 
@@ -90,7 +92,7 @@ def answered(
     if few:
         return _by_cells(pattern, moving, letters)
     if (loop := _loop(pattern, moving, letters)) is not None:
-        return PartAnswer(vertices, REFUTED, REFUTED, loop[1], named=loop[0])
+        return PartAnswer(vertices, REFUTED, REFUTED, loop.text, named=loop.loop, loop=loop)
     if start is not None and (proved := _found(program, start)) is not None:
         truly = PROVED if proved.folds else UNDECIDED
         return PartAnswer(vertices, PROVED, truly, densities=proved.densities)
@@ -195,13 +197,14 @@ def _by_cells(pattern: PanelPattern, moving: Mapping[int, Star], letters: Letter
         return PartAnswer(vertices, UNDECIDED, UNDECIDED, f"{_where(vertices)}: {error}")
     if not cells:
         text = "no choice of a mode at each vertex makes the vertices fit together"
-        loop = search.open_loops[0] if search.open_loops else None
+        loop = min(search.open_loops, key=lambda one: abs(one.off), default=None)
         return PartAnswer(
             vertices,
             REFUTED,
             REFUTED,
             loop.text if loop else text,
             named=loop.loop if loop else (),
+            loop=loop,
         )
     known: Loops = {}
     folding: list[Verdict] = []
@@ -234,9 +237,7 @@ def _extends(
     return UNDECIDED if UNDECIDED in verdicts else PROVED
 
 
-def _loop(
-    pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters
-) -> tuple[tuple[int, ...], str] | None:
+def _loop(pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters) -> OpenLoop | None:
     """Why the vertices with at most four folds cannot have these letters; None if they can.
 
     Only these vertices are considered. Folds that lead to other vertices have no condition there.
@@ -250,7 +251,7 @@ def _loop(
             return None
     except (TooManyModesError, UndecidedDensityError):
         return None
-    return search.open_loops[0].loop, search.open_loops[0].text
+    return min(search.open_loops, key=lambda loop: abs(loop.off))
 
 
 def _first_order_text(named: Iterable[int]) -> str:

@@ -17,6 +17,8 @@ from exactfold.errors import TooLargeError
 from exactfold.pattern.drawing.drawing import Drawing, Line, Point
 
 _SHOWN: Final = 5
+_OVERSHOOT: Final = 1 / 300
+"""Loose ends up to this share of the size are overshoots of lines that stay in the drawing."""
 
 
 class Place(NamedTuple):
@@ -27,17 +29,27 @@ class Place(NamedTuple):
     y: float
 
 
+class Lost(NamedTuple):
+    """A line of the drawing that no sheet has as a fold: its letter, and the point halfway."""
+
+    letter: str
+    x: float
+    y: float
+
+
 @dataclass(frozen=True)
 class Repair:
     """One kind of repair: the step, how often it was done, its first few places, and a sentence.
 
-    Indices are those of the given drawing; points that were added follow them.
+    Indices are those of the given drawing; points that were added follow them. `lost` has the
+    lines that were dropped, or taken for the boundary, although they may have been meant as folds.
     """
 
     step: str
     count: int
     places: tuple[Place, ...]
     sentence: str
+    lost: tuple[Lost, ...] = ()
 
     def __repr__(self) -> str:
         return f"<Repair: {self.step}, {self.count}>"
@@ -67,6 +79,14 @@ def repair(
 def with_lines(drawing: Drawing, lines: Iterable[Line]) -> Drawing:
     """A drawing with the same points and other lines."""
     return replace(drawing, lines=tuple(lines))
+
+
+def lost(drawing: Drawing, lines: Iterable[Line]) -> tuple[Lost, ...]:
+    """The lines of a drawing as `Lost`."""
+    places = floats(drawing.points)
+    return tuple(
+        Lost(line.letter, *((places[line.start] + places[line.end]) / 2).tolist()) for line in lines
+    )
 
 
 def used(lines: Iterable[Line]) -> list[int]:
@@ -212,7 +232,8 @@ def without_flat_lines(drawing: Drawing) -> tuple[Drawing, list[Repair]]:
 def without_dangling(drawing: Drawing) -> tuple[Drawing, list[Repair]]:
     """Drops lines with the same panel on both sides: bridges, such as lines that end inside.
 
-    No such line can fold, as the same rigid panel lies on both its sides.
+    No such line can fold, as the same rigid panel lies on both its sides. The report lists the
+    dropped lines as lost, except those at the end of a line that overshoots a little.
     """
     graph = nx.Graph((line.start, line.end) for line in drawing.lines if line.start != line.end)
     dropped = {frozenset(pair) for pair in nx.bridges(graph)}
@@ -224,7 +245,23 @@ def without_dangling(drawing: Drawing) -> tuple[Drawing, list[Repair]]:
         f"panel on both sides ({counted(len(ends), 'loose end')})"
     )
     rest = [line for line in drawing.lines if frozenset(line[:2]) not in dropped]
-    return with_lines(drawing, rest), repair("dangling", len(dropped), at, drawing.points, sentence)
+    gone = [line for line in drawing.lines if frozenset(line[:2]) in dropped]
+    made = repair("dangling", len(dropped), at, drawing.points, sentence)
+    missed = lost(drawing, _no_overshoots(drawing, gone, rest))
+    return with_lines(drawing, rest), [replace(each, lost=missed) for each in made]
+
+
+def _no_overshoots(drawing: Drawing, gone: Sequence[Line], rest: Sequence[Line]) -> list[Line]:
+    """The dropped lines, without the short ends of lines that stay."""
+    if not rest:
+        return list(gone)
+    places, kept = floats(drawing.points), set(used(rest))
+    size = float(np.ptp(places[used(drawing.lines)], axis=0).max())
+    short: set[int] = set()
+    for members in nx.connected_components(nx.Graph(line[:2] for line in gone)):
+        if members & kept and np.ptp(places[list(members)], axis=0).max() <= _OVERSHOOT * size:
+            short |= members
+    return [line for line in gone if line.start not in short]
 
 
 def dissolved(drawing: Drawing, within: float) -> tuple[Drawing, list[Repair]]:

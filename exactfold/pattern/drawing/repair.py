@@ -34,6 +34,10 @@ _COARSEST: Final = Fraction(1, 300)
 _ADVISED: Final = Fraction(1, 100)
 """Merging at a larger share of the size is never advised."""
 _TRIALS: Final = 3
+_MEET: Final = (
+    "let lines meet in common ends, or say with `exactfold convert --merge EPS` by which share of "
+    "the size they miss each other"
+)
 
 
 def repaired(
@@ -138,15 +142,12 @@ def exact_sheets(
     def made(distance: Fraction) -> Sheets:
         after, ended = repaired(exact.drawing, merge=max(distance, least), steps=steps)
         try:
-            return Sheets(sheets(after), exact, (*_noted(distance, near), *begun, *ended))
+            found, cut = sheets(after)
+            return Sheets(found, exact, (*_noted(distance, near), *begun, *ended, *cut))
         except (FoldError, PatternError) as error:
-            dropped = sum(repair.count for repair in ended if repair.step == "dangling")
-            if after.lines and 2 * dropped > (whole := dropped + len(after.lines)):
-                error.args = (
-                    f"{error}; {dropped} of {whole} lines had been dropped because the same panel "
-                    "lies on both their sides: do the lines meet?",
-                    *error.args[1:],
-                )
+            for loose in (repair for repair in ended if repair.step == "dangling"):
+                if loose.count > len(after.lines):
+                    error.args = (f"{error}; {loose}; {_MEET}", *error.args[1:])
             raise
 
     done, refusals = _until_whole(made, distances)

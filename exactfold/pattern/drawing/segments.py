@@ -14,7 +14,7 @@ from exactfold.pattern.drawing.drawing import Drawing, Line
 Place: TypeAlias = tuple[Fraction, Fraction]
 Segment: TypeAlias = tuple[Place, Place, str]
 
-_WORDS: Final = {
+KINDS: Final = {
     "M": "mountain",
     "V": "valley",
     "B": "boundary",
@@ -23,6 +23,7 @@ _WORDS: Final = {
     "C": "cut",
     "J": "join",
 }
+"""The letters in words, in the order in which they are listed."""
 
 
 def drawing_of(segments: Iterable[Segment], source: str, remarks: Sequence[str] = ()) -> Drawing:
@@ -68,5 +69,5 @@ def summary(drawing: Drawing) -> str:
     '2 lines (1 mountain, 1 boundary)'
     """
     numbers = Counter(line.letter for line in drawing.lines)
-    kinds = ", ".join(f"{numbers[letter]} {_WORDS[letter]}" for letter in _WORDS if numbers[letter])
+    kinds = ", ".join(f"{numbers[letter]} {KINDS[letter]}" for letter in KINDS if numbers[letter])
     return f"{counted(len(drawing.lines), 'line')} ({kinds})"

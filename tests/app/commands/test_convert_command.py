@@ -15,6 +15,7 @@ from exactfold.pattern import read_fold
 from exactfold.pattern.data import SHEETS, example_path
 from exactfold.pattern.opening import open_pattern
 from exactfold.pattern.panel_pattern import PanelPattern
+from exactfold.pattern.reading import Reading
 
 KITE = [
     *SQUARE[:4],
@@ -116,15 +117,21 @@ def test_without_the_flag_only_what_is_needed_is_done(tmp_path: Path) -> None:
     assert refused.stderr.endswith("; --repair may mend it\n")
     assert not out.exists()
     for flags in ([], ["--repair"], ["--steps", "dangling"]):
-        result = run("convert", path, out, *flags)
+        refused = run("convert", path, out, *flags)
+        assert refused.exit_code == BAD_INPUT
+        assert "1 line of the drawing (1 mountain) is not in the sheet" in refused.stderr
+        assert not out.exists()
+        result = run("convert", path, out, "--force", *flags)
         assert result.exit_code == PROVED
+        assert result.stdout.startswith("warning: 1 line of the drawing (1 mountain) is not in")
         assert "1 line dropped that has the same panel on both sides" in result.stdout
         assert len(open_pattern(out).sheet.folds) == 2
+        out.unlink()
     flat = [*SQUARE[:4], (("0", "0"), ("1", "1"), "F")]
     document = as_fold(flat)
     path = written(tmp_path, document)
     for flags, folds in (([], 1), (["--no-repair"], 1), (["--repair"], 0)):
-        assert run("convert", path, out, *flags).exit_code == PROVED
+        assert run("convert", path, out, "--force", *flags).exit_code == PROVED
         count = sum(a != "B" for a in json.loads(out.read_text())["edges_assignment"])
         assert count == folds
 
@@ -195,11 +202,12 @@ def test_one_of_several_sheets(tmp_path: Path) -> None:
         assert "there is no sheet 3: the drawing holds 2" in missing.stderr
     folds = []
     for number in (1, 2):
-        data = json.loads(run("count", path, "--json", "--sheet", number).stdout)
+        data = json.loads(run("count", path, "--json", "--force", "--sheet", number).stdout)
         folds.append(data["pattern"]["folds"])
-        assert run("convert", path, out, "--sheet", number).exit_code == PROVED
-        assert len(open_pattern(out).sheet.folds) == folds[-1]
+        assert run("convert", path, out, "--force", "--sheet", number).exit_code == PROVED
+        assert len(open_pattern(out, Reading(force=True)).sheet.folds) == folds[-1]
     assert sorted(folds) == [0, 2]
+    assert "the sheet has no folds" in run("count", path, "--sheet", 1).stderr
     assert run("count", path, "--sheet", 2, "--jsonl", lines).exit_code == PROVED
     assert json.loads(lines.read_text())["asked"]["sheet"] == 2
     assert run("count", "two-vertex", "--sheet", 2).exit_code == BAD_INPUT

@@ -85,7 +85,7 @@ def test_noise_across_the_plane_is_told():
 
 def test_a_folded_state_in_space_is_refused_with_a_hint():
     rows = [[x, y, x * y / 100] for x, y in CORNERS]
-    with pytest.raises(FoldedStateError, match=r"box of 2 x 1 x 0\.02.*give the crease pattern"):
+    with pytest.raises(FoldedStateError, match=r"box of 2 x 1 x 0\.02.*give its crease pattern"):
         sheet(vertices_coords=rows)
 
 
@@ -93,8 +93,13 @@ def test_a_form_folded_flat_is_refused_and_an_unfolded_one_is_read():
     classes = {"frame_classes": ["foldedForm"], "faces_vertices": [[0, 1, 2], [0, 2, 3]]}
     assert len(sheet(**classes).lines) == 5
     folded = [[0, 0], [2, 0], [2, 1], [1.2, -0.6]]
-    with pytest.raises(FoldedStateError, match="same way up"):
+    with pytest.raises(
+        FoldedStateError, match="2 faces of 2 overlap, such as faces 0 and 1, .*0-2"
+    ):
         sheet(**classes, vertices_coords=folded)
+    apart = [*CORNERS, [5, 0], [7, 0], [7, 1]]
+    with pytest.raises(FoldedStateError, match="some of its faces lie upside down"):
+        sheet(**classes | {"faces_vertices": [[0, 1, 2, 3], [4, 6, 5]]}, vertices_coords=apart)
     with pytest.raises(FoldedStateError, match="no faces"):
         sheet(frame_classes=["foldedForm"])
 
@@ -107,6 +112,28 @@ SPACE = [[0, 0, 0], [2, 0, 1], [2, 1, 0], [0, 1, 3]]
 def test_the_top_level_goes_first():
     drawing = sheet(file_spec=1.1, file_frames=[{"vertices_coords": SPACE}])
     assert drawing.source == "FOLD 1.1"
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_faces_that_are_folded_over_are_named_without_the_word_folded_form(turned):
+    faces = [[0, 1, 2], [0, 3, 2] if turned else [0, 2, 3]]
+    assert len(sheet(faces_vertices=faces).lines) == 5
+    with pytest.raises(FoldedStateError, match=r"2 faces of 2 overlap.* edge 0-2; give its crease"):
+        sheet(faces_vertices=faces, vertices_coords=[[0, 0], [2, 0], [2, 1], [1.2, -0.6]])
+
+
+def test_an_outer_face_in_the_list_is_not_folded_over():
+    halves = [[0, 1, 2], [0, 2, 3]]
+    assert len(sheet(faces_vertices=[*halves, [0, 3, 2, 1]]).lines) == 5
+    assert len(sheet(faces_vertices=[[0, 1, 2, 3], *halves]).lines) == 5
+
+
+def test_the_crease_pattern_beside_a_flat_folded_state_is_read():
+    folded = [[0, 0], [2, 0], [2, 1], [1.2, -0.6]]
+    more = {"frame_classes": ["foldedForm"], "faces_vertices": [[0, 1, 2], [0, 2, 3]]}
+    drawing = sheet(vertices_coords=folded, vertices_flatUnfoldCoords=CORNERS, **more)
+    assert drawing.points == tuple(map(tuple, CORNERS))
+    assert "its crease pattern is read from `vertices_flatUnfoldCoords`" in drawing.remarks[0]
 
 
 def test_the_first_flat_frame_is_read_and_named():

@@ -27,7 +27,12 @@ from exactfold.pattern.drawing.formats.fold_json import (
 )
 from exactfold.pattern.drawing.formats.fold_surds import surd_points
 
-_HINT: Final = "give the crease pattern, a frame with flat coordinates"
+_HINT: Final = (
+    "give its crease pattern: the unfolded sheet (in Origami Simulator: save at Fold Percent 0), "
+    "or a frame with flat coordinates"
+)
+_UNFOLDED: Final = "vertices_flatUnfoldCoords"
+"""The key in which `fold-convert --flat-fold` keeps the coordinates of the crease pattern."""
 _FLAT: Final = Fraction(1, 10**9)
 _SHOWN: Final = 5
 _AXES: Final = {"z": (0, 1), "y": (2, 0), "x": (1, 2)}
@@ -40,6 +45,7 @@ def read_fold_drawing(text: str) -> Drawing:
     If the top level has flat coordinates, it is read. Otherwise the first flat frame of
     `file_frames` is read, with all that it inherits. Coordinates have two components, or three in a
     plane z, y or x = constant (up to 1e-9 of the size), which is seen from the side of its normal.
+    Those of `vertices_flatUnfoldCoords`, which some folded states have, are preferred.
     `vertices_exactfold:surds` and `vertices_exactfold:coords` take precedence over
     `vertices_coords` and make the drawing `exact`. Edges without a letter are U. Sides of faces
     that are not listed as edges become lines: B if they belong to one face, else U. Repeated edges
@@ -129,10 +135,12 @@ def _inherited(stated: Sequence[Mapping[str, Any]], chain: Sequence[int]) -> Map
 
 
 def _drawing(frame: Mapping[str, Any], source: str) -> Drawing:
-    rows = list_at(frame, "vertices_coords")
+    rows = list_at(frame, _UNFOLDED) or list_at(frame, "vertices_coords")
     if not rows:
         raise MissingCoordinatesError("`vertices_coords` is missing or empty")
     points, plane, remarks = _flattened([components(v, row) for v, row in enumerate(rows)])
+    if _UNFOLDED in frame:
+        remarks.append(f"this is a folded state: its crease pattern is read from `{_UNFOLDED}`")
     exact = surd_points(frame, points) or [*exact_points(frame, points)]
     edges = index_lists(frame, "edges_vertices", "edge", len(points))
     faces = index_lists(frame, "faces_vertices", "face", len(points))
@@ -179,8 +187,8 @@ def _flattened(
     extent = " x ".join(f"{float(high - low):.3g}" for low, high in bounds)
     low, high = (places.index(find(places, key=lambda p: p[2])) for find in (min, max))
     raise FoldedStateError(
-        f"the vertices fill a box of {extent} (vertex {low} has the least z, vertex {high} the "
-        f"largest): this is a folded state; {_HINT}"
+        f"this is a folded state: the vertices fill a box of {extent} (vertex {low} has the least "
+        f"z, vertex {high} the largest); {_HINT}"
     )
 
 
@@ -189,16 +197,55 @@ def _check_unfolded(
     points: Sequence[tuple[Fraction, Fraction]],
     faces: Sequence[tuple[int, ...]],
 ) -> None:
-    """Raises `FoldedStateError` for a `foldedForm`, unless all its faces lie the same way up."""
-    if "foldedForm" not in list_at(frame, "frame_classes"):
-        return
+    """Raises `FoldedStateError` for a flat folded state.
+
+    There, faces lie on the same side of an edge that they share, or a frame that calls itself
+    `foldedForm` has no faces, or has faces of both orientations.
+    """
     areas = [_area([points[v] for v in face]) for face in faces]
-    if not areas or (min(areas) < 0 < max(areas)):
+    over = _folded_over(faces, areas)
+    if over:
+        a, b, (i, j) = over[0]
+        involved = {face for pair in over for face in pair[:2]}
         raise FoldedStateError(
-            f"the frame is a `foldedForm` whose faces do not all lie the same way up; {_HINT}"
-            if areas
-            else f"the frame is a `foldedForm` and has no faces; {_HINT}"
+            f"this is a folded state: {counted(len(involved), 'face')} of {len(faces)} overlap, "
+            f"such as faces {a} and {b}, which lie on the same side of edge {i}-{j}; {_HINT}"
         )
+    if "foldedForm" not in list_at(frame, "frame_classes") or _UNFOLDED in frame:
+        return
+    if not areas or min(areas) < 0 < max(areas):
+        raise FoldedStateError(
+            "this is a folded state (the frame is a `foldedForm`, and "
+            f"{'some of its faces lie upside down' if areas else 'it has no faces'}); {_HINT}"
+        )
+
+
+def _folded_over(
+    faces: Sequence[tuple[int, ...]], areas: Sequence[Fraction]
+) -> list[tuple[int, int, tuple[int, int]]]:
+    """Pairs of faces on the same side of an edge that exactly they share, with the edge.
+
+    A list of faces may end with the outer face, which is as large as all others together and has
+    others along all its sides; it is no such face.
+    """
+    sides: dict[tuple[int, int], list[tuple[int, bool]]] = {}
+    for k, (face, area) in enumerate(zip(faces, areas, strict=True)):
+        for i, j in zip(face, [*face[1:], *face[:1]], strict=True):
+            if area:
+                sides.setdefault((min(i, j), max(i, j)), []).append((k, (i < j) == (area > 0)))
+    pairs = [
+        (near[0][0], near[1][0], edge)
+        for edge, near in sides.items()
+        if len(near) == 2 and near[0][1] == near[1][1] and near[0][0] != near[1][0]
+    ]
+    touched = Counter(face for pair in pairs for face in pair[:2])
+    whole = sum(map(abs, areas), Fraction(0))
+    outer = {
+        k
+        for k, number in touched.items()
+        if number == len(faces[k]) and 2 * abs(areas[k]) >= whole * (1 - _FLAT)
+    }
+    return [pair for pair in pairs if not outer & set(pair[:2])]
 
 
 def _area(corners: Sequence[tuple[Fraction, Fraction]]) -> Fraction:
