@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Final
 
 from exactfold._support.clock import UNLIMITED, Clock
@@ -15,6 +15,7 @@ from exactfold.panels.local import LocalMode
 from exactfold.panels.proposals import Proposals
 from exactfold.panels.result import Mode
 from exactfold.panels.stars import Star
+from exactfold.panels.straight import straight_creases
 from exactfold.panels.subspaces import independent_parts
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
@@ -32,8 +33,9 @@ def folding_modes(
     most: int,
     clock: Clock = UNLIMITED,
 ) -> list[Mode]:
-    """Modes that are proved to truly fold: among those found, the twelve with the most folds.
+    """Modes that are proved to truly fold; those that share no vertex, and then up to twelve.
 
+    Straight creases from boundary to boundary are modes. For others a search proposes spaces.
     `rows` is a space that contains all real motions of the part. `Proposals` suggests linear spaces
     on which all forms vanish, and each is computed again exactly. It may be a direct sum of spaces.
     If one of these is a line on which no vertex has more than four active folds, the line is a
@@ -57,7 +59,27 @@ def folding_modes(
             mode = folding_mode(pattern, moving, line) if dimension == 1 else None
             if mode is not None:
                 modes.setdefault(tuple(sorted(mode.assignment.items())), mode)
-    return sorted(modes.values(), key=lambda mode: -len(mode.assignment))[:MOST_MODES]
+    for line in straight_creases(moving):
+        mode = folding_mode(pattern, moving, line)
+        if mode is not None:
+            modes.setdefault(tuple(sorted(mode.assignment.items())), mode)
+    return _chosen(sorted(modes.values(), key=lambda mode: -len(mode.assignment)))
+
+
+def _chosen(modes: Sequence[Mode]) -> list[Mode]:
+    """Modes without a common vertex, as many as a simple choice finds, and the first of the others.
+
+    The choice takes modes with few vertices first.
+    """
+    together: set[int] = set()
+    kept: list[int] = []
+    for k in sorted(range(len(modes)), key=lambda k: len(modes[k].active)):
+        if not together.intersection(modes[k].active):
+            together.update(modes[k].active)
+            kept.append(k)
+    others = [k for k in range(len(modes)) if k not in kept]
+    kept += others[: max(0, MOST_MODES - len(kept))]
+    return [modes[k] for k in sorted(kept)]
 
 
 def folding_mode(pattern: PanelPattern, moving: Mapping[int, Star], line: Rows) -> Mode | None:

@@ -76,4 +76,4 @@ def test_a_limit_stops_the_search_and_not_the_quick_proofs() -> None:
     assert found.drawn is not None
     assert found.drawn.starts is REFUTED
     assert found.freedom is not None
-    assert found.freedom.least == 0
+    assert found.freedom.least == 3
