@@ -123,6 +123,6 @@ def test_a_sheet_whose_list_is_too_long_is_counted_along_its_tree(
     bounds, known = counted.freedom, listed.freedom
     assert bounds is not None
     assert known is not None
-    assert bounds.least == bounds.most == known.least == known.most
+    assert bounds.least == bounds.most == known.least <= known.most
     with pytest.raises(NotApplicableError, match="counted along trees"):
         certificate_of_panels(counted)
