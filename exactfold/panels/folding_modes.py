@@ -12,7 +12,7 @@ from exactfold.panels.extension import extension
 from exactfold.panels.found import exact_leaf
 from exactfold.panels.kernel import Rows, entry, number
 from exactfold.panels.local import LocalMode
-from exactfold.panels.proposals import Proposals
+from exactfold.panels.proposals import Proposals, is_too_large
 from exactfold.panels.result import Mode
 from exactfold.panels.stars import Star
 from exactfold.panels.straight import straight_creases
@@ -46,7 +46,8 @@ def folding_modes(
     """
     modes: dict[tuple[tuple[Edge, str], ...], Mode] = {}
     work = 0
-    search = Proposals(moving, rows, size, regular=False, clock=clock)
+    stopped = clock.passed or is_too_large(rows, size)
+    search = () if stopped else Proposals(moving, rows, size, regular=False, clock=clock)
     for tried, proposal in enumerate(search):
         work += (len(proposal.steps) + 1) * len(rows) * size
         if work > most or (tried == _TRIES and not modes) or clock.passed:
