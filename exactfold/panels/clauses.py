@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from importlib.util import find_spec
 from itertools import combinations
-from typing import Any, Final
+from typing import Final
 
 import networkx as nx
 
@@ -57,12 +57,10 @@ class ModeClauses:
         folds = sorted({edge for star in stars.values() for edge in star.folds})
         self._fold = {edge: k for k, edge in enumerate(folds, 1)}
         self._modes: dict[int, tuple[LocalMode, int]] = {}
-        self.clauses: list[list[int]] = [list(self._fold.values())]
-        for star in stars.values():
-            self._at(star)
+        self._clauses: list[list[int]] = [list(self._fold.values())]
 
     def _at(self, star: Star) -> None:
-        """The clauses of one vertex."""
+        """Add the clauses of one vertex."""
         numbers: list[int] = []
         by_fold: dict[Edge, list[int]] = {edge: [] for edge in star.folds}
         for mode in _lines(star):
@@ -74,10 +72,10 @@ class ModeClauses:
                 numbers.append(number)
                 for edge in mode.folds:
                     by_fold[edge].append(number)
-        self.clauses += [[-a, -b] for a, b in combinations(numbers, 2)]
+        self._clauses += [[-a, -b] for a, b in combinations(numbers, 2)]
         for edge, some in by_fold.items():
-            self.clauses.append([-self._fold[edge], *some])
-            self.clauses += [[-number, self._fold[edge]] for number in some]
+            self._clauses.append([-self._fold[edge], *some])
+            self._clauses += [[-number, self._fold[edge]] for number in some]
 
     def _fits(self, mode: LocalMode, side: int) -> bool:
         if self.letters is None:
@@ -90,10 +88,14 @@ class ModeClauses:
         return True
 
     def __iter__(self) -> Iterator[Mode]:
-        """Yield modes that truly fold; no two have the same local modes."""
+        """Yield modes that truly fold, no two alike, until the clock has passed."""
         from pysat.solvers import Solver
 
-        with Solver(name="glucose4", bootstrap_with=self.clauses) as solver:
+        for star in self.stars.values():
+            if self.clock.passed:
+                return
+            self._at(star)
+        with Solver(name="glucose4", bootstrap_with=self._clauses) as solver:
             solver.set_phases([-number for number in range(1, len(self._fold) + 1)])
             for _ in range(_MOST_ROUNDS):
                 if self.clock.passed or not solver.solve():
@@ -157,6 +159,9 @@ class ModeClauses:
             return None
         up = self._up(densities)
         letters = {e: "V" if densities[e].sign == up else "M" for e in sorted(densities)}
+        drawn = self.letters or {}
+        if any(drawn.get(e, "U") not in ("U", letter) for e, letter in letters.items()):
+            return None  # across folds without letters the sides of the vertices do not fit
         return Mode(tuple(sorted(stars)), letters, extends, tuple(choice))
 
     def _up(self, densities: Mapping[Edge, Density]) -> int:

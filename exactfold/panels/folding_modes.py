@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import islice
 from typing import Final
 
 from exactfold._support.clock import UNLIMITED, Clock
 from exactfold._support.verdict import PROVED
 from exactfold.exact.surds import exact, sign, simple
+from exactfold.panels.clauses import ModeClauses, has_solver
 from exactfold.panels.extension import extension
 from exactfold.panels.found import exact_leaf
 from exactfold.panels.kernel import Rows, entry, number
@@ -23,6 +25,7 @@ MOST_MODES: Final = 12
 _TRIES: Final = 5
 """If this many exactly computed proposals give no mode, the search stops."""
 _MOST_ROOTS: Final = 3
+_MOST_BY_CLAUSES: Final = 200
 
 
 def folding_modes(
@@ -35,23 +38,46 @@ def folding_modes(
 ) -> list[Mode]:
     """Modes that are proved to truly fold; those that share no vertex, and then up to twelve.
 
-    Straight creases from boundary to boundary are modes. For others a search proposes spaces.
-    `rows` is a space that contains all real motions of the part. `Proposals` suggests linear spaces
-    on which all forms vanish, and each is computed again exactly. It may be a direct sum of spaces.
-    If one of these is a line on which no vertex has more than four active folds, the line is a
-    mode, and the extension theorem says whether it truly folds (docs/panels.md, Which modes truly
+    Straight creases from boundary to boundary are modes. Others are found by clauses, if python-sat
+    is installed (`ModeClauses`). If there are none, or without python-sat, `Proposals` suggests
+    linear spaces on which all forms vanish, and each is computed again exactly. `rows` is a space
+    that contains all real motions of the part. A proposed space may be a direct sum of spaces. If
+    one of these is a line on which no vertex has more than four active folds, the line is a mode,
+    and the extension theorem says whether it truly folds (docs/panels.md, Which modes truly
     fold). The motions of a mode need not be a component: they may lie in a larger family, and there
     may be many more modes. The work is limited to `most` steps, as in `found_components`, and by
     the clock. If no mode is found, nothing follows.
     """
-    modes: dict[tuple[tuple[Edge, str], ...], Mode] = {}
-    work = 0
-    stopped = clock.passed or is_too_large(rows, size)
-    search = () if stopped else Proposals(moving, rows, size, regular=False, clock=clock)
-    for tried, proposal in enumerate(search):
+    straight = (folding_mode(pattern, moving, line) for line in straight_creases(moving))
+    modes = _by_letters(mode for mode in straight if mode is not None)
+    if has_solver():
+        clauses = ModeClauses(pattern, moving, clock=clock)
+        modes |= _by_letters(islice(clauses, _MOST_BY_CLAUSES))
+    if not modes or not has_solver():
+        modes |= _by_letters(_proposed(pattern, moving, rows, size, most, clock))
+    return _chosen(sorted(modes.values(), key=lambda mode: -len(mode.assignment)))
+
+
+def _by_letters(modes: Iterable[Mode]) -> dict[tuple[tuple[Edge, str], ...], Mode]:
+    return {tuple(sorted(mode.assignment.items())): mode for mode in modes}
+
+
+def _proposed(
+    pattern: PanelPattern,
+    moving: Mapping[int, Star],
+    rows: Rows,
+    size: int,
+    most: int,
+    clock: Clock,
+) -> Iterator[Mode]:
+    """Modes on lines that `Proposals` suggests."""
+    if clock.passed or is_too_large(rows, size):
+        return
+    work, found = 0, False
+    for tried, proposal in enumerate(Proposals(moving, rows, size, regular=False, clock=clock)):
         work += (len(proposal.steps) + 1) * len(rows) * size
-        if work > most or (tried == _TRIES and not modes) or clock.passed:
-            break
+        if work > most or (tried == _TRIES and not found) or clock.passed:
+            return
         leaf = exact_leaf(moving, rows, size, proposal, _MOST_ROOTS)
         if leaf is None or leaf.vertices:
             continue
@@ -59,12 +85,8 @@ def folding_modes(
         for line, dimension in independent_parts(lines, leaf.size, moving):
             mode = folding_mode(pattern, moving, line) if dimension == 1 else None
             if mode is not None:
-                modes.setdefault(tuple(sorted(mode.assignment.items())), mode)
-    for line in straight_creases(moving):
-        mode = folding_mode(pattern, moving, line)
-        if mode is not None:
-            modes.setdefault(tuple(sorted(mode.assignment.items())), mode)
-    return _chosen(sorted(modes.values(), key=lambda mode: -len(mode.assignment)))
+                found = True
+                yield mode
 
 
 def _chosen(modes: Sequence[Mode]) -> list[Mode]:
