@@ -139,6 +139,8 @@ def exact_sheets(
     # Snapping can make points coincide that were further apart than the merging distance.
     least = 2 * exact.tolerance if merge is None else Fraction(0)
 
+    remedies: dict[Exception, str] = {}
+
     def made(distance: Fraction) -> Sheets:
         after, ended = repaired(exact.drawing, merge=max(distance, least), steps=steps)
         try:
@@ -146,7 +148,8 @@ def exact_sheets(
         except (FoldError, PatternError) as error:
             for loose in (repair for repair in ended if repair.step == "dangling"):
                 if loose.count > len(after.lines):
-                    error.args = (f"{error}; {loose}; {_MEET}", *error.args[1:])
+                    error.args = (f"{error}; {loose}", *error.args[1:])
+                    remedies[error] = _MEET
             raise
 
     done, refusals = _until_whole(made, distances)
@@ -156,11 +159,15 @@ def exact_sheets(
         coarser = _clear(drawing, distances[-1] * 2, _ADVISED, GAP / 2)[-_TRIALS:]
         round_ones = [Fraction(f"{1.05 * float(distance):.2g}") for distance in coarser]
         for distance in list(_until_whole(made, round_ones)[0])[:1]:
-            refusals[0].args = (
-                f"{refusals[0]}; `exactfold convert --merge {float(distance):g}` would read it: "
-                "lines that miss each other by up to that share of the size then meet",
-                *refusals[0].args[1:],
+            remedies[refusals[0]] = (
+                f"`exactfold convert --merge {float(distance):g}` would read it: lines that miss "
+                "each other by up to that share of the size then meet"
             )
+    if refusals[0] in remedies:
+        refusals[0].args = (
+            f"{refusals[0]}; {remedies[refusals[0]]}",
+            *refusals[0].args[1:],
+        )
     raise refusals[0]
 
 

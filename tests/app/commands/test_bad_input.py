@@ -202,7 +202,9 @@ def test_drawings_without_panels_are_refused_for_what_they_lack(tmp_path, name, 
         result = run(*command, path, *out)
         assert result.exit_code == BAD_INPUT
         hint = "; --repair may mend it" if out and "enclose" in wrong else ""
-        assert result.stderr == f"exactfold: {path}: {wrong}{hint}\n"
+        assert result.stderr.startswith(f"exactfold: {path}: {wrong}")
+        assert result.stderr.endswith(f"{hint}\n")
+        assert result.stderr.count("\n") == 1
         assert sorted(p.name for p in tmp_path.iterdir()) == [name]
     path.write_text(json.dumps(SQUARE_FOLD))  # what is read decides, not the name
     assert run("count", path).exit_code == PROVED

@@ -93,9 +93,7 @@ def test_a_form_folded_flat_is_refused_and_an_unfolded_one_is_read():
     classes = {"frame_classes": ["foldedForm"], "faces_vertices": [[0, 1, 2], [0, 2, 3]]}
     assert len(sheet(**classes).lines) == 5
     folded = [[0, 0], [2, 0], [2, 1], [1.2, -0.6]]
-    with pytest.raises(
-        FoldedStateError, match="2 faces of 2 overlap, such as faces 0 and 1, .*0-2"
-    ):
+    with pytest.raises(FoldedStateError, match=r"2 faces of 2 overlap, such as .* edge 0-2"):
         sheet(**classes, vertices_coords=folded)
     apart = [*CORNERS, [5, 0], [7, 0], [7, 1]]
     with pytest.raises(FoldedStateError, match="some of its faces lie upside down"):
