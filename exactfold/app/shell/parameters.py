@@ -185,7 +185,10 @@ def letter_map(text: object) -> dict[str, str]:
 
 
 _LETTER = re.compile(r"([^=]+)=\s*(\w)\s*(?:,|\Z)")
-_ONE = "A FOLD, SVG, CP, OPX or ORI file, - for standard input, or a name: see `examples`."
+_ONE = (
+    "A FOLD, SVG, CP, OPX, ORI, DXF, TMD5 or OBJ file, - for standard input, or a name: see "
+    "`examples`."
+)
 
 Pattern = Annotated[
     Path,
@@ -202,7 +205,7 @@ Patterns = Annotated[
         metavar="PATTERN",
         callback=lambda paths: in_folders([standard_input(path) for path in paths]),
         autocompletion=complete_pattern,
-        help="FOLD, SVG, CP, OPX or ORI files, folders of such files, - for standard input, or "
+        help="FOLD, SVG, CP, OPX, ORI, DXF, TMD5 or OBJ files, folders of such files, - for standard input, or "
         "names: see `examples`.",
     ),
 ]

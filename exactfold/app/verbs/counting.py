@@ -49,7 +49,7 @@ def read(
     """Read a sheet from any source; the attribute `sheet` of the result is the pattern.
 
     Every verb takes such a `sheet`: the name of a shipped pattern (`examples`), the path of a FOLD,
-    SVG, CP, OPX, ORI or ORH file, FOLD as text or as a dictionary, a `CreasePattern`, a
+    SVG, CP, OPX, ORI, ORH, DXF, TMD5 or OBJ file, FOLD as text or as a dictionary, a `CreasePattern`, a
     `PanelPattern`, or a result of `read`. Drawings are repaired, and their coordinates are made
     exact; `lines` of the result says how. `letters` of the result has the mountains and valleys of
     the drawing. `snap` is "auto", "exact", or n, which rounds coordinates to multiples of 1/n.

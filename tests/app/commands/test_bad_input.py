@@ -217,7 +217,7 @@ def test_an_unknown_format_is_refused_with_a_list_of_those_that_are_read(tmp_pat
     assert result.exit_code == BAD_INPUT
     assert result.stderr == (
         f"exactfold: {path} is not a drawing of a known format; exactfold reads "
-        "FOLD, SVG, CP, OPX, ORI and ORH\n"
+        "FOLD, SVG, CP, OPX, ORI, ORH, DXF, TMD5 and OBJ\n"
     )
 
 

@@ -138,7 +138,7 @@ def _drawing(frame: Mapping[str, Any], source: str) -> Drawing:
     rows = list_at(frame, _UNFOLDED) or list_at(frame, "vertices_coords")
     if not rows:
         raise MissingCoordinatesError("`vertices_coords` is missing or empty")
-    points, plane, remarks = _flattened([components(v, row) for v, row in enumerate(rows)])
+    points, plane, remarks = flattened([components(v, row) for v, row in enumerate(rows)])
     if _UNFOLDED in frame:
         remarks.append(f"this is a folded state: its crease pattern is read from `{_UNFOLDED}`")
     exact = surd_points(frame, points) or [*exact_points(frame, points)]
@@ -147,7 +147,7 @@ def _drawing(frame: Mapping[str, Any], source: str) -> Drawing:
     for k, edge in enumerate(edges):
         if len(edge) != 2:
             raise NotFoldError(f"edge {k} has {len(edge)} ends: {shown(edge)}")
-    _check_unfolded(frame, points, faces)
+    check_unfolded(frame, points, faces)
     letters, notes = _letters(frame, len(edges))
     remarks += notes
     lines = [Line(i, j, letter) for (i, j), letter in zip(edges, letters, strict=True)]
@@ -168,7 +168,7 @@ def _drawing(frame: Mapping[str, Any], source: str) -> Drawing:
     )
 
 
-def _flattened(
+def flattened(
     places: Sequence[tuple[Fraction, Fraction, Fraction]],
 ) -> tuple[list[tuple[Fraction, Fraction]], str, list[str]]:
     """The points in their plane z, y or x = constant, with a text and remarks.
@@ -192,7 +192,7 @@ def _flattened(
     )
 
 
-def _check_unfolded(
+def check_unfolded(
     frame: Mapping[str, Any],
     points: Sequence[tuple[Fraction, Fraction]],
     faces: Sequence[tuple[int, ...]],
