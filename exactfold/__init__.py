@@ -5,6 +5,7 @@
     branch     one way of a triangulated sheet, by vertex signs, letters or number
     decompose  the ways of a sheet whose panels stay rigid
     match      which ways have given mountains and valleys, or why none has
+    vertices   which vertices fold with their letters, and what to change at the others
     actuate    torques that drive a sheet along one way and no other
     follow     the motion along a way, in space
     prove      a motion proved, with its first contact

@@ -26,6 +26,7 @@ from exactfold.app.verbs.counting import decompose as decompose
 from exactfold.app.verbs.counting import read as read
 from exactfold.app.verbs.designing import actuate as actuate
 from exactfold.app.verbs.designing import match as match
+from exactfold.app.verbs.designing import vertices as vertices
 from exactfold.app.verbs.moving import follow as follow
 from exactfold.app.verbs.moving import loops as loops
 from exactfold.app.verbs.moving import prove as prove

@@ -24,6 +24,7 @@ VERBS = {
     "match",
     "prove",
     "read",
+    "vertices",
     "view",
 }
 

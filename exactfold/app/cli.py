@@ -18,6 +18,7 @@ from exactfold.app.options.branches import (
     BranchOptions,
     ExportOptions,
     MatchOptions,
+    VerticesOptions,
 )
 from exactfold.app.options.motions import ActuateOptions, FoldOptions, MotionsOptions
 from exactfold.app.options.patterns import ConvertOptions, CountOptions, InfoOptions
@@ -164,6 +165,21 @@ def match(**options: Any) -> int:
     there are none.
     """
     from exactfold.app.commands.match import Asked
+
+    return Asked(**options).answer()
+
+
+@app.command(cls=Command)
+@taking(VerticesOptions)
+def vertices(**options: Any) -> int:
+    """Say which vertices start to fold with their letters, with proof, and what to change.
+
+    Each interior vertex is decided by itself, in exact arithmetic. If one vertex
+    cannot have its letters, the sheet cannot have them either: the exit code is 1.
+    Kawasaki's and Maekawa's conditions for folding flat are listed as well. Only
+    vertices with something to change are listed.
+    """
+    from exactfold.app.commands.vertices import Asked
 
     return Asked(**options).answer()
 

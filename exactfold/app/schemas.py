@@ -52,6 +52,7 @@ DOCUMENTS: Final = {
     ),
     "match": ("exactfold match --json", "design.assignments.result:MatchDocument"),
     "starting": ("exactfold match --json of rigid panels", "design.panels.match:StartingDocument"),
+    "vertices": ("exactfold vertices --json", "design.panels.vertices:VerticesDocument"),
     "export": ("exactfold export --json", "app.commands.export:ExportDocument"),
     "motion": (
         "exactfold fold --json",
@@ -68,8 +69,8 @@ DOCUMENTS: Final = {
     "info": (
         "exactfold info --json",
         "app.commands.info:BranchesFactsDocument",
-        "branches.counting.motion_facts:DecomposedFactsDocument",
-        "branches.counting.motion_facts:PanelFactsDocument",
+        "app.commands.info:DecomposedInfoDocument",
+        "app.commands.info:PanelInfoDocument",
     ),
     "convert": ("exactfold convert --json", "app.commands.convert:ConvertDocument"),
     "check": ("exactfold check --json", "app.verbs.check_document:CheckDocument"),

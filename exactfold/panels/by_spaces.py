@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
+from exactfold._support.clock import UNLIMITED, Clock
 from exactfold._support.plurals import counted
 from exactfold.errors import TooManyModesError
 from exactfold.panels.cones import cone_motion, is_one_family
 from exactfold.panels.folding_modes import folding_mode, folding_modes
 from exactfold.panels.found import FoundComponent, found_components
+from exactfold.panels.freedom import most_freedom
 from exactfold.panels.kernel import Rows, entry, first_order
 from exactfold.panels.regular import (
     Forms,
@@ -29,16 +31,16 @@ MOST_REDUCTION = 3_000_000
 MOST_FOUND = 20_000_000
 
 
-def by_spaces(pattern: PanelPattern, moving: Mapping[int, Star]) -> Part:
+def by_spaces(pattern: PanelPattern, moving: Mapping[int, Star], clock: Clock = UNLIMITED) -> Part:
     """The motions of a part with vertices of any degree: linear spaces, and which of them fold.
 
     The dimension of the first-order motions is exact. The part is not decomposed if several forms
-    remain on a space and are not shown to be one component, if there are too many spaces, or if the
-    dimension is too large. Then the result contains the components that were found, and the folds
-    that stay flat to second order.
+    remain on a space and are not shown to be one component, if there are too many spaces, if the
+    dimension is too large, or if the clock has passed. Then the result contains the components that
+    were found, and the folds that stay flat to second order.
     """
     rows, size = first_order(moving)
-    small, left = reduced(moving, rows, size, MOST_REDUCTION)
+    small, left = reduced(moving, rows, size, MOST_REDUCTION, clock)
     if left == 0:
         still = tuple(sorted({edge for star in moving.values() for edge in star.folds}))
         return Part(tuple(moving), "subspaces", {0: 1}, {0: 1}, dimension=size, still=still)
@@ -49,18 +51,18 @@ def by_spaces(pattern: PanelPattern, moving: Mapping[int, Star]) -> Part:
             f"{next(iter(moving))} have dimension {size}; they are decomposed only up to dimension "
             f"{MOST_DIMENSION}"
         )
-        components, ended = _found(pattern, moving, small, left)
+        components, ended = _found(pattern, moving, small, left, clock)
         if not ended:
-            return _partial(pattern, moving, size, (small, left), components, reason)
+            return _partial(pattern, moving, (rows, size), (small, left), components, reason, clock)
     try:
         most = MOST_STEPS if components is None else MOST_STEPS_BEYOND
-        return _complete(pattern, moving, (rows, size), (small, left), most, components)
+        return _complete(pattern, moving, (rows, size), (small, left), most, components, clock)
     except TooManyModesError as error:
         if components is None:
             where = f"the part of {counted(len(moving), 'vertex')} with vertex"
             reason = f"{where} {next(iter(moving))}: {error}"
-            components, _ = _found(pattern, moving, small, left)
-        return _partial(pattern, moving, size, (small, left), components, reason)
+            components, _ = _found(pattern, moving, small, left, clock)
+        return _partial(pattern, moving, (rows, size), (small, left), components, reason, clock)
 
 
 def _complete(
@@ -70,6 +72,7 @@ def _complete(
     smaller: tuple[Rows, int],
     most: int,
     components: list[FoundComponent] | None,
+    clock: Clock,
 ) -> Part:
     """All components; raises `TooManyModesError` if this is too much work or forms remain.
 
@@ -78,24 +81,27 @@ def _complete(
     """
     vertices = tuple(moving)
     (rows, size), (small, left) = first, smaller
-    spaces = leaves(moving, small, left, most)
+    spaces = leaves(moving, small, left, most, clock)
     counts: dict[int, int] = {}
     for leaf in spaces:
+        clock.check()
         _check_component(moving, leaf)
         counts[leaf.dimension] = counts.get(leaf.dimension, 0) + 1
     still = _still(moving, (edge for leaf in spaces for edge in leaf.rows))
     if not counts:
         return Part(vertices, "subspaces", {0: 1}, {0: 1}, dimension=size, still=still)
     ordered = dict(sorted(counts.items()))
-    folding = [_extends(pattern, moving, leaf) for leaf in spaces]
-    alone = len(moving) == 1 or all(_is_regular(moving, rows, size, leaf) for leaf in spaces)
+    folding = [not clock.passed and _extends(pattern, moving, leaf) for leaf in spaces]
+    alone = len(moving) == 1 or all(
+        not clock.passed and _is_regular(moving, rows, size, leaf) for leaf in spaces
+    )
     if len(spaces) == 1:
         alone = alone or is_one_family(moving, size, spaces[0].size, spaces[0].vertices)
     known = all(folding) and alone
     if all(folding):
         components = []
     elif components is None:
-        components, _ = _found(pattern, moving, small, left)
+        components, _ = _found(pattern, moving, small, left, clock)
     return Part(
         vertices,
         "subspaces",
@@ -104,6 +110,7 @@ def _complete(
         spaces=tuple(spaces),
         spaces_fold=tuple(folding),
         dimension=size,
+        most=None if known else most_freedom(moving, rows, size),
         found=tuple(components),
         still=still,
         reason=_open(known, all(folding)),
@@ -131,32 +138,34 @@ def _open(known: bool, fold: bool) -> str:
 
 
 def _found(
-    pattern: PanelPattern, moving: Mapping[int, Star], rows: Rows, size: int
+    pattern: PanelPattern, moving: Mapping[int, Star], rows: Rows, size: int, clock: Clock
 ) -> tuple[list[FoundComponent], bool]:
     return found_components(
-        moving, rows, size, MOST_FOUND, lambda leaf: _extends(pattern, moving, leaf)
+        moving, rows, size, MOST_FOUND, lambda leaf: _extends(pattern, moving, leaf), clock
     )
 
 
 def _partial(
     pattern: PanelPattern,
     moving: Mapping[int, Star],
-    size: int,
+    first: tuple[Rows, int],
     smaller: tuple[Rows, int],
     components: list[FoundComponent],
     reason: str,
+    clock: Clock,
 ) -> Part:
     """What is proved of a part that is not decomposed: components, or modes if none of
     them folds.
     """
     folds = any(one.folds for one in components)
-    modes = [] if folds else folding_modes(pattern, moving, *smaller, MOST_FOUND)
+    modes = [] if folds else folding_modes(pattern, moving, *smaller, MOST_FOUND, clock)
     return Part(
         tuple(moving),
         "subspaces",
         None,
         None,
-        dimension=size,
+        dimension=first[1],
+        most=most_freedom(moving, *first),
         found=tuple(components),
         modes=tuple(modes),
         still=_still(moving, smaller[0]),

@@ -10,6 +10,7 @@ from typing import Final
 
 import networkx as nx
 
+from exactfold._support.clock import UNLIMITED, Clock
 from exactfold._support.plurals import counted
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
@@ -18,6 +19,8 @@ from exactfold.panels.by_spaces import by_spaces
 from exactfold.panels.densities import UndecidedDensityError
 from exactfold.panels.elementary import ElementaryMode, ModeSearch, Support
 from exactfold.panels.extension import Extension, Loops, extend_together, extension
+from exactfold.panels.freedom import most_freedom
+from exactfold.panels.kernel import first_order
 from exactfold.panels.result import Decomposition, Mode, Part, product
 from exactfold.panels.stars import Star, stars
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
@@ -34,6 +37,7 @@ def decompose(
     flat: Iterable[Edge] = (),
     listed: int = MOST_LISTED,
     progress: Progress | None = None,
+    clock: Clock = UNLIMITED,
 ) -> Decomposition:
     """Every component of the motions of a sheet of rigid panels, to second order and truly.
 
@@ -46,9 +50,12 @@ def decompose(
     (`folding_modes`). The lowest-order term of a true motion is a second-order motion, so a sheet
     without second-order motions is rigid.
 
+    The smallest parts come first. If the clock has passed, the search ends, and the parts that are
+    not known yet have this as their `reason`.
+
     Folds in `flat` are in the drawing but are held flat. Up to `listed` modes are listed one by
-    one. If the status is UNDECIDED, some part is too large or needs too many square roots; `reason`
-    says which.
+    one. If the status is UNDECIDED, some part is too large, or needs too many square roots or too
+    much time; `reason` says which.
 
     >>> from exactfold.pattern.panel_pattern import PanelPattern
     >>> cross = PanelPattern([(-1, -1), (1, -1), (1, 1), (-1, 1), (0, 0), (0, -1), (1, 0),
@@ -67,11 +74,12 @@ def decompose(
     active = {edge for star in moving.values() for edge in star.folds}
     rest = tuple(e for e in pattern.folds if e not in active and e not in free)
     groups = groups_of(moving)
-    parts: list[Part] = []
-    for number, group in enumerate(groups):
+    done: dict[tuple[int, ...], Part] = {}
+    for number, group in enumerate(sorted(groups, key=len)):
         if progress is not None:
             progress("decomposing", number, len(groups))
-        parts.append(_part(pattern, {v: moving[v] for v in group}, listed))
+        done[group] = _part(pattern, {v: moving[v] for v in group}, listed, clock)
+    parts = [done[group] for group in groups]
     result = Decomposition(
         pattern,
         "subspaces" if any(part.theory == "subspaces" for part in parts) else "modes",
@@ -135,28 +143,34 @@ def groups_of(moving: Mapping[int, Star]) -> list[tuple[int, ...]]:
     return sorted(tuple(sorted(group)) for group in nx.connected_components(graph))
 
 
-def _part(pattern: PanelPattern, moving: Mapping[int, Star], listed: int) -> Part:
+def _part(pattern: PanelPattern, moving: Mapping[int, Star], listed: int, clock: Clock) -> Part:
     vertices = tuple(moving)
     few = all(len(star.folds) <= 4 for star in moving.values())
     try:
         if few:
-            return _by_modes(pattern, moving, listed)
-        return by_spaces(pattern, moving)
+            return _by_modes(pattern, moving, listed, clock)
+        return by_spaces(pattern, moving, clock)
     except (TooManyModesError, UndecidedDensityError) as error:
         where = f"the part of {counted(len(vertices), 'vertex')} with vertex {vertices[0]}"
         theory = "modes" if few else "subspaces"
-        return Part(vertices, theory, None, None, reason=f"{where}: {error}")
+        rows, size = first_order(moving)
+        most = most_freedom(moving, rows, size)
+        reason = f"{where}: {error}"
+        return Part(vertices, theory, None, None, dimension=size, most=most, reason=reason)
 
 
-def _by_modes(pattern: PanelPattern, moving: Mapping[int, Star], listed: int) -> Part:
+def _by_modes(pattern: PanelPattern, moving: Mapping[int, Star], listed: int, clock: Clock) -> Part:
     """A part by the structure theorem: its elementary modes, and which of them extend."""
-    search = ModeSearch(moving, pattern.field)
+    search = ModeSearch(moving, pattern.field, clock)
     supports = search.supports(MOST_SUPPORTS)
     modes: list[Mode] = []
     extending: list[Support] = []
     decided = True
     loops: Loops = {}
     for support in supports:
+        if clock.passed:
+            decided = False
+            break
         verdict = extend_together(moving, search.modes, support.vertices)
         room = listed - len(modes)
         each: list[ElementaryMode] = []
@@ -176,16 +190,25 @@ def _by_modes(pattern: PanelPattern, moving: Mapping[int, Star], listed: int) ->
         if each and support.count <= room:
             pairs = zip(each, results, strict=True)
             modes += [_mode(support, mode, result) for mode, result in pairs]
+    counts = components(supports, 0)
     return Part(
         tuple(moving),
         "modes",
-        components(supports, 0),
+        counts,
         components(extending, 0) if decided else None,
         supports=tuple(supports),
         modes=tuple(modes),
+        most=None if decided else max(counts),
         near_misses=tuple(search.near_misses.values()),
-        reason="" if decided else "for some modes it is not known whether they truly fold",
+        reason=_open(decided, clock),
     )
+
+
+def _open(decided: bool, clock: Clock) -> str:
+    if decided:
+        return ""
+    why = f": {clock.said}" if clock.passed else ""
+    return f"for some modes it is not known whether they truly fold{why}"
 
 
 def _mode(support: Support, mode: ElementaryMode, result: Extension) -> Mode:

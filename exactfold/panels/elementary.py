@@ -9,12 +9,13 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Final, TypeAlias
 
+from exactfold._support.clock import UNLIMITED, Clock
 from exactfold._support.plurals import counted
 from exactfold.errors import TooManyModesError
 from exactfold.exact.surds import SurdField
 from exactfold.panels.densities import Density, Roots
 from exactfold.panels.local import LocalMode, local_modes
-from exactfold.panels.near_misses import NEAR, NearMiss, near_miss
+from exactfold.panels.near_misses import RECORDED, NearMiss, near_miss
 from exactfold.panels.stars import Star
 from exactfold.pattern.panel_pattern import Edge
 
@@ -86,7 +87,10 @@ class ModeSearch:
     drawing may be rounded.
     """
 
-    def __init__(self, stars: Mapping[int, Star], ground: SurdField) -> None:
+    def __init__(
+        self, stars: Mapping[int, Star], ground: SurdField, clock: Clock = UNLIMITED
+    ) -> None:
+        self._clock = clock
         self.roots = Roots(ground)
         self.stars = stars
         self.modes = {v: local_modes(star) for v, star in stars.items()}
@@ -146,6 +150,7 @@ class ModeSearch:
                     ended.append(state)
                     continue
                 self._steps += 1
+                self._clock.check()
                 for mode in self.modes[vertex]:
                     new = self._joined(state, mode, allowed)
                     if new is not None:
@@ -195,7 +200,7 @@ class ModeSearch:
                 continue
             ratio = densities[edge].over(density)
             if not ratio.is_one():
-                if abs(ratio.approx - 1) < NEAR and edge not in self.near_misses:
+                if abs(ratio.approx - 1) < RECORDED and edge not in self.near_misses:
                     chosen = _chosen(state.choice)
                     self.near_misses[edge] = near_miss(chosen, mode, root, edge, ratio)
                 return None

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Final
 
+from exactfold._support.clock import UNLIMITED, Clock
 from exactfold._support.verdict import PROVED
 from exactfold.exact.surds import exact, sign, simple
 from exactfold.panels.extension import extension
@@ -24,7 +25,12 @@ _MOST_ROOTS: Final = 3
 
 
 def folding_modes(
-    pattern: PanelPattern, moving: Mapping[int, Star], rows: Rows, size: int, most: int
+    pattern: PanelPattern,
+    moving: Mapping[int, Star],
+    rows: Rows,
+    size: int,
+    most: int,
+    clock: Clock = UNLIMITED,
 ) -> list[Mode]:
     """Modes that are proved to truly fold: among those found, the twelve with the most folds.
 
@@ -33,14 +39,15 @@ def folding_modes(
     If one of these is a line on which no vertex has more than four active folds, the line is a
     mode, and the extension theorem says whether it truly folds (docs/panels.md, Which modes truly
     fold). The motions of a mode need not be a component: they may lie in a larger family, and there
-    may be many more modes. The work is limited to `most` steps, as in `found_components`. If no
-    mode is found, nothing follows.
+    may be many more modes. The work is limited to `most` steps, as in `found_components`, and by
+    the clock. If no mode is found, nothing follows.
     """
     modes: dict[tuple[tuple[Edge, str], ...], Mode] = {}
     work = 0
-    for tried, proposal in enumerate(Proposals(moving, rows, size, regular=False)):
+    search = Proposals(moving, rows, size, regular=False, clock=clock)
+    for tried, proposal in enumerate(search):
         work += (len(proposal.steps) + 1) * len(rows) * size
-        if work > most or (tried == _TRIES and not modes):
+        if work > most or (tried == _TRIES and not modes) or clock.passed:
             break
         leaf = exact_leaf(moving, rows, size, proposal, _MOST_ROOTS)
         if leaf is None or leaf.vertices:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
+from exactfold._support.clock import UNLIMITED, Clock
 from exactfold.errors import TooManyModesError
 from exactfold.panels.kernel import Entry, Rows, imposed
 from exactfold.panels.proposals import Proposal, Proposals
@@ -51,6 +52,7 @@ def found_components(
     size: int,
     most: int,
     extends: Callable[[Leaf], bool],
+    clock: Clock = UNLIMITED,
 ) -> tuple[list[FoundComponent], bool]:
     """Components in a space; each is proved to be one, and to differ from the others.
 
@@ -59,18 +61,18 @@ def found_components(
     vanish. Suppose that these forms have a common zero near w with independent derivatives on the
     space, and that the derivatives of all forms leave no larger dimension in the space of `rows`.
     Then w lies on exactly one component (docs/panels.md, Regular points). The work is limited to
-    `most` steps, as in `leaves`.
+    `most` steps, as in `leaves`, and by the clock.
 
     The second value says whether the floating-point search reached its end, which proves nothing.
     """
     forms = Forms(moving)
     whole = in_balls(rows)
-    search = Proposals(moving, rows, size)
+    search = Proposals(moving, rows, size, clock=clock)
     components: list[FoundComponent] = []
     work = 0
     for proposal in search:
         work += (len(proposal.steps) + 1) * len(rows) * size
-        if work > most:
+        if work > most or clock.passed:
             return components, False
         leaf = exact_leaf(moving, rows, size, proposal)
         if leaf is None:

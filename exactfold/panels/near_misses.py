@@ -22,6 +22,10 @@ from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
 NEAR: Final = 1e-6
 """A product that is not 1 but differs from 1 by less than this is a near miss."""
+RECORDED: Final = 1e-3
+"""On an inexact sheet, loops that close up to a multiple of its noise are near misses, too; loops
+are recorded up to this."""
+_TIMES_NOISE: Final = 100
 SNAPS: Final = ("auto", 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 12, 15, 16, 20, 24, 30, 32, 48, 60, 64, 100)
 """The snaps that are tried, in this order; they are values of `--snap`."""
 _BITS: Final = 256
@@ -98,6 +102,14 @@ class NearMiss:
         if self.tried:
             return start + "none of the snaps that were tried closes it"
         return start + "the coordinates of the drawing may be rounded (try --snap auto)"
+
+
+def near_limit(noise: float | None) -> float:
+    """The distance from 1 below which a product that is not 1 is a near miss.
+
+    `noise` is the noise level of the drawing, None for an exact one.
+    """
+    return max(NEAR, _TIMES_NOISE * (noise or 0.0))
 
 
 def near_miss(

@@ -9,6 +9,7 @@ from typing import Final, TypeAlias
 import numpy as np
 
 from exactfold._support.arrays import FloatArray
+from exactfold._support.clock import UNLIMITED, Clock
 from exactfold.panels.kernel import Rows
 from exactfold.panels.stars import Star
 from exactfold.pattern.panel_pattern import Edge
@@ -56,7 +57,7 @@ class _Kinds:
 
 
 class Proposals:
-    """A depth-first search for motions, with a fixed number of steps.
+    """A depth-first search for motions, with a fixed number of steps and a clock.
 
     On each space of motions, a semidefinite form leaves its kernel, a form of inertia (1, 1) splits
     the space, and other forms remain. Where no form splits the space any more, Newton's method
@@ -68,9 +69,16 @@ class Proposals:
     """
 
     def __init__(
-        self, stars: Mapping[int, Star], rows: Rows, size: int, *, regular: bool = True
+        self,
+        stars: Mapping[int, Star],
+        rows: Rows,
+        size: int,
+        *,
+        regular: bool = True,
+        clock: Clock = UNLIMITED,
     ) -> None:
         self.complete = False
+        self._clock = clock
         self._regular = regular
         self._edges = list(rows)
         place = {edge: k for k, edge in enumerate(self._edges)}
@@ -113,6 +121,8 @@ class Proposals:
         waiting: list[tuple[FloatArray, tuple[_Step, ...]]] = [(self._whole, ())]
         for _ in range(most):
             if not waiting or len(known) == _MOST_PROPOSALS or self._visits > _MOST_VISITS:
+                break
+            if self._clock.passed:
                 break
             basis, steps = waiting.pop()
             basis, more, kinds = self._reduced(basis)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Annotated, ClassVar, Literal, TypeAlias, TypedDict
+from typing import Annotated, ClassVar, Literal, Protocol, TypeAlias, TypedDict
 
 from exactfold._support.documents import (
     Empty,
@@ -24,7 +24,8 @@ from exactfold.panels.elementary import Support
 from exactfold.panels.extension import Extension
 from exactfold.panels.found import FoundComponent
 from exactfold.panels.local import LocalMode
-from exactfold.panels.near_misses import NearMiss, NearMissDocument
+from exactfold.panels.near_misses import NearMiss, NearMissDocument, near_limit
+from exactfold.panels.partial import Drawn, DrawnDocument, Freedom, FreedomDocument
 from exactfold.panels.subspaces import Leaf
 from exactfold.pattern.described import PanelsDocument, described_panels
 from exactfold.pattern.meant import Meant, MeantDocument
@@ -75,10 +76,20 @@ class AsWrittenDocument(TypedDict):
     components: ComponentsDocument | None
 
 
+class OfDigits(Protocol):
+    """A count for the digits of an inexact drawing."""
+
+    def of_digits(self) -> AsWrittenDocument:
+        """The key `as_written` of the answer for the sheet that was meant."""
+
+
 class MotionKeys(TypedDict):
     """The keys of a count that belong to motions of rigid panels."""
 
     components: ComponentsDocument | None
+    degrees_of_freedom: FreedomDocument | None
+    drawn: DrawnDocument | None
+    """The answer for the letters of the drawing; null if all ways are known."""
     modes_count: Natural | None
     modes: list[ModeDocument]
     flat_folds: list[FoldText]
@@ -191,7 +202,9 @@ class Decomposition(Page, Ways[Mode], Certified):
     If `second_order` is None, `found` is {dimension: number} of the components that were found and
     proved; there are at least this many. If `true` is None, `found_true` is the same for the
     components that are known to fold truly. If no such component is known, `modes` are modes that
-    truly fold; there may be others. `near_misses` are loops that nearly close.
+    truly fold; there may be others. `drawn` is the answer for the letters of the drawing, if it was
+    asked for. `near_misses` are loops with a product of gains within 1e-3 of 1, and
+    `nearly_closing` those that the noise of the drawing explains, or within 1e-6.
 
     `meant` says what was inferred if the digits of the drawing are inexact, and `as_written` is the
     answer for these digits alone. If `doubt` says why an answer would hold for the digits of the
@@ -218,7 +231,8 @@ class Decomposition(Page, Ways[Mode], Certified):
     still: tuple[Edge, ...] = ()
     meant: Meant | None = None
     doubt: str = ""
-    as_written: Decomposition | None = None
+    as_written: OfDigits | None = None
+    drawn: Drawn | None = None
     seconds: float = field(default=0.0, compare=False)
 
     WRITER: ClassVar = "exactfold.panels.certificate:certificate_of_panels"
@@ -292,18 +306,35 @@ class Decomposition(Page, Ways[Mode], Certified):
         """The keys of JSON that belong to motions of panels."""
         return {
             "components": self._components(),
+            "degrees_of_freedom": None if self.freedom is None else self.freedom.to_dict(),
+            "drawn": None if self.drawn is None else self.drawn.to_dict(),
             "modes_count": self.modes_count,
             "modes": [mode.to_dict() for mode in self.modes],
             "flat_folds": [f"{i}-{j}" for i, j in self.flat],
             "still_folds": [f"{i}-{j}" for i, j in self.still],
             "free_folds": [f"{i}-{j}" for i, j in self.free],
-            "near_misses": [miss.to_dict() for miss in self.near_misses],
+            "near_misses": [miss.to_dict() for miss in self.nearly_closing],
         }
+
+    @property
+    def freedom(self) -> Freedom | None:
+        """Bounds for the degrees of freedom near the flat sheet; None if nothing bounds them."""
+        bounds = [part.freest for part in self.parts]
+        dimensions = [part.dimension for part in self.parts]
+        if None in bounds or self.doubt:
+            return None
+        free = len(self.free)
+        return Freedom(
+            free + sum(part.least for part in self.parts),
+            free + sum(bound or 0 for bound in bounds),
+            None if None in dimensions else free + sum(size or 0 for size in dimensions),
+        )
 
     @property
     def known(self) -> Decomposition:
         """This answer, or, if it is doubted, what is known for the digits as they are read."""
-        return self.as_written if self.doubt and self.as_written is not None else self
+        known = self.as_written
+        return known if self.doubt and isinstance(known, Decomposition) else self
 
     @property
     def ways(self) -> int | None:
@@ -315,10 +346,16 @@ class Decomposition(Page, Ways[Mode], Certified):
     @property
     def warning(self) -> str | None:
         """A warning about the drawing to read before the result: a loop that nearly closes."""
-        if not self.near_misses:
+        if not (near := self.nearly_closing):
             return None
-        more = len(self.near_misses) - 1
-        return self.near_misses[0].text + (f"; --json lists {more} more" if more else "")
+        more = len(near) - 1
+        return near[0].text + (f"; --json lists {more} more" if more else "")
+
+    @property
+    def nearly_closing(self) -> tuple[NearMiss, ...]:
+        """Those of `near_misses` that the noise of the drawing explains."""
+        limit = near_limit(None if self.meant is None else self.meant.noise)
+        return tuple(miss for miss in self.near_misses if miss.off < limit)
 
     def __repr__(self) -> str:
         counts = "" if self.second_order is None else f", {dict(self.second_order)}"
@@ -331,7 +368,8 @@ class Part:
 
     If some vertices have more than four folds, `spaces` are the leaves, and `spaces_fold` says of
     each whether it is shown to fold. `dimension` is the dimension of the first-order motions, or
-    None where it was not needed. `found` are the components that were found, if not all are known
+    None where it was not needed. `most` is an upper bound for the dimension of true motions, where
+    these are not all known. `found` are the components that were found, if not all are known
     or not all are known to fold. `still` are the folds that are flat in every motion to second
     order.
     """
@@ -345,6 +383,7 @@ class Part:
     spaces_fold: tuple[bool, ...] = ()
     modes: tuple[Mode, ...] = ()
     dimension: int | None = None
+    most: int | None = None
     near_misses: tuple[NearMiss, ...] = ()
     reason: str = ""
     found: tuple[FoundComponent, ...] = ()
@@ -370,6 +409,25 @@ class Part:
         return {
             d: max(known.get(d, 0), by_components.get(d, 0)) for d in {**known, **by_components}
         } or None
+
+    @property
+    def freest(self) -> int | None:
+        """An upper bound for the dimension of true motions; None if nothing bounds it."""
+        return self.most if self.true is None else max(self.true)
+
+    @property
+    def least(self) -> int:
+        """A dimension that some family of true motions is proved to have.
+
+        Modes that move no common vertex fold independently.
+        """
+        apart: set[int] = set()
+        number = 0
+        for mode in sorted(self.modes, key=lambda mode: len(mode.active)):
+            if mode.extends.verdict is PROVED and not apart.intersection(mode.active):
+                apart.update(mode.active)
+                number += 1
+        return max(number, *(self.folding or {0: 1}))
 
     @property
     def folds(self) -> bool:

@@ -11,6 +11,7 @@ from typing import Final, TypeAlias
 import networkx as nx
 from flint import fmpq
 
+from exactfold._support.clock import UNLIMITED, Clock
 from exactfold._support.plurals import counted
 from exactfold.errors import TooManyModesError
 from exactfold.exact.joined_fields import joined
@@ -53,7 +54,9 @@ class Leaf:
         return tuple(sorted(self.rows))
 
 
-def leaves(stars: Mapping[int, Star], rows: Rows, size: int, most: int) -> list[Leaf]:
+def leaves(
+    stars: Mapping[int, Star], rows: Rows, size: int, most: int, clock: Clock = UNLIMITED
+) -> list[Leaf]:
     """The real motions to second order as a union of leaves, none of which lies in another.
 
     `rows` is the space of first-order motions. On a linear space, a semidefinite form leaves its
@@ -62,9 +65,10 @@ def leaves(stars: Mapping[int, Star], rows: Rows, size: int, most: int) -> list[
     that share no active fold are independent, because every condition belongs to a single vertex.
 
     Raises `TooManyModesError` if this takes more than `most` steps. A step is one fold of a vertex
-    times one dimension, times the square of the degree of the field.
+    times one dimension, times the square of the degree of the field. It also raises this error when
+    the clock has passed.
     """
-    search = SubspaceSearch(stars, most)
+    search = SubspaceSearch(stars, most, clock)
     solutions = search.solved(dict(rows), size)
     return [leaf for leaf in solutions if leaf.size]
 
@@ -72,9 +76,10 @@ def leaves(stars: Mapping[int, Star], rows: Rows, size: int, most: int) -> list[
 class SubspaceSearch:
     """The splitting of spaces of motions, with a limit on its work; `TooManyModesError` beyond."""
 
-    def __init__(self, stars: Mapping[int, Star], most: int) -> None:
+    def __init__(self, stars: Mapping[int, Star], most: int, clock: Clock = UNLIMITED) -> None:
         self.stars = stars
         self.most = most
+        self.clock = clock
         self.work = 0
 
     def solved(self, rows: Rows, size: int) -> list[Leaf]:
@@ -88,8 +93,9 @@ class SubspaceSearch:
 
     def count(self, steps: int) -> None:
         """Add to the work done. A limit of work makes the search end in the same way on every
-        machine.
+        machine, unless the clock ends it before.
         """
+        self.clock.check()
         self.work += steps
         if self.work > self.most:
             raise TooManyModesError(
@@ -128,10 +134,15 @@ class SubspaceSearch:
                 return rows, size, products, left
 
 
-def reduced(stars: Mapping[int, Star], rows: Rows, size: int, most: int) -> tuple[Rows, int]:
-    """The space after all semidefinite forms; unchanged if that takes more than `most` steps."""
+def reduced(
+    stars: Mapping[int, Star], rows: Rows, size: int, most: int, clock: Clock = UNLIMITED
+) -> tuple[Rows, int]:
+    """The space after all semidefinite forms.
+
+    It is unchanged if that takes more than `most` steps, or if the clock has passed.
+    """
     with suppress(TooManyModesError):
-        rows, size, _, _ = SubspaceSearch(stars, most).reduced(rows, size)
+        rows, size, _, _ = SubspaceSearch(stars, most, clock).reduced(rows, size)
     return rows, size
 
 

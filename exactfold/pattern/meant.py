@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, Final, TypedDict
 
 from exactfold._support.documents import Natural, NotNegative
 from exactfold._support.plurals import counted
-from exactfold.errors import NotApplicableError
-from exactfold.pattern.drawing.meant.left import left_relations
+from exactfold.errors import NotApplicableError, UsageError
+from exactfold.pattern.drawing.meant.left import left_relations, nearly
 from exactfold.pattern.drawing.meant.values import Kind, Relation
 from exactfold.pattern.meant_sheet import Existence
 
@@ -102,15 +102,7 @@ class Meant:
         """Why an answer about this sheet is one about its digits only; empty if it is not."""
         if not self.left:
             return ""
-        least = self.left[0]
-        if len(self.left) == 1:
-            near = f"one relation nearly holds, {least.name}"
-        else:
-            near = f"{len(self.left)} relations nearly hold, such as {least.name}"
-        text = (
-            f"{near}, off by {least.defect:.1g} of the size, so that answers hold only for these "
-            "digits"
-        )
+        text = f"{nearly(self.left)}, so that answers hold only for these digits"
         return f"{text}: {self.reason}" if self.reason else text
 
     @property
@@ -206,13 +198,11 @@ def inferred(written: PanelPattern, reading: Reading) -> Meant:
     from exactfold.pattern.meant_sheet import realize
 
     points = [(Fraction(x), Fraction(y)) for x, y in written.vertices]  # type: ignore[arg-type]
-    overruled = {"without": reading.without, "also": reading.also}
-    found = infer(
-        points,
-        written.edges,
-        written.boundary_edges,
-        **{name: value for name, value in overruled.items() if value},
-    )
+    if reading.noise is not None and not 0 < reading.noise < 1:
+        raise UsageError(f"the noise level is a share of the size, above 0, not {reading.noise:g}")
+    asked = {name: getattr(reading, name) for name in ("without", "also", "noise", "unit")}
+    overruled = {name: value for name, value in asked.items() if value}
+    found = infer(points, written.edges, written.boundary_edges, **overruled)
     known = Meant(
         noise=found.noise,
         clear=found.clear,

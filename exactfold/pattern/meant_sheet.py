@@ -9,7 +9,8 @@ from math import hypot
 from typing import Any, Literal, TypeAlias
 
 from exactfold._support.plurals import counted
-from exactfold.checker.sheets.meant import MEANT, MeantClaims, RelationClaim
+from exactfold.checker.sheets.meant import MEANT, MeantClaims
+from exactfold.checker.sheets.relations import RelationClaim
 from exactfold.errors import (
     FoldError,
     NotADiskError,
@@ -119,14 +120,10 @@ def certificate(made: Realized, relations: Iterable[Relation]) -> dict[str, Any]
 
 
 def _claim(relation: Relation) -> RelationClaim:
-    """The relation with sorted terms, the first of which has a positive number."""
-    terms = sorted([i, j, factor] for (i, j), factor in relation.terms)
-    if terms[0][2] < 0:
-        terms = [[i, j, -factor] for i, j, factor in terms]
     return {
         "kind": relation.kind,
         "name": relation.name,
-        "terms": terms,
+        "terms": [[i, j, factor] for (i, j), factor in relation.terms],
         "parts": relation.parts,
     }
 

@@ -154,7 +154,9 @@ class Batch(CountOptions):
 
         def jobs() -> Iterator[Job]:
             for path in self.patterns:
-                job = Job(str(path), _source(path), self.method, self.seed, self.reading)
+                job = Job(
+                    str(path), _source(path), self.method, self.seed, self.reading, self.limit
+                )
                 earlier_line = known.take(job, names)
                 if earlier_line is None:
                     yield job

@@ -12,10 +12,12 @@ from exactfold._support.plurals import agreeing, counted
 from exactfold.app.options.patterns import ConvertOptions
 from exactfold.app.shell.patterns import located
 from exactfold.app.shell.shell import Bar, apart, name_of, said, say, tell
-from exactfold.errors import FoldError, NotFoldError, PatternError, UsageError
+from exactfold.certificates.entries import write_certificate
+from exactfold.errors import FoldError, NotApplicableError, NotFoldError, PatternError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import PanelsDocument, PatternDocument, described, described_panels
 from exactfold.pattern.fold_writing import document_text, write_text
+from exactfold.pattern.meant import MeantDocument
 from exactfold.pattern.opening import Opened, ReadDocument, open_pattern
 from exactfold.pattern.panel_writing import Converted, converted
 from exactfold.pattern.reading import Steps
@@ -32,13 +34,15 @@ class Conversion(ConvertOptions):
         to_stdout = str(self.output) == "-"
         if to_stdout and self.as_json:
             raise UsageError("--json describes the file that is written: give it a name")
-        apart(None if to_stdout else self.output, self.file)
+        apart(None if to_stdout else self.output, self.file, self.certificate)
+        apart(self.certificate, self.file)
         with Bar("reading"):
             opened = self._opened()
             made = converted(opened, triangulate=self.triangulate)
             text = document_text(made.document())
             if not to_stdout:
                 write_text(self.output, text)
+            self._certify(opened)
         lines = [*_lines(opened, said(self.file)), _written(made, name_of(self.output))]
         if to_stdout:
             for line in lines[:-1]:
@@ -48,6 +52,17 @@ class Conversion(ConvertOptions):
             print(json.dumps(_summary(opened, made, name_of(self.file), name_of(self.output))))
         else:
             tell("\n".join(lines))
+
+    def _certify(self, opened: Opened) -> None:
+        if self.certificate is None:
+            return
+        if opened.meant is None:
+            say("no certificate was written: no relation holds nearly, so nothing was inferred")
+            return
+        try:
+            write_certificate(opened.meant.certificate(), self.certificate)
+        except NotApplicableError as error:
+            say(f"no certificate was written: {error}")
 
     def _opened(self) -> Opened:
         try:
@@ -75,7 +90,8 @@ class Conversion(ConvertOptions):
 
 def _lines(opened: Opened, name: str) -> list[str]:
     if opened.lines:
-        return list(opened.lines)
+        doubt = [f"warning: {opened.doubt}"] if opened.doubt else []
+        return [*opened.lines, *doubt]
     moved = f"; largest move {float(opened.snapped):.1g}" if opened.snapped else ""
     return [f"read {name}: FOLD, triangulated, as it stands{moved}"]
 
@@ -104,6 +120,8 @@ class ConvertDocument(TypedDict):
     joins: list[FoldText]
     """Edges that --triangulate added."""
     read: ReadDocument | None
+    meant: MeantDocument | None
+    """The sheet that an inexact drawing means; null if no relation nearly holds."""
 
 
 def _summary(opened: Opened, made: Converted, name: str, output: str) -> ConvertDocument:
@@ -119,4 +137,5 @@ def _summary(opened: Opened, made: Converted, name: str, output: str) -> Convert
         "field": made.pattern.field_name,
         "joins": [f"{i}-{j}" for i, j in made.joins],
         "read": opened.read,
+        "meant": None if opened.meant is None else opened.meant.to_dict(),
     }

@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from exactfold._support.clock import Clock
 from exactfold._support.verdict import PROVED
 from exactfold.app import report
 from exactfold.app.commands.stream import Streaming, advice
@@ -13,9 +14,9 @@ from exactfold.app.options.patterns import CountOptions
 from exactfold.app.shell.given import Given
 from exactfold.app.shell.patterns import read, read_any
 from exactfold.app.shell.shell import EXIT, Bar, apart, name_of, say
+from exactfold.app.verbs.counting import counted_with_letters
 from exactfold.branches.certificates.listing import certificate as certificate_of
 from exactfold.branches.counting.stream import StreamedCount
-from exactfold.branches.counting.ways import count_opened
 from exactfold.branches.values.result import BranchCount
 from exactfold.certificates.entries import write_certificate
 from exactfold.errors import NotApplicableError, UsageError
@@ -115,13 +116,14 @@ class Asked(CountOptions):
     def _counted(self) -> BranchCount | Decomposition:
         if self.resume or self.workers is not None or self.dask is not None:
             raise UsageError("--resume, --workers and --dask go with --stream")
+        clock = Clock(self.limit)
         with Bar("reading") as bar:
             opened = read_any(self.pattern, self.reading)
             sheet = opened.sheet
             if isinstance(sheet, CreasePattern) and (better := advice(sheet)) is not None:
                 say(better)
             bar("solving")
-            return count_opened(opened, method=self.method, seed=self.seed, progress=bar)
+            return counted_with_letters(opened, self.method, self.seed, clock, bar)
 
     def _certified(
         self, result: BranchCount | Decomposition, streamed: StreamedCount | None

@@ -3,26 +3,30 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING
+from typing import TypedDict
 
 from exactfold.app import report
 from exactfold.app.options.patterns import InfoOptions
-from exactfold.app.shell.patterns import read_any, warn
+from exactfold.app.shell.patterns import read_any
 from exactfold.app.shell.shell import Bar, name_of
+from exactfold.branches.counting.motion_facts import (
+    DecomposedFactsDocument,
+    PanelFactsDocument,
+    panel_facts,
+)
+from exactfold.design.panels.vertices import VerticesSummary, vertices
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.opening import has_branches, panels
 from exactfold.rigidity.facts import PatternFacts, PatternFactsDocument, pattern_facts
 
-if TYPE_CHECKING:
-    from exactfold.branches.counting.motion_facts import (
-        DecomposedFactsDocument,
-        PanelFacts,
-        PanelFactsDocument,
-    )
-    from exactfold.pattern.panel_pattern import PanelPattern
+
+class VertexKeys(TypedDict):
+    """What is known of the vertices, each by itself."""
+
+    vertices: VerticesSummary
 
 
-class BranchesFactsDocument(PatternFactsDocument):
+class BranchesFactsDocument(PatternFactsDocument, VertexKeys):
     """The facts of a sheet that has branches; keys for sheets of panels are null."""
 
     panels: None
@@ -33,6 +37,14 @@ class BranchesFactsDocument(PatternFactsDocument):
     expected: str
 
 
+class DecomposedInfoDocument(DecomposedFactsDocument, VertexKeys):
+    """The facts of a triangulated sheet whose motions are decomposed."""
+
+
+class PanelInfoDocument(PanelFactsDocument, VertexKeys):
+    """The facts of a sheet of rigid panels; keys for triangulated sheets are null."""
+
+
 def show_info(asked: InfoOptions) -> None:
     """Print the facts of a sheet. Raises the errors of `read_any`.
 
@@ -41,40 +53,34 @@ def show_info(asked: InfoOptions) -> None:
     """
     name, exact = name_of(asked.file), asked.exact
     with Bar("reading") as bar:
-        sheet = read_any(asked.file, asked.reading).sheet
-        data: BranchesFactsDocument | DecomposedFactsDocument | PanelFactsDocument
+        opened = read_any(asked.file, asked.reading)
+        sheet, found = opened.sheet, vertices(opened)
+        data: BranchesFactsDocument | DecomposedInfoDocument | PanelInfoDocument
+        alone: VertexKeys = {"vertices": found.summary}
         if not isinstance(sheet, CreasePattern):
-            motions = _motions(sheet)
-            data = motions.to_dict(name)
-            table = report.panels_info(motions, exact=exact)
+            motions = panel_facts(sheet)
+            data = {**motions.to_dict(name), **alone}
+            table = report.panels_info(motions, found, exact=exact)
         else:
             facts = pattern_facts(sheet, bar)
             both = None
             if has_branches(sheet):
-                data = _of_branches(facts, name)
+                data = _of_branches(facts, alone, name)
             else:
-                warn(sheet)
-                both = _motions(panels(sheet))
+                both = panel_facts(panels(sheet))
                 expected = report.expectation(facts, both)
-                data = {**facts.to_dict(name), **both.keys(), "expected": expected}
-            table = report.info_report(facts, both, exact=exact)
+                data = {**facts.to_dict(name), **both.keys(), "expected": expected, **alone}
+            table = report.info_report(facts, found, both, exact=exact)
     if asked.as_json:
         print(json.dumps(data))
     else:
         report.show(table)
 
 
-def _motions(pattern: PanelPattern) -> PanelFacts:
-    from exactfold.branches.counting.motion_facts import (
-        panel_facts,  # imported here: sheets with branches do not need it
-    )
-
-    return panel_facts(pattern)
-
-
-def _of_branches(facts: PatternFacts, name: str) -> BranchesFactsDocument:
+def _of_branches(facts: PatternFacts, alone: VertexKeys, name: str) -> BranchesFactsDocument:
     return {
         **facts.to_dict(name),
+        **alone,
         "panels": None,
         "field": None,
         "flat_folds": None,

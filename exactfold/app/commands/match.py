@@ -7,10 +7,11 @@ import time
 from collections.abc import Mapping
 from dataclasses import replace
 
+from exactfold._support.clock import Clock
 from exactfold._support.plurals import counted
 from exactfold._support.verdict import PROVED, REFUTED
 from exactfold.app.options.branches import MatchOptions
-from exactfold.app.shell.patterns import read_any, warn
+from exactfold.app.shell.patterns import read_any
 from exactfold.app.shell.shell import EXIT, Bar, name_of, say
 from exactfold.certificates.entries import write_certificate
 from exactfold.design.assignments.boundary_match import can_pop, match_boundary
@@ -27,7 +28,7 @@ from exactfold.errors import (
 )
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.drawing.bounds import read_text
-from exactfold.pattern.opening import Opened, has_branches, triangles
+from exactfold.pattern.opening import Opened, triangles
 from exactfold.pattern.panel_pattern import PanelPattern
 
 _HALVES = 256
@@ -49,6 +50,7 @@ class Asked(MatchOptions):
         `match`, and `UsageError` if the letters do not fit the folds or the file has none.
         """
         begin = time.perf_counter()
+        clock = Clock(self.limit)
         nearest = None
         with Bar("reading") as bar:
             opened = read_any(self.file, self.reading)
@@ -64,14 +66,12 @@ class Asked(MatchOptions):
                         self._write(over, bar)
                         bar.close()
                         return self._over_a_boundary(over)
-                started = match_panels(opened, letters, progress=bar)
+                started = match_panels(opened, letters, progress=bar, clock=clock)
                 self._write(started, bar)
                 bar.close()
                 return self._started(started)
             pattern = triangles(opened, "match")
             _in_reach(pattern)
-            if not has_branches(pattern) and opened.meant is None:
-                warn(pattern)
             bar("signs")
             matched = match(pattern, letters, most=self.most or _HALVES, progress=bar)
             matched = matched.about(opened.meant)

@@ -2,15 +2,17 @@
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, TypeAlias
 
 import typer
 
+from exactfold._support.clock import LIMIT
 from exactfold.app.options.reading import ReadingOptions
 from exactfold.app.shell.parameters import (
     BoundaryHeights,
     Curvature,
     Json,
+    Limit,
     Pattern,
     Place,
     PrescribedAngles,
@@ -65,20 +67,23 @@ class BranchOptions(ReadingOptions):
         apart(self.certificate, self.pattern, self.boundary_heights, self.curvature)
 
 
+Letters: TypeAlias = Annotated[
+    str | None,
+    typer.Option(
+        metavar="MVU...|0-4=M,...",
+        help="Use these letters instead of those in the file: M, V, F (flat) or U (free) for "
+        "each fold in the order of `count`; or letters by fold, the others are free. @FILE "
+        "reads them from a file.",
+    ),
+]
+
+
 @dataclass(frozen=True, eq=False, repr=False, match_args=False)
 class MatchOptions(ReadingOptions):
     """The options of `exactfold match`; `UsageError` if the output is the pattern."""
 
     file: Pattern
-    letters: Annotated[
-        str | None,
-        typer.Option(
-            metavar="MVU...|0-4=M,...",
-            help="Use these letters instead of those in the file: M, V, F (flat) or U (free) for "
-            "each fold in the order of `count`; or letters by fold, the others are free. @FILE "
-            "reads them from a file.",
-        ),
-    ] = None
+    letters: Letters = None
     most: Annotated[
         int | None,
         number(
@@ -99,11 +104,22 @@ class MatchOptions(ReadingOptions):
         Path | None,
         written("Write a certificate, if the answer is proved.", "OUT.json"),
     ] = None
+    limit: Limit = LIMIT
     as_json: Json = False
     everything: Annotated[bool, flag("--all", text="List every branch and reason.")] = False
 
     def __post_init__(self) -> None:
         apart(self.certificate, self.file)
+
+
+@dataclass(frozen=True, eq=False, repr=False, match_args=False)
+class VerticesOptions(ReadingOptions):
+    """The options of `exactfold vertices`."""
+
+    file: Pattern
+    letters: Letters = None
+    as_json: Json = False
+    everything: Annotated[bool, flag("--all", text="List every vertex.")] = False
 
 
 @dataclass(frozen=True, eq=False, repr=False, match_args=False)

@@ -7,11 +7,13 @@ from typing import Annotated
 
 import typer
 
+from exactfold._support.clock import LIMIT
 from exactfold.app.options.reading import ReadingOptions
 from exactfold.app.shell.parameters import (
     BoundaryHeights,
     Curvature,
     Json,
+    Limit,
     Pattern,
     Patterns,
     Resume,
@@ -88,6 +90,7 @@ class CountOptions(ReadingOptions):
     boundary_heights: BoundaryHeights = None
     as_json: Json = False
     seed: Annotated[int, number("Seed of the complex homotopy.", "S", least=0)] = 0
+    limit: Limit = LIMIT
     everything: Annotated[bool, flag("--all", text="List every way.")] = False
     verbose: Annotated[
         bool, flag("--verbose", text="Also say how the ways were found and proved.")
@@ -161,4 +164,11 @@ class ConvertOptions(ReadingOptions):
     triangulate: Annotated[
         bool, flag("--triangulate", text="Cut panels into triangles by edges with the letter J.")
     ] = False
+    certificate: Annotated[
+        Path | None,
+        written(
+            "Prove that the sheet that was meant lies near the drawing and has its relations, for "
+            "`exactfold check`."
+        ),
+    ] = None
     as_json: Json = False

@@ -139,7 +139,7 @@ def _motion(result: BranchCount) -> str:
 
 
 def _undecided(result: BranchCount, took: str) -> Text:
-    if result.by == "theorem":
+    if result.by == "theorem" and not result.doubt:
         return Text.assemble(
             f"2^{result.pattern.Vi} ways to start folding with multiplicity, all real, by Theorem "
             "2; how many of them are different is ",

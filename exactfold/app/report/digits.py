@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from rich.text import Text
 
 from exactfold.branches.values.result import BranchCount
 
 if TYPE_CHECKING:
-    from exactfold.panels.result import Decomposition
+    from exactfold.panels.result import Decomposition, OfDigits
 
 _SHEETS = {
     "as written": "the digits as written: ",
@@ -19,17 +19,16 @@ _SHEETS = {
 }
 
 
-def digits_line(result: BranchCount | Decomposition) -> Text:
+def digits_line(result: OfDigits) -> Text:
     """The answer for the digits of a drawing, in one sentence."""
     which = result.of_digits()["sheet"]
-    plain = replace(result, meant=None)
-    if isinstance(plain, BranchCount):
+    if isinstance(result, BranchCount):
         from exactfold.app.report.count import answer
 
-        said = answer(plain)
+        said = answer(replace(result, meant=None))
     else:
         from exactfold.app.report.panels import panels_answer
 
-        said = panels_answer(plain)
+        said = panels_answer(replace(cast("Decomposition", result), meant=None))
     end = " (--snap exact)" if which == "as written" else ""
     return Text.assemble(_SHEETS[which], said, end)

@@ -16,6 +16,7 @@ from exactfold.exact.numbers import decimal_near, format_rational, parse_rationa
 
 if TYPE_CHECKING:
     from exactfold.branches.counting.motion_facts import PanelFacts
+    from exactfold.design.panels.vertices import Vertices
     from exactfold.rigidity.facts import PatternFacts
 
 DIGITS = 6
@@ -26,7 +27,11 @@ LISTED = 8
 
 
 def info_report(
-    facts: PatternFacts, motions: PanelFacts | None = None, *, exact: bool = False
+    facts: PatternFacts,
+    found: Vertices,
+    motions: PanelFacts | None = None,
+    *,
+    exact: bool = False,
 ) -> Table:
     """The table; with `exact` also ranks, stresses, forms, the digest and the exact area.
 
@@ -58,6 +63,7 @@ def info_report(
         ("folds that split the sheet", _listed([f"{i}-{j}" for i, j in pattern.chords], ", ")),
     ]
     rows += [] if motions is None else _motion_rows(motions)
+    rows += _vertex_rows(found)
     rows += [("expected", expectation(facts, motions))]
     if exact:
         rank = f"{facts.rigidity_rank}, by {facts.rank_by}"
@@ -73,7 +79,7 @@ def info_report(
     return facts_table(list(rows))
 
 
-def panels_info(facts: PanelFacts, *, exact: bool = False) -> Table:
+def panels_info(facts: PanelFacts, found: Vertices, *, exact: bool = False) -> Table:
     """The table of a sheet of rigid panels; with `exact` also the digest."""
     pattern = facts.pattern
     degrees = ", ".join(f"{n} of degree {d}" for d, n in facts.degree_counts.items())
@@ -87,6 +93,7 @@ def panels_info(facts: PanelFacts, *, exact: bool = False) -> Table:
         ("coordinates", f"in {pattern.field_name}"),
         ("interior degrees", degrees or "none"),
         *_motion_rows(facts),
+        *_vertex_rows(found),
         ("expected", facts.expected),
     ]
     return facts_table([*rows, ("sha256", pattern.sha256)] if exact else list(rows))
@@ -99,6 +106,14 @@ def _motion_rows(facts: PanelFacts) -> list[tuple[str, str]]:
         ("folds from boundary to boundary", _listed([f"{i}-{j}" for i, j in facts.free], ", ")),
         ("parts that move independently", _listed(parts)),
     ]
+
+
+def _vertex_rows(found: Vertices) -> list[tuple[str, str]]:
+    """What is known of the vertices, each by itself; `exactfold vertices` says more."""
+    if not found.facts:
+        return []
+    answer = f"{found.headline} - {str(found.starts).upper()}"
+    return [("each vertex by itself", answer), ("folding flat", found.flat_line)]
 
 
 def _number(value: Fraction, exact: bool) -> str:

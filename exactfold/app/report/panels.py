@@ -10,12 +10,13 @@ from rich.table import Table
 from rich.text import Text
 
 from exactfold._support.plurals import agreeing, counted
-from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED
 from exactfold.app.report.terminal import SHOWN, letters_text, more_text, status_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from exactfold.panels.partial import Drawn
     from exactfold.panels.result import Decomposition
     from exactfold.pattern.panel_pattern import Edge
 
@@ -28,7 +29,7 @@ def panels_report(
 ) -> Group:
     """The answer, the modes, what stays flat, and what is undecided."""
     parts: list[Any] = [panels_answer(result)]
-    notes = _notes(result, everything)
+    notes = [*_known(result), *_notes(result, everything)]
     if notes:
         parts += ["", *(Text(note) for note in notes)]
     if certificate is not None:
@@ -110,6 +111,36 @@ def _each(result: Decomposition) -> str:
     return "; the dimension is the number of folds that can be folded independently"
 
 
+def _known(result: Decomposition) -> list[str]:
+    """What is proved where not all motions are known: degrees of freedom, and the drawn letters."""
+    from exactfold.panels.result import product
+
+    lines = []
+    if result.true is None and (freedom := result.freedom) is not None:
+        first = freedom.first_order
+        more = "" if first is None else f"; the first-order motions have dimension {first}"
+        lines.append(f"{freedom.text} - PROVED{more}")
+    if result.drawn is not None:
+        lines.append(_drawn(result.drawn))
+    solved = [part for part in result.parts if part.true is not None]
+    known = product((part.true for part in solved), 0)
+    if solved and known is not None and result.true is None:
+        lines.append(
+            f"of {counted(len(result.parts), 'part')} that fold independently, {len(solved)} "
+            f"{agreeing(len(solved), 'is')} known completely: {_ways(known)}"
+        )
+    return lines
+
+
+def _drawn(drawn: Drawn) -> str:
+    reasons = "; ".join(drawn.reasons)
+    if drawn.starts is PROVED:
+        return f"it starts to fold with the drawn mountains and valleys - PROVED; {reasons}"
+    if drawn.starts is REFUTED:
+        return f"it does not start to fold with the drawn mountains and valleys - PROVED: {reasons}"
+    return f"whether it starts to fold with the drawn mountains and valleys is UNDECIDED: {reasons}"
+
+
 def _notes(result: Decomposition, everything: bool) -> list[str]:
     notes = []
     if result.true is not None and result.second_order != result.true:
@@ -133,7 +164,8 @@ def _notes(result: Decomposition, everything: bool) -> list[str]:
         notes.append(f"{counted(len(result.free), 'fold')} from boundary to boundary, each free")
     if result.second_order is None and result.modes:
         notes.append("each mode listed below truly folds, and there may be others")
-    if result.second_order is None and result.rigid is not PROVED and not result.as_written:
+    asked = result.drawn or result.as_written
+    if result.second_order is None and result.rigid is not PROVED and not asked:
         notes.append(
             "even so, it is often known whether the sheet starts to fold with given mountains and "
             "valleys: see `exactfold match`"

@@ -99,6 +99,17 @@ def degrees(text: object) -> float:
         raise typer.BadParameter(f"{str(text)!r} is not a number") from None
 
 
+def duration(text: object) -> float:
+    """A positive number of seconds; "inf" is no limit."""
+    try:
+        seconds = float(str(text))
+    except ValueError:
+        raise typer.BadParameter(f"{str(text)!r} is not a number of seconds") from None
+    if not seconds > 0:
+        raise typer.BadParameter(f"{text} seconds are not positive")
+    return seconds
+
+
 def one_side(text: object) -> int:
     """The side that a text names: 1 for "+", -1 for "-"."""
     if text not in ("+", "-", "+1", "-1", "1"):
@@ -249,6 +260,14 @@ Force = Annotated[
     ),
 ]
 Json = Annotated[bool, flag("--json", text="Print one JSON object.")]
+Limit = Annotated[
+    float,
+    typer.Option(
+        parser=duration,
+        metavar="SECONDS",
+        help="When the search for motions of panels stops, to print what is proved so far.",
+    ),
+]
 Signs = Annotated[
     str | None,
     typer.Option(

@@ -11,7 +11,7 @@ from exactfold.errors import UnreadableFileError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.data import EXAMPLES, example_path
 from exactfold.pattern.near_degeneracy import near_degenerate
-from exactfold.pattern.opening import Opened, has_branches, open_pattern, triangles
+from exactfold.pattern.opening import Opened, open_pattern, triangles
 from exactfold.pattern.reading import PLAIN, Reading
 
 
@@ -45,10 +45,7 @@ def read(path: Path, reading: Reading, needs: str) -> Triangulated:
     Raises the errors of `located`, `open_pattern` and `triangles`.
     """
     opened = read_any(path, reading)
-    pattern = triangles(opened, needs)
-    if not has_branches(pattern) and opened.meant is None:
-        warn(pattern)
-    return Triangulated(pattern, opened)
+    return Triangulated(triangles(opened, needs), opened)
 
 
 def read_any(path: Path, reading: Reading = PLAIN) -> Opened:
@@ -61,17 +58,11 @@ def read_any(path: Path, reading: Reading = PLAIN) -> Opened:
         say(line)
     if opened.doubt:
         say(f"warning: {opened.doubt}; --snap exact takes the digits as written")
-    elif isinstance(opened.sheet, CreasePattern) and has_branches(opened.sheet):
-        warn(opened.sheet)
+    elif isinstance(opened.sheet, CreasePattern) and (near := near_degenerate(opened.sheet)):
+        say(f"warning: {near.text}")
     return opened
 
 
 def verdict(opened: Opened, status: Verdict) -> Verdict:
     """The verdict of an answer about the sheet: UNDECIDED if it holds for its digits only."""
     return UNDECIDED if opened.doubt else status
-
-
-def warn(pattern: CreasePattern) -> None:
-    """Print a warning to stderr if the sheet is nearly degenerate."""
-    if (near_degeneracy := near_degenerate(pattern)) is not None:
-        say(f"warning: {near_degeneracy.text}")

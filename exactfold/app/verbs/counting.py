@@ -7,11 +7,13 @@ from fractions import Fraction
 from os import PathLike
 from typing import TYPE_CHECKING, TypeGuard, cast, overload
 
+from exactfold._support.clock import LIMIT, Clock
 from exactfold._support.progress import Progress
 from exactfold.app.verbs.choosing import the_branch
 from exactfold.branches.counting.batch import count_many
 from exactfold.branches.counting.find import BoundaryHeights, Deficits, Signs
-from exactfold.branches.counting.ways import count_ways, decompose_opened
+from exactfold.branches.counting.registry import choose
+from exactfold.branches.counting.ways import count_opened, decompose_opened
 from exactfold.branches.values.branch import Branch
 from exactfold.errors import UsageError
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
@@ -100,6 +102,7 @@ def count(  # type: ignore[overload-overlap]  # text is one sheet, not a list of
     snap: Snap | None = ...,
     number: int | None = ...,
     workers: int = ...,
+    limit: float | None = ...,
     progress: Progress | None = ...,
 ) -> BranchCount | Decomposition: ...
 @overload
@@ -111,6 +114,7 @@ def count(
     snap: Snap | None = ...,
     number: int | None = ...,
     workers: int = ...,
+    limit: float | None = ...,
     progress: Progress | None = ...,
 ) -> Many: ...
 def count(
@@ -121,6 +125,7 @@ def count(
     snap: Snap | None = None,
     number: int | None = None,
     workers: int = 1,
+    limit: float | None = LIMIT,
     progress: Progress | None = None,
 ) -> BranchCount | Decomposition | Many:
     """Count the ways in which a sheet, or each of many sheets, starts to fold, with proof.
@@ -129,6 +134,10 @@ def count(
     sheet in order. A `Decomposition` has the modes and families of rigid panels. `sheet` is
     anything that `read` takes. `method` and `seed` choose how candidates are found; every count is
     proved in the same way.
+
+    After `limit` seconds the search for motions of panels ends, and what is proved until then is
+    the result. If not all motions are known, `drawn` of the result says whether the sheet starts to
+    fold with the letters of the drawing.
 
     For a list, or any other iterable, of sheets the result is an iterator of pairs (name, result),
     in the order in which the counts are ready. `workers` processes share these sheets. If one sheet
@@ -152,7 +161,8 @@ def count(
             raise UsageError(
                 f"{workers} workers share a list of sheets; a single sheet takes one worker"
             )
-        return count_ways(sheet, Reading(snap, number), method=method, seed=seed, progress=progress)
+        choose(method)
+        return _counted(sheet, Reading(snap, number), method, seed, Clock(limit), progress)
     return count_many(
         cast("Iterable[PatternLike]", sheet),
         jobs=workers,
@@ -160,7 +170,39 @@ def count(
         seed=seed,
         reading=Reading(snap, number),
         progress=progress,
+        limit=limit,
     )
+
+
+def _counted(
+    sheet: PatternLike,
+    reading: Reading,
+    method: str,
+    seed: int,
+    clock: Clock,
+    progress: Progress | None,
+) -> BranchCount | Decomposition:
+    opened = open_sheet(sheet, reading)
+    return counted_with_letters(opened, method, seed, clock, progress)
+
+
+def counted_with_letters(
+    opened: Opened, method: str, seed: int, clock: Clock, progress: Progress | None
+) -> BranchCount | Decomposition:
+    """The count, with the answer for the drawn letters where not all motions are known.
+
+    A quarter of the time is left for the letters.
+    """
+    from exactfold.branches.values.result import BranchCount
+
+    result = count_opened(
+        opened, method=method, seed=seed, progress=progress, clock=clock.share(3 / 4)
+    )
+    if isinstance(result, BranchCount) or result.second_order is not None:
+        return result
+    from exactfold.design.panels.drawn import with_drawn
+
+    return with_drawn(result, opened, progress=progress, clock=clock)
 
 
 def decompose(

@@ -1,4 +1,4 @@
-"""`match` and `actuate`: find ways with given letters, and torques for one branch."""
+"""`match`, `vertices` and `actuate`: ways with given letters, each vertex, and torques."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from exactfold._support.clock import LIMIT, Clock
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED
 from exactfold.app.verbs.choosing import Letters, asked_letters, the_branch
@@ -14,6 +15,7 @@ from exactfold.design.actuation.actuate import actuate as actuate_branch
 from exactfold.design.assignments.boundary_match import can_pop, match_boundary
 from exactfold.design.assignments.search import match as match_branches
 from exactfold.design.panels.match import match_panels
+from exactfold.design.panels.vertices import vertices as vertices_of
 from exactfold.design.refutations.asked import by_fold
 from exactfold.errors import NotCountedError
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
@@ -25,6 +27,7 @@ if TYPE_CHECKING:
     from exactfold.design.assignments.boundary_result import BoundaryMatch
     from exactfold.design.assignments.result import Match
     from exactfold.design.panels.match import PanelMatch
+    from exactfold.design.panels.vertices import Vertices
     from exactfold.exact.numbers import RationalLike
 
 
@@ -33,6 +36,7 @@ def match(
     letters: Letters | None = None,
     *,
     most: int | None = None,
+    limit: float | None = LIMIT,
     progress: Progress | None = None,
 ) -> Match | BoundaryMatch | PanelMatch:
     """Find the ways that have given mountains and valleys, or prove that there are none.
@@ -43,8 +47,8 @@ def match(
     corners, a `Match` has all branches with the letters. For one with more corners, a
     `BoundaryMatch` says whether the sheet starts to fold with the letters, and has boundary heights
     with which it does. For rigid panels, a `PanelMatch` says whether they start to fold with the
-    letters. After `most` sign vectors of a triangulated sheet have been tried, the answer is
-    UNDECIDED.
+    letters. After `most` sign vectors of a triangulated sheet have been tried, or after `limit`
+    seconds for rigid panels, the answer is UNDECIDED.
 
     Raises `UsageError` for a file without mountains and valleys and for letters that do not fit,
     `NotCountedError` for a triangle, which is rigid.
@@ -64,11 +68,30 @@ def match(
         if over.status is PROVED:
             return replace(over, meant=opened.meant)
     if not isinstance(pattern, CreasePattern) or pattern.Ve > 4:
-        return match_panels(opened, wanted, progress=progress)
+        return match_panels(opened, wanted, progress=progress, clock=Clock(limit))
     if pattern.interior and pattern.Ve == 3:
         raise NotCountedError("this sheet is rigid: it has three vertices on its boundary")
     found = match_branches(pattern, wanted, progress=progress, **_at_most(most))
     return found.about(opened.meant)
+
+
+def vertices(sheet: PatternLike, letters: Letters | None = None) -> Vertices:
+    """Decide for each vertex by itself whether it starts to fold with its letters.
+
+    `sheet` is anything that `read` takes. `letters` is as in `match`; without letters, the answer
+    is whether each vertex folds with some letters. If a vertex is refuted, no folding of the sheet
+    that starts flat has the letters (docs/vertices.md, Theorem 1). The result also has Kawasaki's
+    and Maekawa's conditions, and the smallest changes of letters that help.
+
+    Raises `UsageError` for letters that do not fit, and the errors of `read`.
+
+    >>> import exactfold
+    >>> found = exactfold.vertices("zigzags")
+    >>> found.starts, found.facts[0].vertex, found.facts[0].flips
+    (<Verdict.REFUTED: 'refuted'>, 9, (((9, 13),),))
+    """
+    opened = open_sheet(sheet)
+    return vertices_of(opened, None if letters is None else asked_letters(opened, letters))
 
 
 def actuate(

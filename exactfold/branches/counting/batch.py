@@ -8,6 +8,7 @@ from contextlib import closing
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
+from exactfold._support.clock import Clock
 from exactfold._support.memory import is_shortage, shortage
 from exactfold._support.progress import Progress
 from exactfold.branches.counting.pools import Pool, process_pool
@@ -37,6 +38,7 @@ class Job:
     method: str = "auto"
     seed: int = 0
     reading: Reading = PLAIN
+    limit: float | None = None
 
     @property
     def opened(self) -> Opened:
@@ -59,7 +61,7 @@ def read_source(path: str | os.PathLike[str]) -> bytes | UnreadableFileError:
 def count_job(job: Job) -> BranchCount | Decomposition | Exception:
     """The count of one pattern, or the error that ended it, so that the other patterns go on."""
     try:
-        return count_opened(job.opened, method=job.method, seed=job.seed)
+        return count_opened(job.opened, method=job.method, seed=job.seed, clock=Clock(job.limit))
     except Exception as error:  # even a bug must not stop the other patterns
         return NotEnoughMemoryError(shortage(error)) if is_shortage(error) else error
 
@@ -73,6 +75,7 @@ def count_many(
     seed: int = 0,
     reading: Reading = PLAIN,
     progress: Progress | None = None,
+    limit: float | None = None,
 ) -> Generator[tuple[str, BranchCount | Decomposition | Exception], None, None]:
     """Count many sheets and yield each name with its count, as soon as the count is ready.
 
@@ -84,6 +87,7 @@ def count_many(
     and a script needs the usual `if __name__ == "__main__"`. An `engine`, such as `dask_pool`,
     replaces these processes. This process reads the files, a few at a time, and sends them to the
     workers. The `warning` of a count says what one must know before relying on it.
+    `limit` is a number of seconds for the motions of each sheet of panels.
     `progress("counting", done, total)` reports a total of 0 if `patterns` has no length.
 
     Raises `UsageError` for an unknown method, a negative seed or fewer jobs than 1, before
@@ -106,9 +110,9 @@ def count_many(
 
     def job(place: int, given: PatternLike) -> Job:
         if not isinstance(given, str | os.PathLike):
-            return Job(str(place), given, method, seed, reading)
+            return Job(str(place), given, method, seed, reading, limit)
         path = example_path(given) if isinstance(given, str) and given in EXAMPLES else given
-        return Job(os.fspath(given), read_source(path), method, seed, reading)
+        return Job(os.fspath(given), read_source(path), method, seed, reading, limit)
 
     total = len(patterns) if isinstance(patterns, Sized) else 0
     given = (job(place, pattern) for place, pattern in enumerate(patterns))

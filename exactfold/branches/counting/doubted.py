@@ -27,7 +27,11 @@ def doubted(result: BranchCount | Decomposition, opened: Opened) -> BranchCount 
     """
     result = replace(result, meant=opened.meant)
     doubt = opened.doubt
-    families = result.families if isinstance(result, BranchCount) else result
+    families: Decomposition | None
+    if isinstance(result, BranchCount):
+        families = result.families and replace(result.families, meant=opened.meant)
+    else:
+        families = result
     if not doubt and opened.reading.snap != "exact" and families is not None:
         doubt = families.warning or ""
     if not doubt:

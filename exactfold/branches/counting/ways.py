@@ -6,6 +6,7 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
+from exactfold._support.clock import UNLIMITED, Clock
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED
 from exactfold.branches.counting.collect import count_branches, not_convex
@@ -13,7 +14,7 @@ from exactfold.branches.counting.doubted import doubted
 from exactfold.branches.counting.registry import METHODS, choose
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.loading import PatternLike, open_sheet
-from exactfold.pattern.opening import Opened, has_branches, panels
+from exactfold.pattern.opening import Opened, has_branches, panels, triangulated
 from exactfold.pattern.reading import PLAIN, Reading
 
 if TYPE_CHECKING:
@@ -23,6 +24,10 @@ if TYPE_CHECKING:
     from exactfold.panels.result import Decomposition
     from exactfold.pattern.drawing.drawing import Snap
     from exactfold.pattern.panel_pattern import PanelPattern
+
+_MOST_MODES = 100
+_MOST_SPACES = 30
+"""The digits as written are counted beside the sheet that was meant up to so many vertices."""
 
 __all__ = ["METHODS", "count_opened", "count_ways", "decompose_opened"]
 
@@ -34,6 +39,7 @@ def count_ways(
     method: str = "auto",
     seed: int = 0,
     progress: Progress | None = None,
+    clock: Clock = UNLIMITED,
 ) -> BranchCount | Decomposition:
     """Count the ways in which a sheet folds, whatever its faces are.
 
@@ -46,7 +52,8 @@ def count_ways(
     close, the file is read again with other values of `snap`, and for each loop the result names
     the first value with which it closes.
 
-    Raises the errors of `open_pattern` and `count_branches`.
+    The clock ends the search for motions of panels, and nothing else. Raises the errors of
+    `open_pattern` and `count_branches`.
 
     >>> count_ways("two-vertex")
     <BranchCount: proved, 4 branches, <CreasePattern: 2 interior and 4 boundary vertices>>
@@ -57,50 +64,77 @@ def count_ways(
     """
     choose(method)
     opened = open_sheet(sheet, reading)
-    return count_opened(opened, method=method, seed=seed, progress=progress)
+    return count_opened(opened, method=method, seed=seed, progress=progress, clock=clock)
 
 
 def count_opened(
-    opened: Opened, *, method: str = "auto", seed: int = 0, progress: Progress | None = None
+    opened: Opened,
+    *,
+    method: str = "auto",
+    seed: int = 0,
+    progress: Progress | None = None,
+    clock: Clock = UNLIMITED,
 ) -> BranchCount | Decomposition:
     """`count_ways` for a sheet that is already open.
 
     If relations between creases hold nearly but not exactly, and no sheet was inferred that has
     them, the answer is UNDECIDED, and its `as_written` says what is known for the digits.
     """
-    return doubted(_counted(opened, method, seed, progress), opened)
+    result = doubted(_counted(opened, method, seed, progress, clock), opened)
+    written = _written(opened)
+    if written is None or result.doubt:
+        return result
+    return replace(result, as_written=_counted(written, method, seed, progress, clock))
+
+
+def _written(opened: Opened) -> Opened | None:
+    """The sheet with the digits as written, if another one was inferred and it is counted fast.
+
+    It is counted if at most 100 vertices may fold, each with at most four folds, or at most 30
+    vertices with any number of folds.
+    """
+    if opened.meant is None or opened.meant.realized is None or not opened.meant.inferred:
+        return None
+    from exactfold.panels.stars import stars
+
+    drawn = opened.meant.realized.drawn
+    moving = stars(drawn)
+    few = _MOST_MODES if all(len(star.folds) <= 4 for star in moving.values()) else _MOST_SPACES
+    return Opened(triangulated(drawn) or drawn) if len(moving) <= few else None
 
 
 def _counted(
-    opened: Opened, method: str, seed: int, progress: Progress | None
+    opened: Opened, method: str, seed: int, progress: Progress | None, clock: Clock
 ) -> BranchCount | Decomposition:
     sheet = opened.sheet
     if isinstance(sheet, CreasePattern) and sheet.interior:
         known = has_branches(sheet)
         if known or sheet.is_convex:
             result = count_branches(sheet, method=method, seed=seed, progress=progress)
-            families = None if known else _decomposed(opened, progress)
+            families = None if known else _decomposed(opened, progress, clock)
             result = replace(result, snapped=opened.snapped, read=opened.read)
             return replace(result, letters=opened.letters, families=families)
-        ways = _decomposed(opened, progress)
+        ways = _decomposed(opened, progress, clock)
         if ways.status is PROVED:
             return ways
         return replace(ways, reason=f"{ways.reason}; {not_convex(sheet)}")
-    return _decomposed(opened, progress)
+    return _decomposed(opened, progress, clock)
 
 
-def decompose_opened(opened: Opened, *, progress: Progress | None = None) -> Decomposition:
+def decompose_opened(
+    opened: Opened, *, progress: Progress | None = None, clock: Clock = UNLIMITED
+) -> Decomposition:
     """The motions of an open sheet whose faces are treated as rigid panels; see `decompose`."""
-    return doubted(_decomposed(opened, progress), opened)
+    return doubted(_decomposed(opened, progress, clock), opened)
 
 
-def _decomposed(opened: Opened, progress: Progress | None) -> Decomposition:
+def _decomposed(opened: Opened, progress: Progress | None, clock: Clock) -> Decomposition:
     from exactfold.panels.decomposition import decompose  # imported here: branches do not need it
 
     sheet = opened.sheet
     pattern = panels(sheet) if isinstance(sheet, CreasePattern) else sheet
-    ways = replace(decompose(pattern, progress=progress), read=opened.read)
-    if not ways.near_misses or opened.again is None:
+    ways = replace(decompose(pattern, progress=progress, clock=clock), read=opened.read)
+    if not ways.nearly_closing or opened.again is None or clock.passed:
         return ways
     from exactfold.panels.near_misses import snapped_misses
 

@@ -32,7 +32,7 @@ if TYPE_CHECKING:  # counting branches does not load what panels need
         LetteredWay,
         Power,
     )
-    from exactfold.panels.result import AsWrittenDocument, Decomposition, MotionKeys
+    from exactfold.panels.result import AsWrittenDocument, Decomposition, MotionKeys, OfDigits
     from exactfold.pattern.meant import Meant
     from exactfold.pattern.opening import ReadDocument
 
@@ -129,7 +129,7 @@ class BranchCount(Page, Ways[Branch], Certified):
     families: Decomposition | None = None
     meant: Meant | None = None
     doubt: str = ""
-    as_written: BranchCount | Decomposition | None = None
+    as_written: OfDigits | None = None
     seconds: float = field(default=0.0, compare=False)
 
     WRITER: ClassVar = "exactfold.branches.certificates.listing:certificate"
@@ -176,7 +176,8 @@ class BranchCount(Page, Ways[Branch], Certified):
     @property
     def known(self) -> BranchCount:
         """This answer, or, if it is doubted, what is known for the digits as they are read."""
-        return self.as_written if isinstance(self.as_written, BranchCount) and self.doubt else self
+        known = self.as_written
+        return known if self.doubt and isinstance(known, BranchCount) else self
 
     @property
     def warning(self) -> str | None:
@@ -307,6 +308,8 @@ class BranchCount(Page, Ways[Branch], Certified):
             return self.families.keys()
         return {
             "components": None,
+            "degrees_of_freedom": None,
+            "drawn": None,
             "modes_count": None,
             "modes": [],
             "flat_folds": [],

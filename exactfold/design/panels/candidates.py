@@ -49,7 +49,7 @@ class MotionSearch:
         radius = 0.5
         value = self._off(w)
         for _ in range(_ROUNDS):
-            if value < _SMALL:
+            if value < _SMALL or self.program.clock.passed:
                 break
             step = self._step(w, radius)
             if step is None:
@@ -116,6 +116,7 @@ class MotionSearch:
             + [(0, None)] * (2 * forms)
             + [(1e-4 if at else 0, 1)],
             method="highs",
+            options=self.program.options,
         )
         if solution.status != 0:
             return None

@@ -17,6 +17,7 @@ from scipy import sparse
 from scipy.optimize import linprog
 
 from exactfold._support.arrays import FloatArray
+from exactfold._support.clock import UNLIMITED, Clock
 from exactfold.design.panels.refutation import PanelRefutation
 from exactfold.design.refutations.refutation import Letters
 from exactfold.exact.surds import Surd
@@ -40,13 +41,20 @@ class FirstOrderProgram:
     closure leaves; all other folds have no condition here. The unit of length is the longest fold.
     """
 
-    def __init__(self, stars: Mapping[int, Star], letters: Letters) -> None:
-        self.stars, self.letters = stars, letters
+    def __init__(
+        self, stars: Mapping[int, Star], letters: Letters, clock: Clock = UNLIMITED
+    ) -> None:
+        self.stars, self.letters, self.clock = stars, letters, clock
         self.vertices = list(stars)
         self.folds = sorted({edge for star in stars.values() for edge in star.folds})
         self.lettered = [edge for edge in self.folds if letters[edge] in SIDES]
         self._place = {edge: k for k, edge in enumerate(self.folds)}
         self._row = {v: k for k, v in enumerate(self.vertices)}
+
+    @property
+    def options(self) -> dict[str, float]:
+        """The options of a linear program: the time that is left."""
+        return {} if self.clock.left is None else {"time_limit": self.clock.left}
 
     @cached_property
     def unit(self) -> float:
@@ -86,6 +94,7 @@ class FirstOrderProgram:
             b_eq=np.zeros(2 * len(self.stars)),
             bounds=[(None, None)] * count + [(0, 1)] * many,
             method="highs",
+            options=self.options,
         )
         if solution.status != 0:
             return dict.fromkeys(self.folds, 0.0), list(self.lettered)
@@ -115,6 +124,7 @@ class FirstOrderProgram:
             b_eq=np.zeros(len(others)) if others else None,
             bounds=[(0, None)] * (2 * size) + [(0, 1)] * many,
             method="highs",
+            options=self.options,
         )
         if solution.status != 0:
             return None
@@ -144,6 +154,7 @@ class FirstOrderProgram:
             b_eq=np.zeros(equal.shape[0]),
             bounds=[(-1, 1)] * count + [(None, 1)],
             method="highs",
+            options=self.options,
         )
         if solution.status != 0 or not solution.x[-1] > _TIGHT:
             return None
@@ -170,6 +181,7 @@ class FirstOrderProgram:
                 b_eq=np.zeros(self.matrix.shape[0]),
                 bounds=bounds,
                 method="highs",
+                options=self.options,
             )
             if solution.status == 0:
                 yield dict(zip(self.folds, map(float, solution.x), strict=True))
@@ -204,6 +216,7 @@ class FirstOrderProgram:
             A_eq=sparse.hstack([both, -both], format="csr"),
             b_eq=np.append(-1.0, np.zeros(len(free))),
             method="highs",
+            options=self.options,
         )
         if solution.status != 0:
             return None

@@ -11,6 +11,7 @@ from flint import fmpq
 from scipy.optimize import linprog
 
 from exactfold._support.arrays import FloatArray
+from exactfold._support.clock import UNLIMITED, Clock
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.design.panels.first_order_program import SIDES, solved
 from exactfold.design.refutations.refutation import Letters
@@ -42,13 +43,20 @@ class LetteredSpaces:
     afterwards: then every motion to second order lies in a space that was left out, or was found.
 
     `open` is the number of spaces of which nothing was shown. Raises `TooManyModesError` if the
-    search takes more than `most` steps, or needs more square roots than `factors` allows.
+    search takes more than `most` steps or the clock has passed, or if it needs more square roots
+    than `factors` allows.
     """
 
-    def __init__(self, stars: Mapping[int, Star], letters: Letters, most: int = MOST_STEPS) -> None:
+    def __init__(
+        self,
+        stars: Mapping[int, Star],
+        letters: Letters,
+        most: int = MOST_STEPS,
+        clock: Clock = UNLIMITED,
+    ) -> None:
         self.stars, self.letters = stars, letters
         self.open = 0
-        self._spaces = SubspaceSearch(stars, most)
+        self._spaces = SubspaceSearch(stars, most, clock)
 
     def motion(self) -> tuple[Verdict, Motion]:
         """Whether some motion has the letters; if so, an exact one that has them.

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Annotated, Any, ClassVar, Literal, TypedDict
 
+from exactfold._support.clock import UNLIMITED, Clock
 from exactfold._support.documents import (
     Assignment,
     FoldText,
@@ -29,12 +30,13 @@ from exactfold.design.panels.together import Together, going_together
 from exactfold.design.refutations.asked import by_fold
 from exactfold.design.refutations.refutation import Letters
 from exactfold.panels.decomposition import groups_of
+from exactfold.panels.near_misses import near_limit
 from exactfold.panels.stars import Star, stars
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import PanelsDocument, described_panels
 from exactfold.pattern.loading import PatternLike, open_sheet
 from exactfold.pattern.meant import Meant, MeantDocument
-from exactfold.pattern.opening import panels
+from exactfold.pattern.opening import Opened, panels
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
 
@@ -133,16 +135,26 @@ class PanelMatch(Certified):
         """PROVED if the question is answered, whatever the answer; else UNDECIDED."""
         return UNDECIDED if self.starts is UNDECIDED else PROVED
 
-    def about(self, meant: Meant | None) -> PanelMatch:
-        """This answer for a sheet that was read; UNDECIDED if it holds for its digits only."""
-        matched = replace(self, meant=meant)
-        if meant is None or not meant.doubt:
+    def about(self, opened: Opened) -> PanelMatch:
+        """This answer for a sheet that was read; UNDECIDED if it holds for its digits only.
+
+        That is so if relations between creases nearly hold, or if a loop that nearly closes refutes
+        the letters.
+        """
+        matched = replace(self, meant=opened.meant)
+        limit = near_limit(None if opened.meant is None else opened.meant.noise)
+        loops = [part.loop for part in self.parts if part.loop is not None]
+        nearly = [loop.text for loop in loops if abs(loop.off) < limit]
+        doubt = opened.doubt
+        if not doubt and nearly and opened.reading.snap != "exact":
+            doubt = nearly[0]
+        if not doubt:
             return matched
         return replace(
             matched,
             starts=UNDECIDED,
             truly=UNDECIDED,
-            reasons=(meant.doubt, f"the digits alone: {self.lines[0]}"),
+            reasons=(doubt, f"the digits alone: {self.lines[0]}"),
             densities={},
             ways=None,
             refutations=(),
@@ -204,6 +216,7 @@ def match_panels(
     letters: Mapping[Edge, str] | str | None = None,
     *,
     progress: Progress | None = None,
+    clock: Clock = UNLIMITED,
 ) -> PanelMatch:
     """Whether rigid panels start to fold with given mountains and valleys, with a proof.
 
@@ -217,8 +230,8 @@ def match_panels(
     The answer no is proved at one vertex, by vectors (`PanelRefutation`), or by loops that do not
     close. The answer yes is proved by exact modes if all vertices have at most four folds, and
     otherwise by balls or bounds around a candidate (docs/assignment.md, Rigid panels). If neither
-    succeeds, the answer is UNDECIDED. Raises `UsageError` for letters that do not fit, and the
-    errors of `open_pattern`.
+    succeeds, or if the clock has passed, the answer is UNDECIDED. Raises `UsageError` for letters
+    that do not fit, and the errors of `open_pattern`.
 
     >>> from exactfold.design import match_panels
     >>> matched = match_panels("bird-base")
@@ -244,24 +257,28 @@ def match_panels(
     for number, group in enumerate(groups if not dead else ()):
         if progress is not None:
             progress("parts of the sheet", number, len(groups))
-        parts.append(answered(sheet, {v: moving[v] for v in group}, asked))
+        parts.append(answered(sheet, {v: moving[v] for v in group}, asked, clock))
     matched = _result(sheet, asked, dead, free, parts)
     if matched.starts is not PROVED:
         if progress is not None:
             progress("first order", 0, 1)
-        matched = replace(matched, first_order=_first_order(moving, asked, dead, free))
-    return replace(matched.about(opened.meant), seconds=time.perf_counter() - start)
+        matched = replace(matched, first_order=_first_order(moving, asked, dead, free, clock))
+    return replace(matched.about(opened), seconds=time.perf_counter() - start)
 
 
 def _first_order(
-    moving: Mapping[int, Star], asked: Letters, dead: Iterable[Edge], free: Iterable[Edge]
+    moving: Mapping[int, Star],
+    asked: Letters,
+    dead: Iterable[Edge],
+    free: Iterable[Edge],
+    clock: Clock,
 ) -> Together | None:
     """What can move together to first order, completed by the folds outside all moving stars.
 
     Folds that the flat closure keeps flat never move, and folds from boundary to boundary always
     can.
     """
-    inside = going_together(moving, asked)
+    inside = None if clock.passed else going_together(moving, asked, clock)
     if inside is None:
         return None
     together, never = sorted({*inside.together, *free}), sorted({*inside.never, *dead})

@@ -7,10 +7,11 @@ from dataclasses import dataclass, field
 from itertools import chain, islice
 from typing import Final
 
+from exactfold._support.clock import UNLIMITED, Clock
 from exactfold._support.plurals import counted
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.design.panels.candidates import MotionSearch
-from exactfold.design.panels.cells import Cell, CellSearch
+from exactfold.design.panels.cells import Cell, CellSearch, OpenLoop
 from exactfold.design.panels.first_order_program import FirstOrderProgram
 from exactfold.design.panels.lettered_spaces import LetteredSpaces, truly_begin
 from exactfold.design.panels.proof import ProvedMotion, proved_motion
@@ -38,7 +39,8 @@ class PartAnswer:
     is the number of cells with these letters, or None if it is not known. `densities` is one such
     motion, approximately, and `motion` is the same exactly if it was found in a linear space.
     `by_list` says that the complete list of motions refutes the letters.
-    `named` are the vertices that the reason names.
+    `named` are the vertices that the reason names. `loop` is the loop that refutes the letters, if
+    one does.
     """
 
     vertices: tuple[int, ...]
@@ -49,12 +51,18 @@ class PartAnswer:
     densities: Mapping[Edge, float] = field(default_factory=dict)
     refutations: tuple[PanelRefutation, ...] = ()
     named: tuple[int, ...] = ()
+    loop: OpenLoop | None = None
     motion: Mapping[Edge, Number] = field(default_factory=dict, repr=False)
     by_list: bool = False
 
 
-def answered(pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters) -> PartAnswer:
-    """The answer for one part; cheap proofs are tried first.
+def answered(
+    pattern: PanelPattern,
+    moving: Mapping[int, Star],
+    letters: Letters,
+    clock: Clock = UNLIMITED,
+) -> PartAnswer:
+    """The answer for one part; cheap proofs are tried first, until the clock has passed.
 
     The order is: single vertices; vectors that refute all first-order motions; loops of vertices
     with at most four folds, which are the complete answer if there are no other vertices; a
@@ -69,7 +77,7 @@ def answered(pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters
         return PartAnswer(vertices, PROVED, PROVED, ways=None)
     if stuck := _stuck(moving, letters):
         return _refused_at(vertices, moving, stuck)
-    program = FirstOrderProgram(moving, letters)
+    program = FirstOrderProgram(moving, letters, clock)
     start = program.motion()
     if start is None and (refutation := program.refutation()) is not None:
         named = tuple(refutation.planes)
@@ -84,11 +92,11 @@ def answered(pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters
     if few:
         return _by_cells(pattern, moving, letters)
     if (loop := _loop(pattern, moving, letters)) is not None:
-        return PartAnswer(vertices, REFUTED, REFUTED, loop[1], named=loop[0])
+        return PartAnswer(vertices, REFUTED, REFUTED, loop.text, named=loop.loop, loop=loop)
     if start is not None and (proved := _found(program, start)) is not None:
         truly = PROVED if proved.folds else UNDECIDED
         return PartAnswer(vertices, PROVED, truly, densities=proved.densities)
-    by_spaces = _by_spaces(pattern, moving, letters)
+    by_spaces = _by_spaces(pattern, moving, letters, clock)
     if by_spaces is not None:
         return by_spaces
     if start is None:
@@ -98,6 +106,8 @@ def answered(pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters
             "some first-order motions have these letters, but no motion to second order that has "
             "them was proved"
         )
+    if clock.passed:
+        text += f"; {clock.said}"
     return PartAnswer(vertices, UNDECIDED, UNDECIDED, f"{_where(vertices)}: {text}")
 
 
@@ -114,12 +124,12 @@ def _found(program: FirstOrderProgram, start: Mapping[Edge, float]) -> ProvedMot
 
 
 def _by_spaces(
-    pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters
+    pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters, clock: Clock
 ) -> PartAnswer | None:
     """The answer of the complete list of spaces of motions; None if it is not obtained."""
     vertices = tuple(moving)
     try:
-        starts, motion = LetteredSpaces(moving, letters).motion()
+        starts, motion = LetteredSpaces(moving, letters, clock=clock).motion()
     except TooManyModesError:
         return None
     if starts is PROVED:
@@ -187,13 +197,14 @@ def _by_cells(pattern: PanelPattern, moving: Mapping[int, Star], letters: Letter
         return PartAnswer(vertices, UNDECIDED, UNDECIDED, f"{_where(vertices)}: {error}")
     if not cells:
         text = "no choice of a mode at each vertex makes the vertices fit together"
-        loop = search.open_loops[0] if search.open_loops else None
+        loop = min(search.open_loops, key=lambda one: abs(one.off), default=None)
         return PartAnswer(
             vertices,
             REFUTED,
             REFUTED,
             loop.text if loop else text,
             named=loop.loop if loop else (),
+            loop=loop,
         )
     known: Loops = {}
     folding: list[Verdict] = []
@@ -226,9 +237,7 @@ def _extends(
     return UNDECIDED if UNDECIDED in verdicts else PROVED
 
 
-def _loop(
-    pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters
-) -> tuple[tuple[int, ...], str] | None:
+def _loop(pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters) -> OpenLoop | None:
     """Why the vertices with at most four folds cannot have these letters; None if they can.
 
     Only these vertices are considered. Folds that lead to other vertices have no condition there.
@@ -242,7 +251,7 @@ def _loop(
             return None
     except (TooManyModesError, UndecidedDensityError):
         return None
-    return search.open_loops[0].loop, search.open_loops[0].text
+    return min(search.open_loops, key=lambda loop: abs(loop.off))
 
 
 def _first_order_text(named: Iterable[int]) -> str:

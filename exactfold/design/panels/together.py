@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Final
 
+from exactfold._support.clock import UNLIMITED, Clock
 from exactfold.design.panels.first_order_program import SIDES, FirstOrderProgram, solved
 from exactfold.design.refutations.refutation import Letters
 from exactfold.exact.surds import Number, sign
@@ -42,11 +43,13 @@ class Together:
         return f"<Together: {len(self.together)}, never {len(self.never)}>"
 
 
-def going_together(stars: Mapping[int, Star], letters: Letters) -> Together | None:
+def going_together(
+    stars: Mapping[int, Star], letters: Letters, clock: Clock = UNLIMITED
+) -> Together | None:
     """Which folds of these stars can bend their way together, and which never; None if too many.
 
     Single vertices come first. Then linear programs propose motions and vectors, which are made
-    exact.
+    exact. When the clock has passed, folds are left undecided.
 
     >>> star = Star(0, ((0, 1), (0, 2), (0, 3), (0, 4)), ((1, 0), (0, 1), (-1, 0), (0, -1)))
     >>> answer = going_together({0: star}, dict(zip(star.folds, "MVVV")))
@@ -59,11 +62,11 @@ def going_together(stars: Mapping[int, Star], letters: Letters) -> Together | No
     asked = sorted(edge for edge in folds if letters[edge] in SIDES)
     flat = FlatByLetters(stars, letters)
     for _ in range(_ROUNDS):
-        program = FirstOrderProgram(flat.left(), letters)
+        program = FirstOrderProgram(flat.left(), letters, clock)
         if not program.lettered:
             return _result(asked, flat, {}, letters)
         near, rest = program.going_together()
-        planes = program.holding_flat(rest) if rest else None
+        planes = program.holding_flat(rest) if rest and not clock.passed else None
         if planes is None or not flat.add(planes):
             break
     motion = _motion(program, letters, near, rest)

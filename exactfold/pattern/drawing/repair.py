@@ -144,7 +144,8 @@ def exact_sheets(
     def made(distance: Fraction) -> Sheets:
         after, ended = repaired(exact.drawing, merge=max(distance, least), steps=steps)
         try:
-            return Sheets(sheets(after), exact, (*_noted(distance, near), *begun, *ended))
+            found, cut = sheets(after)
+            return Sheets(found, exact, (*_noted(distance, near), *begun, *ended, *cut))
         except (FoldError, PatternError) as error:
             for loose in (repair for repair in ended if repair.step == "dangling"):
                 if loose.count > len(after.lines):

@@ -4,15 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Final
 
 import networkx as nx
 import numpy as np
 
 from exactfold._support.arrays import FloatArray
 from exactfold._support.plurals import agreeing, counted
-from exactfold.errors import DisconnectedError, FoldError, MalformedPatternError, NotADiskError
+from exactfold.errors import DisconnectedError, FoldError, MalformedPatternError
+from exactfold.pattern.drawing.cutting import pieces
 from exactfold.pattern.drawing.drawing import Drawing, Line
 from exactfold.pattern.drawing.mending import Repair, floats, lost, repair, used, with_lines
+
+_NAMED: Final = 5
 
 
 @dataclass(frozen=True)
@@ -49,15 +53,18 @@ def bordered(drawing: Drawing) -> tuple[Drawing, list[Repair]]:
     return with_lines(drawing, lines), [replace(each, lost=missed) for each in made]
 
 
-def sheets(drawing: Drawing) -> tuple[Drawing, ...]:
-    """Each sheet of a drawing on its own, with the points that lie on its lines.
+def sheets(drawing: Drawing) -> tuple[tuple[Drawing, ...], list[Repair]]:
+    """Each sheet of a drawing on its own, with the points that lie on its lines, and reports.
 
     The drawing must come from `repaired`: lines meet only in common ends, and the boundary is B.
+    Cuts divide a sheet into pieces, and slits are opened (`pieces`). A hole inside one panel does
+    not matter, since the panel is rigid. Holes, frames round a sheet and pieces without creases are
+    left out.
 
-    Raises `MalformedPatternError` if the lines enclose nothing, `NotADiskError` for a sheet with a
-    hole, and `FoldError` for a line B or C between two panels. Raises `DisconnectedError` for
-    creases inside a panel that no line joins to the rest, and for lines that enclose nothing; such
-    lines are not dropped here.
+    Raises `MalformedPatternError` if the lines enclose nothing or no piece has a crease,
+    `NotADiskError` for a sheet with a hole between panels, and `FoldError` for a line B between two
+    panels. Raises `DisconnectedError` for creases inside a panel that no line joins to the rest,
+    and for lines that enclose nothing; such lines are not dropped here.
     """
     parts = _parts(drawing)
     if not parts:
@@ -66,10 +73,38 @@ def sheets(drawing: Drawing) -> tuple[Drawing, ...]:
         )
     places = floats(drawing.points)
     _check_all(drawing, parts, places)
+    made: list[Drawing] = []
+    alone: list[int] = []
+    slits: list[int] = []
+    farthest = 0.0
     for part in parts:
-        _check_nested(part, parts, places)
-        _check_inside(part, places)
-    return tuple(_alone(drawing, part) for part in parts)
+        near = [x for x in parts if _nested(part, x, places) or _nested(x, part, places)]
+        _check_nested(part, near, places)
+        if near and (len(part.faces) == 1 or all(line.letter in "BC" for line in part.lines)):
+            alone.append(part.outline[0])
+        elif inside := _cuts(part, places):
+            found, empty, moved = pieces(drawing, part.faces, part.lines)
+            made += found
+            alone += empty
+            slits += [line.start for line in inside] if moved else []
+            farthest = max(farthest, moved)
+        else:
+            made.append(_alone(drawing, part))
+    if not made:
+        raise MalformedPatternError(
+            "no piece of the drawing has a crease: its lines are edges, cuts, holes or a frame"
+        )
+    empty_ones = (
+        f"{counted(len(alone), 'piece')} without creases {agreeing(len(alone), 'is')} left out "
+        "(holes, frames, or paper that falls out)"
+    )
+    opened = (
+        f"cuts ({counted(len(slits), 'line')}) are opened: creases end {farthest:.2g} before "
+        "them, which changes no angle and no way to fold"
+    )
+    points = drawing.points
+    reports = repair("border", len(alone), alone, points, empty_ones)
+    return tuple(made), reports + repair("border", len(slits), slits, points, opened)
 
 
 def _parts(drawing: Drawing) -> list[_Part]:
@@ -138,17 +173,17 @@ def _check_all(drawing: Drawing, parts: Sequence[_Part], places: FloatArray) -> 
         )
 
 
-def _check_nested(part: _Part, parts: Sequence[_Part], places: FloatArray) -> None:
+def _check_nested(part: _Part, near: Sequence[_Part], places: FloatArray) -> None:
+    """Raises an error if a part with creases round it lies inside another part."""
+    boundary = {frozenset(pair) for pair in _sides(part.outline)}
+    if all(line.letter in "BC" for line in part.lines if frozenset(line[:2]) in boundary):
+        return
     v = part.outline[0]
-    for other in parts:
-        if not _nested(part, other, places):
-            continue
-        where = f"near ({places[v][0]:.6g}, {places[v][1]:.6g})"
-        boundary = {frozenset(pair) for pair in _sides(part.outline)}
-        if all(line.letter in "BC" for line in part.lines if frozenset(line[:2]) in boundary):
-            raise NotADiskError(f"the sheet has a hole {where}", vertices=part.outline)
+    if any(_nested(part, other, places) for other in near):
         raise DisconnectedError(
-            f"creases {where} lie inside a panel, and no line joins them to the rest",
+            f"creases near ({places[v][0]:.6g}, {places[v][1]:.6g}) lie inside a panel, and no "
+            "line joins them to the rest (leave out a frame round the drawing; a hole is drawn "
+            "with boundary lines)",
             vertices=[v],
         )
 
@@ -157,27 +192,34 @@ def _nested(part: _Part, other: _Part, places: FloatArray) -> bool:
     return part is not other and _encloses(places[list(other.outline)], places[part.outline[0]])
 
 
-def _check_inside(part: _Part, places: FloatArray) -> None:
+def _cuts(part: _Part, places: FloatArray) -> list[Line]:
+    """The cuts of a part: lines C between two faces, and lines B round a hole off the edge."""
     boundary = {frozenset(pair) for pair in _sides(part.outline)}
     inside = [
         line for line in part.lines if line.letter in "BC" and frozenset(line[:2]) not in boundary
     ]
-    if not inside:
-        return
-    cut = {frozenset(line[:2]) for line in inside}
-    for face in part.faces:
-        if {frozenset(pair) for pair in _sides(face)} <= cut:
-            x, y = places[list(face)].mean(axis=0)
-            raise NotADiskError(
-                f"the sheet has a hole near ({x:.6g}, {y:.6g}): boundary lines surround it",
-                vertices=face,
-            )
-    a, b, letter = inside[0]
-    raise FoldError(
-        f"line {a}-{b} from ({places[a][0]:.6g}, {places[a][1]:.6g}) to ({places[b][0]:.6g}, "
-        f"{places[b][1]:.6g}) is {'a cut' if letter == 'C' else 'a boundary line'} between "
-        f"two panels ({counted(len(inside), 'such line')})"
-    )
+    closed = {frozenset(line[:2]) for line in inside}
+    faces = [{frozenset(pair) for pair in _sides(face)} for face in part.faces]
+    rim = set(part.outline)
+    round_holes = {
+        pair
+        for face, corners in zip(faces, part.faces, strict=True)
+        if face <= closed and rim.isdisjoint(corners)
+        for pair in face
+    }
+    wrong = [
+        line for line in inside if line.letter == "B" and frozenset(line[:2]) not in round_holes
+    ]
+    if wrong:
+        ends = [[f"({places[v][0]:.6g}, {places[v][1]:.6g})" for v in line[:2]] for line in wrong]
+        named = ", ".join(f"from {a} to {b}" for a, b in ends[:_NAMED])
+        more = ", ..." if len(wrong) > _NAMED else ""
+        raise FoldError(
+            f"{counted(len(wrong), 'boundary line')} {agreeing(len(wrong), 'is')} between two "
+            f"panels ({named}{more}): give {'it' if len(wrong) == 1 else 'them'} the letter U for "
+            "a crease, or C for a cut (`--colours black=U` or `--colours black=C` for an SVG file)"
+        )
+    return inside
 
 
 def _encloses(polygon: FloatArray, spot: FloatArray) -> bool:

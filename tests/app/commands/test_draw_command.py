@@ -18,7 +18,8 @@ from exactfold.pattern.data import example_path
 NAME = "{http://www.w3.org/2000/svg}"
 HOLE = """<svg xmlns="http://www.w3.org/2000/svg" width="60" height="60">
 <path stroke="black" fill="none" d="M0 0L60 0L60 60L0 60Z"/>
-<path stroke="black" fill="none" d="M20 20L40 20L40 40L20 40Z"/></svg>"""
+<path stroke="black" fill="none" d="M20 20L40 20L40 40L20 40Z"/>
+<path stroke="red" d="M0 0L20 20M60 0L40 20M60 60L40 40M0 60L20 40"/></svg>"""
 
 
 def drawn(*arguments):

@@ -87,15 +87,15 @@ def relations_of(sheet: PanelPattern, unit: int) -> list[Relation]:
     folds = [edge for edge in sheet.edges if edge not in border]
     for k, (i, j) in enumerate(folds):
         if holds(((i, j), 1), parts=unit):
-            made.append(Relation("grid", f"grid@{i}-{j}", (((i, j), 1),), unit, 0.0))
+            made.append(Relation("grid", f"grid:{i}-{j}", (((i, j), 1),), unit, 0.0))
         for m, n in folds[k + 1 :]:
             pair = f"{i}-{j},{m}-{n}"
             if holds(((i, j), 1), ((m, n), -1)):
                 terms = (((i, j), 1), ((m, n), -1))
-                made.append(Relation("parallel", f"parallel@{pair}", terms, 1, 0.0))
+                made.append(Relation("parallel", f"parallel:{pair}", terms, 1, 0.0))
             if holds(((i, j), 1), ((m, n), 1)):
                 terms = (((i, j), 1), ((m, n), 1))
-                made.append(Relation("mirrored", f"mirrored@{pair}", terms, 1, 0.0))
+                made.append(Relation("mirrored", f"mirrored:{pair}", terms, 1, 0.0))
     return made
 
 

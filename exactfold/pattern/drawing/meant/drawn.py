@@ -15,6 +15,9 @@ NEAR: Final = 0.3
 """A relation that is missed by a larger angle, in radians, is not near."""
 _EXACT_BELOW: Final = 1e-6
 """Smaller angles are computed again from the exact coordinates."""
+_SHORT: Final = 1e-7
+"""The floats of the ends of a shorter edge say little about its direction."""
+_LEAST: Final = 1e-30
 _QUARTERS: Final = {1, 2, 4}
 """Multiples of pi over these numbers have rational directions, and can be tested exactly."""
 
@@ -49,25 +52,27 @@ class Drawn:
         return max(max(xs) - min(xs), max(ys) - min(ys))
 
     @cached_property
+    def spans(self) -> dict[Edge, tuple[float, float]]:
+        """The vector of each edge from its first vertex to its second, over the size."""
+        spans = {}
+        for i, j in self.edges:
+            (ax, ay), (bx, by) = self.places[i], self.places[j]
+            dx, dy = (bx - ax) / self.size, (by - ay) / self.size
+            if abs(dx) + abs(dy) < _SHORT:
+                (px, py), (qx, qy) = self.points[i], self.points[j]
+                dx, dy = float(qx - px) / self.size, float(qy - py) / self.size
+            spans[i, j] = dx, dy
+        return spans
+
+    @cached_property
     def angles(self) -> dict[Edge, float]:
         """The angle of each edge from its first vertex to its second, in (-pi, pi]."""
-        return {
-            (i, j): atan2(
-                self.places[j][1] - self.places[i][1], self.places[j][0] - self.places[i][0]
-            )
-            for i, j in self.edges
-        }
+        return {edge: atan2(dy, dx) for edge, (dx, dy) in self.spans.items()}
 
     @cached_property
     def lengths(self) -> dict[Edge, float]:
         """The length of each edge over the size of the sheet."""
-        return {
-            (i, j): hypot(
-                self.places[j][0] - self.places[i][0], self.places[j][1] - self.places[i][1]
-            )
-            / self.size
-            for i, j in self.edges
-        }
+        return {edge: max(hypot(dx, dy), _LEAST) for edge, (dx, dy) in self.spans.items()}
 
     @cached_property
     def rays(self) -> dict[int, list[Ray]]:
@@ -129,9 +134,14 @@ class Drawn:
         self, kind: Kind, name: str, terms: Sequence[tuple[Edge, int]], parts: int = 1
     ) -> Relation:
         """A relation with its defect in the drawing."""
-        gathered: dict[Edge, int] = {}
-        for edge, factor in terms:
-            gathered[edge] = gathered.get(edge, 0) + factor
-        kept = tuple((edge, factor) for edge, factor in gathered.items() if factor)
+        kept = tuple(gathered(terms).items())
         short = self.shortest(edge for edge, _ in kept)
         return Relation(kind, name, kept, parts, abs(self.residual(kept, parts)) * short)
+
+
+def gathered(terms: Iterable[tuple[Edge, int]]) -> dict[Edge, int]:
+    """The terms of a sum, each edge once."""
+    total: dict[Edge, int] = {}
+    for edge, factor in terms:
+        total[edge] = total.get(edge, 0) + factor
+    return {edge: factor for edge, factor in total.items() if factor}

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from math import inf, pi
 
+from exactfold.errors import UsageError
+from exactfold.pattern.drawing.meant.accepted import Accepted
 from exactfold.pattern.drawing.meant.drawn import NEAR, Drawn
-from exactfold.pattern.drawing.meant.local import local_relations
-from exactfold.pattern.drawing.meant.noise import Noise, last_digit, noise_level
+from exactfold.pattern.drawing.meant.grids import add_distant
+from exactfold.pattern.drawing.meant.local import equal_sectors, local_relations
+from exactfold.pattern.drawing.meant.naming import named, stated
+from exactfold.pattern.drawing.meant.noise import FINEST, last_digit, noise_level, stated_level
 from exactfold.pattern.drawing.meant.system import System
 from exactfold.pattern.drawing.meant.values import Angles, Edge, Relation
 
@@ -17,13 +22,14 @@ from exactfold.pattern.drawing.meant.values import Angles, Edge, Relation
 class Inference:
     """The relations that a drawing nearly has, and what follows from them.
 
-    `noise` is the noise level, as a length over the size; it is 0 if nothing is missed narrowly.
-    `clear` is the next larger defect, and `gap` is `clear` over `noise`. `chance` is the number of
-    relations that are expected by chance. `near` are the relations that the digits miss narrowly,
-    and `relations` are those that hold in the meant sheet, including all that hold exactly as
-    written; `independent` counts how many of them do not follow from others. `angles` are None if
-    nothing was inferred; then `reason` says why, and it is empty if nothing is near. `implied` maps
-    a relation that was deleted to relations that imply it all the same.
+    `noise` is the noise level, as a length over the size; it is 0 if no relation is missed
+    narrowly. `clear` is the next larger defect, and `gap` is `clear` over `noise`. `chance` is the
+    number of relations that are expected by chance. `near` are the straight, border and Kawasaki
+    relations that the digits miss narrowly. `relations` are those that hold in the meant sheet,
+    including all that hold exactly as written; `independent` counts those that do not follow from
+    others. Angles on a grid are multiples of 180 / `unit` degrees. `angles` are None if nothing was
+    inferred; then `reason` says why, and it is empty if nothing is near. `implied` maps a relation
+    that was deleted to the relations that imply it all the same.
     """
 
     noise: float
@@ -32,6 +38,7 @@ class Inference:
     near: tuple[Relation, ...] = ()
     relations: tuple[Relation, ...] = ()
     independent: int = 0
+    unit: int | None = None
     angles: Angles | None = None
     reason: str = ""
     implied: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
@@ -39,66 +46,129 @@ class Inference:
     @property
     def gap(self) -> float:
         """How many times the noise anything else is off."""
-        return self.clear / self.noise if self.noise else float("inf")
+        return self.clear / self.noise if self.noise else inf
 
 
 def infer(
     points: Sequence[tuple[Fraction, Fraction]],
     edges: Collection[Edge],
     border: Collection[Edge],
+    *,
+    noise: float | None = None,
+    unit: int | None = None,
+    without: Collection[str] = (),
+    also: Collection[str] = (),
 ) -> Inference:
     """The relations of the sheet that was meant by a drawing.
 
     `points` are the coordinates as written, `edges` all edges (i, j) of the sheet, and `border`
-    those on its boundary.
+    those on its boundary. A `noise` level, over the size of the drawing, overrules the one that is
+    found, and all that makes it doubtful. `unit` forces a grid of 180 / `unit` degrees. `without`
+    names relations that do not hold, and `also` relations that hold, even if nothing is near.
+
+    Raises `UsageError` for a noise level or a unit that is not positive, for names of relations
+    that do not exist, and for stated relations that contradict others.
     """
+    if noise is not None and not 0 < noise < 1:
+        raise UsageError(
+            f"the noise level is a length over the size of the drawing, between 0 and 1, not "
+            f"{noise:g}; a drawing without noise is read exactly as written with --snap exact"
+        )
+    if unit is not None and unit < 1:
+        raise UsageError(f"the grid has 180 / N degrees for a positive integer N, not {unit}")
     drawn = Drawn(points, tuple(sorted(edges)), frozenset(border))
     found, densities = local_relations(drawn)
     beyond = NEAR * min(drawn.lengths.values())
-    level = noise_level(
-        [(relation.defect, density) for relation, density in found],
-        densities,
-        last_digit(points, drawn.size),
-        beyond,
-    )
+    places = [(relation.defect, density) for relation, density in found]
+    floor = last_digit(points, drawn.size)
+    if noise is not None:
+        level = stated_level(noise, places, densities, beyond)
+    else:
+        known = noise_level(places, densities, floor, beyond)
+        if known is None and not also:
+            if without:
+                named((), without)
+            return Inference(0.0, beyond, 0.0)
+        level = known or stated_level(FINEST, places, densities, beyond)
     local = [relation for relation, _ in found]
-    if level is None:
-        return Inference(0.0, beyond, 0.0)
     near = sorted((r for r in local if r.defect), key=lambda r: r.defect)[: level.near]
+    plain = Inference(level.eps, level.clear, level.chance, tuple(near), reason=level.reason)
     if level.reason:
-        return Inference(level.eps, level.clear, level.chance, tuple(near), reason=level.reason)
-    return _solved(drawn, level, [r for r in local if r.defect <= level.tolerance], near)
-
-
-def _solved(
-    drawn: Drawn, level: Noise, relations: Iterable[Relation], near: Sequence[Relation]
-) -> Inference:
-    system: System[Edge] = System(lambda edge: drawn.lengths[edge])
-    kept = tuple(relations)
-    for relation in kept:
-        value = drawn.turns(relation.terms, relation.parts)
-        system.add(dict(relation.terms), value)
-    return Inference(
-        level.eps,
-        level.clear,
-        level.chance,
-        tuple(near),
-        kept,
-        system.rank,
-        _angles(drawn, system),
+        return plain
+    accepted = Accepted(drawn, level.tolerance, floor)
+    exact = [relation for relation in local if relation.defect <= level.tolerance]
+    accepted.add(relation for relation in exact if relation.kind != "kawasaki")
+    grid = add_distant(accepted, unit)
+    accepted.add(relation for relation in exact if relation.kind == "kawasaki")
+    accepted.believe(list(equal_sectors(accepted)))
+    plain = replace(
+        plain,
+        chance=level.chance + accepted.chance,
+        unit=None if grid is None else grid.unit,
     )
+    if accepted.contradicting:
+        return replace(plain, reason=_conflict(accepted, accepted.contradicting[0]))
+    deleted = named(accepted.relations, without)
+    if deleted or also:
+        gone = {relation.name for relation in deleted}
+        kept = [relation for relation in accepted.relations if relation.name not in gone]
+        accepted = Accepted(drawn, level.tolerance, floor)
+        accepted.add(kept)
+        accepted.add(stated(drawn, text, grid) for text in also)
+        if accepted.contradicting:
+            raise UsageError(_conflict(accepted, accepted.contradicting[0]))
+    return replace(
+        plain,
+        relations=tuple(accepted.relations),
+        independent=accepted.system.rank,
+        angles=_angles(drawn, accepted.system),
+        implied={
+            relation.name: accepted.reasons(relation)
+            for relation in deleted
+            if accepted.is_implied(relation.terms, relation.parts)
+        },
+    )
+
+
+def _conflict(accepted: Accepted, relation: Relation) -> str:
+    others = accepted.reasons(relation)
+    return f"the relation {relation.name} contradicts {', '.join(others)}"
 
 
 def _angles(drawn: Drawn, system: System[Edge]) -> Angles:
+    """The edge angles, with values of the free angles that fit the drawing best."""
     sums = {edge: system.expression(edge) for edge in drawn.edges}
     free = sorted({edge for terms, _ in sums.values() for edge in terms})
     number = {edge: k for k, edge in enumerate(free)}
-    return Angles(
-        {edge: constant for edge, (_, constant) in sums.items()},
-        {
-            edge: tuple(sorted((number[f], factor) for f, factor in terms.items()))
-            for edge, (terms, _) in sums.items()
-        },
-        tuple(drawn.angles[edge] for edge in free),
-        tuple(free),
-    )
+    coefficients = {
+        edge: tuple(sorted((number[f], factor) for f, factor in terms.items()))
+        for edge, (terms, _) in sums.items()
+    }
+    constants = {edge: constant for edge, (_, constant) in sums.items()}
+    values = _fitted(drawn, constants, coefficients, [drawn.angles[edge] for edge in free])
+    return Angles(constants, coefficients, values, tuple(free))
+
+
+def _fitted(
+    drawn: Drawn,
+    constants: Mapping[Edge, Fraction],
+    coefficients: Mapping[Edge, Sequence[tuple[int, Fraction]]],
+    start: Sequence[float],
+) -> tuple[float, ...]:
+    """Free angles near `start` with the least sum of squares of length times turn of an edge."""
+    if not start:
+        return ()
+    import numpy as np
+    from scipy.sparse import csc_array
+    from scipy.sparse.linalg import spsolve
+
+    entries, off = [], []
+    for row, (edge, terms) in enumerate(coefficients.items()):
+        weight = drawn.lengths[edge]
+        angle = float(constants[edge]) * pi + sum(float(f) * start[k] for k, f in terms)
+        off.append(weight * (drawn.angles[edge] - angle))
+        entries += [(weight * float(factor), row, k) for k, factor in terms]
+    data, rows, columns = zip(*entries, strict=True)
+    matrix = csc_array((data, (rows, columns)), shape=(len(off), len(start)))
+    step = spsolve(matrix.T @ matrix, matrix.T @ np.array(off))
+    return tuple((np.array(start) + step).tolist())

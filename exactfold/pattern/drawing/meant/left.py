@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import combinations
-from math import atan2, cos, hypot, lcm, pi, sin
+from math import atan2, cos, exp, hypot, lcm, log, pi, sin
 from typing import TYPE_CHECKING, Final, Protocol
 
 from exactfold.pattern.drawing.meant.values import Edge, Kind, Relation
@@ -16,12 +16,12 @@ from exactfold.pattern.drawing.meant.values import Edge, Kind, Relation
 if TYPE_CHECKING:
     from exactfold.exact.surds import Number
 
-NEAREST: Final = 1e-5
+NEAREST: Final = 1e-3
 """No relation whose defect is larger is near."""
-_CHANCE: Final = 0.05
-"""So many near relations, at most, are expected by chance."""
-_STEPS: Final = 10**5
-"""Coordinates on a grid of at most so many steps across the sheet are exact."""
+_CHANCE: Final = 1e-4
+"""Relations are near if random angles have so many as near with a lower probability."""
+_STEPS: Final = 30
+"""On a grid of so many steps across the sheet, no relation misses by less than `NEAREST`."""
 _TRUST: Final = 1e-9
 """Angles from floats are good to this; smaller defects are computed exactly."""
 
@@ -46,9 +46,9 @@ def left_relations(sheet: Sheet) -> tuple[Relation, ...]:
     """The relations that the sheet nearly has but does not have exactly, the nearest first.
 
     These are straight paths through a vertex, straight borders, and sums of Kawasaki at vertices
-    with four folds. The limit of the defect is 1e-5, or lower in large sheets, so that at most 0.05
-    relations of random angles are expected below the limit. Coordinates on a grid of at most
-    100,000 steps are taken as exact.
+    with four folds, with a defect of at most 1e-3. If k relations have at most the defect of the
+    k-th, and chance may bring k / 2 as near with a probability of at least 1e-4, these k are
+    not near.
 
     >>> from exactfold.pattern.families import two_vertex
     >>> left_relations(two_vertex())
@@ -66,16 +66,36 @@ def left_relations(sheet: Sheet) -> tuple[Relation, ...]:
     tests = list(_tests(sheet, places))
     shortest = [min(_length(places, edge) for edge, _ in terms) for _, _, terms, _ in tests]
     expected = sum(2 * size / (pi * length) for length in shortest)  # below a defect of 1
-    limit = min(NEAREST, _CHANCE / expected) if expected else NEAREST
     near = []
     for (kind, name, terms, off), length in zip(tests, shortest, strict=True):
-        if off * length / size >= limit:
+        if off * length / size >= NEAREST:
             continue
         if off < _TRUST:
             off = _exact(sheet.vertices, terms)
         if off:
             near.append(Relation(kind, name, terms, 1, off * length / size))
-    return tuple(sorted(near, key=lambda relation: relation.defect))
+    near.sort(key=lambda relation: relation.defect)
+    # Two relations at a vertex may follow from each other, so k relations are k / 2 events.
+    chances = [_chance(expected * one.defect, (k + 2) // 2) for k, one in enumerate(near)]
+    believed = [k for k, chance in enumerate(chances, 1) if chance < _CHANCE]
+    return tuple(near[: max(believed, default=0)])
+
+
+def _chance(mean: float, number: int) -> float:
+    """An upper bound (Chernoff's) of the probability of `number` or more events, if so many are
+    expected as `mean` says.
+    """
+    return exp(number - mean + number * log(mean / number)) if number > mean else 1.0
+
+
+def nearly(relations: tuple[Relation, ...]) -> str:
+    """How many relations nearly hold, and the nearest of them, in words."""
+    least = relations[0]
+    if len(relations) == 1:
+        near = f"one relation nearly holds, {least.name}"
+    else:
+        near = f"{len(relations)} relations nearly hold, such as {least.name}"
+    return f"{near}, off by {least.defect:.1g} of the size"
 
 
 _Terms = tuple[tuple[Edge, int], ...]
@@ -86,7 +106,7 @@ def _is_on_a_grid(sheet: Sheet) -> bool:
     common, columns = 1, ([x for x, _ in sheet.vertices], [y for _, y in sheet.vertices])
     for value in (c for column in columns for c in column):
         common = lcm(common, getattr(value, "denominator", 0))
-        if not 0 < common <= _STEPS**2:
+        if not 0 < common <= 10**6:
             return False
     return all(common * (max(column) - min(column)) <= _STEPS for column in columns)
 

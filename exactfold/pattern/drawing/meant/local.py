@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from itertools import combinations, pairwise
 from math import gamma, pi
 
+from exactfold.pattern.drawing.meant.accepted import Accepted, Trial
 from exactfold.pattern.drawing.meant.drawn import NEAR, Drawn, Ray
-from exactfold.pattern.drawing.meant.values import Relation
+from exactfold.pattern.drawing.meant.values import Edge, Relation
 
 
 def local_relations(drawn: Drawn) -> tuple[list[tuple[Relation, float]], list[float]]:
@@ -52,6 +54,45 @@ def kawasaki(drawn: Drawn, v: int, rays: Sequence[Ray]) -> Relation:
     """The relation that the sectors at a vertex of even degree add up to pi, taken in turns."""
     terms = [(ray.edge, 1 if k % 2 else -1) for k, ray in enumerate(rays)]
     return drawn.relation("kawasaki", f"kawasaki@{v}", terms)
+
+
+def equal_sectors(accepted: Accepted) -> Iterator[Trial]:
+    """Looks for equal sectors at each vertex that do not follow from relations accepted before.
+
+    The sectors with the longest sides come first.
+    """
+    drawn = accepted.drawn
+    places = []
+    for v, rays in drawn.rays.items():
+        sectors = [*pairwise(rays), (rays[-1], rays[0])]
+        if v in drawn.boundary:
+            sectors = [pair for pair in sectors if not {r.edge for r in pair} <= drawn.border]
+        for first, second in combinations(sectors, 2):
+            sides = {ray.edge for ray in (*first, *second)}
+            places.append((drawn.shortest(sides), v, len(rays), first, second))
+    for shortest, v, degree, (a, b), (c, d) in sorted(places, key=lambda place: -place[0]):
+        off = (b.angle - a.angle) % (2 * pi) - (d.angle - c.angle) % (2 * pi)
+        spread = accepted.tolerance / shortest
+        found = None
+        if abs(off) <= min(spread, NEAR):
+            if accepted.is_implied(_sector_terms((a, b), (c, d))):
+                continue
+            found = sectors_relation(drawn, v, (a, b), (c, d))
+        yield Trial(min(1.0, degree * spread / (2 * pi)), found)
+
+
+def sectors_relation(
+    drawn: Drawn, v: int, first: tuple[Ray, Ray], second: tuple[Ray, Ray]
+) -> Relation:
+    """The relation that two sectors at a vertex are equal."""
+    (a, b), (c, d) = first, second
+    name = f"sectors@{v}:{a.end}-{b.end},{c.end}-{d.end}"
+    return drawn.relation("sectors", name, _sector_terms(first, second))
+
+
+def _sector_terms(first: tuple[Ray, Ray], second: tuple[Ray, Ray]) -> list[tuple[Edge, int]]:
+    (a, b), (c, d) = first, second
+    return [(b.edge, 1), (a.edge, -1), (d.edge, -1), (c.edge, 1)]
 
 
 def _kawasaki_density(degree: int) -> float:

@@ -15,7 +15,8 @@ TOLERANCE: Final = 30.0
 """A relation holds if it is missed by at most this many times the noise."""
 CHANCE: Final = 1e-3
 """So many relations by chance are allowed for each relation that is found."""
-_FINEST: Final = 1e-16
+FINEST: Final = 1e-16
+"""No noise level is finer; angles are compared in double precision."""
 _EASILY: Final = 0.003
 _ALIKE: Final = 1e-6
 _EXCESS: Final = 0.02
@@ -60,8 +61,8 @@ def noise_level(
     coordinates, and relations that are no longer near are missed by at least `beyond`.
 
     Defects that are exactly 0 say nothing about noise. The others are cut into levels where one is
-    `GAP` times the one before. A level is believed if chance explains less than `CHANCE` of its
-    defects. The noise is the largest defect of the highest level that is believed.
+    `GAP` times the one before. A level is believed if chance hardly explains its defects
+    (`is_rare`). The noise is the largest defect of the highest level that is believed.
 
     The expected number of chance relations is the larger of two estimates: for independent uniform
     rays, and for defects as dense as those above the level are.
@@ -74,13 +75,11 @@ def noise_level(
     ends = [k for k, (eps, clear) in enumerate(zip(defects, above, strict=True), 1) if clear > eps]
 
     def expected(end: int) -> float:
-        eps = defects[end - 1]
-        seen = max((k / defect for k, defect in enumerate(defects[end:], 1)), default=0.0)
-        return max(sum(min(1.0, density * eps) for density in densities), eps * seen)
+        return _expected(defects[end - 1], defects[end:], densities)
 
     clear_ends = [0, *(k for k in ends if above[k - 1] >= GAP * defects[k - 1])]
     for start, end in reversed([*pairwise(clear_ends)]):
-        if (chance := expected(end)) < CHANCE * (end - start):
+        if is_rare(chance := expected(end), end - start):
             return Noise(defects[end - 1], above[end - 1], chance, end)
     near = 0
     for end in ends:
@@ -90,6 +89,35 @@ def noise_level(
         return None
     eps, clear, chance = defects[near - 1], above[near - 1], expected(near)
     return Noise(eps, clear, chance, near, _refusal(eps, clear, chance, near))
+
+
+def is_rare(expected: float, hits: int, share: float = CHANCE) -> bool:
+    """Whether chance explains less than a share of the hits, and hardly ever brings as many.
+
+    With expected hits m, chance brings k hits or more with a probability of at most m^k / k!.
+    """
+    if not hits or not expected:
+        return bool(hits)
+    return expected < share * hits and hits * log(expected) - lgamma(hits + 1) < log(_UNLIKELY)
+
+
+def stated_level(
+    eps: float,
+    found: Sequence[tuple[float, float]],
+    densities: Sequence[float],
+    beyond: float,
+) -> Noise:
+    """The level with a given noise, of which nothing is doubted; arguments as in `noise_level`."""
+    tolerance = TOLERANCE * eps
+    above = sorted(defect for defect, _ in found if defect > tolerance)
+    near = sum(0 < defect <= tolerance for defect, _ in found)
+    return Noise(eps, above[0] if above else beyond, _expected(tolerance, above, densities), near)
+
+
+def _expected(eps: float, above: Sequence[float], densities: Sequence[float]) -> float:
+    """How many relations chance brings within `eps`, if those in `above` are further off."""
+    seen = max((k / defect for k, defect in enumerate(above, 1)), default=0.0)
+    return max(sum(min(1.0, density * eps) for density in densities), eps * seen)
 
 
 def _suspicious(
@@ -103,9 +131,7 @@ def _suspicious(
     expected = sum(density for density in densities if density * eps < _EASILY) * eps
     copies = {round(log(defect) / _ALIKE) for defect, density in missed if density * eps < _EASILY}
     hits = len(copies)
-    if not hits or not expected:
-        return bool(hits)
-    return expected < _EXCESS * hits and hits * log(expected) - lgamma(hits + 1) < log(_UNLIKELY)
+    return is_rare(expected, hits, _EXCESS)
 
 
 def _refusal(eps: float, clear: float, chance: float, near: int) -> str:
@@ -123,9 +149,9 @@ def _refusal(eps: float, clear: float, chance: float, near: int) -> str:
 def last_digit(points: Iterable[tuple[Fraction, Fraction]], size: float) -> float:
     """Half of the last decimal digit of the coordinates, over the size, at least 1e-16.
 
-    By so much rounding moves a coordinate.
-    Fractions without a finite decimal are crossings that were computed exactly, and coordinates
-    below 1e-9 of the size are noise about zero; both are ignored.
+    By so much rounding moves a coordinate. Fractions without a finite decimal are crossings that
+    were computed exactly, and coordinates below 1e-9 of the size are noise about zero; both are
+    ignored.
     """
     common = 1
     for point in points:
@@ -134,7 +160,7 @@ def last_digit(points: Iterable[tuple[Fraction, Fraction]], size: float) -> floa
                 longer = lcm(common, c.denominator)
                 if _decimals(longer) is not None:
                     common = longer
-    return max(_FINEST, 0.5 * 10.0 ** -(_decimals(common) or 0) / size)
+    return max(FINEST, 0.5 * 10.0 ** -(_decimals(common) or 0) / size)
 
 
 def _decimals(denominator: int) -> int | None:

@@ -31,6 +31,10 @@ class System(Generic[Unknown]):
         self._users: dict[Unknown, set[Unknown]] = {}
         self.rank = 0
 
+    def is_solved(self, unknown: Unknown) -> bool:
+        """Whether the unknown is a sum of others."""
+        return unknown in self._sums
+
     def expression(self, unknown: Unknown) -> tuple[dict[Unknown, Fraction], Fraction]:
         """The unknown as a sum of multiples of free unknowns plus a constant."""
         if unknown in self._sums:

@@ -1,0 +1,58 @@
+"""The time that a search may take."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, field, replace
+from typing import Final
+
+from exactfold.errors import TooManyModesError
+
+LIMIT: Final = 60.0
+"""The seconds that a command takes for one sheet, unless another limit is asked for."""
+
+
+@dataclass(frozen=True)
+class Clock:
+    """A limit of time, in seconds from the moment at which the clock is made; None is no limit.
+
+    A limit decides how far a search gets. It never decides what is proved: a search that is stopped
+    returns what it has proved before, and says that it was stopped.
+
+    >>> Clock().passed, Clock(0).passed
+    (False, True)
+    """
+
+    limit: float | None = None
+    _share: float = field(default=1.0, repr=False)
+    _start: float = field(default_factory=time.monotonic, repr=False, compare=False)
+
+    def share(self, part: float) -> Clock:
+        """The clock of a search that may take this part of the time, so that some is left after."""
+        return replace(self, _share=part * self._share)
+
+    @property
+    def left(self) -> float | None:
+        """The seconds that are left, at least 0; None if there is no limit."""
+        if self.limit is None:
+            return None
+        return max(0.0, self._start + self._share * self.limit - time.monotonic())
+
+    @property
+    def passed(self) -> bool:
+        """Whether the time is over."""
+        return self.left == 0
+
+    @property
+    def said(self) -> str:
+        """The reason to stop, in words."""
+        return f"the time limit of {self.limit:g} seconds (--limit) was reached"
+
+    def check(self) -> None:
+        """Raise `TooManyModesError` if the time is over."""
+        if self.passed:
+            raise TooManyModesError(self.said)
+
+
+UNLIMITED: Final = Clock()
+"""The clock without a limit."""

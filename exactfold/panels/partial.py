@@ -1,0 +1,72 @@
+"""What is proved of a sheet whose motions are not all known."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypedDict
+
+from exactfold._support.documents import Natural, VerdictText
+from exactfold._support.verdict import Verdict
+
+
+class FreedomDocument(TypedDict):
+    """Proved bounds for the largest dimension of a family of true motions."""
+
+    least: Natural
+    most: Natural
+    first_order: Natural | None
+    """The dimension of the first-order motions; null where it was not needed."""
+
+
+class DrawnDocument(TypedDict):
+    """Whether the sheet starts to fold with the mountains and valleys of the drawing."""
+
+    starts: VerdictText
+    """Whether there is a motion to second order with these letters."""
+    truly: VerdictText
+    """Whether true motions of the panels begin with these letters."""
+    reasons: list[str]
+
+
+@dataclass(frozen=True)
+class Freedom:
+    """Proved bounds for the degrees of freedom: the largest dimension of a family of true motions.
+
+    `first_order` is the dimension of the first-order motions, or None where it was not needed.
+    """
+
+    least: int
+    most: int
+    first_order: int | None
+
+    @property
+    def text(self) -> str:
+        """The bounds in words.
+
+        >>> Freedom(1, 1, None).text, Freedom(1, 4, 9).text
+        ('degrees of freedom: 1', 'degrees of freedom: between 1 and 4')
+        """
+        if self.least == self.most:
+            return f"degrees of freedom: {self.least}"
+        return f"degrees of freedom: between {self.least} and {self.most}"
+
+    def to_dict(self) -> FreedomDocument:
+        """The object of these bounds in the JSON output."""
+        return {"least": self.least, "most": self.most, "first_order": self.first_order}
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """Whether the sheet starts to fold with the letters of its drawing, as `match_panels` says."""
+
+    starts: Verdict
+    truly: Verdict
+    reasons: tuple[str, ...]
+
+    def to_dict(self) -> DrawnDocument:
+        """The object of this answer in the JSON output."""
+        return {
+            "starts": str(self.starts),
+            "truly": str(self.truly),
+            "reasons": list(self.reasons),
+        }

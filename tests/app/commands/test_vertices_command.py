@@ -1,0 +1,120 @@
+"""`exactfold vertices`: the answer, the table, what to change, JSON and exit codes."""
+
+from __future__ import annotations
+
+import json
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import pytest
+from jsonschema import Draft202012Validator
+from running import BAD_INPUT, INVALID, PROVED, UNDECIDED, USAGE, run
+
+import exactfold
+from exactfold.pattern import PanelPattern
+from exactfold.pattern.fold_writing import document_text
+from exactfold.pattern.opening import Opened
+from exactfold.pattern.panel_writing import converted
+
+NEAR = "0.000000001"
+
+
+def valid(text: str) -> dict[str, Any]:
+    data: dict[str, Any] = json.loads(text)
+    Draft202012Validator(exactfold.schema("vertices")).validate(data)
+    return data
+
+
+def words(text: str) -> str:
+    return " ".join(text.split())
+
+
+def test_a_sheet_whose_vertices_all_start() -> None:
+    result = run("vertices", "miura")
+    assert result.exit_code == PROVED
+    assert result.stdout.startswith("all 9 vertices start to fold with their letters - PROVED (")
+    assert "Kawasaki's condition holds at all 9 vertices, Maekawa's at all 9" in result.stdout
+    assert "vertex  degree" not in result.stdout
+    listed = run("vertices", "miura", "--all")
+    assert [listed.stdout.count(f"  {x}  ") for x in ("MMVM", "VMMM", "VVMV", "MVVV")] == [
+        4,
+        2,
+        2,
+        1,
+    ]
+    data = valid(run("vertices", "miura", "--json").stdout)
+    assert (data["status"], data["starts"], data["kawasaki"]) == ("proved", "proved", 9)
+    assert len(data["vertices"]) == data["maekawa"] == 9
+
+
+def test_a_sheet_that_cannot_start() -> None:
+    result = run("vertices", "zigzags")
+    assert result.exit_code == INVALID
+    text = words(result.stdout)
+    assert text.startswith("none of the 4 vertices can start to fold with its letters - REFUTED")
+    assert "so the sheet as a whole cannot start to fold with these letters" in text
+    assert "exchange the letter of 9-13 (then vertex 13 cannot fold)" in text
+    data = valid(run("vertices", "zigzags", "--json").stdout)
+    assert (data["status"], data["starts"]) == ("proved", "refuted")
+    assert data["vertices"][0]["flips"] == [["9-13"]]
+
+
+def test_letters_on_the_command_line(tmp_path: Path) -> None:
+    assert run("vertices", "two-vertex").exit_code == PROVED
+    wrong = run("vertices", "two-vertex", "--letters", "MMMMMMM")
+    assert wrong.exit_code == INVALID
+    assert "vertex 5: all its folds are mountains, and it needs a valley: exchange the" in words(
+        wrong.stdout
+    )
+    path = tmp_path / "letters.txt"
+    path.write_text("MVVVMVM")
+    assert run("vertices", "two-vertex", "--letters", f"@{path}").exit_code == PROVED
+    assert run("vertices", "two-vertex", "--letters", "MM").exit_code == USAGE
+    assert run("vertices", "no-such-pattern").exit_code == BAD_INPUT
+
+
+def test_free_folds_that_have_no_choice_are_named() -> None:
+    result = run("vertices", "miura", "--letters", "11-20=M,10-11=M,9-11=V", "--all")
+    assert result.exit_code == PROVED
+    assert "vertex 11: its letters leave its free folds no choice: 11-12=M" in words(result.stdout)
+
+
+def crossed(off: str) -> PanelPattern:
+    """Two lines that cross; the end of one is moved aside."""
+    points = [("0", "0"), ("1", "0"), ("0", "1"), ("-1", "0"), (off, "-1")]
+    rim = [(1, 2), (2, 3), (3, 4), (4, 1)]
+    return PanelPattern(
+        [(Fraction(x), Fraction(y)) for x, y in points], [*rim, *((0, k) for k in range(1, 5))]
+    )
+
+
+@pytest.mark.parametrize(("off", "code"), [("0", INVALID), (NEAR, UNDECIDED), ("0.1", PROVED)])
+def test_nearly_straight_lines_leave_it_open(off: str, code: int, tmp_path: Path) -> None:
+    path = tmp_path / "crossed.fold"
+    path.write_text(document_text(converted(Opened(crossed(off))).document(None)))
+    result = run("vertices", path, "--letters", "VMMM")
+    assert result.exit_code == code
+    if code == INVALID:
+        assert "two straight lines, which cannot move at the same time: no letters help" in words(
+            result.stdout
+        )
+    if code == UNDECIDED:
+        assert result.stdout.startswith("whether vertex 0 can start to fold with its letters is o")
+        assert run("vertices", path, "--letters", "VMMM", "--snap", "exact").exit_code == PROVED
+
+
+def test_vertices_with_the_same_reason_share_a_line(tmp_path: Path) -> None:
+    """Two vertical lines and a horizontal one, as in a map."""
+    points = [(Fraction(x), Fraction(y)) for y in range(3) for x in range(4)]
+    along = [(k, k + 1) for k in range(12) if k % 4 < 3]
+    up = [(k, k + 4) for k in range(8)]
+    sheet = PanelPattern(points, along + up)
+    path = tmp_path / "map.fold"
+    path.write_text(document_text(converted(Opened(sheet)).document(None)))
+    result = run("vertices", path, "--letters", "1-5=M,5-9=V,4-5=M,5-6=M,6-7=M,2-6=V,6-10=M")
+    assert result.exit_code == INVALID
+    assert (
+        "- vertices 5 and 6, each: its folds form two straight lines, which cannot move at the "
+        "same time: no letters help"
+    ) in words(result.stdout)

@@ -1,0 +1,248 @@
+"""Cuts: pieces, slits that open, holes that matter and holes that do not."""
+
+import random
+from fractions import Fraction
+
+import pytest
+from drawings import svg
+
+from exactfold.errors import FoldError, MalformedPatternError, NotADiskError, SeveralSheetsError
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.drawing.cutting import pieces
+from exactfold.pattern.drawing.drawing import Drawing, Line
+from exactfold.pattern.drawing.formats.svg import read_svg
+from exactfold.pattern.opening import from_drawing, panels
+from exactfold.pattern.reading import Reading
+
+COLOURS = {"B": "black", "M": "red", "V": "blue", "C": "lime", "F": "yellow"}
+
+
+def square(x, y, size, letter="B"):
+    ends = [(x, y), (x + size, y), (x + size, y + size), (x, y + size)]
+    return [(*a, *b, letter) for a, b in zip(ends, ends[1:] + ends[:1], strict=True)]
+
+
+def picture(*lines):
+    return read_svg(
+        svg(
+            "".join(
+                f'<line x1="{a}" y1="{b}" x2="{c}" y2="{d}" stroke="{COLOURS[letter]}"/>'
+                for a, b, c, d, letter in lines
+            )
+        )
+    )
+
+
+def opened(*lines, number=None):
+    return from_drawing(picture(*lines), Reading(number=number))
+
+
+def shape(sheet):
+    """The numbers of interior vertices, folds and panels."""
+    if isinstance(sheet, CreasePattern):
+        sheet = panels(sheet)
+    return len(sheet.interior), len(sheet.folds), len(sheet.faces)
+
+
+STAR = [(0, 0, 2, 2, "M"), (4, 0, 2, 2, "V"), (4, 4, 2, 2, "M"), (0, 4, 2, 2, "M")]
+"""Four creases from the corners of a square to its middle."""
+
+
+def test_a_slit_to_a_vertex_takes_it_to_the_boundary():
+    assert shape(opened(*square(0, 0, 4), *STAR).sheet) == (1, 4, 4)
+    slit = opened(*square(0, 0, 4), *STAR, (2, 0, 2, 2, "C"))
+    assert shape(slit.sheet) == (0, 4, 5)
+    assert sorted(slit.letters.values()) == [*"MMMV"]
+    assert slit.lines[-1] == (
+        "cuts (1 line) are opened: creases end 0.004 before them, which changes no angle and no "
+        "way to fold: at 5 (2, 0)"
+    )
+
+
+def test_the_two_sides_of_a_slit_fold_differently():
+    """A crease that meets the slit from above and one from below are two creases."""
+    lines = [*square(0, 0, 4), (0, 2, 2, 2, "C"), (2, 2, 4, 2, "M")]
+    lines += [(1, 0, 1, 4, "M"), (2, 0, 2, 4, "V")]
+    assert shape(opened(*lines[:4], *lines[5:]).sheet) == (1, 4, 4)
+    sheet = opened(*lines).sheet
+    assert shape(sheet) == (0, 5, 6)
+    assert len(sheet.vertices) == 4 + 4 + 1 + 4 + 1  # the slit has two more ends and middles
+
+
+def test_a_cut_across_makes_two_sheets():
+    lines = [*square(0, 0, 4), (0, 2, 4, 2, "C"), (2, 0, 2, 4, "M"), (1, 0, 1, 2, "V")]
+    with pytest.raises(SeveralSheetsError, match="holds 2 sheets"):
+        opened(*lines)
+    assert {shape(opened(*lines, number=k).sheet) for k in (1, 2)} == {(0, 1, 2), (0, 2, 3)}
+
+
+def test_pieces_without_creases_fall_out():
+    half = opened(*square(0, 0, 4), (0, 2, 4, 2, "C"), (2, 0, 2, 2, "M"))
+    assert shape(half.sheet) == (0, 1, 2)
+    assert "1 piece without creases is left out (holes, frames, or paper" in half.lines[-1]
+    with pytest.raises(MalformedPatternError, match="no piece of the drawing has a crease"):
+        opened(*square(0, 0, 4), (0, 2, 4, 2, "C"))
+
+
+def test_frames_and_holes_inside_a_panel_do_not_matter():
+    sheet = [*square(0, 0, 4), *STAR]
+    plain = opened(*sheet)
+    more = [*square(-1, -1, 9), *square(1.5, 0.25, 0.5), *square(2, 0.25, 0.5, "C")]
+    framed = opened(*sheet, *more)
+    assert framed.sheet == plain.sheet
+    assert "2 pieces without creases are left out" in framed.lines[-1]
+
+
+# --- holes ---------------------------------------------------------------------------------------
+
+SPOKES = [(0, 0, 1, 1, "M"), (4, 0, 3, 1, "V"), (4, 4, 3, 3, "M"), (0, 4, 1, 3, "V")]
+
+
+@pytest.mark.parametrize("letter", ["B", "C"])
+def test_a_hole_between_panels_is_refused_by_name(letter):
+    message = r"the sheet has a hole, near \(2, -2\) with 4 corners: sheets with holes are not"
+    with pytest.raises(NotADiskError, match=message):
+        opened(*square(0, 0, 4), *square(1, 1, 2, letter), *SPOKES)
+
+
+def test_several_holes_are_named():
+    lines = [*square(0, 0, 4), *square(1, 1, 2), *SPOKES]
+    beside = [(a + 4, b, c + 4, d, letter) for a, b, c, d, letter in lines]
+    with pytest.raises(NotADiskError, match=r"has 2 holes, near \(2, -2\) with 4 corners, near"):
+        opened(*lines[:1], *lines[2:], (4, 0, 4, 4, "M"), *beside[:3], *beside[4:])
+
+
+def test_a_slit_that_begins_inside_is_a_hole():
+    lines = [*square(0, 0, 4), (1, 2, 3, 2, "C"), (1, 0, 1, 4, "M"), (3, 0, 3, 4, "M")]
+    with pytest.raises(NotADiskError, match=r"a hole, near \(2, -2\) with 2 corners.* nor are"):
+        opened(*lines)
+    flat = opened(*square(0, 0, 4), (1.5, 2, 2.5, 2, "C"), (1, 0, 1, 4, "M"))
+    assert shape(flat.sheet) == (0, 1, 2)  # within one panel it changes nothing
+
+
+def test_a_hole_that_a_slit_joins_to_the_edge_is_none():
+    slit = opened(*square(0, 0, 4), *square(1, 1, 2), *SPOKES, (0, 2, 1, 2, "C"))
+    assert shape(slit.sheet) == (0, 4, 5)
+    at_a_corner = opened(*square(0, 0, 4), *square(1, 1, 2), *SPOKES, (0, 2, 1, 1, "C"))
+    assert shape(at_a_corner.sheet) == (0, 4, 5)
+
+
+def test_paper_that_hangs_by_a_point_is_refused():
+    hole = [(2, 0, 1, 2, "C"), (1, 2, 3, 2, "C"), (3, 2, 2, 0, "C")]
+    with pytest.raises(NotADiskError, match=r"hangs together only by vertex .* near \(2, 0\)"):
+        opened(*square(0, 0, 4), *hole, (1, 2, 0, 2, "M"), (3, 2, 4, 2, "M"))
+
+
+def test_borders_between_panels_are_listed_with_what_to_do():
+    lines = [*square(0, 0, 4), (2, 0, 2, 4, "B"), (0, 1, 4, 1, "M")]
+    with pytest.raises(FoldError) as refusal:
+        opened(*lines)
+    assert str(refusal.value) == (
+        "2 boundary lines are between two panels (from (2, 0) to (2, -1), from (2, -1) to (2, "
+        "-4)): give them the letter U for a crease, or C for a cut (`--colours black=U` or "
+        "`--colours black=C` for an SVG file)"
+    )
+
+
+def test_boundary_lines_round_a_panel_at_the_edge_are_no_hole():
+    for corner in ((2, 0), (0, 1)):
+        lines = [(*corner, 1, 2, "B"), (1, 2, 3, 2, "B"), (3, 2, *corner, "B")]
+        with pytest.raises(FoldError, match="3 boundary lines are between two panels"):
+            opened(*square(0, 0, 4), *lines, (1, 2, 0, 2, "M"), (3, 2, 4, 2, "M"))
+    with pytest.raises(FoldError, match="1 boundary line is between two panels"):
+        opened(*square(0, 0, 4), (1, 0, 1, 4, "B"), (2, 0, 2, 4, "M"))
+
+
+# --- how slits are opened ------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("crease", [(2, 2, 1, 4, "M"), (2, 2, 0.5, 4, "M"), None])
+def test_corners_of_180_degrees_and_more_keep_clear_of_the_slit(crease):
+    """The slit turns at (2, 2). Its outer side has 270 degrees: a crease leaves 243 for one panel,
+    and a second crease 180 or 190 between both."""
+    lines = [*square(0, 0, 4), (2, 0, 2, 2, "C"), (2, 2, 0.8, 2, "C"), (2, 2, 3, 0, "V")]
+    lines += [(0.8, 2, 0, 1, "M"), (0.8, 2, 0, 4, "M"), *([crease] if crease else [])]
+    assert shape(opened(*lines).sheet) == ((0, 4, 5) if crease else (0, 3, 4))
+
+
+def test_a_side_of_a_slit_without_creases_keeps_clear_of_the_other():
+    lines = [*square(0, 0, 4), (0, 2, 2, 2, "C"), (1, 2, 1, 4, "M"), (2, 2, 4, 2, "V")]
+    sheet = opened(*lines).sheet
+    assert shape(sheet) == (0, 2, 3)
+    on_left = sorted(float(y) for x, y in sheet.vertices if x < 1.5 and abs(y + 2) < 0.1)
+    assert [y < -2 for y in on_left] == [True, True, False, False]
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_random_slits_keep_every_crease_and_every_direction_round_a_vertex(seed):
+    """A grid with diagonals, and slits along its lines that begin at the edge and grow as trees."""
+    rng, n = random.Random(seed), 5
+    spots = [(x, y) for x in range(n + 1) for y in range(n + 1)]
+    place = {
+        (x, y): (
+            3 * x + (rng.choice((0, 1)) if 0 < x < n and 0 < y < n else 0),
+            3 * y + (rng.choice((0, 1)) if 0 < x < n and 0 < y < n else 0),
+        )
+        for x, y in spots
+    }
+    edges = {((x, y), (x + 1, y)) for x in range(n) for y in range(n + 1)}
+    edges |= {((x, y), (x, y + 1)) for x in range(n + 1) for y in range(n)}
+    edges |= {((x, y), (x + 1, y + 1)) for x in range(n) for y in range(n)}
+
+    def on_rim(spot):
+        return not (0 < spot[0] < n and 0 < spot[1] < n)
+
+    rim = {
+        (a, b)
+        for a, b in edges
+        if on_rim(a)
+        and on_rim(b)
+        and abs(a[0] - b[0]) + abs(a[1] - b[1]) == 1
+        and (a[0] == b[0] in (0, n) or a[1] == b[1] in (0, n))
+    }
+    reached, cuts = {spot for spot in spots if on_rim(spot)}, set()
+    for a, b in rng.sample(sorted(edges - rim), len(edges - rim)):
+        if (a in reached) != (b in reached) and len(cuts) < 8:
+            cuts.add((a, b))
+            reached |= {a, b}
+    lines = [
+        (*place[a], *place[b], "B" if (a, b) in rim else "C" if (a, b) in cuts else "M")
+        for a, b in sorted(edges)
+    ]
+    sheet = opened(*lines).sheet
+    on_slits = {spot for edge in cuts for spot in edge}
+    inner = [spot for spot in spots if not on_rim(spot) and spot not in on_slits]
+    assert shape(sheet) == (len(inner), len(edges) - len(rim) - len(cuts), 2 * n * n)
+    found = {sheet.vertices[v]: star for v, star in _stars(sheet).items()}
+    assert set(found) == {(place[s][0], -place[s][1]) for s in inner}
+    for spot in inner:
+        x, y = place[spot]
+        near = {b if a == spot else a for a, b in edges if spot in (a, b)}
+        meant = {_direction(place[t][0] - x, y - place[t][1]) for t in near}
+        assert found[x, -y] == meant
+
+
+def _stars(sheet):
+    stars = {v: set() for v in sheet.interior}
+    for i, j in sheet.folds:
+        for a, b in ((i, j), (j, i)):
+            if a in stars:
+                (ax, ay), (bx, by) = sheet.vertices[a], sheet.vertices[b]
+                stars[a].add(_direction(bx - ax, by - ay))
+    return stars
+
+
+def _direction(x, y):
+    size = max(abs(x), abs(y))
+    return Fraction(x) / size, Fraction(y) / size
+
+
+def test_slits_that_are_too_close_to_other_lines_are_refused():
+    tiny = Fraction(1, 10**9)
+    points = ((0, 0), (2, 0), (4, 0), (4, 2), (0, 2), (4, -2), (0, -2), (1, tiny), (2, 2))
+    lines = [(1, 2, "M"), (0, 1, "C"), (1, 7, "V"), (7, 8, "V")]
+    lines += [(a, b, "B") for a, b in ((0, 6), (6, 5), (5, 2), (2, 3), (3, 8), (8, 4), (4, 0))]
+    faces = [(0, 6, 5, 2, 1), (1, 2, 3, 8, 7), (0, 1, 7, 8, 4)]
+    drawing = Drawing(points, tuple(Line(*line) for line in lines), "a test")
+    with pytest.raises(FoldError, match=r"the slits near \(0, 0\) are too close to other lines"):
+        pieces(drawing, faces, drawing.lines)
