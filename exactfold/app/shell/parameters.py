@@ -216,8 +216,8 @@ Patterns = Annotated[
         metavar="PATTERN",
         callback=lambda paths: in_folders([standard_input(path) for path in paths]),
         autocompletion=complete_pattern,
-        help="FOLD, SVG, CP, OPX, ORI, DXF, TMD5 or OBJ files, folders of such files, - for standard input, or "
-        "names: see `examples`.",
+        help="FOLD, SVG, CP, OPX, ORI, DXF, TMD5 or OBJ files, folders of such files, - for "
+        "standard input, or names: see `examples`.",
     ),
 ]
 Snap = Annotated[
