@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from exactfold._support.plurals import counted
 from exactfold.errors import FoldError, MalformedPatternError, PatternError, UsageError
@@ -26,8 +26,13 @@ from exactfold.pattern.drawing.mending import (
 from exactfold.pattern.drawing.sheets import bordered, sheets
 from exactfold.pattern.drawing.splitting import split
 
+if TYPE_CHECKING:
+    from exactfold.pattern.reading import Steps
+
 STEPS: Final = ("merge", "duplicates", "split", "join", "dangling", "dissolve", "border")
 """The steps of repair, in their order."""
+_LEAST: Final = ("merge", "duplicates", "split", "dangling")
+"""Some drawings have no panels without these steps; the other steps only change the panels."""
 _NEAR: Final = Fraction(1, 10**6)
 _COARSEST: Final = Fraction(1, 300)
 """Points are never merged automatically at a larger share of the size."""
@@ -84,6 +89,15 @@ def repaired(
             drawing, reports = without_duplicates(drawing)
             repairs += reports
     return drawing, tuple(repairs)
+
+
+def attempts(drawing: Drawing, steps: Steps, merge: Fraction | None) -> list[Collection[str]]:
+    """The sets of repair steps, in the order in which they are tried."""
+    if steps == "least":
+        return [(), _LEAST] if merge is None else [_LEAST]
+    if steps == "all":
+        return [("join",), STEPS] if drawing.exact and merge is None else [STEPS]
+    return [steps]
 
 
 @dataclass(frozen=True)
