@@ -86,7 +86,8 @@ def test_digits_are_those_on_which_the_faces_agree() -> None:
     points, remark = unfolded(exactly(lifted), faces)
     assert "up to 5e-07 of the size" in remark
     assert all(10**6 % c.denominator == 0 for point in points for c in point)
-    assert np.allclose(np.array(points, dtype=float), np.array(star)[:, :2], atol=1e-5)
+    spokes = np.array(points[1:], dtype=float) - np.array(points[0], dtype=float)
+    assert np.allclose(spokes @ spokes.T, np.array(corner) @ np.array(corner).T, atol=1e-5)
 
 
 def corner(height: float) -> list:
