@@ -13,6 +13,7 @@ from exactfold.errors import (
     NotFoldError,
     NumberError,
     StaleExactCoordinatesError,
+    TooLargeError,
 )
 from exactfold.pattern.data import SHEETS, example_path
 from exactfold.pattern.drawing.formats.fold_drawing import read_fold_drawing
@@ -87,6 +88,12 @@ def test_a_folded_state_in_space_is_refused_with_a_hint():
     rows = [[x, y, x * y / 100] for x, y in CORNERS]
     with pytest.raises(FoldedStateError, match=r"box of 2 x 1 x 0\.02.*give its crease pattern"):
         sheet(vertices_coords=rows)
+
+
+def test_a_huge_folded_state_is_refused():
+    huge = ", ".join(f"[{x}, {x}, {y}]" for x, y in (("1e400", "0"), ("0", "1e400"), ("1", "1")))
+    with pytest.raises(TooLargeError, match="larger than 1e50"):
+        read_fold_drawing(f'{{"vertices_coords": [{huge}], "faces_vertices": [[0, 1, 2]]}}')
 
 
 def test_a_form_folded_flat_is_refused_and_an_unfolded_one_is_read():

@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import Any, Final
 
 from exactfold._support.plurals import counted
-from exactfold.checker.core.limits import MOST_FRAMES, MOST_INHERITED
+from exactfold.checker.core.limits import LARGEST, MOST_FRAMES, MOST_INHERITED
 from exactfold.errors import (
     FoldedStateError,
     MalformedDrawingError,
@@ -193,6 +193,11 @@ def flattened(
     """
     bounds = [(min(column), max(column)) for column in zip(*places, strict=True)]
     size = max(high - low for low, high in bounds)
+    if size > 10**LARGEST:
+        raise TooLargeError(
+            f"the vertices fill a box larger than 1e{LARGEST}, and larger ones are not read: scale "
+            "the drawing down"
+        )
     for name, (i, j) in _AXES.items():
         low, high = bounds["xyz".index(name)]
         if high - low <= _FLAT * size:

@@ -20,7 +20,7 @@ Space: TypeAlias = tuple[Fraction, Fraction, Fraction]
 _MISFIT: Final = 1e-5
 """Faces that fit together less exactly, as a share of the size, are not rigid."""
 _FINEST: Final = 1e-13
-_FAR: Final = 1e30
+_FAR: Final = 10**30
 _MOST_SIDES: Final = 4000  # sides of the boundary that are compared pair by pair
 _AXES: Final = {0: (1, 2), 1: (2, 0), 2: (0, 1)}
 """The two coordinates that remain in a plane x, y or z = constant, counter-clockwise."""
@@ -40,9 +40,9 @@ def unfolded(places: Sequence[Space], faces: Sequence[tuple[int, ...]]) -> tuple
     used = sorted({v for face in faces for v in face})
     if not used:
         raise FoldedStateError("it has no faces to unfold")
-    space = np.array([[float(c) for c in places[v]] for v in used])
-    if not np.abs(space).max() < _FAR:
+    if any(abs(c) > _FAR for v in used for c in places[v]):
         raise FoldedStateError("its coordinates are too large to unfold it")
+    space = np.array([[float(c) for c in places[v]] for v in used])
     number = {v: k for k, v in enumerate(used)}
     rows = [tuple(number[v] for v in face) for face in faces]
     size = float(np.ptp(space, axis=0).max())
