@@ -53,8 +53,8 @@ def open_pattern(
 
     A FOLD file of triangles is read unchanged (`load_fold`); the snap is a denominator there. All
     other files are read as drawings: they are repaired, and their coordinates are made exact
-    (`exact_sheets`). This includes FOLD files with panels, crossings, near-duplicate vertices or a
-    frame in another plane. If a file has several sheets, `number` chooses one, counted from 1.
+    (`exact_sheets`). This includes FOLD files with panels, crossings, near-duplicate vertices, cuts
+    or a frame in another plane. If a file has several sheets, `number` chooses one, counted from 1.
 
     The steps of repair and `merge` are those of `repaired`. With steps "least", a drawing that
     already is a sheet is not repaired; in other drawings only points are merged, lines cut where
@@ -93,7 +93,8 @@ def opened(raw: bytes, name: str, reading: Reading = PLAIN) -> Opened:
             found = Opened(
                 file.pattern, file.assignment, lines, file.snapped, reading=reading, again=again
             )
-            return recognised(found) or meaning(found, lambda: found)
+            if all(file.assignment.get(fold) != "C" for fold in file.pattern.folds):
+                return recognised(found) or meaning(found, lambda: found)
     from exactfold.pattern.drawing.formats.read import parse_drawing
 
     try:
