@@ -101,13 +101,14 @@ def _exact_points(written: Written, angles: Angles, noise: float) -> list[Point]
             "no sheet near the drawing seems to have all relations: in floats, edges still miss "
             f"their directions by {near.off:.1g} of the size"
         )
+    for recognise in (True, False):
+        directions = Directions(angles, near.free, noise, recognise=recognise)
+        points = placed_together(written, places, directions, whole, noise)
+        if not isinstance(points, str):
+            return points
     directions = Directions(angles, near.free, noise)
-    points = placed_together(written, places, directions, whole, noise)
-    if isinstance(points, str):
-        directions = Directions(angles, near.free, noise)
-        lines = _lines(directions, angles, near.free, bound)
-        points = constructed(written, near.places, directions, lines, bound, noise)
-    return points
+    lines = _lines(directions, angles, near.free, bound)
+    return constructed(written, near.places, directions, lines, bound, noise)
 
 
 def _lines(

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
 from dataclasses import replace
-from fractions import Fraction
 from functools import partial
 from os import PathLike
 from pathlib import Path
@@ -35,7 +33,7 @@ from exactfold.pattern.opened import Opened as Opened
 from exactfold.pattern.opened import ReadDocument as ReadDocument
 from exactfold.pattern.opened import panels as panels
 from exactfold.pattern.opened import triangulated as triangulated
-from exactfold.pattern.reading import PLAIN, Reading, Steps
+from exactfold.pattern.reading import PLAIN, Reading
 
 # Drawings need libraries that take long to load; triangulated sheets are read without them.
 if TYPE_CHECKING:
@@ -46,8 +44,6 @@ _FINAL = (NumberError, StaleExactCoordinatesError)
 _OF_EDGES = (MalformedPatternError, DisconnectedError)
 """For these errors of the strict reader, the error of the reader of drawings is raised instead."""
 _FORCE = "`--force` (`force=True` in Python) reads the sheet all the same"
-_LEAST = ("merge", "duplicates", "split", "dangling")
-"""Some drawings have no panels without these steps; the other steps only change the panels."""
 
 
 def open_pattern(
@@ -57,8 +53,8 @@ def open_pattern(
 
     A FOLD file of triangles is read unchanged (`load_fold`); the snap is a denominator there. All
     other files are read as drawings: they are repaired, and their coordinates are made exact
-    (`exact_sheets`). This includes FOLD files with panels, crossings, near-duplicate vertices or a
-    frame in another plane. If a file has several sheets, `number` chooses one, counted from 1.
+    (`exact_sheets`). This includes FOLD files with panels, crossings, near-duplicate vertices, cuts
+    or a frame in another plane. If a file has several sheets, `number` chooses one, counted from 1.
 
     The steps of repair and `merge` are those of `repaired`. With steps "least", a drawing that
     already is a sheet is not repaired; in other drawings only points are merged, lines cut where
@@ -97,7 +93,8 @@ def opened(raw: bytes, name: str, reading: Reading = PLAIN) -> Opened:
             found = Opened(
                 file.pattern, file.assignment, lines, file.snapped, reading=reading, again=again
             )
-            return recognised(found) or meaning(found, lambda: found)
+            if all(file.assignment.get(fold) != "C" for fold in file.pattern.folds):
+                return recognised(found) or meaning(found, lambda: found)
     from exactfold.pattern.drawing.formats.read import parse_drawing
 
     try:
@@ -134,6 +131,17 @@ def _joined(file: FoldFile, name: str) -> tuple[str, ...]:
     )
 
 
+def sheets_in(raw: bytes, name: str, reading: Reading = PLAIN) -> int:
+    """The number of sheets in a file; 1 if it is not known because the file cannot be read."""
+    try:
+        opened(raw, name, replace(reading, number=None))
+    except SeveralSheetsError as error:
+        return error.sheets
+    except InputError:
+        pass
+    return 1
+
+
 def from_drawing(drawing: Drawing, reading: Reading = PLAIN) -> Opened:
     """The sheet of a drawing, after repair, with exact coordinates and traced panels.
 
@@ -148,31 +156,20 @@ def from_drawing(drawing: Drawing, reading: Reading = PLAIN) -> Opened:
     >>> sheet.sheet, sheet.assignment[4, 5], len(sheet.lines)
     (<PanelPattern: 0 interior vertices, 1 fold, 2 panels>, 'M', 3)
     """
-    from exactfold.pattern.drawing.repair import exact_sheets
+    from exactfold.pattern.drawing.repair import attempts, exact_sheets
 
     rule: Snap = reading.snap or ("exact" if drawing.exact else "auto")
-    attempts = _attempts(drawing, reading.steps, reading.merge)
-    for k, chosen in enumerate(attempts, 1):
+    tried = attempts(drawing, reading.steps, reading.merge)
+    for k, chosen in enumerate(tried, 1):
         try:
             sheets = exact_sheets(drawing, snap=rule, merge=reading.merge, steps=chosen)
             again = partial(from_drawing, drawing)
             found = replace(_chosen(drawing, sheets, reading), reading=reading, again=again)
             return meaning(found, lambda: from_drawing(drawing, reading.as_written))
         except (FoldError, PatternError):
-            if k == len(attempts):
+            if k == len(tried):
                 raise
     raise UsageError("no steps of repair were given: name at least one, or give 'all'")
-
-
-def _attempts(drawing: Drawing, steps: Steps, merge: Fraction | None) -> list[Collection[str]]:
-    """The sets of repair steps, in the order in which they are tried."""
-    from exactfold.pattern.drawing.repair import STEPS
-
-    if steps == "least":
-        return [(), _LEAST] if merge is None else [_LEAST]
-    if steps == "all":
-        return [("join",), STEPS] if drawing.exact and merge is None else [STEPS]
-    return [steps]
 
 
 def _chosen(drawing: Drawing, sheets: Sheets, reading: Reading) -> Opened:
@@ -181,26 +178,18 @@ def _chosen(drawing: Drawing, sheets: Sheets, reading: Reading) -> Opened:
     Raises `MalformedDrawingError` if creases of the drawing are missing in it, or if it has no
     folds; with `force`, the first line says so instead.
     """
+    from exactfold.pattern.drawing.chosen import chosen
     from exactfold.pattern.drawing.losses import missing
     from exactfold.pattern.panel_pattern import PanelPattern
 
-    number = reading.number
-    if number is None and len(sheets.sheets) > 1:
-        raise SeveralSheetsError(
-            f"the drawing holds {len(sheets.sheets)} sheets: choose one with --sheet N, or "
-            "`number=` in Python"
-        )
-    if number is not None and not 1 <= number <= len(sheets.sheets):
-        raise SeveralSheetsError(
-            f"there is no sheet {number}: the drawing holds {len(sheets.sheets)}"
-        )
-    sheet = sheets.sheets[(number or 1) - 1]
+    k = chosen(sheets.sheets, reading.number)
+    sheet = sheets.sheets[k]
     pattern = PanelPattern(sheet.points, [(line.start, line.end) for line in sheet.lines])
     letters = {
         (min(line.start, line.end), max(line.start, line.end)): line.letter for line in sheet.lines
     }
     lines = [drawing.source, *drawing.remarks, sheets.coordinates.text]
-    loss = missing(drawing, sheets, (number or 1) - 1, folds=bool(pattern.folds))
+    loss = missing(drawing, sheets, k, folds=bool(pattern.folds))
     if loss is not None:
         if not reading.force:
             raise MalformedDrawingError(f"{loss}; {_FORCE}")

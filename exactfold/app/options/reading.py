@@ -17,6 +17,7 @@ from exactfold.app.shell.parameters import (
     flag,
     number,
 )
+from exactfold.errors import UsageError
 from exactfold.pattern.reading import Reading
 
 
@@ -67,10 +68,22 @@ class ReadingOptions:
 
     @property
     def reading(self) -> Reading:
-        """These options as the value that `open_pattern` takes."""
+        """These options as the value that `open_pattern` takes.
+
+        Raises `UsageError` for --sheet all, which only several answers can have.
+        """
+        if self.sheet == "all":
+            raise UsageError(
+                "--sheet all goes with `exactfold count` without --certificate and --stream; here, "
+                "choose a sheet by its number"
+            )
+        return self.reading_sheet(self.sheet)
+
+    def reading_sheet(self, number: int | None) -> Reading:
+        """These options for the sheet with a number."""
         return Reading(
             self.snap,
-            self.sheet,
+            number,
             colours=self.colours,
             dashes=self.dashes,
             chords=self.chords,

@@ -308,7 +308,7 @@ class BranchCount(Page, Ways[Branch], Certified):
             return self.families.keys()
         return {
             "components": None,
-            "degrees_of_freedom": None,
+            "freedom": None,
             "drawn": None,
             "modes_count": None,
             "modes": [],

@@ -21,6 +21,8 @@ _MOST_ROOTS: Final = 4
 """Towers with more square roots are not used for directions."""
 _SURE: Final = 10.0
 """By so many bits a short number must beat chance."""
+_ROUGH: Final = 2.0**-46
+"""Where positions determine free angles, floats find them no better than so, in radians."""
 _FINEST: Final = 2.0**-50
 """Floats hold free angles no better than so, in radians."""
 
@@ -44,7 +46,7 @@ class Directions:
     tangent in the field, unless `fix` gave it a direction before it was used. The tangent is a
     short number that chance does not explain, within four times the `noise` of the value, or else a
     fraction far nearer to the value. If only a multiple of the angle has such a tangent, the field
-    is extended by the square roots that halve it.
+    is extended by the square roots that halve it. Unless `recognise`, all are fractions.
 
     >>> edge = {(0, 1): Fraction(1, 8)}, {(0, 1): ((0, Fraction(1, 2)),)}
     >>> found = Directions(Angles(*edge, (0.2,)), (0.2,), 1e-6)
@@ -53,7 +55,9 @@ class Directions:
     (0.5369, 'Q(sqrt 2)')
     """
 
-    def __init__(self, angles: Angles, free: Sequence[float], noise: float) -> None:
+    def __init__(
+        self, angles: Angles, free: Sequence[float], noise: float, *, recognise: bool = True
+    ) -> None:
         self.angles, self.free, self.noise = angles, free, noise
         self._grid = _Grid(parts_of(angles))
         self.field = self._grid.field
@@ -67,7 +71,7 @@ class Directions:
         self._short: dict[int, Vector] = {}
         self._whole: dict[int, tuple[int, int]] = {}
         self._vectors: dict[tuple[Fraction, tuple[tuple[int, Fraction], ...]], Vector] = {}
-        for k in self.scales:
+        for k in self.scales if recognise else ():
             self._recognise(k)
 
     def key(self, edge: Edge) -> tuple[Fraction, tuple[tuple[int, Fraction], ...]]:
@@ -127,7 +131,7 @@ class Directions:
         while self.scales[k] % (1 << halvings) == 0:
             angle = self.free[k] / self.scales[k] * (1 << halvings)
             slope, steep = _slope(angle)
-            within = max(4 * self._noise(k) * (1 << halvings), _FINEST)
+            within = max(4 * self._noise(k) * (1 << halvings), _ROUGH)
             match = reduced_match(Fraction(slope), Fraction(within), self.field, _SURE)
             if match is not None:
                 short, one = self.field.number(match.value), self.field.number(1)

@@ -9,6 +9,7 @@ neither is left, an edge is left out whose condition follows from the others.
 
 from __future__ import annotations
 
+import random
 from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, NamedTuple
@@ -25,6 +26,9 @@ _ZERO: Final = 1e-8
 """Smaller pivots belong to conditions that follow from others."""
 _WEIGHT: Final = 1e-4
 """A condition with a smaller part in a dependence is not known to follow from others."""
+_TRIES: Final = 20
+_FEW: Final = 400
+"""With more edges, one order is tried only."""
 _MOST_ROWS: Final = 1500
 """Dependences among more conditions are not looked for."""
 _NO_PARTS: Final[FloatArray] = np.zeros(0)
@@ -76,15 +80,32 @@ class Lines:
 
 
 def peeled(places: FloatArray, lines: Lines, bound: Sequence[Edge]) -> Peeled:
-    """The steps that place all vertices, as far as they are found."""
-    search = _Search(places, lines, bound)
-    while search.vertex() or search.drop() or search.angle():
-        pass
-    return Peeled(tuple(reversed(search.steps)), tuple(search.conditions()), frozenset(search.left))
+    """The steps that place all vertices, as far as they are found.
+
+    There is often a choice of the condition that is left out. If one choice leaves a core, others
+    are tried, and the smallest core counts.
+    """
+    found = []
+    for seed in range(_TRIES if len(bound) <= _FEW else 1):
+        search = _Search(places, lines, bound, random.Random(seed) if seed else None)
+        while search.vertex() or search.drop() or search.angle():
+            pass
+        core = tuple(search.conditions())
+        found.append(Peeled(tuple(reversed(search.steps)), core, frozenset(search.left)))
+        if not core:
+            break
+    return min(found, key=lambda order: len(order.core))
 
 
 class _Search:
-    def __init__(self, places: FloatArray, lines: Lines, bound: Sequence[Edge]) -> None:
+    def __init__(
+        self,
+        places: FloatArray,
+        lines: Lines,
+        bound: Sequence[Edge],
+        rng: random.Random | None,
+    ) -> None:
+        self.rng = rng
         size = float(np.ptp(places, axis=0).max())
         self.places, self.lines = places / size, lines
         self.left = set(range(len(places)))
@@ -169,8 +190,11 @@ class _Search:
             v: -len({self.lines.keys[line.edge] for line in at}) for v, at in self.at.items()
         }
         for line, size in zip(lines, sizes, strict=True):
-            rank = max(directions[line.i], directions[line.j]), float(size)
-            if size > _WEIGHT and (best is None or rank > best):
+            if size <= _WEIGHT:
+                continue
+            part = self.rng.random() if self.rng else float(size)
+            rank = max(directions[line.i], directions[line.j]), part
+            if best is None or rank > best:
                 best, chosen = rank, line
         if chosen is None:
             return False
