@@ -1,6 +1,5 @@
 """The options of every command that reads a drawing: how it becomes an exact sheet."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Annotated
@@ -16,7 +15,6 @@ from exactfold.app.shell.parameters import (
     Snap,
     distance,
     flag,
-    names,
     number,
 )
 from exactfold.errors import UsageError
@@ -42,11 +40,10 @@ class ReadingOptions:
         ),
     ] = False
     without: Annotated[
-        Sequence[str] | None,
+        list[str] | None,
         typer.Option(
-            parser=names,
-            metavar="NAMES",
-            help="Relations that were not meant, such as straight@12,kawasaki@7.",
+            metavar="RELATION",
+            help="A relation that was not meant, such as straight@12; repeat for more.",
         ),
     ] = None
     also: Annotated[
@@ -102,8 +99,8 @@ class ReadingOptions:
 def overruling(reading: Reading) -> list[str]:
     """The options that overrule what is inferred, as words of a command."""
     words = []
-    if reading.without:
-        words += ["--without", ",".join(reading.without)]
+    for relation in reading.without:
+        words += ["--without", relation]
     for relation in reading.also:
         words += ["--also", relation]
     if reading.noise is not None:

@@ -132,11 +132,6 @@ def numbers(text: object) -> tuple[int, ...]:
     return tuple(whole(1)(part.strip()) for part in str(text).split(","))
 
 
-def names(text: object) -> tuple[str, ...]:
-    """The names in a list such as straight@12,kawasaki@7."""
-    return tuple(name for part in str(text).split(",") if (name := part.strip()))
-
-
 def sizes(text: object) -> tuple[int, ...]:
     """The sorted sizes in a list of numbers and ranges such as 2-5,8; each is at least 1."""
     try:

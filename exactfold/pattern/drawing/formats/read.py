@@ -50,16 +50,17 @@ _HEADER: Final = 100_000  # bytes in which the code page of a DXF file stands
 _NONE: Final = "exactfold reads FOLD, SVG, CP, OPX, ORI, ORH, DXF, TMD5 and OBJ"
 
 
-def read_drawing(path: str | PathLike[str]) -> Drawing:
+def read_drawing(path: str | PathLike[str], reading: SvgReading | None = None) -> Drawing:
     """The drawing in a file of any known format; its `source` is one line on what was read.
 
-    Raises `UnreadableFileError` and the errors of `parse_drawing`.
+    `reading` has the choices for SVG files. Raises `UnreadableFileError` and the errors of
+    `parse_drawing`.
 
     >>> from exactfold.pattern.data import example_path
     >>> read_drawing(example_path("two-vertex")).source
     'read two-vertex.fold: FOLD 1.2, 11 lines (4 boundary, 7 unassigned)'
     """
-    return parse_drawing(read_bytes(path), PurePath(path).name)
+    return parse_drawing(read_bytes(path), PurePath(path).name, reading)
 
 
 def parse_drawing(content: str | bytes, name: str, reading: SvgReading | None = None) -> Drawing:
