@@ -85,7 +85,8 @@ def sheets(drawing: Drawing) -> tuple[tuple[Drawing, ...], list[Repair]]:
     enclosing = _enclosing(parts, places)
     framing = {k for outer in enclosing for k in outer}
     for k, part in enumerate(parts):
-        _check_nested(part, [parts[m] for m in enclosing[k]], places)
+        alone_there = enclosing.count(enclosing[k]) == 1
+        _check_nested(part, [parts[m] for m in enclosing[k]], alone_there, places)
         nested = enclosing[k] or k in framing
         if nested and (len(part.faces) == 1 or all(line.letter in "BC" for line in part.lines)):
             alone.append(part.outline[0])
@@ -180,15 +181,15 @@ def _check_all(drawing: Drawing, parts: Sequence[_Part], places: FloatArray) -> 
         )
 
 
-def _check_nested(part: _Part, outer: Sequence[_Part], places: FloatArray) -> None:
+def _check_nested(part: _Part, outer: Sequence[_Part], is_alone: bool, places: FloatArray) -> None:
     """Raises an error if a part inside others is neither a hole nor a sheet there.
 
     Its outline tells: a hole and a sheet have boundary lines. Lines without a letter are a boundary
-    inside frames, which have one face each.
+    inside frames, which have one face each, if nothing else lies there (`is_alone`).
     """
     boundary = {frozenset(pair) for pair in _sides(part.outline)}
     letters = {line.letter for line in part.lines if frozenset(line[:2]) in boundary}
-    framed = letters <= {*"BCU"} and all(len(other.faces) == 1 for other in outer)
+    framed = is_alone and letters <= {*"BCU"} and all(len(other.faces) == 1 for other in outer)
     if outer and not framed and not letters <= {*"BC"}:
         v = part.outline[0]
         raise DisconnectedError(

@@ -110,6 +110,8 @@ def test_a_frame_of_lines_without_letters():
     inside = [*square(-1, -1, 9, "U"), (-1, 6, 8, 6, "U"), *unlettered]
     with pytest.raises(DisconnectedError, match="lie inside a panel, and no line joins them"):
         opened(*inside)
+    with pytest.raises(DisconnectedError, match="lie inside a panel, and no line joins them"):
+        opened(*square(-1, -1, 9, "U"), *unlettered, *square(5, 5, 1, "U"))
     lettered = [(*line[:4], "M") for line in [*square(0, 0, 4), *STAR]]
     with pytest.raises(DisconnectedError, match="lie inside a panel, and no line joins them"):
         opened(*square(-1, -1, 9), *lettered)
