@@ -207,7 +207,7 @@ def _take(found: _Found, document: Any, name: str, entity: Any) -> None:
     lines = [(a, b) for a, b in pairwise(exact) if a != b]
     colour, dashes = _style(document, entity)
     found.strokes.append(
-        Stroke(f"{name} on layer {shown(layer)}", colour, dashes, lines, bent=bent)
+        Stroke(f"{name} on layer {shown(layer)}", "", colour, dashes, lines, bent=bent)
     )
     found.layers.append(layer)
 
