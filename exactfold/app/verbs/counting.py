@@ -17,11 +17,11 @@ from exactfold.branches.counting.ways import count_opened, decompose_opened
 from exactfold.branches.values.branch import Branch
 from exactfold.errors import UsageError
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
-from exactfold.pattern.drawing.drawing import Drawing, Snap
+from exactfold.pattern.drawing.drawing import Drawing, Snap, Steps
 from exactfold.pattern.fold import FoldFile
 from exactfold.pattern.loading import PatternLike, open_sheet
 from exactfold.pattern.opening import Opened
-from exactfold.pattern.reading import Reading, Steps
+from exactfold.pattern.reading import Reading
 
 if TYPE_CHECKING:
     from typing import TypeAlias

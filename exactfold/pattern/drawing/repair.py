@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from exactfold._support.plurals import counted
 from exactfold.errors import FoldError, MalformedPatternError, PatternError, UsageError
 from exactfold.pattern.drawing.coordinates import Exact, exact_coordinates, resolution
-from exactfold.pattern.drawing.drawing import Drawing, Snap
+from exactfold.pattern.drawing.drawing import Drawing, Snap, Steps
 from exactfold.pattern.drawing.inexactness import GAP, clear_distances
 from exactfold.pattern.drawing.mending import (
     Repair,
@@ -25,9 +25,6 @@ from exactfold.pattern.drawing.mending import (
 )
 from exactfold.pattern.drawing.sheets import bordered, sheets
 from exactfold.pattern.drawing.splitting import split
-
-if TYPE_CHECKING:
-    from exactfold.pattern.reading import Steps
 
 STEPS: Final = ("merge", "duplicates", "split", "join", "dangling", "dissolve", "border")
 """The steps of repair, in their order."""
