@@ -63,7 +63,7 @@ def count(**options: Any) -> int:
     continue. Several patterns are counted in parallel; the exit code is the worst
     of their exit codes.
     """
-    if len(options["patterns"]) > 1 or options["jsonl"] is not None:
+    if len(options["patterns"]) > 1 or options["jsonl"] or options["sheet"] == "all":
         from exactfold.app.commands.batch import Batch
 
         return Batch(**options).run()

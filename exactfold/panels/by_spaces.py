@@ -22,6 +22,7 @@ from exactfold.panels.regular import (
 from exactfold.panels.result import Part
 from exactfold.panels.stars import Star
 from exactfold.panels.subspaces import Leaf, independent_parts, leaves, reduced
+from exactfold.panels.trees import tree_components
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
 MOST_DIMENSION = 16
@@ -36,8 +37,9 @@ def by_spaces(pattern: PanelPattern, moving: Mapping[int, Star], clock: Clock = 
 
     The dimension of the first-order motions is exact. The part is not decomposed if several forms
     remain on a space and are not shown to be one component, if there are too many spaces, if the
-    dimension is too large, or if the clock has passed. Then the result contains the components that
-    were found, and the folds that stay flat to second order.
+    dimension is too large, or if the clock has passed. Then the components are counted if the
+    vertices form a tree. Otherwise the result contains the components that were found, and the
+    folds that stay flat to second order.
     """
     rows, size = first_order(moving)
     small, left = reduced(moving, rows, size, MOST_REDUCTION, clock)
@@ -53,16 +55,46 @@ def by_spaces(pattern: PanelPattern, moving: Mapping[int, Star], clock: Clock = 
         )
         components, ended = _found(pattern, moving, small, left, clock)
         if not ended:
+            if clock.passed:
+                reason = f"{reason}; {clock.said}"
+            if (tree := by_tree(moving, size)) is not None:
+                return tree
             return _partial(pattern, moving, (rows, size), (small, left), components, reason, clock)
     try:
         most = MOST_STEPS if components is None else MOST_STEPS_BEYOND
         return _complete(pattern, moving, (rows, size), (small, left), most, components, clock)
     except TooManyModesError as error:
+        if (tree := by_tree(moving, size)) is not None:
+            return tree
         if components is None:
             where = f"the part of {counted(len(moving), 'vertex')} with vertex"
             reason = f"{where} {next(iter(moving))}: {error}"
             components, _ = _found(pattern, moving, small, left, clock)
         return _partial(pattern, moving, (rows, size), (small, left), components, reason, clock)
+
+
+def by_tree(moving: Mapping[int, Star], size: int) -> Part | None:
+    """A part whose vertices form a tree: its components are counted; None for other parts.
+
+    `size` is the dimension of the first-order motions.
+    """
+    try:
+        counts = tree_components(moving)
+    except TooManyModesError:
+        return None
+    if counts is None:
+        return None
+    few = all(len(star.folds) <= 4 for star in moving.values())
+    return Part(
+        tuple(moving),
+        "modes" if few else "subspaces",
+        counts,
+        counts if few else None,
+        dimension=size,
+        most=max(counts),
+        by_tree=True,
+        reason=_open(few, True),
+    )
 
 
 def _complete(

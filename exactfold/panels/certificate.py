@@ -45,6 +45,11 @@ def certificate_of_panels(result: Decomposition) -> Document:
             f"only a proved decomposition has a certificate; this one is {result.status} "
             f"({result.reason})"
         )
+    if any(part.by_tree for part in result.parts):
+        raise NotApplicableError(
+            "a certificate lists the motions, and here they were counted along trees of vertices "
+            "without a list"
+        )
     pattern = result.pattern
     moving = stars(pattern, result.held)
     listed: dict[tuple[Edge, ...], list[Mode]] = {}

@@ -15,7 +15,7 @@ from exactfold._support.plurals import counted
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.errors import TooManyModesError
-from exactfold.panels.by_spaces import by_spaces
+from exactfold.panels.by_spaces import by_spaces, by_tree
 from exactfold.panels.densities import UndecidedDensityError
 from exactfold.panels.elementary import ElementaryMode, ModeSearch, Support
 from exactfold.panels.extension import Extension, Loops, extend_together, extension
@@ -105,7 +105,7 @@ def decompose(
             reason="; ".join(dict.fromkeys(reasons)),
             found=product((part.at_least for part in parts), len(free)),
         )
-    if result.true is None and any(part.spaces or part.found for part in parts):
+    if result.true is None and any(part.spaces or part.found or part.by_tree for part in parts):
         result = replace(result, found_true=product((part.folding for part in parts), len(free)))
     return replace(result, rigid=_rigidity(result))
 
@@ -125,7 +125,7 @@ def _rigidity(result: Decomposition) -> Verdict:
 def _modes_count(parts: Iterable[Part]) -> int | None:
     total = 0
     for part in parts:
-        if part.theory != "modes" or part.second_order is None:
+        if part.theory != "modes" or part.second_order is None or part.by_tree:
             return None
         total += sum(support.count for support in part.supports)
     return total
@@ -154,6 +154,8 @@ def _part(pattern: PanelPattern, moving: Mapping[int, Star], listed: int, clock:
         where = f"the part of {counted(len(vertices), 'vertex')} with vertex {vertices[0]}"
         theory = "modes" if few else "subspaces"
         rows, size = first_order(moving)
+        if (tree := by_tree(moving, size)) is not None:
+            return tree
         most = most_freedom(moving, rows, size)
         reason = f"{where}: {error}"
         return Part(vertices, theory, None, None, dimension=size, most=most, reason=reason)

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import islice
 from typing import Final
 
 from exactfold._support.clock import UNLIMITED, Clock
 from exactfold._support.verdict import PROVED
 from exactfold.exact.surds import exact, sign, simple
+from exactfold.panels.clauses import ModeClauses, has_solver
 from exactfold.panels.extension import extension
 from exactfold.panels.found import exact_leaf
 from exactfold.panels.kernel import Rows, entry, number
 from exactfold.panels.local import LocalMode
-from exactfold.panels.proposals import Proposals
+from exactfold.panels.proposals import Proposals, is_too_large
 from exactfold.panels.result import Mode
 from exactfold.panels.stars import Star
+from exactfold.panels.straight import straight_creases
 from exactfold.panels.subspaces import independent_parts
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
@@ -22,6 +25,7 @@ MOST_MODES: Final = 12
 _TRIES: Final = 5
 """If this many exactly computed proposals give no mode, the search stops."""
 _MOST_ROOTS: Final = 3
+_MOST_BY_CLAUSES: Final = 200
 
 
 def folding_modes(
@@ -32,23 +36,48 @@ def folding_modes(
     most: int,
     clock: Clock = UNLIMITED,
 ) -> list[Mode]:
-    """Modes that are proved to truly fold: among those found, the twelve with the most folds.
+    """Modes that are proved to truly fold; those that share no vertex, and then up to twelve.
 
-    `rows` is a space that contains all real motions of the part. `Proposals` suggests linear spaces
-    on which all forms vanish, and each is computed again exactly. It may be a direct sum of spaces.
-    If one of these is a line on which no vertex has more than four active folds, the line is a
-    mode, and the extension theorem says whether it truly folds (docs/panels.md, Which modes truly
+    Straight creases from boundary to boundary are modes. Others are found by clauses, if python-sat
+    is installed (`ModeClauses`). If there are none, or without python-sat, `Proposals` suggests
+    linear spaces on which all forms vanish, and each is computed again exactly. `rows` is a space
+    that contains all real motions of the part. A proposed space may be a direct sum of spaces. If
+    one of these is a line on which no vertex has more than four active folds, the line is a mode,
+    and the extension theorem says whether it truly folds (docs/panels.md, Which modes truly
     fold). The motions of a mode need not be a component: they may lie in a larger family, and there
     may be many more modes. The work is limited to `most` steps, as in `found_components`, and by
     the clock. If no mode is found, nothing follows.
     """
-    modes: dict[tuple[tuple[Edge, str], ...], Mode] = {}
-    work = 0
-    search = Proposals(moving, rows, size, regular=False, clock=clock)
-    for tried, proposal in enumerate(search):
+    straight = (folding_mode(pattern, moving, line) for line in straight_creases(moving))
+    modes = _by_letters(mode for mode in straight if mode is not None)
+    if has_solver():
+        clauses = ModeClauses(pattern, moving, clock=clock)
+        modes |= _by_letters(islice(clauses, _MOST_BY_CLAUSES))
+    if not modes or not has_solver():
+        modes |= _by_letters(_proposed(pattern, moving, rows, size, most, clock))
+    return _chosen(sorted(modes.values(), key=lambda mode: -len(mode.assignment)))
+
+
+def _by_letters(modes: Iterable[Mode]) -> dict[tuple[tuple[Edge, str], ...], Mode]:
+    return {tuple(sorted(mode.assignment.items())): mode for mode in modes}
+
+
+def _proposed(
+    pattern: PanelPattern,
+    moving: Mapping[int, Star],
+    rows: Rows,
+    size: int,
+    most: int,
+    clock: Clock,
+) -> Iterator[Mode]:
+    """Modes on lines that `Proposals` suggests."""
+    if clock.passed or is_too_large(rows, size):
+        return
+    work, found = 0, False
+    for tried, proposal in enumerate(Proposals(moving, rows, size, regular=False, clock=clock)):
         work += (len(proposal.steps) + 1) * len(rows) * size
-        if work > most or (tried == _TRIES and not modes) or clock.passed:
-            break
+        if work > most or (tried == _TRIES and not found) or clock.passed:
+            return
         leaf = exact_leaf(moving, rows, size, proposal, _MOST_ROOTS)
         if leaf is None or leaf.vertices:
             continue
@@ -56,8 +85,24 @@ def folding_modes(
         for line, dimension in independent_parts(lines, leaf.size, moving):
             mode = folding_mode(pattern, moving, line) if dimension == 1 else None
             if mode is not None:
-                modes.setdefault(tuple(sorted(mode.assignment.items())), mode)
-    return sorted(modes.values(), key=lambda mode: -len(mode.assignment))[:MOST_MODES]
+                found = True
+                yield mode
+
+
+def _chosen(modes: Sequence[Mode]) -> list[Mode]:
+    """Modes without a common vertex, as many as a simple choice finds, and the first of the others.
+
+    The choice takes modes with few vertices first.
+    """
+    together: set[int] = set()
+    kept: list[int] = []
+    for k in sorted(range(len(modes)), key=lambda k: len(modes[k].active)):
+        if not together.intersection(modes[k].active):
+            together.update(modes[k].active)
+            kept.append(k)
+    others = [k for k in range(len(modes)) if k not in kept]
+    kept += others[: max(0, MOST_MODES - len(kept))]
+    return [modes[k] for k in sorted(kept)]
 
 
 def folding_mode(pattern: PanelPattern, moving: Mapping[int, Star], line: Rows) -> Mode | None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from exactfold._support.clock import UNLIMITED, Clock
 from exactfold.errors import TooManyModesError
 from exactfold.panels.kernel import Entry, Rows, imposed
-from exactfold.panels.proposals import Proposal, Proposals
+from exactfold.panels.proposals import Proposal, Proposals, is_too_large
 from exactfold.panels.regular import (
     Balls,
     Forms,
@@ -65,6 +65,8 @@ def found_components(
 
     The second value says whether the floating-point search reached its end, which proves nothing.
     """
+    if clock.passed or is_too_large(rows, size):
+        return [], False
     forms = Forms(moving)
     whole = in_balls(rows)
     search = Proposals(moving, rows, size, clock=clock)

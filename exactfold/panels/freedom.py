@@ -12,12 +12,14 @@ from scipy.linalg import qr
 from exactfold._support.arrays import FloatArray
 from exactfold.exact.surds import ball
 from exactfold.panels.kernel import Rows
+from exactfold.panels.proposals import in_floats
 from exactfold.panels.regular import BITS
 from exactfold.panels.stars import Star
 from exactfold.pattern.panel_pattern import Edge
 
 _TINY: Final = 1e-6
 _MOST_RANK: Final = 200
+_MOST_TURNED: Final = 400
 
 
 def most_freedom(stars: Mapping[int, Star], rows: Rows, size: int) -> int:
@@ -46,7 +48,9 @@ def _chosen(stars: Mapping[int, Star], rows: Rows) -> list[int]:
     place = {edge: k for k, edge in enumerate(rows)}
     if not place:
         return []
-    basis = np.linalg.qr(np.array([[float(x) for x in row] for row in rows.values()]))[0]
+    basis = in_floats(rows.values())
+    if basis.shape[1] <= _MOST_TURNED:
+        basis = np.linalg.qr(basis)[0]
     best: list[int] = []
     full = [v for v, star in stars.items() if len(star.folds) >= 4]
     near = {v: {u for e in stars[v].folds for u in e if u != v} for v in full}
@@ -90,7 +94,7 @@ def _restricts_onto(
     for v in vertices:
         folds |= dict.fromkeys(edge for edge in stars[v].folds if edge in rows)
         wanted += len(stars[v].folds) - 2
-    near = _scaled(np.array([[float(x) for x in rows[edge]] for edge in folds]))
+    near = _scaled(in_floats(rows[edge] for edge in folds))
     if min(near.shape) < wanted:
         return False
     columns = qr(near, pivoting=True, mode="r")[1][:wanted]

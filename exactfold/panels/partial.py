@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TypedDict
 
-from exactfold._support.documents import Natural, VerdictText
+from exactfold._support.documents import FoldText, Natural, VerdictText
 from exactfold._support.verdict import Verdict
+from exactfold.pattern.panel_pattern import Edge
 
 
 class FreedomDocument(TypedDict):
@@ -26,6 +27,9 @@ class DrawnDocument(TypedDict):
     truly: VerdictText
     """Whether true motions of the panels begin with these letters."""
     reasons: list[str]
+    together: list[FoldText]
+    """Creases that truly fold together, each as drawn, while all others stay flat; proved, and
+    there may be larger sets."""
 
 
 @dataclass(frozen=True)
@@ -57,11 +61,16 @@ class Freedom:
 
 @dataclass(frozen=True)
 class Drawn:
-    """Whether the sheet starts to fold with the letters of its drawing, as `match_panels` says."""
+    """Whether the sheet starts to fold with the letters of its drawing, as `match_panels` says.
+
+    `together` are folds that truly fold together, each the way of its letter, while all others stay
+    flat. They are proved to do so; there may be larger sets.
+    """
 
     starts: Verdict
     truly: Verdict
     reasons: tuple[str, ...]
+    together: tuple[Edge, ...] = ()
 
     def to_dict(self) -> DrawnDocument:
         """The object of this answer in the JSON output."""
@@ -69,4 +78,5 @@ class Drawn:
             "starts": str(self.starts),
             "truly": str(self.truly),
             "reasons": list(self.reasons),
+            "together": [f"{i}-{j}" for i, j in self.together],
         }

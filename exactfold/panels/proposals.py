@@ -10,7 +10,7 @@ import numpy as np
 
 from exactfold._support.arrays import FloatArray
 from exactfold._support.clock import UNLIMITED, Clock
-from exactfold.panels.kernel import Rows
+from exactfold.panels.kernel import Entry, Rows
 from exactfold.panels.stars import Star
 from exactfold.pattern.panel_pattern import Edge
 
@@ -18,9 +18,15 @@ _TINY: Final = 1e-7
 _MOST_NODES: Final = 1_000
 _MOST_WORK: Final = 4_000_000_000
 _MOST_VISITS: Final = 50_000
+_FEWEST_NODES: Final = 4
 _STARTS: Final = 4
 _MOST_ATTEMPTS: Final = 24
 _MOST_PROPOSALS: Final = 60
+
+
+def is_too_large(rows: Rows, size: int) -> bool:
+    """Whether a search in this space would end after a few nodes, and takes long to begin."""
+    return len(rows) * size**2 > _MOST_WORK // _FEWEST_NODES
 
 
 Step: TypeAlias = tuple[int | Edge, Mapping[Edge, float] | None]
@@ -82,7 +88,7 @@ class Proposals:
         self._regular = regular
         self._edges = list(rows)
         place = {edge: k for k, edge in enumerate(self._edges)}
-        basis = np.array([[float(x) for x in rows[edge]] for edge in self._edges])
+        basis = in_floats(rows.values())
         self._whole: FloatArray = np.linalg.qr(basis)[0]
         self._size = size
         self._folds: dict[int, FloatArray] = {}
@@ -246,6 +252,11 @@ class Proposals:
     def _rank(self, w: FloatArray) -> int:
         jacobian = self._jacobian(list(self._forms), w) @ self._whole
         return int(np.linalg.matrix_rank(jacobian, tol=1e-7))
+
+
+def in_floats(rows: Iterable[Sequence[Entry]]) -> FloatArray:
+    """Rows of exact numbers in floating point."""
+    return np.array([[float(x) if x else 0.0 for x in row] for row in rows])
 
 
 def _without(basis: FloatArray, functionals: FloatArray) -> FloatArray:

@@ -87,7 +87,7 @@ class MotionKeys(TypedDict):
     """The keys of a count that belong to motions of rigid panels."""
 
     components: ComponentsDocument | None
-    degrees_of_freedom: FreedomDocument | None
+    freedom: FreedomDocument | None
     drawn: DrawnDocument | None
     """The answer for the letters of the drawing; null if all ways are known."""
     modes_count: Natural | None
@@ -105,7 +105,7 @@ class CountKeys(MotionKeys):
     """The keys that a count of branches and one of motions of panels have in common."""
 
     format: Literal["exactfold count result"]
-    version: Literal[1]
+    version: Literal[2]
     reason: str
     why: str
     """Why the method was chosen."""
@@ -250,7 +250,7 @@ class Decomposition(Page, Ways[Mode], Certified):
         """
         keys: PanelCountKeys = {
             "format": "exactfold count result",
-            "version": 1,
+            "version": 2,
             "pattern": described_panels(self.pattern, name),
             "reason": self.reason,
             "method": self.theory,
@@ -306,7 +306,7 @@ class Decomposition(Page, Ways[Mode], Certified):
         """The keys of JSON that belong to motions of panels."""
         return {
             "components": self._components(),
-            "degrees_of_freedom": None if self.freedom is None else self.freedom.to_dict(),
+            "freedom": None if self.freedom is None else self.freedom.to_dict(),
             "drawn": None if self.drawn is None else self.drawn.to_dict(),
             "modes_count": self.modes_count,
             "modes": [mode.to_dict() for mode in self.modes],
@@ -371,7 +371,8 @@ class Part:
     None where it was not needed. `most` is an upper bound for the dimension of true motions, where
     these are not all known. `found` are the components that were found, if not all are known
     or not all are known to fold. `still` are the folds that are flat in every motion to second
-    order.
+    order. `by_tree` says that the vertices form a tree along which the components were counted;
+    then each of them is known to fold, and none is listed.
     """
 
     vertices: tuple[int, ...]
@@ -388,6 +389,7 @@ class Part:
     reason: str = ""
     found: tuple[FoundComponent, ...] = ()
     still: tuple[Edge, ...] = ()
+    by_tree: bool = False
 
     @property
     def at_least(self) -> Counts | None:
@@ -403,6 +405,8 @@ class Part:
         """
         if self.true is not None:
             return self.true
+        if self.by_tree:
+            return self.second_order
         shown = zip(self.spaces, self.spaces_fold, strict=True)
         known = _counted(leaf.dimension for leaf, folds in shown if folds)
         by_components = _by_dimension(one for one in self.found if one.folds)

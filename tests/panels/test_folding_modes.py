@@ -11,6 +11,7 @@ from exactfold.app.pictures.way_sheets import sheet_of_ways
 from exactfold.app.report.panels import panels_report
 from exactfold.motion.panels.followable import panel_components, panel_modes
 from exactfold.panels import by_spaces
+from exactfold.panels import folding_modes as by_modes
 from exactfold.panels.decomposition import decompose
 from exactfold.panels.folding_modes import MOST_MODES, folding_modes
 from exactfold.panels.kernel import first_order
@@ -33,12 +34,20 @@ def boxes(size: int, slants: str) -> PanelPattern:
     return PanelPattern([(i, j) for i in range(up) for j in range(up)], edges)
 
 
-@pytest.fixture(scope="module", params=["/  ", "/ \\ "], ids=["one way", "both ways"])
+@pytest.fixture(
+    scope="module",
+    params=[("/  ", True), ("/ \\ ", True), ("/  ", False), ("/ \\ ", False)],
+    ids=["one way", "both ways", "one way by spaces", "both ways by spaces"],
+)
 def result(request: pytest.FixtureRequest) -> Decomposition:
     # Whether the search in floats finds a component depends on their roundings.
+    slants, solver = request.param
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(by_spaces, "found_components", lambda *_: ([], False))
-        found = decompose(boxes(5, request.param))
+        if not solver:
+            patch.setattr(by_modes, "has_solver", lambda: False)
+            patch.setattr(by_modes, "straight_creases", lambda _: [])
+        found = decompose(boxes(5, slants))
     assert (found.status, found.found) == (UNDECIDED, None)
     return found
 

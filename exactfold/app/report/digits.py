@@ -29,6 +29,9 @@ def digits_line(result: OfDigits) -> Text:
     else:
         from exactfold.app.report.panels import panels_answer
 
-        said = panels_answer(replace(cast("Decomposition", result), meant=None))
+        panels = cast("Decomposition", result)
+        said = panels_answer(replace(panels, meant=None))
+        if panels.second_order is None and panels.freedom is not None:
+            said.append(f"; {panels.freedom.text} - PROVED")
     end = " (--snap exact)" if which == "as written" else ""
     return Text.assemble(_SHEETS[which], said, end)

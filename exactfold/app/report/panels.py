@@ -122,6 +122,12 @@ def _known(result: Decomposition) -> list[str]:
         lines.append(f"{freedom.text} - PROVED{more}")
     if result.drawn is not None:
         lines.append(_drawn(result.drawn))
+        if result.drawn.together:
+            number = len(result.drawn.together)
+            lines.append(
+                f"{counted(number, 'crease')} {'folds' if number == 1 else 'fold'} together as drawn, "
+                "while all others stay flat - PROVED; there may be larger sets"
+            )
     solved = [part for part in result.parts if part.true is not None]
     known = product((part.true for part in solved), 0)
     if solved and known is not None and result.true is None:
@@ -142,6 +148,8 @@ def _drawn(drawn: Drawn) -> str:
 
 
 def _notes(result: Decomposition, everything: bool) -> list[str]:
+    from exactfold.panels.clauses import has_solver
+
     notes = []
     if result.true is not None and result.second_order != result.true:
         notes.append(
@@ -162,6 +170,10 @@ def _notes(result: Decomposition, everything: bool) -> list[str]:
         notes.append(_flat(result.still, "in every motion to second order", everything))
     if result.free:
         notes.append(f"{counted(len(result.free), 'fold')} from boundary to boundary, each free")
+    if result.second_order is None and not result.doubt and not has_solver():
+        notes.append(
+            "with python-sat (pip install 'exactfold[sat]') a search by clauses may find more ways"
+        )
     if result.second_order is None and result.modes:
         notes.append("each mode listed below truly folds, and there may be others")
     asked = result.drawn or result.as_written

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import partial
 from typing import TYPE_CHECKING
 
 from exactfold._support.clock import UNLIMITED, Clock
@@ -18,12 +17,8 @@ from exactfold.pattern.opening import Opened, has_branches, panels, triangulated
 from exactfold.pattern.reading import PLAIN, Reading
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from exactfold.branches.values.result import BranchCount
     from exactfold.panels.result import Decomposition
-    from exactfold.pattern.drawing.drawing import Snap
-    from exactfold.pattern.panel_pattern import PanelPattern
 
 _MOST_MODES = 100
 _MOST_SPACES = 30
@@ -48,9 +43,7 @@ def count_ways(
     vertices; its irreducible components are the `families` of the result. Every other sheet has
     motions of rigid panels, which `decompose` finds. The type of the result shows which theory
     applied. Files of all formats are read (`open_pattern`); drawings are repaired and made exact.
-    `reading` says how. If loops of the sheet nearly
-    close, the file is read again with other values of `snap`, and for each loop the result names
-    the first value with which it closes.
+    `reading` says how.
 
     The clock ends the search for motions of panels, and nothing else. Raises the errors of
     `open_pattern` and `count_branches`.
@@ -133,23 +126,4 @@ def _decomposed(opened: Opened, progress: Progress | None, clock: Clock) -> Deco
 
     sheet = opened.sheet
     pattern = panels(sheet) if isinstance(sheet, CreasePattern) else sheet
-    ways = replace(decompose(pattern, progress=progress, clock=clock), read=opened.read)
-    if not ways.nearly_closing or opened.again is None or clock.passed:
-        return ways
-    from exactfold.panels.near_misses import snapped_misses
-
-    reopened = partial(_reopened, opened.again, opened.reading)
-    misses = snapped_misses(ways.near_misses, pattern, reopened)
-    return replace(ways, near_misses=misses)
-
-
-def _reopened(
-    again: Callable[[Reading], Opened], reading: Reading, snap: Snap
-) -> tuple[PanelPattern, float]:
-    """The sheet that is read with another snap, and the largest move of a vertex over its size."""
-    opened = again(replace(reading, snap=snap))
-    sheet = panels(opened.sheet) if isinstance(opened.sheet, CreasePattern) else opened.sheet
-    if not opened.snapped:
-        return sheet, opened.largest_move
-    size = max(float(max(c) - min(c)) for c in zip(*sheet.vertices, strict=True))
-    return sheet, float(opened.snapped) / size
+    return replace(decompose(pattern, progress=progress, clock=clock), read=opened.read)

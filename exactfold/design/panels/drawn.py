@@ -3,13 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import islice
+from typing import Final
 
 from exactfold._support.clock import UNLIMITED, Clock
 from exactfold._support.progress import Progress
+from exactfold._support.verdict import PROVED
 from exactfold.design.panels.match import match_panels
+from exactfold.design.panels.refutation import held
+from exactfold.design.refutations.refutation import Letters
+from exactfold.panels.clauses import ModeClauses, has_solver
 from exactfold.panels.partial import Drawn
 from exactfold.panels.result import Decomposition
+from exactfold.panels.stars import stars
 from exactfold.pattern.opening import Opened
+from exactfold.pattern.panel_pattern import Edge, PanelPattern
+
+_MOST_MODES: Final = 200
 
 
 def with_drawn(
@@ -28,4 +38,28 @@ def with_drawn(
     if known or opened.doubt or not {"M", "V"}.intersection(opened.letters.values()):
         return ways
     matched = match_panels(opened, progress=progress, clock=clock)
-    return replace(ways, drawn=Drawn(matched.starts, matched.truly, matched.reasons))
+    together: tuple[Edge, ...] = ()
+    if matched.starts is not PROVED:
+        together = folding_together(ways.pattern, matched.letters, clock)
+    return replace(ways, drawn=Drawn(matched.starts, matched.truly, matched.reasons, together))
+
+
+def folding_together(pattern: PanelPattern, letters: Letters, clock: Clock) -> tuple[Edge, ...]:
+    """Folds that truly fold together, each the way of its letter, while all others stay flat.
+
+    They are modes that were found by clauses (`ModeClauses`) and share no vertex, so that they fold
+    independently, and folds from boundary to boundary. The modes with the most folds are taken
+    first. Without python-sat only the latter are found.
+    """
+    interior = set(pattern.interior)
+    folds = {e for e in pattern.folds if letters[e] in "MV" and not interior.intersection(e)}
+    if not has_solver():
+        return tuple(sorted(folds))
+    moving = stars(pattern, held(letters))
+    taken: set[int] = set()
+    modes = islice(ModeClauses(pattern, moving, letters, clock), _MOST_MODES)
+    for mode in sorted(modes, key=lambda mode: -len(mode.assignment)):
+        if not taken.intersection(mode.active):
+            taken.update(mode.active)
+            folds.update(mode.assignment)
+    return tuple(sorted(folds))

@@ -9,6 +9,7 @@ from files import CORNERS, FACES, written
 from running import (
     PROVED,
     UNDECIDED,
+    USAGE,
     run,
 )
 from sheets import DENTED, SQUARE, TRIANGLE, nested_triangles, scrambled, with_point
@@ -31,7 +32,7 @@ COUNT_KEYS = {
 PANEL_KEYS = {
     *("theory", "rigid", "components", "modes_count", "modes", "flat_folds", "free_folds"),
     *("near_misses", "meant", "as_written", "read", "still_folds", "pieces", "letters"),
-    "exceptional_vertices",
+    *("exceptional_vertices", "freedom", "drawn"),
 }
 EXTRA_KEYS = {"reason", "why", "open_questions", "settings", "dimension", "degree", "true_bounds"}
 BRANCH_KEYS = {"vertex_signs", "assignment", "multiplicity", "representative", "heights"}
@@ -237,3 +238,45 @@ def test_factors_of_the_branch_polynomial_are_reported(two_vertex):
     assert "irreducible over Q of degree 4" in result.stdout
     result = run("count", example_path("flat-vertex"), "--method", "groebner", "--verbose")
     assert "factors of degrees 1 2" in result.stdout
+
+
+BOXES = {
+    "file_spec": 1.1,
+    "vertices_coords": [[i, j] for i in range(6) for j in range(6)],
+    "edges_vertices": [
+        *([6 * i + j, 6 * i + j + 6] for i in range(5) for j in range(6)),
+        *([6 * i + j, 6 * i + j + 1] for i in range(6) for j in range(5)),
+        *([6 * i + j, 6 * i + j + 7] for i in range(5) for j in range(5) if (i + 2 * j) % 3 == 0),
+    ],
+}
+BOXES["edges_assignment"] = [
+    "B" if any({i // 6, j // 6} == {k} or {i % 6, j % 6} == {k} for k in (0, 5)) else "V"
+    for i, j in BOXES["edges_vertices"]
+]
+
+
+def test_what_is_proved_of_a_large_drawing_is_printed_in_time(tmp_path):
+    path = tmp_path / "boxes.fold"
+    path.write_text(json.dumps(BOXES))
+    result = run("count", path, "--limit", "1e-6")
+    assert result.exit_code == UNDECIDED
+    text = " ".join(result.stdout.split())
+    assert "the time limit of 1e-06 seconds (--limit) was reached" in text
+    assert (
+        "degrees of freedom: between 3 and 12 - PROVED; the first-order motions have dimension 17"
+    ) in text
+    assert (
+        "it does not start to fold with the drawn mountains and valleys - PROVED: the folds of "
+        "vertex "
+    ) in text
+    assert "see `exactfold match`" not in text
+
+
+@pytest.mark.parametrize("limit", ["0", "-1", "nan", "soon"])
+def test_a_limit_is_a_positive_number_of_seconds(tmp_path, limit):
+    path = tmp_path / "boxes.fold"
+    path.write_text(json.dumps(BOXES))
+    for command in ("count", "match"):
+        result = run(command, path, "--limit", limit)
+        assert result.exit_code == USAGE
+        assert "seconds" in " ".join(result.stderr.split())

@@ -5,12 +5,12 @@ from __future__ import annotations
 from bisect import bisect, insort
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
-from math import inf, log2, pi
+from math import log2, pi
 from typing import Final, NamedTuple
 
 from exactfold.pattern.drawing.meant.accepted import Accepted, Trial
 from exactfold.pattern.drawing.meant.drawn import Drawn
-from exactfold.pattern.drawing.meant.noise import is_rare
+from exactfold.pattern.drawing.meant.noise import LOOKED_FOR, is_rare
 from exactfold.pattern.drawing.meant.values import Edge, Relation
 
 UNITS: Final = (*range(1, 61), 64, 72, 80, 90, 96, 120, 144, 180)
@@ -22,7 +22,8 @@ _PLAIN: Final = 2
 """Without a grid, edges may be mirrored in the axes of the drawing."""
 _REFERENCES: Final = 3
 _DIRECTIONS: Final = 100
-"""So many directions, those of the longest edges, are enough to choose a grid."""
+_EDGES: Final = 300
+"""So many directions and so many edges, the longest, are enough to choose a grid."""
 
 
 class Grid(NamedTuple):
@@ -94,19 +95,30 @@ def _chosen(accepted: Accepted, edges: Sequence[Edge], unit: int | None) -> Grid
     """The grid that explains the directions best; None if chance explains them as well."""
     directions = list(islice(_distinct(accepted, edges), _DIRECTIONS))
     units = UNITS if unit is None else (unit,)
-    best, most = None, 0.0 if unit is None else -inf
-    for reference in (None, *directions[:_REFERENCES]):
-        others = [edge for edge in directions if edge != reference]
-        for n in units:
-            bits = _explained(accepted, others, Grid(n, reference)) - log2(n)
-            if bits > most:
-                best, most = Grid(n, reference), bits
-    if best is None or unit is not None:
-        return best
-    trials = list(_on_grid(accepted, best, forced=False))
-    expected = best.unit * sum(trial.probability for trial in trials)
-    hits = sum(trial.relation is not None for trial in trials)
-    return best if is_rare(expected, hits) else None
+    grids = {
+        Grid(n, reference): _explained(accepted, directions, Grid(n, reference)) - log2(n)
+        for reference in (None, *directions[:_REFERENCES])
+        for n in units
+    }
+    if unit is not None:
+        return max(grids, key=lambda grid: grids[grid])
+    for grid, bits in sorted(grids.items(), key=lambda pair: -pair[1]):
+        if bits > 0 and _is_clear(accepted, edges[:_EDGES], grid):
+            return grid
+    return None
+
+
+def _is_clear(accepted: Accepted, edges: Sequence[Edge], grid: Grid) -> bool:
+    """Whether chance hardly puts as many of the longest edges on any grid up to this one."""
+    expected, hits = 0.0, 0
+    for edge in edges:
+        if edge != grid.reference:
+            off, spread, step = _off_grid(accepted, edge, grid)
+            expected += grid.unit * min(1.0, 2 * spread / step)
+            hits += off <= spread
+            if is_rare(expected, hits, unlikely=LOOKED_FOR):
+                return True
+    return False
 
 
 def _distinct(accepted: Accepted, edges: Iterable[Edge]) -> Iterator[Edge]:
@@ -125,15 +137,20 @@ def _off(angle: float, step: float) -> float:
     return min(rest, step - rest)
 
 
-def _explained(accepted: Accepted, edges: Sequence[Edge], grid: Grid) -> float:
-    """Minus the binary logarithm of the probability that chance puts as many edges on a grid."""
+def _off_grid(accepted: Accepted, edge: Edge, grid: Grid) -> tuple[float, float, float]:
+    """By how much an edge misses a grid, by how much it may, and the step of the grid."""
     angles = accepted.drawn.angles
     start = 0.0 if grid.reference is None else angles[grid.reference]
     step = pi / grid.unit
+    return _off(angles[edge] - start, step), _spread(accepted, edge), step
+
+
+def _explained(accepted: Accepted, edges: Sequence[Edge], grid: Grid) -> float:
+    """Minus the binary logarithm of the probability that chance puts as many edges on a grid."""
     bits = 0.0
     for edge in edges:
-        spread = _spread(accepted, edge)
-        if _off(angles[edge] - start, step) <= spread:
+        off, spread, step = _off_grid(accepted, edge, grid)
+        if off <= spread and edge != grid.reference:
             bits -= log2(min(1.0, 2 * spread / step))
     return bits
 

@@ -1,0 +1,84 @@
+"""Bounds of the degrees of freedom: known values, never too small, and refused without a proof."""
+
+from itertools import combinations
+
+import pytest
+from flint import fmpq_mat
+from panel_sheets import mesh, miura, shifted_columns, tiling
+
+from exactfold._support.clock import Clock
+from exactfold._support.verdict import UNDECIDED
+from exactfold.panels import freedom
+from exactfold.panels.decomposition import decompose
+from exactfold.panels.freedom import most_freedom
+from exactfold.panels.kernel import first_order
+from exactfold.panels.stars import stars
+from exactfold.pattern.families import single_vertex
+from exactfold.pattern.opening import panels
+from exactfold.pattern.panel_pattern import PanelPattern
+
+SHEETS = {
+    "single": panels(single_vertex(7)),
+    "miura": miura(2, 3),
+    "mesh": mesh(2, 2, seed=1),
+    "tiling": tiling(3, 3),
+    "columns": shifted_columns(3),
+}
+
+
+def bound(pattern: PanelPattern) -> int:
+    moving = stars(pattern)
+    return most_freedom(moving, *first_order(moving))
+
+
+@pytest.mark.parametrize("name", SHEETS)
+def test_no_component_has_more_dimensions(name: str) -> None:
+    known = decompose(SHEETS[name])
+    assert known.second_order is not None
+    assert bound(SHEETS[name]) >= max(known.second_order)
+
+
+@pytest.mark.parametrize("count", range(4, 9))
+def test_a_single_vertex_has_exactly_its_folds_less_three(count: int) -> None:
+    assert bound(panels(single_vertex(count))) == count - 3
+
+
+@pytest.mark.parametrize("name", SHEETS)
+def test_a_restriction_is_onto_only_if_its_rank_says_so(name: str) -> None:
+    """Every pair of vertices, against the rank that FLINT computes over Q."""
+    moving = stars(SHEETS[name])
+    rows, size = first_order(moving)
+    for some in combinations(moving, min(2, len(moving))):
+        folds = sorted({edge for v in some for edge in moving[v].folds if edge in rows})
+        rank = fmpq_mat([list(rows[edge]) for edge in folds]).rank()
+        wanted = sum(len(moving[v].folds) - 2 for v in some)
+        assert freedom._restricts_onto(moving, rows, size, some) is (rank == wanted)
+
+
+def test_a_choice_that_is_not_onto_gives_a_weaker_bound(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two neighbours share a fold: floats that propose both are not believed."""
+    pattern = mesh(2, 1, seed=1)
+    moving = stars(pattern)
+    rows, size = first_order(moving)
+    assert most_freedom(moving, rows, size) == size - 1
+    monkeypatch.setattr(freedom, "_chosen", lambda *_: sorted(moving))
+    assert most_freedom(moving, rows, size) == size - 1
+
+
+def test_bounds_of_a_complete_answer_are_its_dimension() -> None:
+    known = decompose(miura(2, 3)).freedom
+    assert known is not None
+    assert (known.least, known.most, known.text) == (2, 2, "degrees of freedom: 2")
+
+
+def test_a_search_without_time_still_bounds_the_degrees_of_freedom() -> None:
+    for pattern in (miura(2, 3), panels(single_vertex(7))):
+        stopped = decompose(pattern, clock=Clock(0))
+        assert stopped.status is UNDECIDED
+        assert "the time limit of 0 seconds (--limit) was reached" in stopped.reason
+        known, bounds = decompose(pattern).freedom, stopped.freedom
+        assert known is not None
+        assert bounds is not None
+        assert bounds.least <= known.least
+        assert bounds.most >= known.most
+        assert bounds.first_order == first_order(stars(pattern))[1]
