@@ -12,8 +12,7 @@ from exactfold._support.documents import Natural, NotNegative
 from exactfold._support.plurals import agreeing, counted
 from exactfold.errors import NotApplicableError
 from exactfold.pattern.drawing.meant.left import left_relations, nearly
-from exactfold.pattern.drawing.meant.values import Kind, Relation
-from exactfold.pattern.meant_sheet import Existence
+from exactfold.pattern.drawing.meant.values import Existence, Kind, Relation
 
 if TYPE_CHECKING:
     from exactfold.pattern.drawing.meant.inference import Inference
@@ -30,6 +29,8 @@ _KINDS: Final[tuple[tuple[str, tuple[Kind, ...]], ...]] = (
 """The kinds of relations in words."""
 _DISTANT: Final[tuple[Kind, ...]] = ("sectors", "mirrored", "parallel", "grid")
 """The kinds of relations on which no closing condition depends, as they are left out at need."""
+
+_MOST_EDGES: Final = 1000
 
 
 class RelationDocument(TypedDict):
@@ -207,12 +208,13 @@ def inferred(written: PanelPattern, reading: Reading) -> Meant:
 
     `written` is the sheet with the digits as written; its coordinates are rational. If no exact
     sheet is found that has all relations, those between distant edges are left out, in the order of
-    `_DISTANT`. Raises the errors of `infer` for relations that do not exist or contradict each
-    other.
+    `_DISTANT`; this is done for sheets of up to 1,000 edges. Raises the errors of `infer` for
+    relations that do not exist or contradict each other.
     """
     all_found = _found(written, reading, ())
     meant = _realized(written, all_found)
-    for number in range(1, len(_DISTANT) + 1):
+    attempts = len(_DISTANT) if len(written.edges) <= _MOST_EDGES else 0
+    for number in range(1, attempts + 1):
         if all_found.angles is None or meant.inferred:
             break
         kinds_found = {relation.kind for relation in all_found.relations}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from fractions import Fraction
 from itertools import pairwise
@@ -12,12 +13,14 @@ from flint import arb, ctx
 from noisy_sheets import angles_of, with_noise
 from panel_sheets import chicken_wire, mesh, miura, tiling
 
-from exactfold.errors import UsageError
+from exactfold import checker
+from exactfold.errors import NotApplicableError, UsageError
 from exactfold.exact.surds import ball
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.data import example_path
+from exactfold.pattern.drawing.meant.inference import infer
 from exactfold.pattern.drawing.meant.values import Angles, Edge
-from exactfold.pattern.meant_sheet import Realized, realize
+from exactfold.pattern.meant_sheet import Realized, certificate, realize
 from exactfold.pattern.opening import open_pattern, panels
 from exactfold.pattern.panel_pattern import PanelPattern
 
@@ -253,3 +256,45 @@ def test_half_of_a_recognised_angle_extends_the_field() -> None:
     assert (y / x + 2) * (y / x + 2) == 5
     x, y = difference(made.sheet, (0, 3))
     assert y / x == half
+
+
+# --- with the relations that a drawing shows -----------------------------------------------------
+
+NAMES = ["bird-base", "flapping-bird", "map-fold", "miura", "square-twist", "waterbomb", "windmill"]
+
+
+@pytest.mark.parametrize("noise", [1e-12, 1e-9, 1e-6])
+@pytest.mark.parametrize("name", NAMES)
+def test_inferred_relations_have_a_sheet_and_a_certificate(name: str, noise: float) -> None:
+    """The certificate holds every relation under the name that the inference gives it."""
+    sheet = example(name)
+    drawn = with_noise(sheet, noise)
+    found = infer(drawn.vertices, drawn.edges, drawn.boundary_edges)
+    assert found.angles is not None, found.reason
+    made = realize(drawn, found.angles, found.noise)
+    assert made.existence == "exact", made.reason
+    assert made.distance < 10 * noise
+    assert made.bits < 150
+    claims = checker.check(checker.load(json.dumps(certificate(made, found.relations))))
+    assert [entry["name"] for entry in claims["relations"]] == [r.name for r in found.relations]
+    assert len(claims["relations"]) >= len(sheet.interior)
+
+
+def test_no_certificate_without_a_sheet() -> None:
+    square = PanelPattern([(0, 0), (1, 0), (1, 1), (0, 1)], SQUARE)
+    made = realize(square, Angles({(0, 1): Fraction(1, 9)}, {}, ()), 1e-9)
+    with pytest.raises(NotApplicableError, match="no exact sheet was found: some angles are"):
+        certificate(made, [])
+
+
+@pytest.mark.parametrize(("digits", "fits"), [(3000, True), (6000, False)])
+def test_a_certificate_that_the_checker_would_not_take(digits: int, fits: bool) -> None:
+    """The checker takes coordinates with 6000 digits, but only a few of them."""
+    long = Fraction(10**digits + 1, 10**digits + 3)
+    square = PanelPattern([(0, 0), (long, 0), (long, long), (0, long)], SQUARE)
+    made = Realized(square, square, Fraction(0), "exact", "")
+    if fits:
+        checker.check(checker.load(json.dumps(certificate(made, []))))
+    else:
+        with pytest.raises(NotApplicableError, match="numbers of 19932 bits"):
+            certificate(made, [])

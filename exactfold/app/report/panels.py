@@ -125,8 +125,8 @@ def _known(result: Decomposition) -> list[str]:
         if result.drawn.together:
             number = len(result.drawn.together)
             lines.append(
-                f"{counted(number, 'crease')} {'folds' if number == 1 else 'fold'} together as drawn, "
-                "while all others stay flat - PROVED; there may be larger sets"
+                f"{counted(number, 'crease')} {'folds' if number == 1 else 'fold'} together as "
+                "drawn, while all others stay flat - PROVED; there may be larger sets"
             )
     solved = [part for part in result.parts if part.true is not None]
     known = product((part.true for part in solved), 0)
@@ -176,7 +176,7 @@ def _notes(result: Decomposition, everything: bool) -> list[str]:
         )
     if result.second_order is None and result.modes:
         notes.append("each mode listed below truly folds, and there may be others")
-    asked = result.drawn or result.as_written
+    asked = result.drawn or result.doubt
     if result.second_order is None and result.rigid is not PROVED and not asked:
         notes.append(
             "even so, it is often known whether the sheet starts to fold with given mountains and "

@@ -193,18 +193,19 @@ def flattened(
     """
     bounds = [(min(column), max(column)) for column in zip(*places, strict=True)]
     size = max(high - low for low, high in bounds)
-    if size > 10**LARGEST:
-        raise TooLargeError(
-            f"the vertices fill a box larger than 1e{LARGEST}, and larger ones are not read: scale "
-            "the drawing down"
-        )
     for name, (i, j) in _AXES.items():
         low, high = bounds["xyz".index(name)]
         if high - low <= _FLAT * size:
             points = [(place[i], place[j]) for place in places]
             plane = "" if name == "z" else f" in a plane {name} = constant"
-            noise = f"{name} varies by {float(high - low):.2g} and is read as constant"
+            varies = float(min(high - low, 10**LARGEST))
+            noise = f"{name} varies by {varies:.2g} and is read as constant"
             return points, plane, [noise] if high > low else []
+    if size > 10**LARGEST:
+        raise TooLargeError(
+            f"the vertices fill a box larger than 1e{LARGEST}, and larger ones are not read: scale "
+            "the drawing down"
+        )
     extent = " x ".join(f"{float(high - low):.3g}" for low, high in bounds)
     low, high = (places.index(find(places, key=lambda p: p[2])) for find in (min, max))
     raise FoldedStateError(

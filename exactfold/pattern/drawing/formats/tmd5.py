@@ -100,8 +100,10 @@ def _whole(rows: Sequence[str], k: int) -> int:
 def _number(rows: Sequence[str], k: int) -> Fraction:
     try:
         return parse_rational(rows[k])
-    except (NumberError, IndexError):
-        raise MalformedDrawingError(f"row {k + 1} is {_row(rows, k)}, not a number") from None
+    except IndexError:
+        raise MalformedDrawingError(f"row {k + 1} is missing: the file is cut off") from None
+    except NumberError as error:
+        raise MalformedDrawingError(f"row {k + 1}: {error}") from None
 
 
 def _row(rows: Sequence[str], k: int) -> str:
