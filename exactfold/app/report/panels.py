@@ -125,8 +125,8 @@ def _known(result: Decomposition) -> list[str]:
         if result.drawn.together:
             number = len(result.drawn.together)
             lines.append(
-                f"{counted(number, 'crease')} {'folds' if number == 1 else 'fold'} together as drawn, while "
-                "all others stay flat - PROVED; there may be larger sets"
+                f"{counted(number, 'crease')} {'folds' if number == 1 else 'fold'} together as "
+                "drawn, while all others stay flat - PROVED; there may be larger sets"
             )
     solved = [part for part in result.parts if part.true is not None]
     known = product((part.true for part in solved), 0)
