@@ -63,7 +63,7 @@ def count(**options: Any) -> int:
     continue. Several patterns are counted in parallel; the exit code is the worst
     of their exit codes.
     """
-    if len(options["patterns"]) > 1 or options["jsonl"] is not None:
+    if len(options["patterns"]) > 1 or options["jsonl"] or options["sheet"] == "all":
         from exactfold.app.commands.batch import Batch
 
         return Batch(**options).run()
@@ -203,11 +203,11 @@ def export(**options: Any) -> int:
 @app.command(cls=Command)
 @taking(AssignmentsOptions)
 def assignments(**options: Any) -> int:
-    """List every mountain-valley assignment with which a sheet with five corners starts to fold.
+    """List every mountain-valley assignment with which a sheet starts to fold, with proof.
 
-    The sheet needs a convex boundary with five vertices, and at most six interior
-    vertices that can pop. The list is proved to be complete. For a sheet with four
-    corners, `count` lists the assignments with the branches.
+    Every other assignment of all folds that can fold is refuted. Up to 20 folds may
+    move together. Triangulated sheets with five corners have arcs of assignments.
+    With --forcing, the fewest folds are found whose letters force all others.
     """
     from exactfold.app.commands.assignments import Listed
 

@@ -65,6 +65,7 @@ DOCUMENTS: Final = {
     "assignments": (
         "exactfold assignments --json",
         "design.circles.assignment_list:AssignmentsDocument",
+        "design.panels.panel_assignments:PanelAssignmentsDocument",
     ),
     "info": (
         "exactfold info --json",

@@ -8,6 +8,7 @@ from exactfold.design.actuation.result import Ranked as Ranked
 from exactfold.design.assignments.boundary_match import match_boundary as match_boundary
 from exactfold.design.assignments.boundary_result import BoundaryMatch as BoundaryMatch
 from exactfold.design.assignments.certificate import match_certificate as match_certificate
+from exactfold.design.assignments.forcing import forcing_set as forcing_set
 from exactfold.design.assignments.nearest import Nearest as Nearest
 from exactfold.design.assignments.nearest import nearest_branches as nearest_branches
 from exactfold.design.assignments.result import Match as Match
@@ -22,5 +23,9 @@ from exactfold.design.circles.certificate import assignments_certificate as assi
 from exactfold.design.circles.circles import all_assignments as all_assignments
 from exactfold.design.panels.match import PanelMatch as PanelMatch
 from exactfold.design.panels.match import match_panels as match_panels
+from exactfold.design.panels.panel_assignments import PanelAssignments as PanelAssignments
+from exactfold.design.panels.panel_assignments import PartLetters as PartLetters
+from exactfold.design.panels.panel_assignments import panel_assignments as panel_assignments
 from exactfold.design.panels.refutation import PanelRefutation as PanelRefutation
+from exactfold.design.refutations.forcing import Forcing as Forcing
 from exactfold.design.refutations.refutation import Refutation as Refutation

@@ -105,7 +105,7 @@ class CountKeys(MotionKeys):
     """The keys that a count of branches and one of motions of panels have in common."""
 
     format: Literal["exactfold count result"]
-    version: Literal[1]
+    version: Literal[2]
     reason: str
     why: str
     """Why the method was chosen."""
@@ -250,7 +250,7 @@ class Decomposition(Page, Ways[Mode], Certified):
         """
         keys: PanelCountKeys = {
             "format": "exactfold count result",
-            "version": 1,
+            "version": 2,
             "pattern": described_panels(self.pattern, name),
             "reason": self.reason,
             "method": self.theory,

@@ -24,6 +24,7 @@ from exactfold.pattern.fold import load_fold as load_fold
 from exactfold.pattern.fold import read_fold as read_fold
 from exactfold.pattern.fold_writing import write_fold as write_fold
 from exactfold.pattern.loading import load as load
+from exactfold.pattern.meant import Meant as Meant
 from exactfold.pattern.near_degeneracy import NearDegeneracy as NearDegeneracy
 from exactfold.pattern.near_degeneracy import near_degenerate as near_degenerate
 from exactfold.pattern.opening import Opened as Opened

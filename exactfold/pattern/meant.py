@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, Final, TypedDict
 
 from exactfold._support.documents import Natural, NotNegative
-from exactfold._support.plurals import counted
-from exactfold.errors import NotApplicableError, UsageError
+from exactfold._support.plurals import agreeing, counted
+from exactfold.errors import NotApplicableError
 from exactfold.pattern.drawing.meant.left import left_relations, nearly
 from exactfold.pattern.drawing.meant.values import Kind, Relation
 from exactfold.pattern.meant_sheet import Existence
 
 if TYPE_CHECKING:
+    from exactfold.pattern.drawing.meant.inference import Inference
     from exactfold.pattern.meant_sheet import Realized
     from exactfold.pattern.panel_pattern import PanelPattern
     from exactfold.pattern.reading import Reading
@@ -27,6 +28,10 @@ _KINDS: Final[tuple[tuple[str, tuple[Kind, ...]], ...]] = (
     ("grid or mirrored", ("grid", "parallel", "mirrored", "sectors")),
 )
 """The kinds of relations in words."""
+_DISTANT: Final[tuple[Kind, ...]] = ("sectors", "mirrored", "parallel", "grid")
+"""The kinds of relations on which no closing condition depends, as they are left out at need."""
+
+_MOST_EDGES: Final = 1000
 
 
 class RelationDocument(TypedDict):
@@ -58,6 +63,8 @@ class MeantDocument(TypedDict):
     """The largest distance of a vertex from the drawing, by its size."""
     existence: Existence
     """How a sheet with all relations was proved to exist."""
+    left_out: list[RelationDocument]
+    """Relations that were found, too, but no exact sheet that has them."""
     left: list[RelationDocument]
     """Relations that the sheet of the answer nearly has; if there are any, the answer holds for
     these digits only."""
@@ -75,7 +82,8 @@ class Meant:
     with all relations lies within `distance` of the drawing; `existence` says how that is proved.
     `left` are relations that the sheet of the answer nearly has. `reason` says why no sheet was
     inferred. `realized` has the sheet with the digits as written, and the exact one. `implied` maps
-    a relation that was deleted to those that imply it all the same.
+    a relation that was deleted to those that imply it all the same. `left_out` are relations that
+    were found, too, but no exact sheet that has them.
     """
 
     noise: float | None = None
@@ -91,6 +99,7 @@ class Meant:
     reason: str = ""
     realized: Realized | None = field(default=None, repr=False)
     implied: Mapping[str, tuple[str, ...]] = field(default_factory=dict, hash=False)
+    left_out: tuple[Relation, ...] = ()
 
     @property
     def inferred(self) -> bool:
@@ -130,6 +139,12 @@ class Meant:
             f"within {self.distance or 0:.1e} of the drawing there is a sheet with all of them - "
             "PROVED"
         )
+        if self.left_out:
+            lines.append(
+                f"{counted(len(self.left_out), 'more relation')} such as {self.left_out[0].name} "
+                f"{agreeing(len(self.left_out), 'is')} nearly true, but no exact sheet with all "
+                "relations was found; no condition at a vertex needs them"
+            )
         for name, others in self.implied.items():
             lines.append(f"{name} holds all the same, because of {', '.join(others)}")
         return tuple(lines)
@@ -163,6 +178,7 @@ class Meant:
             "free_angles": self.free_angles,
             "distance": self.distance,
             "existence": self.existence,
+            "left_out": [document(relation) for relation in self.left_out],
             "left": [document(relation) for relation in self.left],
             "reason": self.reason,
         }
@@ -191,22 +207,49 @@ def kinds(relations: Iterable[Relation]) -> str:
 def inferred(written: PanelPattern, reading: Reading) -> Meant:
     """The sheet that was meant by a drawing with inexact digits, or why none is inferred.
 
-    `written` is the sheet with the digits as written; its coordinates are rational. Raises the
-    errors of `infer` for relations that do not exist or contradict each other.
+    `written` is the sheet with the digits as written; its coordinates are rational. If no exact
+    sheet is found that has all relations, those between distant edges are left out, in the order of
+    `_DISTANT`; this is done for sheets of up to 1,000 edges. Raises the errors of `infer` for
+    relations that do not exist or contradict each other.
     """
+    all_found = _found(written, reading, ())
+    meant = _realized(written, all_found)
+    attempts = len(_DISTANT) if len(written.edges) <= _MOST_EDGES else 0
+    for number in range(1, attempts + 1):
+        if all_found.angles is None or meant.inferred:
+            break
+        kinds_found = {relation.kind for relation in all_found.relations}
+        dropped = [kind for kind in _DISTANT[:number] if kind in kinds_found]
+        if not dropped or dropped[-1] != _DISTANT[number - 1]:
+            continue
+        fewer = _realized(written, _found(written, reading, dropped))
+        kept = {relation.name for relation in fewer.relations}
+        out = tuple(one for one in all_found.relations if one.name not in kept)
+        meant = replace(fewer, left_out=out)
+    return meant
+
+
+def _found(written: PanelPattern, reading: Reading, dropped: Sequence[Kind]) -> Inference:
     from exactfold.pattern.drawing.meant.inference import infer
+
+    return infer(
+        [(Fraction(x), Fraction(y)) for x, y in written.vertices],  # type: ignore[arg-type]
+        written.edges,
+        written.boundary_edges,
+        noise=reading.noise,
+        unit=reading.unit,
+        without=(*reading.without, *dropped),
+        also=reading.also,
+    )
+
+
+def _realized(written: PanelPattern, found: Inference) -> Meant:
     from exactfold.pattern.meant_sheet import realize
 
-    points = [(Fraction(x), Fraction(y)) for x, y in written.vertices]  # type: ignore[arg-type]
-    if reading.noise is not None and not 0 < reading.noise < 1:
-        raise UsageError(f"the noise level is a share of the size, above 0, not {reading.noise:g}")
-    asked = {name: getattr(reading, name) for name in ("without", "also", "noise", "unit")}
-    overruled = {name: value for name, value in asked.items() if value}
-    found = infer(points, written.edges, written.boundary_edges, **overruled)
     known = Meant(
-        noise=found.noise,
+        noise=found.noise or None,
         clear=found.clear,
-        gap=found.gap,
+        gap=found.gap if found.noise else None,
         chance=found.chance,
         relations=found.relations,
         independent=found.independent,

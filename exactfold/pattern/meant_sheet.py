@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from math import hypot
+from math import cos, hypot, pi, sin
 from typing import Any, Literal, TypeAlias
 
-from exactfold._support.plurals import counted
+import numpy as np
+
 from exactfold.checker.sheets.meant import MEANT, MeantClaims
 from exactfold.checker.sheets.relations import RelationClaim
 from exactfold.errors import (
@@ -20,9 +21,12 @@ from exactfold.errors import (
 )
 from exactfold.exact.numbers import decimal_above, format_rational
 from exactfold.exact.surds import Number, Surd, simple
-from exactfold.pattern.drawing.meant.directions import exact_directions
-from exactfold.pattern.drawing.meant.positions import bound_edges, exact_positions, missed
-from exactfold.pattern.drawing.meant.values import Angles, Relation
+from exactfold.pattern.drawing.meant.constructing import constructed
+from exactfold.pattern.drawing.meant.directions import Directions, in_a_tower, parts_of
+from exactfold.pattern.drawing.meant.peeling import Lines
+from exactfold.pattern.drawing.meant.positions import Point, bound_edges, placed_together
+from exactfold.pattern.drawing.meant.refining import refined
+from exactfold.pattern.drawing.meant.values import Angles, Edge, Relation
 from exactfold.pattern.panel_entries import panels_document
 from exactfold.pattern.panel_pattern import PanelPattern
 
@@ -57,9 +61,10 @@ def realize(drawn: PanelPattern, angles: Angles, noise: float) -> Realized:
     """The exact sheet near a drawing whose edges have the given angles.
 
     `noise` is the noise level of the drawing, relative to its larger side. Free angles become
-    angles with rational tangents, and free coordinates short decimals; both stay far nearer to
-    their values than the noise. All other coordinates follow from the directions of edges, and all
-    edges are checked exactly. Raises `UsageError` if the coordinates of the drawing are irrational.
+    angles with tangents in the field, and free coordinates short decimals, without leaving the
+    noise. All other coordinates follow from the directions of edges. If the positions determine
+    some of the free angles, these follow, too, where each is found by linear equations. All edges
+    are checked exactly. Raises `UsageError` if the coordinates of the drawing are irrational.
 
     >>> square = PanelPattern([(0, 0), (1, 0), (1, 1), (Fraction(1, 1000), 1)],
     ...                       [(0, 1), (1, 2), (2, 3), (0, 3), (0, 2)])
@@ -71,25 +76,53 @@ def realize(drawn: PanelPattern, angles: Angles, noise: float) -> Realized:
     ('exact', True, True)
     """
     written = tuple(_written(point) for point in drawn.vertices)
-    directions = exact_directions(angles, noise / 100)
-    if directions is None:
-        parts = max(c.denominator for c in angles.constants.values())
+    if not in_a_tower(parts := parts_of(angles)):
         return _none(
             drawn,
-            f"some angles are multiples of pi/{parts} that have directions in no small tower of "
-            "square roots",
+            f"some angles are multiples of pi/{parts}, and these have directions in no small tower "
+            "of square roots",
         )
+    points = _exact_points(written, angles, noise)
+    return _none(drawn, points) if isinstance(points, str) else _compared(drawn, written, points)
+
+
+def _exact_points(written: Written, angles: Angles, noise: float) -> list[Point] | str:
+    """Exact positions near the written ones, or the reason why there are none."""
     bound = bound_edges(angles)
-    points = exact_positions(written, directions, bound, noise)
-    if failed := missed(points, directions, bound):
-        i, j = failed[0]
-        return _none(
-            drawn,
-            f"the positions of the vertices constrain the free angles: {len(failed)} of "
-            f"{counted(len(bound), 'edge')}, the first {i}-{j}, cannot have the given directions "
-            "for these values of the free angles",
+    places = np.array([(float(x), float(y)) for x, y in written])
+    whole = {edge: edge for edge in bound}
+    directions = Directions(angles, angles.free, noise)
+    points = placed_together(written, places, directions, whole, noise)
+    if not isinstance(points, str) or not any(angles.coefficients.get(edge) for edge in bound):
+        return points
+    near = refined(places, angles, bound, noise)
+    if not near.exists:
+        return (
+            "no sheet near the drawing seems to have all relations: in floats, edges still miss "
+            f"their directions by {near.off:.1g} of the size"
         )
-    return _compared(drawn, written, points)
+    for recognise in (True, False):
+        directions = Directions(angles, near.free, noise, recognise=recognise)
+        points = placed_together(written, places, directions, whole, noise)
+        if not isinstance(points, str):
+            return points
+    directions = Directions(angles, near.free, noise)
+    lines = _lines(directions, angles, near.free, bound)
+    return constructed(written, near.places, directions, lines, bound, noise)
+
+
+def _lines(
+    directions: Directions, angles: Angles, free: Sequence[float], bound: Sequence[Edge]
+) -> Lines:
+    """The directions of edges in floats, and what they depend on."""
+    units, powers = {}, {}
+    for edge in bound:
+        terms = angles.coefficients.get(edge, ())
+        constant = angles.constants[edge] % 1  # equal keys give equal vectors
+        angle = float(constant) * pi + sum(float(a) * free[k] for k, a in terms)
+        units[edge] = cos(angle), sin(angle)
+        powers[edge] = {k: directions.power(edge, k) for k, _ in terms}
+    return Lines({edge: directions.key(edge) for edge in bound}, units, powers)
 
 
 def certificate(made: Realized, relations: Iterable[Relation]) -> dict[str, Any]:

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass, field, replace
-from fractions import Fraction
+from dataclasses import replace
 from functools import partial
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, TypedDict
+from typing import TYPE_CHECKING
 
-from exactfold._support.documents import FieldName, NotNegative, Several
-from exactfold._support.notebook import Picture
 from exactfold._support.plurals import counted
 from exactfold.errors import (
     DisconnectedError,
@@ -25,100 +21,29 @@ from exactfold.errors import (
     PatternError,
     SeveralSheetsError,
     StaleExactCoordinatesError,
-    TooLargeError,
     UnknownFormatError,
     UsageError,
 )
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.drawing.bounds import check_common_denominator, read_bytes
+from exactfold.pattern.drawing.bounds import read_bytes
 from exactfold.pattern.drawing.drawing import Drawing, Snap
-from exactfold.pattern.drawing.meant.left import left_relations
 from exactfold.pattern.fold import FoldFile, parse_bytes
-from exactfold.pattern.reading import PLAIN, Reading, Steps
+from exactfold.pattern.meaning import meaning, recognised
+from exactfold.pattern.opened import Opened as Opened
+from exactfold.pattern.opened import ReadDocument as ReadDocument
+from exactfold.pattern.opened import panels as panels
+from exactfold.pattern.opened import triangulated as triangulated
+from exactfold.pattern.reading import PLAIN, Reading
 
 # Drawings need libraries that take long to load; triangulated sheets are read without them.
 if TYPE_CHECKING:
     from exactfold.pattern.drawing.repair import Sheets
-    from exactfold.pattern.meant import Meant
-    from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
 # These errors of the strict reader are final: reading the file as a drawing cannot mend them.
 _FINAL = (NumberError, StaleExactCoordinatesError)
 _OF_EDGES = (MalformedPatternError, DisconnectedError)
 """For these errors of the strict reader, the error of the reader of drawings is raised instead."""
 _FORCE = "`--force` (`force=True` in Python) reads the sheet all the same"
-_LEAST = ("merge", "duplicates", "split", "dangling")
-"""Some drawings have no panels without these steps; the other steps only change the panels."""
-
-
-class ReadDocument(TypedDict):
-    """What was read of a drawing."""
-
-    lines: Several[str]
-    """What was read, how coordinates were made exact, and each repair, one sentence each."""
-    field: FieldName
-    largest_move: NotNegative
-    """The largest change of a coordinate, as a fraction of the size of the sheet."""
-
-
-@dataclass(frozen=True)
-class Opened(Picture):
-    """A sheet from a file, and what was done to read it.
-
-    `sheet` is a `CreasePattern` if all faces are triangles with rational corners, else a
-    `PanelPattern`. `assignment` holds the letters of the file by edge. `lines` has one sentence
-    each for what was read, how coordinates were made exact, and each repair; it is empty if the
-    file needed nothing. `snapped` is the largest change of a coordinate by `snap`. `again` reads
-    the sheet once more with another `Reading` than `reading`; it is None for a sheet that was not
-    read from a file.
-
-    `meant` is None if no relation between creases holds nearly but not exactly. Otherwise the
-    digits of the file are inexact, and `meant` says what was inferred from them: either `sheet` is
-    the sheet that was meant, or `doubt` says why answers hold for these digits only.
-    """
-
-    sheet: CreasePattern | PanelPattern
-    assignment: Mapping[Edge, str] = field(default_factory=dict)
-    lines: tuple[str, ...] = ()
-    snapped: Fraction = Fraction(0)
-    largest_move: float = 0.0
-    field_name: str = "Q"
-    meant: Meant | None = None
-    reading: Reading = field(default=PLAIN, repr=False, compare=False)
-    again: Callable[[Reading], Opened] | None = field(default=None, repr=False, compare=False)
-
-    def __repr__(self) -> str:
-        return f"<Opened: {self.sheet!r}, in {self.field_name}>"
-
-    @property
-    def doubt(self) -> str:
-        """Why answers about the sheet hold for these digits only; empty if they do not."""
-        return "" if self.meant is None else self.meant.doubt
-
-    @property
-    def letters(self) -> dict[Edge, str]:
-        """The letter M, V, F or U of each fold in the file; empty if no fold has M or V.
-
-        Folds without a letter get U, and so do folds with J, which joins the triangles of a panel
-        that may bend. If no fold has a direction, F says no more than U.
-        """
-        known = {fold: self.assignment.get(fold, "U") for fold in self.sheet.folds}
-        letters = {fold: x if x in tuple("MVF") else "U" for fold, x in known.items()}
-        return letters if {"M", "V"} & set(letters.values()) else {}
-
-    @property
-    def read(self) -> ReadDocument | None:
-        """What was read, repaired and snapped, as JSON; None if the file needed nothing."""
-        lines = list(self.lines)
-        if self.snapped:
-            lines.append(f"rounding moved coordinates by up to {float(self.snapped):.1g}")
-        if not lines:
-            return None
-        return {
-            "lines": lines,
-            "field": self.field_name,
-            "largest_move": self.largest_move,
-        }
 
 
 def open_pattern(
@@ -128,8 +53,8 @@ def open_pattern(
 
     A FOLD file of triangles is read unchanged (`load_fold`); the snap is a denominator there. All
     other files are read as drawings: they are repaired, and their coordinates are made exact
-    (`exact_sheets`). This includes FOLD files with panels, crossings, near-duplicate vertices or a
-    frame in another plane. If a file has several sheets, `number` chooses one, counted from 1.
+    (`exact_sheets`). This includes FOLD files with panels, crossings, near-duplicate vertices, cuts
+    or a frame in another plane. If a file has several sheets, `number` chooses one, counted from 1.
 
     The steps of repair and `merge` are those of `repaired`. With steps "least", a drawing that
     already is a sheet is not repaired; in other drawings only points are merged, lines cut where
@@ -168,7 +93,8 @@ def opened(raw: bytes, name: str, reading: Reading = PLAIN) -> Opened:
             found = Opened(
                 file.pattern, file.assignment, lines, file.snapped, reading=reading, again=again
             )
-            return meaning(found, lambda: found)
+            if all(file.assignment.get(fold) != "C" for fold in file.pattern.folds):
+                return recognised(found) or meaning(found, lambda: found)
     from exactfold.pattern.drawing.formats.read import parse_drawing
 
     try:
@@ -205,6 +131,17 @@ def _joined(file: FoldFile, name: str) -> tuple[str, ...]:
     )
 
 
+def sheets_in(raw: bytes, name: str, reading: Reading = PLAIN) -> int:
+    """The number of sheets in a file; 1 if it is not known because the file cannot be read."""
+    try:
+        opened(raw, name, replace(reading, number=None))
+    except SeveralSheetsError as error:
+        return error.sheets
+    except InputError:
+        pass
+    return 1
+
+
 def from_drawing(drawing: Drawing, reading: Reading = PLAIN) -> Opened:
     """The sheet of a drawing, after repair, with exact coordinates and traced panels.
 
@@ -219,88 +156,20 @@ def from_drawing(drawing: Drawing, reading: Reading = PLAIN) -> Opened:
     >>> sheet.sheet, sheet.assignment[4, 5], len(sheet.lines)
     (<PanelPattern: 0 interior vertices, 1 fold, 2 panels>, 'M', 3)
     """
-    from exactfold.pattern.drawing.repair import exact_sheets
+    from exactfold.pattern.drawing.repair import attempts, exact_sheets
 
     rule: Snap = reading.snap or ("exact" if drawing.exact else "auto")
-    attempts = _attempts(drawing, reading.steps, reading.merge)
-    for k, chosen in enumerate(attempts, 1):
+    tried = attempts(drawing, reading.steps, reading.merge)
+    for k, chosen in enumerate(tried, 1):
         try:
             sheets = exact_sheets(drawing, snap=rule, merge=reading.merge, steps=chosen)
             again = partial(from_drawing, drawing)
             found = replace(_chosen(drawing, sheets, reading), reading=reading, again=again)
             return meaning(found, lambda: from_drawing(drawing, reading.as_written))
         except (FoldError, PatternError):
-            if k == len(attempts):
+            if k == len(tried):
                 raise
     raise UsageError("no steps of repair were given: name at least one, or give 'all'")
-
-
-def meaning(found: Opened, written: Callable[[], Opened]) -> Opened:
-    """The sheet that was meant, if the digits of `found` are inexact; `found` itself if not.
-
-    Digits are inexact if relations between creases hold nearly but not exactly. `written` reads the
-    sheet with its digits as written. If no sheet can be inferred, `found` is returned, and its
-    `doubt` says why.
-    """
-    reading = found.reading
-    if reading.snap == "exact":
-        if reading.overrules:
-            raise UsageError(
-                "--snap exact takes the digits as written: leave out --without, --also, --noise "
-                "and --unit"
-            )
-        return found
-    left = left_relations(found.sheet)
-    if not left and not reading.overrules:
-        return found
-    from exactfold.pattern.meant import Meant, inferred
-
-    if isinstance(reading.snap, int):
-        return replace(found, meant=Meant(left=left, reason=f"--snap {reading.snap} leaves them"))
-    try:
-        raw = written()
-    except (FoldError, PatternError) as error:
-        reason = f"the digits as written are no sheet: {error}"
-        return replace(found, meant=Meant(left=left, reason=reason))
-    sheet = panels(raw.sheet) if isinstance(raw.sheet, CreasePattern) else raw.sheet
-    if sheet.field.radicands:
-        return replace(found, meant=Meant(left=left, reason="its coordinates are irrational"))
-    meant = inferred(sheet, reading)
-    if meant.realized is None or meant.realized.sheet is None:
-        meant = replace(meant, left=left)
-        lines = meant.listed if reading.relations else ()
-        return replace(found, meant=meant, lines=found.lines + lines)
-    exact = meant.realized.sheet
-    lines = tuple(line for line in raw.lines if not line.startswith("coordinates kept"))
-    return replace(
-        raw,
-        sheet=_triangles(exact),
-        lines=(*lines, *meant.lines, *(meant.listed if reading.relations else ())),
-        largest_move=meant.distance or 0.0,
-        field_name=exact.field_name,
-        meant=meant,
-        reading=reading,
-        again=found.again,
-    )
-
-
-def _triangles(exact: PanelPattern) -> CreasePattern | PanelPattern:
-    """The sheet, triangulated if its coordinates are short enough for that."""
-    try:
-        return triangulated(exact) or exact
-    except TooLargeError:
-        return exact
-
-
-def _attempts(drawing: Drawing, steps: Steps, merge: Fraction | None) -> list[Collection[str]]:
-    """The sets of repair steps, in the order in which they are tried."""
-    from exactfold.pattern.drawing.repair import STEPS
-
-    if steps == "least":
-        return [(), _LEAST] if merge is None else [_LEAST]
-    if steps == "all":
-        return [("join",), STEPS] if drawing.exact and merge is None else [STEPS]
-    return [steps]
 
 
 def _chosen(drawing: Drawing, sheets: Sheets, reading: Reading) -> Opened:
@@ -309,26 +178,18 @@ def _chosen(drawing: Drawing, sheets: Sheets, reading: Reading) -> Opened:
     Raises `MalformedDrawingError` if creases of the drawing are missing in it, or if it has no
     folds; with `force`, the first line says so instead.
     """
+    from exactfold.pattern.drawing.chosen import chosen
     from exactfold.pattern.drawing.losses import missing
     from exactfold.pattern.panel_pattern import PanelPattern
 
-    number = reading.number
-    if number is None and len(sheets.sheets) > 1:
-        raise SeveralSheetsError(
-            f"the drawing holds {len(sheets.sheets)} sheets: choose one with --sheet N, or "
-            "`number=` in Python"
-        )
-    if number is not None and not 1 <= number <= len(sheets.sheets):
-        raise SeveralSheetsError(
-            f"there is no sheet {number}: the drawing holds {len(sheets.sheets)}"
-        )
-    sheet = sheets.sheets[(number or 1) - 1]
+    k = chosen(sheets.sheets, reading.number)
+    sheet = sheets.sheets[k]
     pattern = PanelPattern(sheet.points, [(line.start, line.end) for line in sheet.lines])
     letters = {
         (min(line.start, line.end), max(line.start, line.end)): line.letter for line in sheet.lines
     }
     lines = [drawing.source, *drawing.remarks, sheets.coordinates.text]
-    loss = missing(drawing, sheets, (number or 1) - 1, folds=bool(pattern.folds))
+    loss = missing(drawing, sheets, k, folds=bool(pattern.folds))
     if loss is not None:
         if not reading.force:
             raise MalformedDrawingError(f"{loss}; {_FORCE}")
@@ -368,23 +229,6 @@ def triangles(opened: Opened, needs: str) -> CreasePattern:
     )
 
 
-def triangulated(pattern: PanelPattern) -> CreasePattern | None:
-    """The sheet as a `CreasePattern`; None if it has larger panels or irrational coordinates.
-
-    Raises `TooLargeError` if the common denominator of its coordinates is too long.
-    """
-    from exactfold.exact.surds import rational
-
-    if pattern.field.radicands or any(len(face) != 3 for face in pattern.faces):
-        return None
-    points = [(rational(x), rational(y)) for x, y in pattern.vertices]
-    check_common_denominator(points)
-    try:
-        return CreasePattern(points, pattern.faces)
-    except MalformedPatternError:
-        return None
-
-
 def has_branches(pattern: CreasePattern) -> bool:
     """Whether `count_branches` can count the branches of the sheet.
 
@@ -394,15 +238,3 @@ def has_branches(pattern: CreasePattern) -> bool:
     if not pattern.interior:
         return False
     return pattern.Ve <= 4 or (pattern.Vi - pattern.Vt == 1 and not pattern.chords)
-
-
-def panels(pattern: CreasePattern) -> PanelPattern:
-    """A triangulated sheet as a sheet of panels.
-
-    >>> from exactfold.pattern.families import single_vertex
-    >>> panels(single_vertex(4))
-    <PanelPattern: 1 interior vertex, 4 folds, 4 panels>
-    """
-    from exactfold.pattern.panel_pattern import PanelPattern
-
-    return PanelPattern(pattern.vertices, pattern.edges)

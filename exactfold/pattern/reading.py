@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Literal, TypeAlias
 
-from exactfold.pattern.drawing.drawing import Snap, SvgReading
-
-Steps: TypeAlias = "Literal['all', 'least'] | Collection[str]"
-"""Steps of repair: "all", "least" (as few as reading the drawing takes), or a set of names."""
+from exactfold.pattern.drawing.drawing import Snap, Steps, SvgReading
 
 
 @dataclass(frozen=True)

@@ -38,6 +38,7 @@ RESULTS = {
     "letters of panels": lambda: exactfold.match("miura"),
     "letters of no panels": lambda: exactfold.match("zigzags"),
     "all letters": lambda: exactfold.design.all_assignments(single_vertex(5)),
+    "all letters of panels": lambda: exactfold.design.panel_assignments("fish-base"),
     "torques": lambda: exactfold.actuate("two-vertex", "+-"),
     "a motion": lambda: _motion(),
     "a motion of panels": lambda: _panel_motion(),

@@ -46,6 +46,16 @@ def _streamed(folder):
 
 DRAWING = exactfold.pattern.read_drawing(exactfold.pattern.data.example_path("zigzags"))
 SHEETS = exactfold.pattern.exact_sheets(DRAWING)
+BENT = {  # the path 0-4-2 is straight but for the last digits
+    "vertices_coords": [
+        [0, 0],
+        [3.0123456789, 0.1234567890123],
+        [2.2345678901234, 2.3456789012345],
+        [0.1112131415161, 1.0987654321],
+        [0.8267901193457, 0.8679011934568],
+    ],
+    "faces_vertices": [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]],
+}
 OPENED = exactfold.pattern.open_pattern(exactfold.pattern.data.example_path("zigzags"))
 PIECES = exactfold.branches.find_connected_components(
     exactfold.CreasePattern(
@@ -157,6 +167,7 @@ VALUES = {
     "repair": SHEETS.repairs[0],
     "exact coordinates": SHEETS.coordinates,
     "opened drawing": OPENED,
+    "sheet that was meant": exactfold.read(BENT).meant,
     "converted drawing": converted(OPENED),
     "panels": OPENED.sheet,
     "facts of panels": exactfold.branches.panel_facts(OPENED.sheet),

@@ -78,7 +78,7 @@ def test_random_decimals_are_hardly_ever_suspected():
     for _ in range(2000):
         x, y = (f"0.{source.randrange(10**15, 10**16)}" for _ in range(2))
         suspected += near_degenerate(CreasePattern([*SQUARE, (x, y)], FAN)) is not None
-    assert suspected <= 2
+    assert suspected <= 4
 
 
 def test_ten_thousand_vertices_take_a_moment():

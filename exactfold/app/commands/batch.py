@@ -8,6 +8,7 @@ from collections import Counter
 from collections.abc import Generator, Iterator, Mapping
 from contextlib import ExitStack, closing, contextmanager, nullcontext
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -40,6 +41,8 @@ from exactfold.errors import (
     UsageError,
     WorkerDiedError,
 )
+from exactfold.pattern.opening import sheets_in
+from exactfold.pattern.reading import Reading
 
 if TYPE_CHECKING:
     from exactfold.app.commands.batch_document import (
@@ -74,6 +77,15 @@ class Line:
     distinct: int | None = None
     message: str = ""
     warned: bool = False
+
+
+@dataclass(frozen=True)
+class Part:
+    """A pattern, or one sheet of it, and how it is read."""
+
+    name: str
+    path: Path
+    reading: Reading
 
 
 @dataclass
@@ -131,7 +143,7 @@ class Batch(CountOptions):
                     print(line.text, flush=True)
                 if lines is None or line.status != str(PROVED) or line.warned:
                     shown.append((line.name, line.status, line.distinct, line.message))
-        place = {str(path): k for k, path in enumerate(self.patterns)}
+        place = {part.name: k for k, part in enumerate(self._parts)}
         shown.sort(key=lambda row: place[row[0]])
         numbers, jsonl = self._numbers(tally), None if self.jsonl is None else str(self.jsonl)
         if not self.as_json:
@@ -146,17 +158,37 @@ class Batch(CountOptions):
             print(json.dumps(document))
         return tally.code
 
+    @cached_property
+    def _parts(self) -> list[Part]:
+        """What is counted, in order: each pattern, or with --sheet all each of its sheets."""
+        if self.sheet != "all":
+            return [Part(str(path), path, self.reading) for path in self.patterns]
+        parts = []
+        with Bar("reading") as bar:
+            for k, path in enumerate(self.patterns):
+                bar("reading", k, len(self.patterns))
+                source = _source(path)
+                base = self.reading_sheet(None)
+                several = sheets_in(source, str(path), base) if isinstance(source, bytes) else 1
+                if several == 1:
+                    parts.append(Part(str(path), path, base))
+                else:
+                    parts += [
+                        Part(f"{path} sheet {number}", path, self.reading_sheet(number))
+                        for number in range(1, several + 1)
+                    ]
+        return parts
+
     def _lines(self, lines: Lines | None, tally: Tally) -> Generator[Line, None, None]:
         """Count and yield a line for each file that has no line from an earlier run."""
         known = Known([]) if lines is None else Known(lines.found())
-        names = {str(path) for path in self.patterns}
+        names = {part.name for part in self._parts}
         bar = Bar("reading")
 
         def jobs() -> Iterator[Job]:
-            for path in self.patterns:
-                job = Job(
-                    str(path), _source(path), self.method, self.seed, self.reading, self.limit
-                )
+            for part in self._parts:
+                source = _source(part.path)
+                job = Job(part.name, source, self.method, self.seed, part.reading, self.limit)
                 earlier_line = known.take(job, names)
                 if earlier_line is None:
                     yield job
@@ -166,7 +198,7 @@ class Batch(CountOptions):
                     progress()
 
         def progress() -> None:
-            bar("counting", tally.statuses.total(), len(self.patterns), tally.note)
+            bar("counting", tally.statuses.total(), len(self._parts), tally.note)
 
         with bar, self._pool() as pool, closing(pool(line_of, jobs())) as results:
             for job, result in results:
@@ -178,7 +210,7 @@ class Batch(CountOptions):
     @contextmanager
     def _pool(self) -> Iterator[Pool]:
         jobs = self.jobs or available_cores()
-        ready = nullcontext(process_pool(min(jobs, len(self.patterns))))
+        ready = nullcontext(process_pool(min(jobs, len(self._parts))))
         with ready if self.dask is None else dask_pool(self.dask, self.jobs) as pool:
             yield pool
 
@@ -200,7 +232,7 @@ class Batch(CountOptions):
 
     def _numbers(self, tally: Tally) -> BatchNumbers:
         return {
-            "files": len(self.patterns),
+            "files": len(self._parts),
             "proved": tally.statuses[str(PROVED)],
             "undecided": tally.statuses[str(UNDECIDED)],
             "failed": tally.statuses[FAILED],

@@ -16,11 +16,11 @@ from exactfold.certificates.entries import write_certificate
 from exactfold.errors import FoldError, NotApplicableError, NotFoldError, PatternError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import PanelsDocument, PatternDocument, described, described_panels
+from exactfold.pattern.drawing.drawing import Steps
 from exactfold.pattern.fold_writing import document_text, write_text
 from exactfold.pattern.meant import MeantDocument
 from exactfold.pattern.opening import Opened, ReadDocument, open_pattern
 from exactfold.pattern.panel_writing import Converted, converted
-from exactfold.pattern.reading import Steps
 
 
 class Conversion(ConvertOptions):

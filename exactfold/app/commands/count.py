@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from exactfold._support.clock import Clock
-from exactfold._support.verdict import PROVED
+from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.app import report
 from exactfold.app.commands.stream import Streaming, advice
 from exactfold.app.options.patterns import CountOptions
@@ -19,8 +19,10 @@ from exactfold.branches.certificates.listing import certificate as certificate_o
 from exactfold.branches.counting.stream import StreamedCount
 from exactfold.branches.values.result import BranchCount
 from exactfold.certificates.entries import write_certificate
+from exactfold.design.panels.vertices import vertices
 from exactfold.errors import NotApplicableError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.opening import Opened
 
 if TYPE_CHECKING:  # counting branches does not need it
     from exactfold.panels.result import Decomposition
@@ -49,7 +51,12 @@ class Asked(CountOptions):
         if self.given:
             return self._shapes()
         streamed = None if self.stream is None else self._streamed(self.stream)
-        result = self._counted() if streamed is None else streamed
+        opened = None
+        result: BranchCount | Decomposition
+        if streamed is not None:
+            result = streamed
+        else:
+            opened, result = self._counted()
         written = self._certified(result, streamed)
         if self.as_json:
             print(json.dumps(result.to_dict(written, name_of(self.pattern))))
@@ -69,6 +76,8 @@ class Asked(CountOptions):
             )
             report.show(shown)
             self._of_digits(result)
+        if opened is not None and result.status is UNDECIDED and not self.as_json:
+            report.show(report.vertices_line(vertices(opened)))
         return EXIT[result.status]
 
     def _of_digits(self, result: BranchCount | Decomposition) -> None:
@@ -113,7 +122,7 @@ class Asked(CountOptions):
             raise UsageError("--stream has a method of its own: leave out --method")
         return Streaming(self, file).run()
 
-    def _counted(self) -> BranchCount | Decomposition:
+    def _counted(self) -> tuple[Opened, BranchCount | Decomposition]:
         if self.resume or self.workers is not None or self.dask is not None:
             raise UsageError("--resume, --workers and --dask go with --stream")
         clock = Clock(self.limit)
@@ -123,7 +132,7 @@ class Asked(CountOptions):
             if isinstance(sheet, CreasePattern) and (better := advice(sheet)) is not None:
                 say(better)
             bar("solving")
-            return counted_with_letters(opened, self.method, self.seed, clock, bar)
+            return opened, counted_with_letters(opened, self.method, self.seed, clock, bar)
 
     def _certified(
         self, result: BranchCount | Decomposition, streamed: StreamedCount | None

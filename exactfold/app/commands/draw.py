@@ -154,7 +154,7 @@ class Wanted(DrawOptions):
         if self.file == STDIN:
             return None
         try:
-            return read_drawing(located(self.file))
+            return read_drawing(located(self.file), self.reading.svg)
         except (FoldError, PatternError):
             return None
 

@@ -127,6 +127,17 @@ class AssignmentsOptions(ReadingOptions):
     """The options of `exactfold assignments`."""
 
     file: Pattern
+    forcing: Annotated[
+        bool,
+        flag(
+            "--forcing",
+            text="Find the fewest folds whose letters force all others, for the letters of "
+            "--letters or of the file; if these do not fold, or there are none, for the assignment "
+            "that needs the fewest.",
+        ),
+    ] = False
+    letters: Letters = None
+    limit: Limit = LIMIT
     everything: Annotated[bool, flag("--all", text="List every assignment.")] = False
     certificate: Annotated[
         Path | None,

@@ -32,7 +32,7 @@ from exactfold.errors import UsageError
 class CountOptions(ReadingOptions):
     """The options of `exactfold count`; `UsageError` if they do not go together.
 
-    Several patterns, or one pattern with `jsonl`, are counted as a batch.
+    Several patterns, one pattern with `jsonl`, and all sheets of a pattern are counted as a batch.
     """
 
     patterns: Patterns
@@ -97,9 +97,9 @@ class CountOptions(ReadingOptions):
     ] = False
 
     def __post_init__(self) -> None:
-        if len(self.patterns) == 1 and self.jsonl is None:
+        if len(self.patterns) == 1 and self.jsonl is None and self.sheet != "all":
             if self.jobs is not None:
-                raise UsageError("--jobs goes with several patterns or --jsonl")
+                raise UsageError("--jobs goes with several patterns, --sheet all or --jsonl")
             return
         single = (
             self.certificate,
@@ -111,7 +111,7 @@ class CountOptions(ReadingOptions):
         if self.resume or any(value is not None for value in single):
             raise UsageError(
                 "--certificate, --stream, --resume, --workers, --curvature and --rim go with one "
-                "pattern and without --jsonl"
+                "pattern, without --jsonl and without --sheet all"
             )
 
 

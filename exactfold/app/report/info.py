@@ -112,8 +112,10 @@ def _vertex_rows(found: Vertices) -> list[tuple[str, str]]:
     """What is known of the vertices, each by itself; `exactfold vertices` says more."""
     if not found.facts:
         return []
-    answer = f"{found.headline} - {str(found.starts).upper()}"
-    return [("each vertex by itself", answer), ("folding flat", found.flat_line)]
+    rows = [("each vertex by itself", f"{found.headline} - {str(found.starts).upper()}")]
+    if found.summary["kawasaki"] or {"M", "V"} & set(found.letters.values()):
+        rows.append(("folding flat", found.flat_line))
+    return rows
 
 
 def _number(value: Fraction, exact: bool) -> str:

@@ -176,7 +176,7 @@ def _notes(result: Decomposition, everything: bool) -> list[str]:
         )
     if result.second_order is None and result.modes:
         notes.append("each mode listed below truly folds, and there may be others")
-    asked = result.drawn or result.as_written
+    asked = result.drawn or result.doubt
     if result.second_order is None and result.rigid is not PROVED and not asked:
         notes.append(
             "even so, it is often known whether the sheet starts to fold with given mountains and "

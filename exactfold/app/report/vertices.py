@@ -17,10 +17,13 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from exactfold.design.panels.vertex_facts import VertexFacts
+    from exactfold.design.panels.vertex_repair import Repair
     from exactfold.design.panels.vertices import Vertices
 
 MOST_WORDS = 12
 """At most this many reasons are listed, unless all are asked for."""
+MOST_FOLDS = 24
+"""At most this many folds are named, unless all are asked for."""
 MOST_NAMED = 12
 """At most this many vertices are named in a line."""
 
@@ -37,9 +40,27 @@ def vertices_report(found: Vertices, *, everything: bool = False) -> Group:
         if words:
             parts += ["", Text("Why, and what to change", style="bold"), *map(Text, words[:limit])]
             parts += more_text(len(words) - limit)
+        if found.repair is not None and found.repair.folds:
+            parts += ["", Text(_repair(found.repair, everything))]
     elif rows != found.facts:
         parts += ["", Text("--all lists every vertex")]
     return Group(*parts)
+
+
+def _repair(repair: Repair, everything: bool) -> str:
+    """The change of letters for the whole sheet, in words."""
+    count = len(repair.folds)
+    shown = repair.folds if everything else repair.folds[:MOST_FOLDS]
+    named = ", ".join(map(fold_text, shown))
+    more = f" and {count - len(shown)} more (--all)" if count > len(shown) else ""
+    then = "every vertex starts to fold by itself"
+    if repair.stuck:
+        then = f"all but {_vertices(repair.stuck)} start to fold by themselves"
+    letters = "letter" if count == 1 else "letters"
+    return (
+        f"Smallest change found for the whole sheet: exchange the {letters} of "
+        f"{counted(count, 'fold')}: {named}{more}. Then {then}."
+    )
 
 
 def _grouped(found: Vertices, rows: Sequence[VertexFacts]) -> list[str]:
@@ -59,6 +80,12 @@ def vertices_answer(found: Vertices) -> Text:
     sheet = f"{found.meant.name}: " if found.meant is not None and found.meant.inferred else ""
     took = f" ({found.seconds:.2f} s)"
     return Text.assemble(f"{sheet}{found.headline} - ", status_text(found.starts), took)
+
+
+def vertices_line(found: Vertices) -> Text:
+    """The answer in one line, for a sheet of which not all ways to fold are known."""
+    text = f"each vertex by itself: {found.headline} - "
+    return Text.assemble(text, status_text(found.starts), "; see `exactfold vertices`")
 
 
 def advice(found: Vertices, facts: VertexFacts) -> list[str]:

@@ -15,12 +15,12 @@ from exactfold.app.shell.shell import not_a_dash, standard_input
 from exactfold.branches.counting.registry import ALIASES, METHODS
 from exactfold.errors import NumberError, UsageError
 from exactfold.exact.numbers import approx_number, parse_rational, parse_whole
+from exactfold.pattern.data import EXAMPLES
 from exactfold.pattern.drawing.drawing import Snap as Snapping
 
 
 def complete_pattern(incomplete: str) -> list[str]:
     """Shipped patterns, pattern files and folders whose names begin with the typed text."""
-    from exactfold.pattern.data import EXAMPLES
     from exactfold.pattern.drawing.formats.read import READERS
 
     folder, _, _ = incomplete.rpartition("/")
@@ -46,18 +46,19 @@ def in_folders(paths: list[Path]) -> list[Path]:
 
     Raises `typer.BadParameter` for a folder without drawings.
     """
-    if not any(path.is_dir() for path in paths):
+    folders = {path for path in paths if str(path) not in EXAMPLES and path.is_dir()}
+    if not folders:
         return paths
     from exactfold.pattern.drawing.formats.read import READERS
 
     found = []
     for path in paths:
-        inside = sorted(path.rglob("*")) if path.is_dir() else [path]
+        inside = sorted(path.rglob("*")) if path in folders else [path]
         drawings = [file for file in inside if file.suffix[1:].lower() in READERS]
-        if path.is_dir() and not drawings:
+        if path in folders and not drawings:
             endings = ", ".join(sorted(READERS))
             raise typer.BadParameter(f"the folder {path} has no file that ends in {endings}")
-        found += drawings if path.is_dir() else [path]
+        found += drawings if path in folders else [path]
     return found
 
 
@@ -131,11 +132,6 @@ def numbers(text: object) -> tuple[int, ...]:
     return tuple(whole(1)(part.strip()) for part in str(text).split(","))
 
 
-def names(text: object) -> tuple[str, ...]:
-    """The names in a list such as straight@12,kawasaki@7."""
-    return tuple(name for part in str(text).split(",") if (name := part.strip()))
-
-
 def sizes(text: object) -> tuple[int, ...]:
     """The sorted sizes in a list of numbers and ranges such as 2-5,8; each is at least 1."""
     try:
@@ -196,7 +192,10 @@ def letter_map(text: object) -> dict[str, str]:
 
 
 _LETTER = re.compile(r"([^=]+)=\s*(\w)\s*(?:,|\Z)")
-_ONE = "A FOLD, SVG, CP, OPX or ORI file, - for standard input, or a name: see `examples`."
+_ONE = (
+    "A FOLD, SVG, CP, OPX, ORI, DXF, TMD5 or OBJ file, - for standard input, or a name: see "
+    "`examples`."
+)
 
 Pattern = Annotated[
     Path,
@@ -213,8 +212,8 @@ Patterns = Annotated[
         metavar="PATTERN",
         callback=lambda paths: in_folders([standard_input(path) for path in paths]),
         autocompletion=complete_pattern,
-        help="FOLD, SVG, CP, OPX or ORI files, folders of such files, - for standard input, or "
-        "names: see `examples`.",
+        help="FOLD, SVG, CP, OPX, ORI, DXF, TMD5 or OBJ files, folders of such files, - for "
+        "standard input, or names: see `examples`.",
     ),
 ]
 Snap = Annotated[
@@ -227,7 +226,13 @@ Snap = Annotated[
     ),
 ]
 Sheet = Annotated[
-    int | None, number("Take the N-th sheet of a drawing with several sheets.", "N", "--sheet")
+    int | Literal["all"] | None,
+    typer.Option(
+        "--sheet",
+        parser=lambda text: "all" if text == "all" else whole(1)(text),
+        metavar="N|all",
+        help="Take the N-th sheet of a drawing with several sheets. all: count every sheet.",
+    ),
 ]
 Colours = Annotated[
     dict[str, str] | None,

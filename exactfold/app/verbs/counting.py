@@ -17,11 +17,11 @@ from exactfold.branches.counting.ways import count_opened, decompose_opened
 from exactfold.branches.values.branch import Branch
 from exactfold.errors import UsageError
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
-from exactfold.pattern.drawing.drawing import Drawing, Snap
+from exactfold.pattern.drawing.drawing import Drawing, Snap, Steps
 from exactfold.pattern.fold import FoldFile
 from exactfold.pattern.loading import PatternLike, open_sheet
 from exactfold.pattern.opening import Opened
-from exactfold.pattern.reading import Reading, Steps
+from exactfold.pattern.reading import Reading
 
 if TYPE_CHECKING:
     from typing import TypeAlias
@@ -51,15 +51,15 @@ def read(
     """Read a sheet from any source; the attribute `sheet` of the result is the pattern.
 
     Every verb takes such a `sheet`: the name of a shipped pattern (`examples`), the path of a FOLD,
-    SVG, CP, OPX, ORI or ORH file, FOLD as text or as a dictionary, a `CreasePattern`, a
-    `PanelPattern`, or a result of `read`. Drawings are repaired, and their coordinates are made
-    exact; `lines` of the result says how. `letters` of the result has the mountains and valleys of
-    the drawing. `snap` is "auto", "exact", or n, which rounds coordinates to multiples of 1/n.
-    `number`, from 1, chooses a sheet of a drawing with several. `steps` and `merge` say what is
-    repaired (`exactfold.pattern.STEPS`). `colours` and `dashes` give letters to the lines of an SVG
-    file: `colours={"orange": "M"}`, `dashes={"3 2": "V", "solid": "B"}`. Each of its curves is read
-    as `chords` straight lines. If creases of the drawing are missing in the sheet, or if it has no
-    folds, it is read only with `force`.
+    SVG, CP, OPX, ORI, ORH, DXF, TMD5 or OBJ file, FOLD as text or as a dictionary, a
+    `CreasePattern`, a `PanelPattern`, or a result of `read`. Drawings are repaired, and their
+    coordinates are made exact; `lines` of the result says how. `letters` of the result has the
+    mountains and valleys of the drawing. `snap` is "auto", "exact", or n, which rounds coordinates
+    to multiples of 1/n. `number`, from 1, chooses a sheet of a drawing with several. `steps` and
+    `merge` say what is repaired (`exactfold.pattern.STEPS`). `colours` and `dashes` give letters to
+    the lines of an SVG file: `colours={"orange": "M"}`, `dashes={"3 2": "V", "solid": "B"}`. Each
+    of its curves is read as `chords` straight lines. If creases of the drawing are missing in the
+    sheet, or if it has no folds, it is read only with `force`.
 
     If the digits of a drawing are inexact, the sheet that was meant is inferred
     (docs/import.md, The sheet that was meant), and `meant` of the result says how. `without` names

@@ -15,6 +15,7 @@ from exactfold._support.documents import Fold, Keywords, Natural, ProvedOrNot, T
 from exactfold._support.plurals import counted
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.app.viewer.marks import Mark, marks_of
 from exactfold.app.viewer.ways import (
     Followed,
     Following,
@@ -69,6 +70,8 @@ class FlatSheet(TypedDict):
     """Vertices that can be popped through: where vertex signs name branches."""
     letters: Letters
     """Those of the file, by fold."""
+    marks: list[Mark]
+    """The vertices to look at."""
 
 
 class Facts(TypedDict):
@@ -364,4 +367,5 @@ def _sheet_json(opened: Opened) -> FlatSheet:
         "letters": "".join(
             _LETTER.get(opened.assignment.get(edge, "U"), "U") for edge in pattern.folds
         ),
+        "marks": marks_of(opened),
     }

@@ -51,6 +51,7 @@ def doubted(result: BranchCount | Decomposition, opened: Opened) -> BranchCount 
             modes=(),
             modes_count=None,
             parts=(),
+            drawn=None,
             doubt=doubt,
             as_written=result,
         )

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import partial
 from typing import TYPE_CHECKING
 
 from exactfold._support.clock import UNLIMITED, Clock
 from exactfold._support.progress import Progress
-from exactfold._support.verdict import PROVED
+from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.branches.counting.collect import count_branches, not_convex
 from exactfold.branches.counting.doubted import doubted
 from exactfold.branches.counting.registry import METHODS, choose
@@ -18,11 +17,8 @@ from exactfold.pattern.opening import Opened, has_branches, panels, triangulated
 from exactfold.pattern.reading import PLAIN, Reading
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from exactfold.branches.values.result import BranchCount
     from exactfold.panels.result import Decomposition
-    from exactfold.pattern.drawing.drawing import Snap
     from exactfold.pattern.panel_pattern import PanelPattern
 
 _MOST_MODES = 100
@@ -48,9 +44,7 @@ def count_ways(
     vertices; its irreducible components are the `families` of the result. Every other sheet has
     motions of rigid panels, which `decompose` finds. The type of the result shows which theory
     applied. Files of all formats are read (`open_pattern`); drawings are repaired and made exact.
-    `reading` says how. If loops of the sheet nearly
-    close, the file is read again with other values of `snap`, and for each loop the result names
-    the first value with which it closes.
+    `reading` says how.
 
     The clock ends the search for motions of panels, and nothing else. Raises the errors of
     `open_pattern` and `count_branches`.
@@ -80,6 +74,8 @@ def count_opened(
     If relations between creases hold nearly but not exactly, and no sheet was inferred that has
     them, the answer is UNDECIDED, and its `as_written` says what is known for the digits.
     """
+    if opened.doubt and not _is_fast(_panels(opened)):
+        return _uncounted(opened)
     result = doubted(_counted(opened, method, seed, progress, clock), opened)
     written = _written(opened)
     if written is None or result.doubt:
@@ -88,19 +84,48 @@ def count_opened(
 
 
 def _written(opened: Opened) -> Opened | None:
-    """The sheet with the digits as written, if another one was inferred and it is counted fast.
-
-    It is counted if at most 100 vertices may fold, each with at most four folds, or at most 30
-    vertices with any number of folds.
-    """
+    """The sheet with the digits as written, if another one was inferred and it is counted fast."""
     if opened.meant is None or opened.meant.realized is None or not opened.meant.inferred:
         return None
+    drawn = opened.meant.realized.drawn
+    return Opened(triangulated(drawn) or drawn) if _is_fast(drawn) else None
+
+
+def _is_fast(pattern: PanelPattern) -> bool:
+    """Whether the digits of a sheet are counted although another sheet was meant.
+
+    That is so if at most 100 vertices may fold, each with at most four folds, or at most 30
+    vertices with any number of folds.
+    """
     from exactfold.panels.stars import stars
 
-    drawn = opened.meant.realized.drawn
-    moving = stars(drawn)
+    moving = stars(pattern)
     few = _MOST_MODES if all(len(star.folds) <= 4 for star in moving.values()) else _MOST_SPACES
-    return Opened(triangulated(drawn) or drawn) if len(moving) <= few else None
+    return len(moving) <= few
+
+
+def _uncounted(opened: Opened) -> Decomposition:
+    """The answer for a large sheet that would hold for its digits only, without a count."""
+    from exactfold.panels.result import Decomposition
+
+    return Decomposition(
+        _panels(opened),
+        theory="modes",
+        status=UNDECIDED,
+        rigid=UNDECIDED,
+        second_order=None,
+        true=None,
+        flat=(),
+        free=(),
+        reason=f"{opened.doubt}; --snap exact counts the digits",
+        read=opened.read,
+        meant=opened.meant,
+        doubt=opened.doubt,
+    )
+
+
+def _panels(opened: Opened) -> PanelPattern:
+    return panels(opened.sheet) if isinstance(opened.sheet, CreasePattern) else opened.sheet
 
 
 def _counted(
@@ -131,25 +156,4 @@ def decompose_opened(
 def _decomposed(opened: Opened, progress: Progress | None, clock: Clock) -> Decomposition:
     from exactfold.panels.decomposition import decompose  # imported here: branches do not need it
 
-    sheet = opened.sheet
-    pattern = panels(sheet) if isinstance(sheet, CreasePattern) else sheet
-    ways = replace(decompose(pattern, progress=progress, clock=clock), read=opened.read)
-    if not ways.nearly_closing or opened.again is None or clock.passed:
-        return ways
-    from exactfold.panels.near_misses import snapped_misses
-
-    reopened = partial(_reopened, opened.again, opened.reading)
-    misses = snapped_misses(ways.near_misses, pattern, reopened)
-    return replace(ways, near_misses=misses)
-
-
-def _reopened(
-    again: Callable[[Reading], Opened], reading: Reading, snap: Snap
-) -> tuple[PanelPattern, float]:
-    """The sheet that is read with another snap, and the largest move of a vertex over its size."""
-    opened = again(replace(reading, snap=snap))
-    sheet = panels(opened.sheet) if isinstance(opened.sheet, CreasePattern) else opened.sheet
-    if not opened.snapped:
-        return sheet, opened.largest_move
-    size = max(float(max(c) - min(c)) for c in zip(*sheet.vertices, strict=True))
-    return sheet, float(opened.snapped) / size
+    return replace(decompose(_panels(opened), progress=progress, clock=clock), read=opened.read)

@@ -265,7 +265,7 @@ class BranchCount(Page, Ways[Branch], Certified):
         bounds = self.true_bounds
         return {
             "format": "exactfold count result",
-            "version": 1,
+            "version": 2,
             "pattern": described(self.pattern, name, self.snapped),
             "reason": self.reason,
             "why": self.why,

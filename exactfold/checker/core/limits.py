@@ -28,6 +28,7 @@ MOST_FRAMES = 1000  # frames of a FOLD file that are searched for a flat one
 MOST_INHERITED = 100  # frames through which one frame inherits
 MOST_DEPTH = 200  # nested elements of an SVG file, counted after `use` has been expanded
 MOST_USED = 100_000  # elements that `use` repeats
+MOST_SELECTORS = 1000  # selectors with several parts in the style sheets of an SVG file
 MOST_TEXT = 4000  # characters of an attribute or of a style, and of the transforms of an element
 MOST_TRANSFORMS = 2 * 10**7  # characters of the transforms of all elements
 

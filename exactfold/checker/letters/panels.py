@@ -11,7 +11,7 @@ from typing import Any, TypedDict
 
 from ..core.kinds import DocumentKind
 from ..core.reading import counted, items, keys, keys_of, refusing, require
-from ..sheets.panels import read_panels
+from ..sheets.panels import Near, connected, pair, read_panels
 from .panels_motion import check_motion
 from .panels_refuted import Cases
 from .panels_together import check_never, check_together
@@ -70,19 +70,37 @@ def check(data: dict[str, Any]) -> VerifiedPanelLetters:
         check_motion(sheet, near, wanted, evidence["motion"], true=truly == "proved")
     else:
         require(truly != "proved", "true motions are claimed, but no motion to second order")
+    steps, densities = (items(evidence[key], key) for key in ("flat", "densities"))
+    whole = check_never(sheet, near, wanted, claims["never"], steps)
     if "refuted" in (starts, truly):
         cases = Cases(sheet, near, wanted, true=starts == "proved")
         few = cases.cover(items(evidence["refuted"], "refuted"), items(evidence["tree"], "tree"))
-        decided = truly == "undecided" or few
-        require(decided, "the cases name a vertex with more than four folds: true motions are open")
-    steps, densities = (items(evidence[key], key) for key in ("flat", "densities"))
-    whole = check_never(sheet, near, wanted, claims["never"], steps)
+        decided = truly == "undecided" or few or _rests(near, claims["never"])
+        require(
+            decided,
+            "the cases name several vertices, not all with at most four folds: true "
+            "motions are open",
+        )
     whole = check_together(sheet, near, wanted, claims["together"], densities) and whole
     listed = claims["together"] or claims["never"]
     complete = whole or not listed
     require(complete, "a fold that is shown to go together with others, or never, is not listed")
     proved: PanelLettersClaims = claims
     return {"sha256": digest, "interior": len(sheet.interior), **proved}
+
+
+def _rests(near: Near, never: list[list[int]]) -> bool:
+    """Whether some part has no fold that can move to first order; `never` is verified already.
+
+    The terms of lowest order of a true motion are a motion to first order, and no fold goes against
+    its letter there. So a part of which all folds are asked to fold, and never do, has no true
+    motions with the letters.
+    """
+    still = {(i, j) for i, j in never}
+    return any(
+        all(pair(v, u) in still for v, around in group.items() for u in around)
+        for group in connected(near)
+    )
 
 
 def summary(claims: VerifiedPanelLetters) -> str:

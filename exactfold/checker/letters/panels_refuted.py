@@ -3,8 +3,8 @@
 At each vertex a motion to second order lies in one of the two closed nappes of the form, and on one
 of its lines if the vertex has at most four folds. Each case ends in one of these contradictions
 (docs/assignment.md, Theorem 4 and Theorem 5): heights of stars whose sums contradict the letters; a
-star that is curved; a loop round which the densities do not fit; or a fold that has a letter but
-stays flat.
+star that is curved; a vertex that cannot have its letters (`vertices`); a loop round which the
+densities do not fit; or a fold that has a letter but stays flat.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from ..panels.lines import Line, lines_at
 from ..panels.loops import MOST_ORDER, Loops
 from ..panels.modes import Modes, corners_of, name
 from ..sheets.panels import Edge, Near, PanelSheet, Vector, cross, pair
+from .vertices import can_fold
 
 SIDES = {"V": 1, "M": -1}
 Signs = dict[int, int]
@@ -54,8 +55,9 @@ class Cases:
     def cover(self, refuted: list[Any], tree: list[Any]) -> bool:
         """Verify that all cases end in contradictions; say whether this excludes true motions too.
 
-        It does if all vertices that the steps name have at most four folds. A step about a fold
-        that stays flat names no vertex.
+        It does if all vertices that the steps name have at most four folds, or if they name only
+        one vertex: a vertex without motions to second order has no configurations near the flat
+        state (docs/vertices.md, Theorem 1). A step about a fold that stays flat names no vertex.
         """
         sets = [self._refuted(entry, f"refuted set {k}") for k, entry in enumerate(refuted)]
         stack = [State()]
@@ -78,6 +80,14 @@ class Cases:
                 curved = len(self.near[v]) > 3 and own in ({"M"}, {"V"})
                 require(curved, f"the letters round vertex {v} do not show that its star is curved")
                 named.add(v)
+            elif kind == "vertex":
+                (v,) = (natural(v, "a vertex") for v in at)
+                text = "".join(self.wanted[pair(v, u)] for u in self.near[v])
+                stuck = not {"M", "V"}.isdisjoint(text) and not can_fold(
+                    [self.sheet.vector(v, u) for u in self.near[v]], text
+                )
+                require(stuck, f"vertex {v} can have its letters")
+                named.add(v)
             elif kind == "at":
                 (v,) = (natural(v, "a vertex") for v in at)
                 named.add(v)
@@ -92,7 +102,7 @@ class Cases:
                 require(held, f"fold {i}-{j} may fold, or is not asked to fold")
         require(not stack, "the tree does not cover all cases")
         few = all(len(self.near[v]) <= 4 for v in named)
-        return few
+        return few or len(named) == 1
 
     # --- lines of vertices -----------------------------------------------------------------------
 

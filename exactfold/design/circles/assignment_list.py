@@ -20,6 +20,7 @@ from exactfold._support.verdict import Verdict
 from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.letters import UPSIDE_DOWN
 from exactfold.design.circles.covering import Covering
+from exactfold.design.refutations.forcing import Forcing, ForcingDocument
 from exactfold.exact.numbers import format_rational
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.described import PatternDocument, described
@@ -114,6 +115,8 @@ class AssignmentsDocument(TypedDict):
     assignments: list[_Letters]
     """Letters in the order of the folds."""
     circles: list[CircleDocument]
+    forcing: ForcingDocument | None
+    """A least set of folds whose letters force the others, if asked for."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -143,7 +146,9 @@ class AllAssignments(Certified):
             return self.points.assignments
         return tuple(sorted({arc.letters for circle in self.circles for arc in circle.arcs}))
 
-    def to_dict(self, name: str | None = None) -> AssignmentsDocument:
+    def to_dict(
+        self, name: str | None = None, *, forcing: Forcing | None = None
+    ) -> AssignmentsDocument:
         """The object printed by `exactfold assignments --json`: `schema("assignments")`."""
         return {
             "format": "exactfold assignments result",
@@ -176,6 +181,7 @@ class AllAssignments(Certified):
                 }
                 for circle in self.circles
             ],
+            "forcing": None if forcing is None else forcing.to_dict(),
         }
 
     def __repr__(self) -> str:

@@ -14,7 +14,7 @@ from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.certificates.entries import Document
 from exactfold.checker.letters.panels import PANEL_LETTERS, PanelLettersClaims
 from exactfold.design.panels.cells import CellSearch, Steps
-from exactfold.design.panels.match import PanelMatch, flat_with_letters
+from exactfold.design.panels.match import PanelMatch, flat_with_letters, rests
 from exactfold.design.panels.parts import PartAnswer
 from exactfold.design.panels.refutation import PanelRefutation, held
 from exactfold.design.panels.regular_motion import regular_motion
@@ -50,6 +50,7 @@ def starting_certificate(matched: PanelMatch) -> Document:
             }
     else:
         evidence, truly = _refuted(matched, moving)
+        truly = REFUTED if rests(matched, moving) else truly
     first = matched.first_order
     claims: PanelLettersClaims = {
         "letters": "".join(matched.letters[fold] for fold in matched.pattern.folds),
@@ -87,6 +88,8 @@ def _refuted(matched: PanelMatch, moving: Mapping[int, Star]) -> tuple[Document,
             "no certificate can be written: the complete list of motions refutes the letters, and "
             "that list has a certificate of its own (`exactfold count --certificate`)"
         )
+    if part.vertex is not None:
+        return {"refuted": [], "tree": [["vertex", part.vertex]]}, part.truly
     if not part.refutations:
         return {"refuted": [], "tree": _open_loops(matched, own, part.named)}, part.truly
     sets = [_set(matched, own, refutation) for refutation in part.refutations]

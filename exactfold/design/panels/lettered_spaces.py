@@ -85,11 +85,11 @@ class LetteredSpaces:
         """A motion of a space in which the wanted folds bend their way; None if none was found."""
         if not wanted:
             return {}
-        if not wanted <= rows.keys() or self._excluded(rows, size, wanted):
+        if not wanted <= rows.keys() or self.excluded(rows, size, wanted):
             return None
         before = size
         rows, size, products, left = self._spaces.reduced(rows, size)
-        if not wanted <= rows.keys() or (size < before and self._excluded(rows, size, wanted)):
+        if not wanted <= rows.keys() or (size < before and self.excluded(rows, size, wanted)):
             return None
         parts = independent_parts(rows, size, self.stars)
         if len(parts) > 1:
@@ -106,7 +106,7 @@ class LetteredSpaces:
                 if found is not None:
                     return found
             return None
-        found = self._in_leaf(rows, size, wanted, left)
+        found = self.in_leaf(rows, size, wanted, left)
         self.open += found is None
         return found
 
@@ -135,10 +135,10 @@ class LetteredSpaces:
         sides = np.array([SIDES[self.letters[edge]] for edge in edges])
         return edges, floats * (sides / np.abs(floats).max(axis=1))[:, None]
 
-    def _excluded(self, rows: Rows, size: int, wanted: set[Edge]) -> bool:
+    def excluded(self, rows: Rows, size: int, wanted: set[Edge]) -> bool:
         """Whether exact weights show that not all wanted folds can bend their way."""
         edges, turned = self._turned(rows, wanted)
-        if _inner(turned) is not None:
+        if inner_point(turned) is not None:
             return False
         solution = linprog(
             np.zeros(len(edges)),
@@ -196,7 +196,7 @@ class LetteredSpaces:
 
     # --- motions ---------------------------------------------------------------------------------
 
-    def _in_leaf(
+    def in_leaf(
         self, rows: Rows, size: int, wanted: set[Edge], left: Sequence[int]
     ) -> Motion | None:
         """A motion with the letters in a space on which at most one form is left; None if none is
@@ -263,7 +263,7 @@ def truly_begin(pattern: PanelPattern, stars: Mapping[int, Star], motion: Motion
     )
 
 
-def _inner(turned: FloatArray) -> FloatArray | None:
+def inner_point(turned: FloatArray) -> FloatArray | None:
     """A point at which all linear functions are positive, as far as floating point can tell."""
     count, size = turned.shape
     solution = linprog(
@@ -281,7 +281,7 @@ def _inner(turned: FloatArray) -> FloatArray | None:
 
 def _points(turned: FloatArray, number: int) -> Iterator[FloatArray]:
     """Points at which all linear functions are positive: one well inside, and some far apart."""
-    inner = _inner(turned)
+    inner = inner_point(turned)
     if inner is None:
         return
     yield inner

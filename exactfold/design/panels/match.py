@@ -262,7 +262,10 @@ def match_panels(
     if matched.starts is not PROVED:
         if progress is not None:
             progress("first order", 0, 1)
-        matched = replace(matched, first_order=_first_order(moving, asked, dead, free, clock))
+        first = _first_order(moving, asked, dead, free, clock)
+        matched = replace(matched, first_order=first)
+        if matched.starts is REFUTED and rests(matched, moving):
+            matched = replace(matched, truly=REFUTED)
     return replace(matched.about(opened), seconds=time.perf_counter() - start)
 
 
@@ -283,6 +286,19 @@ def _first_order(
         return None
     together, never = sorted({*inside.together, *free}), sorted({*inside.never, *dead})
     return replace(inside, together=tuple(together), never=tuple(never))
+
+
+def rests(matched: PanelMatch, moving: Mapping[int, Star]) -> bool:
+    """Whether some part of the sheet has letters at all folds, and none can move to first order.
+
+    Then no true motion has the letters, because its terms of lowest order would be a motion to
+    first order in which no fold goes against its letter.
+    """
+    never = set(() if matched.first_order is None else matched.first_order.never)
+    return any(
+        never.issuperset(fold for v in group for fold in moving[v].folds)
+        for group in groups_of(moving)
+    )
 
 
 def flat_with_letters(

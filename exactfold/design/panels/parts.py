@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 from itertools import chain, islice
 from typing import Final
 
+import networkx as nx
+
 from exactfold._support.clock import UNLIMITED, Clock
 from exactfold._support.plurals import counted
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
@@ -17,12 +19,14 @@ from exactfold.design.panels.lettered_spaces import LetteredSpaces, truly_begin
 from exactfold.design.panels.proof import ProvedMotion, proved_motion
 from exactfold.design.panels.refutation import PanelRefutation
 from exactfold.design.panels.vertex_reasons import VertexReason, vertex_reason
+from exactfold.design.panels.vertex_witness import vertex_witness
 from exactfold.design.refutations.refutation import Letters
 from exactfold.errors import TooManyModesError
 from exactfold.exact.surds import Number
 from exactfold.panels.densities import UndecidedDensityError
 from exactfold.panels.extension import Loops, extension
-from exactfold.panels.stars import Star
+from exactfold.panels.stars import Star, edge_of
+from exactfold.panels.vertex_motions import vertex_motion
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
 _MOST_CELLS: Final = 64
@@ -37,10 +41,10 @@ class PartAnswer:
 
     `starts` is about motions to second order, and `truly` about true motions of the panels. `ways`
     is the number of cells with these letters, or None if it is not known. `densities` is one such
-    motion, approximately, and `motion` is the same exactly if it was found in a linear space.
-    `by_list` says that the complete list of motions refutes the letters.
-    `named` are the vertices that the reason names. `loop` is the loop that refutes the letters, if
-    one does.
+    motion, approximately, and `motion` is one exactly if it is that of a vertex or was found in a
+    linear space. `named` are the vertices that the reason names. `vertex` is a vertex that the
+    theorem of Abel et al. refutes, where no vectors do. `by_list` says that the complete list of
+    motions refutes the letters. `loop` is the loop that refutes the letters, if one does.
     """
 
     vertices: tuple[int, ...]
@@ -53,6 +57,7 @@ class PartAnswer:
     named: tuple[int, ...] = ()
     loop: OpenLoop | None = None
     motion: Mapping[Edge, Number] = field(default_factory=dict, repr=False)
+    vertex: int | None = None
     by_list: bool = False
 
 
@@ -62,7 +67,59 @@ def answered(
     letters: Letters,
     clock: Clock = UNLIMITED,
 ) -> PartAnswer:
-    """The answer for one part; cheap proofs are tried first, until the clock has passed.
+    """The answer for one part of the sheet.
+
+    Where some vertex has more than four folds, the part is cut at mountains and valleys that alone
+    join their two sides. Motions of the two sides with the letters can be scaled so that they agree
+    at this fold, and true motions can be followed at speeds such that they agree. So the part has
+    the letters if and only if both sides have them.
+    """
+    if all(len(star.folds) <= 4 for star in moving.values()):
+        return block_answer(pattern, moving, letters, clock)
+    answers: list[PartAnswer] = []
+    for vertices in blocks_of(moving, letters):
+        answers.append(block_answer(pattern, {v: moving[v] for v in vertices}, letters, clock))
+        if answers[-1].starts is REFUTED:
+            return answers[-1]
+    if len(answers) == 1:
+        return answers[0]
+    verdicts = {answer.starts for answer in answers}
+    if UNDECIDED in verdicts:
+        return next(answer for answer in answers if answer.starts is UNDECIDED)
+    truly = PROVED if all(answer.truly is PROVED for answer in answers) else UNDECIDED
+    return PartAnswer(tuple(moving), PROVED, truly, densities=_joined(answers))
+
+
+def blocks_of(moving: Mapping[int, Star], letters: Letters) -> list[tuple[int, ...]]:
+    """The vertices of the blocks between mountains and valleys that alone join their sides.
+
+    Each block but the first shares such a fold with an earlier one.
+    """
+    graph = nx.Graph()
+    graph.add_nodes_from(moving)
+    inner = {e for star in moving.values() for e in star.folds if set(e) <= moving.keys()}
+    graph.add_edges_from(sorted(inner))
+    cuts = [e for e in nx.bridges(graph) if letters[edge_of(*e)] in "MV"]
+    order = {v: k for k, v in enumerate(nx.dfs_preorder_nodes(graph, min(moving)))}
+    graph.remove_edges_from(cuts)
+    blocks = [tuple(sorted(block)) for block in nx.connected_components(graph)]
+    return sorted(blocks, key=lambda block: min(order[v] for v in block))
+
+
+def _joined(answers: Iterable[PartAnswer]) -> dict[Edge, float]:
+    """The motions of the blocks, scaled so that they agree at the folds that join them."""
+    total: dict[Edge, float] = {}
+    for answer in answers:
+        shared = next((edge for edge in answer.densities if edge in total), None)
+        scale = 1.0 if shared is None else total[shared] / answer.densities[shared]
+        total |= {edge: scale * x for edge, x in answer.densities.items() if edge not in total}
+    return total
+
+
+def block_answer(
+    pattern: PanelPattern, moving: Mapping[int, Star], letters: Letters, clock: Clock
+) -> PartAnswer:
+    """The answer for one block; cheap proofs are tried first, until the clock has passed.
 
     The order is: single vertices; vectors that refute all first-order motions; loops of vertices
     with at most four folds, which are the complete answer if there are no other vertices; a
@@ -77,6 +134,14 @@ def answered(
         return PartAnswer(vertices, PROVED, PROVED, ways=None)
     if stuck := _stuck(moving, letters):
         return _refused_at(vertices, moving, stuck)
+    for v, star in moving.items():
+        if vertex_motion(star, letters) is None and {"M", "V"} & {letters[e] for e in star.folds}:
+            text = f"vertex {v} cannot have its letters, whatever its free folds do"
+            return PartAnswer(vertices, REFUTED, REFUTED, text, named=(v,), vertex=v)
+    if len(vertices) == 1 and not few:
+        (star,) = moving.values()
+        if (motion := vertex_witness(star, letters)) is not None:
+            return PartAnswer(vertices, PROVED, PROVED, densities=_floats(motion), motion=motion)
     program = FirstOrderProgram(moving, letters, clock)
     start = program.motion()
     if start is None and (refutation := program.refutation()) is not None:
@@ -134,8 +199,7 @@ def _by_spaces(
         return None
     if starts is PROVED:
         truly = PROVED if truly_begin(pattern, moving, motion) else UNDECIDED
-        densities = {edge: float(x) for edge, x in motion.items() if x}
-        return PartAnswer(vertices, PROVED, truly, densities=densities, motion=motion)
+        return PartAnswer(vertices, PROVED, truly, densities=_floats(motion), motion=motion)
     if starts is UNDECIDED:
         return None
     text = "the list of its motions to second order is complete, and none has these letters"
@@ -146,6 +210,13 @@ def _by_spaces(
         f"{_where(vertices)}: {text}",
         by_list=True,
     )
+
+
+def _floats(motion: Mapping[Edge, Number]) -> dict[Edge, float]:
+    """The densities of an exact motion in floats; the largest is 1 or -1."""
+    densities = {edge: float(x) for edge, x in motion.items() if x}
+    largest = max(map(abs, densities.values()), default=1.0)
+    return {edge: x / largest for edge, x in densities.items()}
 
 
 def _weakly(moving: Mapping[int, Star], letters: Letters) -> bool:
@@ -170,7 +241,8 @@ def _refused_at(
 ) -> PartAnswer:
     """The answer refuted at single vertices; the reason names the vertex with the fewest folds.
 
-    If this vertex has at most four folds, true motions are refuted, too.
+    A vertex that has no motion to second order with its letters has no configuration with them near
+    the flat state (docs/vertices.md, Theorem 1).
     """
     first = min(stuck, key=lambda reason: (len(moving[reason.vertex].folds), reason.vertex))
     more = len(stuck) - 1
@@ -178,7 +250,7 @@ def _refused_at(
     return PartAnswer(
         vertices,
         REFUTED,
-        REFUTED if len(moving[first.vertex].folds) <= 4 else UNDECIDED,
+        REFUTED,
         f"{first.text}{others}",
         refutations=first.refutations,
         named=tuple(reason.vertex for reason in stuck),

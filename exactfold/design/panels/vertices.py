@@ -21,6 +21,7 @@ from exactfold._support.documents import (
 from exactfold._support.plurals import agreeing, counted
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.design.panels.vertex_facts import VertexFacts, vertex_facts
+from exactfold.design.panels.vertex_repair import Repair, repaired
 from exactfold.design.refutations.asked import by_fold
 from exactfold.design.refutations.refutation import Letters
 from exactfold.panels.stars import Star, star_at
@@ -72,6 +73,15 @@ class VertexDocument(TypedDict):
     """The fold to turn for Kawasaki's condition."""
 
 
+class RepairDocument(TypedDict):
+    """A change of letters after which vertices start to fold by themselves."""
+
+    folds: list[FoldText]
+    """Their letters M and V are exchanged."""
+    stuck: list[Natural]
+    """The vertices that cannot have their letters even so."""
+
+
 class VerticesDocument(TypedDict):
     """What is known of each vertex of a sheet by itself."""
 
@@ -90,6 +100,8 @@ class VerticesDocument(TypedDict):
     maekawa: Natural
     """The number of vertices with Maekawa's condition."""
     vertices: list[VertexDocument]
+    repair: RepairDocument | None
+    """The smallest change found after which the fewest vertices fail; null if none fails."""
     reason: str
     meant: MeantDocument | None
     """What was inferred if the digits of the drawing are inexact; else null."""
@@ -256,6 +268,14 @@ class Vertices:
         )
 
     @cached_property
+    def repair(self) -> Repair | None:
+        """The smallest change of letters found for the whole sheet; None if no vertex is refuted.
+
+        The search takes a few seconds where many vertices are refuted.
+        """
+        return repaired(self._fans, self.letters) if self.refuted else None
+
+    @cached_property
     def _fans(self) -> dict[int, tuple[Star, Fan]]:
         stars = (star_at(self.pattern, v) for v in self.pattern.interior)
         return {star.vertex: (star, Fan(star)) for star in stars}
@@ -283,9 +303,18 @@ class Vertices:
             "kawasaki": self.summary["kawasaki"],
             "maekawa": self.summary["maekawa"],
             "vertices": [self._document(v) for v in self.facts],
+            "repair": self._repair(),
             "reason": self.reason,
             "meant": None if self.meant is None else self.meant.to_dict(),
             "seconds": round(self.seconds, 3),
+        }
+
+    def _repair(self) -> RepairDocument | None:
+        if self.repair is None:
+            return None
+        return {
+            "folds": [_name(e) for e in self.repair.folds],
+            "stuck": list(self.repair.stuck),
         }
 
     def _document(self, facts: VertexFacts) -> VertexDocument:

@@ -195,7 +195,9 @@ class _Piece:
         width = min(_WIDEST * size, _SHARE * min(lengths))
         for _ in range(_TRIALS):
             drawing = self._rebuilt(shared, width)
-            if not crossing_pairs(floats(drawing.points), drawing.lines):
+            lines = drawing.lines
+            pairs = crossing_pairs(floats(drawing.points), lines)
+            if all({*lines[k][:2]} & {*lines[m][:2]} for k, m in pairs):
                 return drawing, width
             width /= 8
         v = min(shared)

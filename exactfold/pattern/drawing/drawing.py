@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Literal, NamedTuple, TypeAlias
 
@@ -15,6 +15,8 @@ from exactfold.errors import UsageError
 Point: TypeAlias = "tuple[Number, Number]"
 Snap: TypeAlias = "Literal['auto', 'exact'] | int"
 """How coordinates become exact: recognised, kept as written, or multiples of 1/Snap."""
+Steps: TypeAlias = "Literal['all', 'least'] | Collection[str]"
+"""Steps of repair: "all", "least" (as few as reading the drawing takes), or a set of names."""
 LETTERS: Final = "BMVFUCJ"
 """FOLD's letters: boundary, mountain, valley, flat, unassigned, cut, join."""
 

@@ -10,7 +10,7 @@ from typing import Final
 from exactfold._support.plurals import counted
 from exactfold.errors import FoldError, MalformedPatternError, PatternError, UsageError
 from exactfold.pattern.drawing.coordinates import Exact, exact_coordinates, resolution
-from exactfold.pattern.drawing.drawing import Drawing, Snap
+from exactfold.pattern.drawing.drawing import Drawing, Snap, Steps
 from exactfold.pattern.drawing.inexactness import GAP, clear_distances
 from exactfold.pattern.drawing.mending import (
     Repair,
@@ -28,6 +28,8 @@ from exactfold.pattern.drawing.splitting import split
 
 STEPS: Final = ("merge", "duplicates", "split", "join", "dangling", "dissolve", "border")
 """The steps of repair, in their order."""
+_LEAST: Final = ("merge", "duplicates", "split", "dangling")
+"""Some drawings have no panels without these steps; the other steps only change the panels."""
 _NEAR: Final = Fraction(1, 10**6)
 _COARSEST: Final = Fraction(1, 300)
 """Points are never merged automatically at a larger share of the size."""
@@ -86,6 +88,15 @@ def repaired(
     return drawing, tuple(repairs)
 
 
+def attempts(drawing: Drawing, steps: Steps, merge: Fraction | None) -> list[Collection[str]]:
+    """The sets of repair steps, in the order in which they are tried."""
+    if steps == "least":
+        return [(), _LEAST] if merge is None else [_LEAST]
+    if steps == "all":
+        return [("join",), STEPS] if drawing.exact and merge is None else [STEPS]
+    return [steps]
+
+
 @dataclass(frozen=True)
 class Sheets:
     """The sheets of a drawing, with exact coordinates, and how they were found."""
@@ -139,6 +150,8 @@ def exact_sheets(
     # Snapping can make points coincide that were further apart than the merging distance.
     least = 2 * exact.tolerance if merge is None else Fraction(0)
 
+    remedies: dict[Exception, str] = {}
+
     def made(distance: Fraction) -> Sheets:
         after, ended = repaired(exact.drawing, merge=max(distance, least), steps=steps)
         try:
@@ -147,7 +160,8 @@ def exact_sheets(
         except (FoldError, PatternError) as error:
             for loose in (repair for repair in ended if repair.step == "dangling"):
                 if loose.count > len(after.lines):
-                    error.args = (f"{error}; {loose}; {_MEET}", *error.args[1:])
+                    error.args = (f"{error}; {loose}", *error.args[1:])
+                    remedies[error] = _MEET
             raise
 
     done, refusals = _until_whole(made, distances)
@@ -157,11 +171,15 @@ def exact_sheets(
         coarser = _clear(drawing, distances[-1] * 2, _ADVISED, GAP / 2)[-_TRIALS:]
         round_ones = [Fraction(f"{1.05 * float(distance):.2g}") for distance in coarser]
         for distance in list(_until_whole(made, round_ones)[0])[:1]:
-            refusals[0].args = (
-                f"{refusals[0]}; `exactfold convert --merge {float(distance):g}` would read it: "
-                "lines that miss each other by up to that share of the size then meet",
-                *refusals[0].args[1:],
+            remedies[refusals[0]] = (
+                f"`exactfold convert --merge {float(distance):g}` would read it: lines that miss "
+                "each other by up to that share of the size then meet"
             )
+    if refusals[0] in remedies:
+        refusals[0].args = (
+            f"{refusals[0]}; {remedies[refusals[0]]}",
+            *refusals[0].args[1:],
+        )
     raise refusals[0]
 
 

@@ -34,8 +34,12 @@ def bordered(drawing: Drawing) -> tuple[Drawing, list[Repair]]:
     Creases that lie inside a panel keep their letters, as they are not round a sheet.
     """
     parts, places = _parts(drawing), floats(drawing.points)
-    outer = [part for part in parts if not any(_nested(part, other, places) for other in parts)]
-    round_it = {frozenset(pair) for part in outer for pair in _sides(part.outline)}
+    round_it = {
+        frozenset(pair)
+        for part, outer in zip(parts, _enclosing(parts, places), strict=True)
+        if not outer
+        for pair in _sides(part.outline)
+    }
     lines = []
     changed = []
     for line in drawing.lines:
@@ -77,10 +81,12 @@ def sheets(drawing: Drawing) -> tuple[tuple[Drawing, ...], list[Repair]]:
     alone: list[int] = []
     slits: list[int] = []
     farthest = 0.0
-    for part in parts:
-        near = [x for x in parts if _nested(part, x, places) or _nested(x, part, places)]
-        _check_nested(part, near, places)
-        if near and (len(part.faces) == 1 or all(line.letter in "BC" for line in part.lines)):
+    enclosing = _enclosing(parts, places)
+    framing = {k for outer in enclosing for k in outer}
+    for k, part in enumerate(parts):
+        _check_nested(part, [parts[m] for m in enclosing[k]], places)
+        nested = enclosing[k] or k in framing
+        if nested and (len(part.faces) == 1 or all(line.letter in "BC" for line in part.lines)):
             alone.append(part.outline[0])
         elif inside := _cuts(part, places):
             found, empty, moved = pieces(drawing, part.faces, part.lines)
@@ -173,13 +179,17 @@ def _check_all(drawing: Drawing, parts: Sequence[_Part], places: FloatArray) -> 
         )
 
 
-def _check_nested(part: _Part, near: Sequence[_Part], places: FloatArray) -> None:
-    """Raises an error if a part with creases round it lies inside another part."""
+def _check_nested(part: _Part, outer: Sequence[_Part], places: FloatArray) -> None:
+    """Raises an error if a part inside others is neither a hole nor a sheet there.
+
+    Its outline tells: a hole and a sheet have boundary lines. Lines without a letter are a boundary
+    inside frames, which have one face each.
+    """
     boundary = {frozenset(pair) for pair in _sides(part.outline)}
-    if all(line.letter in "BC" for line in part.lines if frozenset(line[:2]) in boundary):
-        return
-    v = part.outline[0]
-    if any(_nested(part, other, places) for other in near):
+    letters = {line.letter for line in part.lines if frozenset(line[:2]) in boundary}
+    framed = letters <= {*"BCU"} and all(len(other.faces) == 1 for other in outer)
+    if outer and not framed and not letters <= {*"BC"}:
+        v = part.outline[0]
         raise DisconnectedError(
             f"creases near ({places[v][0]:.6g}, {places[v][1]:.6g}) lie inside a panel, and no "
             "line joins them to the rest (leave out a frame round the drawing; a hole is drawn "
@@ -188,8 +198,17 @@ def _check_nested(part: _Part, near: Sequence[_Part], places: FloatArray) -> Non
         )
 
 
-def _nested(part: _Part, other: _Part, places: FloatArray) -> bool:
-    return part is not other and _encloses(places[list(other.outline)], places[part.outline[0]])
+def _enclosing(parts: Sequence[_Part], places: FloatArray) -> list[list[int]]:
+    """For each part, the parts inside whose outline it lies."""
+    outlines = [places[list(part.outline)] for part in parts]
+    low = np.array([outline.min(axis=0) for outline in outlines]).reshape(-1, 2)
+    high = np.array([outline.max(axis=0) for outline in outlines]).reshape(-1, 2)
+    found = []
+    for k, outline in enumerate(outlines):
+        near = ((low < outline[0]) & (outline[0] < high)).all(axis=1)
+        near[k] = False
+        found.append([int(m) for m in np.flatnonzero(near) if _encloses(outlines[m], outline[0])])
+    return found
 
 
 def _cuts(part: _Part, places: FloatArray) -> list[Line]:
@@ -198,6 +217,8 @@ def _cuts(part: _Part, places: FloatArray) -> list[Line]:
     inside = [
         line for line in part.lines if line.letter in "BC" and frozenset(line[:2]) not in boundary
     ]
+    if not inside:
+        return []
     closed = {frozenset(line[:2]) for line in inside}
     faces = [{frozenset(pair) for pair in _sides(face)} for face in part.faces]
     rim = set(part.outline)
@@ -217,7 +238,7 @@ def _cuts(part: _Part, places: FloatArray) -> list[Line]:
         raise FoldError(
             f"{counted(len(wrong), 'boundary line')} {agreeing(len(wrong), 'is')} between two "
             f"panels ({named}{more}): give {'it' if len(wrong) == 1 else 'them'} the letter U for "
-            "a crease, or C for a cut (`--colours black=U` or `--colours black=C` for an SVG file)"
+            "a crease, C for a cut, or F for nothing (for an SVG file: `--colours black=U`, C or F)"
         )
     return inside
 

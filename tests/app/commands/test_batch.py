@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+from fractions import Fraction
 from pathlib import Path
 
 import pytest
@@ -95,6 +96,89 @@ def test_a_folder_without_drawings_is_wrong_usage(tmp_path: Path) -> None:
     result = run("count", tmp_path)
     assert result.exit_code == USAGE
     assert f"the folder {tmp_path} has no file that ends in cp, " in " ".join(result.stderr.split())
+
+
+TRIANGLES = {1: ("M",), 2: ("M", "V")}
+"""Creases from the first corner to the opposite side of a triangle, by the number of the sheet."""
+
+
+def several_sheets(path: Path, creases=TRIANGLES) -> Path:
+    """A CP file with a triangle for each number, side by side."""
+    rows = []
+    for k, letters in creases.items():
+        corners = [(3 * k, 0), (3 * k + 2, 0), (3 * k, 2)]
+        rows += [
+            f"1 {a} {b} {c} {d}"
+            for (a, b), (c, d) in zip(corners, [*corners[1:], corners[0]], strict=True)
+        ]
+        for j, letter in enumerate(letters, 1):
+            share = Fraction(2 * j, len(letters) + 1)
+            end = f"{float(3 * k + 2 - share)} {float(share)}"
+            rows.append(f"{' BMV'.index(letter)} {3 * k} 0 {end}")
+    path.write_text("\n".join(rows))
+    return path
+
+
+def test_all_sheets_have_an_answer_each(tmp_path: Path) -> None:
+    path, plain = several_sheets(tmp_path / "two.cp", {1: "M", 2: "MM"}), example_path("zigzags")
+    result = run("count", path, "--sheet", "all", "--json", "--jobs", 1)
+    assert result.exit_code == 0
+    lines = [json.loads(line) for line in result.stdout.splitlines()]
+    assert [line["name"] for line in lines] == [f"{path} sheet 1", f"{path} sheet 2"]
+    assert [line["asked"]["sheet"] for line in lines] == [1, 2]
+    assert [line["result"]["pattern"]["folds"] for line in lines] == [1, 2]
+    alone = json.loads(run("count", path, "--sheet", 2, "--json").stdout)
+    assert lines[1]["result"]["components"] == alone["components"]
+    assert lines[1]["result"]["pattern"]["sha256"] == alone["pattern"]["sha256"]
+    table = run("count", path, plain, "--sheet", "all", "--jobs", 1)
+    words = " ".join(table.stdout.split())
+    assert words.endswith("3 patterns: 3 proved, 0 undecided, 0 failed")
+    assert words.count("sheet 1") == words.count("sheet 2") == 1
+
+
+def test_a_sheet_that_is_refused_takes_no_other_with_it(tmp_path: Path) -> None:
+    path = several_sheets(tmp_path / "two.cp", {1: "M", 2: ""})
+    out = tmp_path / "out.jsonl"
+    result = run("count", path, "--sheet", "all", "--jsonl", out, "--jobs", 1)
+    assert result.exit_code == BAD_INPUT
+    assert "the sheet has no folds" in " ".join(result.stdout.split())
+    statuses = {line["name"]: line["status"] for line in map(json.loads, out.open())}
+    assert statuses == {f"{path} sheet 1": "proved", f"{path} sheet 2": "failed"}
+    forced = run("count", path, "--sheet", "all", "--force", "--jsonl", out, "--jobs", 1)
+    assert forced.exit_code == 0
+    assert "1 counted in an earlier run" in " ".join(forced.stdout.split())
+
+
+def test_a_file_that_cannot_be_read_is_one_line_of_all_sheets(tmp_path: Path) -> None:
+    (tmp_path / "bad.cp").write_text("1 0 0 1")
+    result = run("count", tmp_path / "bad.cp", "none.cp", "--sheet", "all", "--json", "--jobs", 1)
+    assert result.exit_code == BAD_INPUT
+    names = [json.loads(line)["name"] for line in result.stdout.splitlines()]
+    assert names == [str(tmp_path / "bad.cp"), "none.cp"]
+
+
+def test_all_sheets_go_with_count_only(tmp_path: Path) -> None:
+    path = several_sheets(tmp_path / "two.cp")
+    for command in (["info"], ["match"], ["convert", tmp_path / "out.fold"]):
+        result = run(command[0], path, *command[1:], "--sheet", "all")
+        assert result.exit_code == USAGE
+        assert "--sheet all goes with `exactfold count`" in result.stderr
+    assert run("count", path, "--sheet", "all", "--certificate", "c.json").exit_code == USAGE
+    assert run("count", path, "--sheet", "some").exit_code == USAGE
+    assert run("count", path, "--sheet", 0).exit_code == USAGE
+
+
+def test_without_a_choice_the_sheets_are_listed(tmp_path: Path) -> None:
+    path = several_sheets(tmp_path / "two.cp")
+    listed = "sheet 1 with 1 fold, 2 x 2 at (3, 0); sheet 2 with 2 folds, 2 x 2 at (6, 0)"
+    remedy = "choose one with --sheet N (`number=` in Python), or count all with"
+    result = run("count", path)
+    assert result.exit_code == BAD_INPUT
+    assert f"the drawing holds 2 sheets ({listed}): {remedy}" in result.stderr
+    result = run("count", path, "--sheet", 3)
+    assert f"there is no sheet 3: the drawing holds 2 sheets ({listed})" in result.stderr
+    many = several_sheets(tmp_path / "many.cp", dict.fromkeys(range(1, 15), "M"))
+    assert "sheet 12 with 1 fold, 2 x 2 at (36, 0); and 2 more): " in run("count", many).stderr
 
 
 def test_the_same_from_one_process_and_from_two(tmp_path: Path) -> None:

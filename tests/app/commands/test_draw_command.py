@@ -108,6 +108,8 @@ def test_a_drawing_with_a_hole_is_drawn_and_the_reason_told(tmp_path):
     assert result.stdout.count('class="B"') == 8
     assert "not a sheet that can be counted" in result.stderr
     assert run("draw", tmp_path / "hole.svg", "--all").exit_code == BAD_INPUT
+    cut = run("draw", tmp_path / "hole.svg", "--colours", "red=V,black=C")
+    assert cut.stdout.count('class="V"') == 4
 
 
 def test_names_of_files_are_made_safe(tmp_path):

@@ -158,7 +158,7 @@ def test_schemas_refuse_what_is_not_documented() -> None:
         {"more": 1},
         {"distinct": None},
         {"distinct": 4.5},
-        {"version": 2},
+        {"version": 3},
         {"format": "exactfold branch result"},
         {"by": None},
         {"status": "undecided"},

@@ -118,3 +118,36 @@ def test_vertices_with_the_same_reason_share_a_line(tmp_path: Path) -> None:
         "- vertices 5 and 6, each: its folds form two straight lines, which cannot move at the "
         "same time: no letters help"
     ) in words(result.stdout)
+
+
+def test_a_count_that_is_undecided_says_what_is_known_of_each_vertex(tmp_path: Path) -> None:
+    path = tmp_path / "crossed.fold"
+    path.write_text(document_text(converted(Opened(crossed(NEAR))).document(None)))
+    result = run("count", path)
+    assert result.exit_code == UNDECIDED
+    last = (
+        "each vertex by itself: the only interior vertex starts to fold with some letters - PROVED"
+    )
+    assert last in words(result.stdout)
+    known = run("count", path, "--snap", "exact")
+    assert known.exit_code == PROVED
+    assert "each vertex by itself" not in known.stdout
+    json.loads(run("count", path, "--json").stdout)
+
+
+def test_info_has_a_line_about_the_vertices() -> None:
+    text = words(run("info", "zigzags").stdout)
+    assert "each vertex by itself none of the 4 vertices can start to fold with its" in text
+    assert "folding flat Kawasaki's condition holds at none of 4 vertices" in text
+    data = json.loads(run("info", "zigzags", "--json").stdout)
+    Draft202012Validator(exactfold.schema("info")).validate(data)
+    assert data["vertices"] == {
+        "starts": "refuted",
+        "refuted": [9, 10, 13, 14],
+        "never": [],
+        "kawasaki": 0,
+        "maekawa": 0,
+    }
+    plain = run("info", "two-vertex").stdout
+    assert "each of the 2 vertices starts" in words(plain)
+    assert "folding flat" not in plain

@@ -69,6 +69,18 @@ def test_the_slider_folds_the_sheet(browser, pages):
     assert _pixels(browser) != before
 
 
+def test_vertices_to_look_at_have_a_ring_and_say_why(browser, pages):
+    browser.open(pages["zigzags"])
+    ring = "[data-vertex='9'] .ring.refuted"
+    assert browser.run('document.querySelectorAll(".ring").length') == 4
+    assert browser.run(f'document.querySelector("{ring}") !== null')
+    label = browser.run("document.querySelector(\"[data-vertex='9']\").getAttribute('aria-label')")
+    assert "It cannot start to fold with the letters of the file: its mountains 9-13, 4-9" in label
+    assert "vertex that cannot start to fold" in browser.text("#legend")
+    browser.open(pages["h1-4"])
+    assert browser.run('document.querySelectorAll(".ring").length') == 0
+
+
 def _pixels(browser):
     """A picture of the page, once what was asked for is drawn."""
     browser.run("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")

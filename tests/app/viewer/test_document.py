@@ -4,6 +4,7 @@ import base64
 import hashlib
 import json
 import re
+from fractions import Fraction
 from functools import cache
 from pathlib import Path
 
@@ -11,7 +12,7 @@ import numpy as np
 import pytest
 from jsonschema import Draft202012Validator, ValidationError
 
-from exactfold import CreasePattern, random_square, schema
+from exactfold import CreasePattern, Opened, PanelPattern, random_square, schema
 from exactfold.app.pictures import crease_style
 from exactfold.app.viewer import page as page_module
 from exactfold.app.viewer import view_document, view_page
@@ -71,6 +72,45 @@ def test_motions_are_proved_where_that_is_asked_for():
     event = prove(follow(find_branch("two-vertex", "+-"))).contact.event
     assert way["motion"]["proved"]
     assert "between the times {:.8g} and {:.8g}".format(*event.time) in way["motion"]["said"]
+
+
+def test_vertices_to_look_at_are_marked_with_reasons():
+    marks = document_of("zigzags")["sheet"]["marks"]
+    assert [(mark["vertex"], mark["kind"]) for mark in marks] == [
+        (v, "refuted") for v in (9, 10, 13, 14)
+    ]
+    assert marks[1]["text"] == (
+        "It cannot start to fold with the letters of the file: its mountains 10-14, 6-10 lie on "
+        "one side of a line, and so do its valleys 9-10, 10-11: exchange the letter of 6-10"
+    )
+    assert document_of("miura")["sheet"]["marks"] == []
+
+
+def test_a_vertex_that_is_open_and_one_that_does_not_fold_flat_are_marked():
+    tiny = Fraction(1, 10**9)
+    rim = [(1, 2), (2, 3), (3, 4), (1, 4)]
+    for bent, letters, kind, text in (
+        (tiny, "VMMM", "open", "Whether it can start to fold is open: folds 0-2 and 0-4 miss a"),
+        (Fraction(0), "MFMF", "", ""),
+    ):
+        sheet = PanelPattern(
+            [(0, 0), (1, 0), (0, 1), (-1, 0), (bent, -1)], [*rim, *((0, k) for k in range(1, 5))]
+        )
+        opened = Opened(sheet, {(0, k): x for k, x in enumerate(letters, 1)})
+        marks = view_document(opened, frames=3)["sheet"]["marks"]
+        assert [mark["kind"] for mark in marks] == ([kind] if kind else [])
+        assert all(mark["text"].startswith(text) for mark in marks)
+    square = [(2, 0), (2, 2), (-2, 2), (-2, -2), (2, -2)]
+    waterbomb = PanelPattern(
+        [(0, 0), *square[1:], (2, 0), (-2, 0)],
+        [(1, 2), (3, 4), (1, 5), (4, 5), (2, 6), (3, 6), *((0, k) for k in range(1, 7))],
+    )
+    letters = {(0, k): x for k, x in enumerate("VVVVMM", 1)}
+    assert view_document(Opened(waterbomb, letters), frames=3)["sheet"]["marks"] == []
+    letters[0, 5] = "V"
+    [mark] = view_document(Opened(waterbomb, letters), frames=3)["sheet"]["marks"]
+    assert (mark["vertex"], mark["kind"]) == (0, "flat")
+    assert mark["text"] == "It does not fold flat: mountains and valleys do not differ by 2"
 
 
 def test_levelled_frames_keep_all_distances():

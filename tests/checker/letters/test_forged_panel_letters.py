@@ -159,10 +159,33 @@ def test_true_motions_are_motions() -> None:
     stopped(document, "true motions are claimed, but no motion to second order")
 
 
-def test_vertices_with_more_than_four_folds_say_nothing_of_true_motions() -> None:
+def test_several_vertices_with_more_than_four_folds_say_nothing_of_true_motions() -> None:
+    cases = "the cases name several vertices, not all with at most four folds"
+    message = f"{cases}: true motions are open"
+    document = sheet("several")
+    document["claims"]["truly"] = "refuted"
+    stopped(document, message)
+    document = given("starting-never")
+    verified(document)
+    document["claims"] |= NOTHING
+    document["evidence"] |= {"flat": [], "densities": []}
+    refused(document, message)
+
+
+def test_one_vertex_alone_excludes_true_motions() -> None:
     document = sheet("curved")
     document["claims"]["truly"] = "refuted"
-    stopped(document, "the cases name a vertex with more than four folds: true motions are open")
+    assert verified(document)["truly"] == "refuted"
+
+
+def test_a_vertex_cannot_have_letters_that_it_can_have() -> None:
+    for letters in ("MUMMU", "UMMUU", "MMVMV"):
+        document = refuting("vertex", [["vertex", 0]], letters, truly="refuted")
+        stopped(document, "vertex 0 can have its letters")
+    for letters in ("MUMMM", "VUVVV"):
+        verified(refuting("vertex", [["vertex", 0]], letters, truly="refuted"))
+    free = refuting("vertex", [["vertex", 0]], "UUUUU", truly="refuted")
+    refused(free, "vertex 0 can have its letters")
 
 
 # --- cases ---------------------------------------------------------------------------------------

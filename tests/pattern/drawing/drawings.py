@@ -87,5 +87,45 @@ def as_svg(lines) -> str:
     return svg("".join(elements))
 
 
+_LAYERS = {"B": "CutLine", "M": "MountainLine", "V": "ValleyLine"}
+
+
+def as_dxf(lines, layers=_LAYERS, **tags) -> str:
+    """As Oriedita writes it: lines of R12 on layers, without tables."""
+    rows = ["  0", "SECTION", "  2", "ENTITIES"]
+    for a, b, letter in lines:
+        rows += ["  0", "LINE", "  8", layers[letter]]
+        rows += [str(tag) for pair in tags.get(letter, ()) for tag in pair]
+        rows += ["10", a[0], "20", a[1], "11", b[0], "21", b[1]]
+    return "\n".join([*rows, "  0", "ENDSEC", "  0", "EOF", ""])
+
+
+def as_tmd5(lines, kinds=(), line_end="\n") -> str:
+    """As TreeMaker 5 writes it: a value a row, the tree before the creases; labels can be tags."""
+    vertices = sorted({place for *ends, _ in lines for place in ends})
+    rows = ["tree", "5.0", *["1.0"] * 3, "false", *["0.0"] * 3, *["true"] * 7]
+    rows += ["1", "0", "0", "0", str(len(vertices)), str(len(lines)), "0", "0"]
+    rows += ["node", "1", "vrtx", "0.5", "0.5", "crse"]
+    for k, (x, y) in enumerate(vertices, 1):
+        rows += ["vrtx", str(k), x, y, "0.0", "true", *["0"] * 4, "0.0", "0", "0", "0", "1", "1"]
+    for k, (a, b, letter) in enumerate(lines, 1):
+        ends = [str(vertices.index(place) + 1) for place in (a, b)]
+        kind = kinds[k - 1] if kinds else 0
+        rows += ["crse", str(k), str(kind), "2", *ends, "1", "0", str("FMVB".index(letter))]
+        rows += ["1", "1", "2", "1"]
+    return line_end.join([*rows, "0"])
+
+
+def as_obj(lines) -> str:
+    """A mesh with edges as Freeform Origami writes them."""
+    vertices = sorted({place for *ends, _ in lines for place in ends})
+    number = {place: k for k, place in enumerate(vertices, 1)}
+    rows = ["# a mesh", *(f"v {x} {y} 0" for x, y in vertices)]
+    for a, b, letter in lines:
+        rows += [f"l {number[a]} {number[b]}"]
+        rows += [f"#e {number[a]} {number[b]} {'BMV'.index(letter) + 1} 0"]
+    return "\n".join(rows) + "\n"
+
+
 def svg(content: str, attributes: str = "") -> str:
     return f'<svg xmlns="http://www.w3.org/2000/svg" {attributes}>{content}</svg>'

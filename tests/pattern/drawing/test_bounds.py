@@ -5,7 +5,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from drawings import as_cp, as_fold, as_opx, as_orh, as_ori, as_svg
+from drawings import as_cp, as_fold, as_obj, as_opx, as_orh, as_ori, as_svg, as_tmd5
 
 from exactfold.errors import InputError, TooLargeError, UnreadableFileError
 from exactfold.pattern.drawing import bounds, construction, mending, splitting
@@ -29,6 +29,8 @@ FORMATS = {
     "ori": as_ori,
     "orh": as_orh,
     "svg": as_svg,
+    "tmd5": as_tmd5,
+    "obj": as_obj,
 }
 formats = pytest.mark.parametrize("ending", FORMATS)
 

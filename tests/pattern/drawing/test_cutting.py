@@ -1,20 +1,28 @@
 """Cuts: pieces, slits that open, holes that matter and holes that do not."""
 
+import json
 import random
 from fractions import Fraction
 
 import pytest
 from drawings import svg
 
-from exactfold.errors import FoldError, MalformedPatternError, NotADiskError, SeveralSheetsError
+from exactfold.errors import (
+    DisconnectedError,
+    FoldError,
+    MalformedPatternError,
+    NotADiskError,
+    SeveralSheetsError,
+)
+from exactfold.panels import decompose
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.drawing.cutting import pieces
 from exactfold.pattern.drawing.drawing import Drawing, Line
 from exactfold.pattern.drawing.formats.svg import read_svg
-from exactfold.pattern.opening import from_drawing, panels
+from exactfold.pattern.opening import from_drawing, open_pattern, panels
 from exactfold.pattern.reading import Reading
 
-COLOURS = {"B": "black", "M": "red", "V": "blue", "C": "lime", "F": "yellow"}
+COLOURS = {"B": "black", "M": "red", "V": "blue", "C": "lime", "U": "magenta"}
 
 
 def square(x, y, size, letter="B"):
@@ -26,7 +34,8 @@ def picture(*lines):
     return read_svg(
         svg(
             "".join(
-                f'<line x1="{a}" y1="{b}" x2="{c}" y2="{d}" stroke="{COLOURS[letter]}"/>'
+                f'<line x1="{float(a)}" y1="{float(b)}" x2="{float(c)}" y2="{float(d)}" '
+                f'stroke="{COLOURS[letter]}"/>'
                 for a, b, c, d, letter in lines
             )
         )
@@ -93,6 +102,35 @@ def test_frames_and_holes_inside_a_panel_do_not_matter():
     assert "2 pieces without creases are left out" in framed.lines[-1]
 
 
+def test_a_frame_of_lines_without_letters():
+    unlettered = [(*line[:4], "U") for line in [*square(0, 0, 4), *STAR]]
+    framed = opened(*square(-1, -1, 9, "U"), *unlettered)
+    assert shape(framed.sheet) == (1, 4, 4)
+    assert "1 piece without creases is left out" in framed.lines[-1]
+    inside = [*square(-1, -1, 9, "U"), (-1, 6, 8, 6, "U"), *unlettered]
+    with pytest.raises(DisconnectedError, match="lie inside a panel, and no line joins them"):
+        opened(*inside)
+    lettered = [(*line[:4], "M") for line in [*square(0, 0, 4), *STAR]]
+    with pytest.raises(DisconnectedError, match="lie inside a panel, and no line joins them"):
+        opened(*square(-1, -1, 9), *lettered)
+
+
+def test_a_file_of_triangles_with_a_cut_is_a_drawing(tmp_path):
+    triangles = {
+        "vertices_coords": [[0, 0], [4, 0], [4, 4], [0, 4], [2, 2]],
+        "edges_vertices": [[0, 1], [1, 2], [2, 3], [3, 0], [0, 4], [1, 4], [2, 4], [3, 4]],
+        "edges_assignment": [*"BBBBMVMV"],
+        "faces_vertices": [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]],
+    }
+    path = tmp_path / "cut.fold"
+    path.write_text(json.dumps(triangles))
+    assert shape(open_pattern(path).sheet) == (1, 4, 4)
+    path.write_text(json.dumps({**triangles, "edges_assignment": [*"BBBBMVMC"]}))
+    found = open_pattern(path)
+    assert shape(found.sheet) == (0, 3, 4)
+    assert "cuts (1 line) are opened" in found.lines[-1]
+
+
 # --- holes ---------------------------------------------------------------------------------------
 
 SPOKES = [(0, 0, 1, 1, "M"), (4, 0, 3, 1, "V"), (4, 4, 3, 3, "M"), (0, 4, 1, 3, "V")]
@@ -139,8 +177,8 @@ def test_borders_between_panels_are_listed_with_what_to_do():
         opened(*lines)
     assert str(refusal.value) == (
         "2 boundary lines are between two panels (from (2, 0) to (2, -1), from (2, -1) to (2, "
-        "-4)): give them the letter U for a crease, or C for a cut (`--colours black=U` or "
-        "`--colours black=C` for an SVG file)"
+        "-4)): give them the letter U for a crease, C for a cut, or F for nothing (for an SVG "
+        "file: `--colours black=U`, C or F)"
     )
 
 
@@ -178,19 +216,17 @@ def test_random_slits_keep_every_crease_and_every_direction_round_a_vertex(seed)
     """A grid with diagonals, and slits along its lines that begin at the edge and grow as trees."""
     rng, n = random.Random(seed), 5
     spots = [(x, y) for x in range(n + 1) for y in range(n + 1)]
+
+    def on_rim(spot):
+        return not (0 < spot[0] < n and 0 < spot[1] < n)
+
     place = {
-        (x, y): (
-            3 * x + (rng.choice((0, 1)) if 0 < x < n and 0 < y < n else 0),
-            3 * y + (rng.choice((0, 1)) if 0 < x < n and 0 < y < n else 0),
-        )
-        for x, y in spots
+        spot: tuple(Fraction(33 * c + 7 * rng.randrange(2) * (not on_rim(spot)), 10) for c in spot)
+        for spot in spots
     }
     edges = {((x, y), (x + 1, y)) for x in range(n) for y in range(n + 1)}
     edges |= {((x, y), (x, y + 1)) for x in range(n + 1) for y in range(n)}
     edges |= {((x, y), (x + 1, y + 1)) for x in range(n) for y in range(n)}
-
-    def on_rim(spot):
-        return not (0 < spot[0] < n and 0 < spot[1] < n)
 
     rim = {
         (a, b)
@@ -246,3 +282,15 @@ def test_slits_that_are_too_close_to_other_lines_are_refused():
     drawing = Drawing(points, tuple(Line(*line) for line in lines), "a test")
     with pytest.raises(FoldError, match=r"the slits near \(0, 0\) are too close to other lines"):
         pieces(drawing, faces, drawing.lines)
+
+
+def test_an_open_slit_has_the_ways_of_a_wedge():
+    """The same creases, once with a slit and once with a wedge that was cut out by hand."""
+    creases = [(4, 2, 6, 2, "M"), (4, 0, 4, 4, "V"), (0, 1, 6, 1, "M"), (0, 0, 4, 2, "M")]
+    rim = [(0, 0, 6, 0, "B"), (6, 0, 6, 4, "B"), (6, 4, 0, 4, "B")]
+    slit = [*rim, (0, 4, 0, 0, "B"), (0, 2, 4, 2, "C"), (2, 0, 2, 4, "M"), *creases]
+    wedge = [*rim, (0, 0, 0, 1.5, "B"), (0, 1.5, 2, 1.5, "B"), (2, 1.5, 4, 2, "B")]
+    wedge += [(4, 2, 2, 2.5, "B"), (2, 2.5, 0, 2.5, "B"), (0, 2.5, 0, 4, "B"), *creases]
+    wedge += [(2, 0, 2, 1.5, "M"), (2, 2.5, 2, 4, "M")]
+    ways = [decompose(opened(*lines).sheet) for lines in (slit, wedge)]
+    assert ways[0].second_order == ways[1].second_order == {6: 2}

@@ -13,6 +13,7 @@ from exactfold.errors import (
     NotFoldError,
     NumberError,
     StaleExactCoordinatesError,
+    TooLargeError,
 )
 from exactfold.pattern.data import SHEETS, example_path
 from exactfold.pattern.drawing.formats.fold_drawing import read_fold_drawing
@@ -89,14 +90,15 @@ def test_a_folded_state_in_space_is_refused_with_a_hint():
         sheet(vertices_coords=rows)
 
 
+def test_a_huge_folded_state_is_refused():
+    huge = ", ".join(f"[{x}, {x}, {y}]" for x, y in (("1e400", "0"), ("0", "1e400"), ("1", "1")))
+    with pytest.raises(TooLargeError, match="larger than 1e50"):
+        read_fold_drawing(f'{{"vertices_coords": [{huge}], "faces_vertices": [[0, 1, 2]]}}')
+
+
 def test_a_form_folded_flat_is_refused_and_an_unfolded_one_is_read():
     classes = {"frame_classes": ["foldedForm"], "faces_vertices": [[0, 1, 2], [0, 2, 3]]}
     assert len(sheet(**classes).lines) == 5
-    folded = [[0, 0], [2, 0], [2, 1], [1.2, -0.6]]
-    with pytest.raises(
-        FoldedStateError, match="2 faces of 2 overlap, such as faces 0 and 1, .*0-2"
-    ):
-        sheet(**classes, vertices_coords=folded)
     apart = [*CORNERS, [5, 0], [7, 0], [7, 1]]
     with pytest.raises(FoldedStateError, match="some of its faces lie upside down"):
         sheet(**classes | {"faces_vertices": [[0, 1, 2, 3], [4, 6, 5]]}, vertices_coords=apart)
@@ -118,8 +120,19 @@ def test_the_top_level_goes_first():
 def test_faces_that_are_folded_over_are_named_without_the_word_folded_form(turned):
     faces = [[0, 1, 2], [0, 3, 2] if turned else [0, 2, 3]]
     assert len(sheet(faces_vertices=faces).lines) == 5
-    with pytest.raises(FoldedStateError, match=r"2 faces of 2 overlap.* edge 0-2; give its crease"):
-        sheet(faces_vertices=faces, vertices_coords=[[0, 0], [2, 0], [2, 1], [1.2, -0.6]])
+    folded = sheet(faces_vertices=faces, vertices_coords=[[0, 0], [2, 0], [2, 1], [0.8, -0.6]])
+    assert "this is a folded state: its 2 faces are unfolded" in folded.remarks[0]
+    assert folded.points == tuple(map(tuple, CORNERS))
+
+
+def test_faces_that_overlap_and_cannot_be_unfolded_are_named():
+    around = [[k, (k + 1) % 4, 4] for k in range(4)]
+    edges = [*EDGES[:4], *([k, 4] for k in range(4))]
+    keys = {"edges_vertices": edges, "edges_assignment": [*"BBBBMMMM"], "faces_vertices": around}
+    assert len(sheet(**keys, vertices_coords=[*CORNERS, [1, 0.5]]).lines) == 8
+    over = r"3 faces of 4 overlap, such as faces 0 and 1, .* edge 1-4; give its .* not rigid"
+    with pytest.raises(FoldedStateError, match=over):
+        sheet(**keys, vertices_coords=[*CORNERS, [1, -0.5]])
 
 
 def test_an_outer_face_in_the_list_is_not_folded_over():

@@ -109,7 +109,5 @@ def test_where_most_lines_were_dropped_a_refusal_says_so():
     inner = [("4.1", "4.1"), ("4.2", "4.1"), ("4.1", "4.2")]
     lines = [(4 + k, 5 + k, "M") for k in range(0, 18, 2)]
     lines += [(22, 23, "M"), (23, 24, "M"), (24, 22, "M")]
-    with pytest.raises(
-        DisconnectedError, match="; 9 lines dropped .*; let lines meet in common ends"
-    ):
+    with pytest.raises(DisconnectedError, match=r"; 9 lines dropped .*; let lines meet in"):
         exact_sheets(drawing([*loose, *inner], lines))

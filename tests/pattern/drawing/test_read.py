@@ -1,7 +1,20 @@
 """One way in: the same drawing in every format, formats known by content, refusals that say why."""
 
 import pytest
-from drawings import SQUARE, as_cp, as_fold, as_opx, as_orh, as_ori, as_svg, drawn, places
+from drawings import (
+    SQUARE,
+    as_cp,
+    as_dxf,
+    as_fold,
+    as_obj,
+    as_opx,
+    as_orh,
+    as_ori,
+    as_svg,
+    as_tmd5,
+    drawn,
+    places,
+)
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -26,6 +39,9 @@ WRITERS = {
     "opx": as_opx,
     "ori": as_ori,
     "orh": as_orh,
+    "dxf": as_dxf,
+    "tmd5": as_tmd5,
+    "obj": as_obj,
 }
 
 
@@ -40,7 +56,7 @@ def test_a_square_is_the_same_in_every_format_whatever_the_name(ending, tmp_path
     drawing = read_drawing(path)
     assert drawn(drawing) == places(SQUARE)
     assert len(drawing.points) == 5
-    assert drawing.remarks == ()
+    assert drawing.remarks == (("kinds of creases: 6 axial",) if ending == "tmd5" else ())
     assert drawing.source == (
         f"read square.txt: {ending.upper()}, 6 lines (1 mountain, 1 valley, 4 boundary)"
     )
@@ -74,12 +90,14 @@ def test_the_encoding_that_xml_declares():
         ("", "nothing"),
         ("{}", "a.json"),
         ("<html></html>", "a.html"),
-        ("0 SECTION", "a.dxf"),
+        ("0 SECTION", "a.txt"),
         (b'<?xml version="1.0" encoding="klingon"?><svg/>', "a.svg"),
     ],
 )
 def test_unknown_formats_are_refused_with_the_list(content, name):
-    with pytest.raises(UnknownFormatError, match="FOLD, SVG, CP, OPX, ORI and ORH") as caught:
+    with pytest.raises(
+        UnknownFormatError, match="FOLD, SVG, CP, OPX, ORI, ORH, DXF, TMD5 and OBJ"
+    ) as caught:
         parse_drawing(content, name)
     assert str(caught.value).startswith(name)
 
@@ -96,6 +114,10 @@ def test_unknown_formats_are_refused_with_the_list(content, name):
         ("<java/>", "a.opx", MalformedDrawingError),
         ("<タイトル>", "a.orh", MalformedDrawingError),
         ("{}", "a.ori", MalformedDrawingError),
+        ("0 SECTION", "a.dxf", MalformedDrawingError),
+        ("tree\n5.0\n", "a", MalformedDrawingError),
+        ("", "a.tmd5", MalformedDrawingError),
+        ("", "a.obj", MalformedDrawingError),
     ],
 )
 def test_a_damaged_file_is_judged_by_the_reader_of_its_format(content, name, error):
@@ -128,7 +150,7 @@ def test_a_damaged_file_is_read_or_refused_but_never_a_traceback(ending, data):
     "reading", [{"colours": {"red": "M"}}, {"dashes": {"solid": "M"}}, {"chords": 2}]
 )
 def test_choices_for_svg_files(reading):
-    message = r"colours, dashes and chords are for SVG files, and a\.cp is CP"
+    message = r"colours, dashes and chords are for SVG and DXF files, and a\.cp is CP"
     with pytest.raises(UsageError, match=message):
         parse_drawing(as_cp(SQUARE), "a.cp", SvgReading(**reading))
     with pytest.raises(UsageError, match=r"two-vertex\.fold is FOLD"):

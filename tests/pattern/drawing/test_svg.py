@@ -97,6 +97,7 @@ def test_what_is_not_drawn_is_left_out():
     assert drawn(drawing) == places([(("0", "0"), ("8", "0"), "M")])
     assert drawing.remarks == (
         "left out 1 element of the kind circle",
+        "left out 1 element of the kind text",
         "left out 1 element with hidden visibility",
         "left out 2 elements without stroke",
     )
@@ -401,8 +402,64 @@ def test_strokes_that_are_solid(dashes):
     )
 
 
+def test_other_colours_than_those_of_origami_simulator_are_not_taken_for_its_cuts():
+    pair = (
+        '<line x2="1" stroke="{}"/><line x2="2" stroke="#40f90d"/><line x2="3" stroke="#ffb806"/>'
+    )
+    assert letters(pair.format("purple")) == [*"UUU"]
+    assert letters(pair.format("red")) == [*"MCF"]
+
+
 def test_a_cut_by_its_colour_stays_a_cut():
     assert letters('<line x2="1" stroke="black"/><line x2="2" stroke="lime"/>') == ["U", "C"]
+
+
+# --- names -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("name", "letter"),
+    [
+        ('id="mountain"', "M"),
+        ('id="Mountains"', "M"),
+        ('class="thin valley"', "V"),
+        ('id="valley-folds"', "V"),
+        ('id="valleys_1_"', "V"),
+        ('xmlns:i="http://www.inkscape.org/namespaces/inkscape" i:label="Valley creases"', "V"),
+        ('class="boundaries"', "B"),
+        ('id="unassigned"', "U"),
+        ('id="cuts"', "C"),
+        ('id="flat"', "F"),
+    ],
+)
+def test_names_of_groups_say_what_black_and_grey_lines_are(name, letter):
+    for colour in ("black", "gray"):
+        content = f'<g {name}><g id="g7"><line x2="1" stroke="{colour}"/></g></g>'
+        assert letters(content + CREASE) == [letter, "M"]
+    took = f"took 1 element for {letter} by the name of their class, id or layer"
+    assert read_svg(svg(content + CREASE)).remarks == (took,)
+
+
+def test_the_nearest_name_counts_and_colours_of_creases_come_before_names():
+    inner = '<g id="mountains"><g id="valleys"><line x2="1" stroke="{}"/></g></g>'
+    assert letters(inner.format("black")) == ["V"]
+    assert letters(inner.format("red")) == ["M"]
+    assert letters(inner.format("lime")) == ["C"]
+    assert letters(inner.format("black"), colours={"black": "U"}) == ["U"]
+    assert letters(inner.format("black"), dashes={"solid": "F"}) == ["F"]
+
+
+@pytest.mark.parametrize("name", ["mount", "cutting", "flatland", "edges", "marks", "crease"])
+def test_names_that_say_nothing(name):
+    assert letters(f'<g id="{name}"><line x2="1" stroke="black"/></g>' + CREASE) == ["B", "M"]
+
+
+def test_lines_of_width_zero_are_not_drawn():
+    lines = '<g stroke-width="0"><line x2="1" stroke="red"/></g><line x2="2" stroke="blue"/>'
+    drawing = read_svg(svg(lines + '<line x2="3" stroke="blue" style="stroke-width:0.0px"/>'))
+    assert drawn(drawing) == places([(("0", "0"), ("2", "0"), "V")])
+    assert drawing.remarks == ("left out 2 elements without stroke",)
+    assert letters('<line x2="1" stroke="red" stroke-width="1%"/>') == ["M"]
 
 
 # --- maps ----------------------------------------------------------------------------------------

@@ -161,3 +161,40 @@ def test_styles_apply_in_their_order():
         text = f"<style>/* // */ {rules} // end</style>{element}{crease}"
         *lines, _ = read_svg(svg(text)).lines
         assert {line.letter for line in lines} == {letter}, element
+
+
+@pytest.mark.parametrize(
+    ("rule", "fits"),
+    [
+        (".b.c", True),
+        ("line.b.c", True),
+        ("*.c.b", True),
+        ("#a.b", True),
+        ("g line", True),
+        ("svg .b", True),
+        ("#folds > .b", True),
+        ("#folds g.near .c", True),
+        ("g #folds .c", False),
+        (".b.d", False),
+        ("path.b.c", False),
+        (".near.far line", False),
+        ("line g", False),
+        (".b:hover", False),
+        ("[id=a].b", False),
+    ],
+)
+def test_selectors_with_several_parts(rule, fits):
+    text = (
+        f"<style>line{{stroke:red}} {rule}{{stroke:blue}}</style>"
+        '<g id="folds"><g class="near"><line x2="5" id="a" class="b c"/></g></g>'
+    )
+    assert [line.letter for line in read_svg(svg(text)).lines] == ["V" if fits else "M"]
+
+
+def test_too_many_selectors_with_several_parts(monkeypatch):
+    text = '<style>.a.b, g .a {stroke:red}</style><g><line x2="5" class="a"/></g>'
+    monkeypatch.setattr(svg_tree, "MOST_SELECTORS", 2)
+    assert len(read_svg(svg(text)).lines) == 1
+    monkeypatch.setattr(svg_tree, "MOST_SELECTORS", 1)
+    with pytest.raises(TooLargeError, match="more than 1 selectors with several parts"):
+        read_svg(svg(text))

@@ -153,7 +153,7 @@ function hint(text) {
 hint("");
 byId("pattern").parentElement.classList.toggle("idle", !page.ways.length);
 const all = (key) => page.ways.map((way) => way[key]).join("");
-byId("legend").append(...legendItems(page.ways.length ? all("letters") : sheet.letters, all("signs"), !page.ways.length).map((parts) => {
+byId("legend").append(...legendItems(page.ways.length ? all("letters") : sheet.letters, all("signs"), !page.ways.length, [...sheet.marks.values()].map(({ kind }) => kind)).map((parts) => {
   const node = document.createElement("li");
   node.append(...parts);
   return node;

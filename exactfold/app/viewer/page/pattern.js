@@ -82,7 +82,9 @@ export function createPattern(holder, sheet, store, { onVertex, onHint, poppable
       node.querySelector(".mark").replaceWith(mark(sign, Number(node.dataset.size), sheet.foldable.has(sheet.interior[k])));
       const words = { "+": "popped up", "-": "popped down", "0": "flat" };
       const click = node.classList.contains("still") || !shown ? "" : !poppable(k) ? " No listed branch differs here only." : ` Click: pop it ${sign === "+" ? "down" : "up"}.`;
-      name(node, `Vertex ${sheet.interior[k]}${sign ? `: ${words[sign] ?? "undecided"}` : ""}.${click}`);
+      const noted = sheet.marks.get(sheet.interior[k]);
+      const note = noted ? ` ${noted.text}.` : "";
+      name(node, `Vertex ${sheet.interior[k]}${sign ? `: ${words[sign] ?? "undecided"}` : ""}.${note}${click}`);
     });
   }
 
@@ -163,8 +165,10 @@ function vertexNode(v, k, at, size, sheet) {
   const [x, y] = at[v];
   const node = svg("g", { class: still ? "vertex still" : "vertex", transform: `translate(${x} ${y})`, "data-vertex": v, "data-place": k, "data-size": size },
     svg("title"), svg("circle", { class: "reach", r: Math.max(size * 1.9, Math.min(15, size * 2.5)) }), svg("path", { class: "mark" }));
+  const noted = sheet.marks.get(v);
+  if (noted) node.insertBefore(ring(noted.kind, size), node.lastChild);
   node.setAttribute("role", still ? "img" : "button");
-  if (!still) node.setAttribute("tabindex", -1);
+  if (!still || noted) node.setAttribute("tabindex", -1);
   if (sheet.interior.length <= MOST_INDICES && size > 4) {
     const angle = widestGap(sheet.folds.filter((edge) => edge.includes(v)).map(([i, j]) => {
       const other = at[i === v ? j : i];
@@ -200,20 +204,28 @@ export function mark(sign, size, foldable = true) {
   return svg("path", { class: level ? "mark level" : "mark", d: paths[sign] ?? round });
 }
 
+// The ring round a vertex to look at.
+function ring(kind, size) {
+  return svg("circle", { class: `ring ${kind}`, r: 1.45 * size });
+}
+
 function name(node, text) {
   node.setAttribute("aria-label", text);
   node.querySelector("title").textContent = text;
 }
 
 // `letters` and `signs` are all that are shown. Without ways to fold, `letters` are those of the file.
-export function legendItems(letters, signs, ofFile) {
+export function legendItems(letters, signs, ofFile, kinds = []) {
   const line = (letter, text) => [svg("svg", { "aria-hidden": "true" }, drawLine(svg("path", { d: "M0 5H24" }), letter, null)), text];
   const point = (sign, text) => [svg("svg", { "aria-hidden": "true", class: "small", viewBox: "-6 -6 12 12" }, mark(sign, 5)), text];
+  const noted = (kind, text) => [svg("svg", { "aria-hidden": "true", class: "small", viewBox: "-6 -6 12 12" }, ring(kind, 3.4)), text];
   const names = { M: "mountain", V: "valley", F: "flat", U: ofFile ? "no letter" : "undecided" };
+  const kindNames = { refuted: "vertex that cannot start to fold", open: "vertex that is open", flat: "vertex that does not fold flat" };
   const marks = { "+": "vertex up", "-": "vertex down", "0": "vertex flat" };
   const seenBoth = (text) => text + turned(text);  // the mirror image can be shown, too
   return [
     ...Object.keys(names).filter((letter) => seenBoth(letters).includes(letter)).map((letter) => line(letter, names[letter])),
     ...Object.keys(marks).filter((sign) => seenBoth(signs).includes(sign)).map((sign) => point(sign, marks[sign])),
+    ...Object.keys(kindNames).filter((kind) => kinds.includes(kind)).map((kind) => noted(kind, kindNames[kind])),
   ];
 }

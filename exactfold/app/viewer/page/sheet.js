@@ -17,6 +17,7 @@ export function readSheet(json) {
     boundary,
     interior: json.interior,
     foldable: new Set(json.foldable),
+    marks: new Map(json.marks.map((mark) => [mark.vertex, mark])),
     hinges: hingesOf(json.folds, json.triangles),
   };
 }

@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import Any, Final
 
 from exactfold._support.plurals import counted
-from exactfold.checker.core.limits import MOST_FRAMES, MOST_INHERITED
+from exactfold.checker.core.limits import LARGEST, MOST_FRAMES, MOST_INHERITED
 from exactfold.errors import (
     FoldedStateError,
     MalformedDrawingError,
@@ -17,7 +17,7 @@ from exactfold.errors import (
     TooLargeError,
 )
 from exactfold.exact.numbers import shown
-from exactfold.pattern.drawing.drawing import LETTERS, Drawing, Line
+from exactfold.pattern.drawing.drawing import LETTERS, Drawing, Line, Point
 from exactfold.pattern.drawing.formats.fold_json import (
     components,
     exact_points,
@@ -26,6 +26,7 @@ from exactfold.pattern.drawing.formats.fold_json import (
     list_at,
 )
 from exactfold.pattern.drawing.formats.fold_surds import surd_points
+from exactfold.pattern.drawing.formats.unfolding import unfolded
 
 _HINT: Final = (
     "give its crease pattern: the unfolded sheet (in Origami Simulator: save at Fold Percent 0), "
@@ -45,14 +46,15 @@ def read_fold_drawing(text: str) -> Drawing:
     If the top level has flat coordinates, it is read. Otherwise the first flat frame of
     `file_frames` is read, with all that it inherits. Coordinates have two components, or three in a
     plane z, y or x = constant (up to 1e-9 of the size), which is seen from the side of its normal.
-    Those of `vertices_flatUnfoldCoords`, which some folded states have, are preferred.
+    Those of `vertices_flatUnfoldCoords`, which some folded states have, are preferred. If no frame
+    is flat, the first folded state whose faces are rigid is unfolded.
     `vertices_exactfold:surds` and `vertices_exactfold:coords` take precedence over
     `vertices_coords` and make the drawing `exact`. Edges without a letter are U. Sides of faces
     that are not listed as edges become lines: B if they belong to one face, else U. Repeated edges
     are kept; if their letters differ, the remarks name them.
 
     Raises `NotFoldError`, `NumberError`, a subclass of `FoldError`, `MalformedDrawingError`, and
-    `FoldedStateError` if all coordinates belong to folded states.
+    `FoldedStateError` if all coordinates belong to folded states that cannot be unfolded.
 
     >>> drawing = read_fold_drawing('{"vertices_coords": [[0, 0, 5], [0.1, 0, 5]],'
     ...                             ' "edges_vertices": [[0, 1]], "edges_assignment": ["m"]}')
@@ -62,6 +64,7 @@ def read_fold_drawing(text: str) -> Drawing:
     """
     document = fold_document(text)
     refusals: list[Exception] = []
+    folded: list[tuple[Mapping[str, Any], str, FoldedStateError]] = []
     stated = _frames(document)
     for k, chain in enumerate([_chain(stated, k) for k in range(len(stated))]):
         if k >= MOST_FRAMES:
@@ -70,12 +73,19 @@ def read_fold_drawing(text: str) -> Drawing:
                 "are not read: leave out the folded frames"
             )
         frame = _inherited(stated, chain)
+        source = _source(document, frame, k)
         try:
-            return _drawing(frame, _source(document, frame, k))
-        except (MissingCoordinatesError, FoldedStateError) as error:
+            return _drawing(frame, source)
+        except FoldedStateError as error:
+            folded.append((frame, source, error))
+        except MissingCoordinatesError as error:
             refusals.append(error)
-    folded = [error for error in refusals if isinstance(error, FoldedStateError)]
-    raise (folded or refusals)[0]
+    for frame, source, refusal in folded:
+        try:
+            return _drawing(frame, source, unfold=True)
+        except FoldedStateError as reason:
+            refusal.args = (f"{refusal}; it cannot be unfolded: {reason}",)
+    raise [*(refusal for *_, refusal in folded), *refusals][0]
 
 
 def _source(document: Mapping[str, Any], frame: Mapping[str, Any], k: int) -> str:
@@ -134,20 +144,26 @@ def _inherited(stated: Sequence[Mapping[str, Any]], chain: Sequence[int]) -> Map
 # --- one frame -----------------------------------------------------------------------------------
 
 
-def _drawing(frame: Mapping[str, Any], source: str) -> Drawing:
+def _drawing(frame: Mapping[str, Any], source: str, *, unfold: bool = False) -> Drawing:
     rows = list_at(frame, _UNFOLDED) or list_at(frame, "vertices_coords")
     if not rows:
         raise MissingCoordinatesError("`vertices_coords` is missing or empty")
-    points, plane, remarks = _flattened([components(v, row) for v, row in enumerate(rows)])
+    places = [components(v, row) for v, row in enumerate(rows)]
+    edges = index_lists(frame, "edges_vertices", "edge", len(places))
+    faces = index_lists(frame, "faces_vertices", "face", len(places))
+    exact: Sequence[Point] = ()
+    if unfold:
+        points, remark = unfolded(places, faces)
+        plane, remarks = "", [remark]
+    else:
+        points, plane, remarks = flattened(places)
+        exact = surd_points(frame, points) or [*exact_points(frame, points)]
+        check_unfolded(frame, points, faces)
     if _UNFOLDED in frame:
         remarks.append(f"this is a folded state: its crease pattern is read from `{_UNFOLDED}`")
-    exact = surd_points(frame, points) or [*exact_points(frame, points)]
-    edges = index_lists(frame, "edges_vertices", "edge", len(points))
-    faces = index_lists(frame, "faces_vertices", "face", len(points))
     for k, edge in enumerate(edges):
         if len(edge) != 2:
             raise NotFoldError(f"edge {k} has {len(edge)} ends: {shown(edge)}")
-    _check_unfolded(frame, points, faces)
     letters, notes = _letters(frame, len(edges))
     remarks += notes
     lines = [Line(i, j, letter) for (i, j), letter in zip(edges, letters, strict=True)]
@@ -168,7 +184,7 @@ def _drawing(frame: Mapping[str, Any], source: str) -> Drawing:
     )
 
 
-def _flattened(
+def flattened(
     places: Sequence[tuple[Fraction, Fraction, Fraction]],
 ) -> tuple[list[tuple[Fraction, Fraction]], str, list[str]]:
     """The points in their plane z, y or x = constant, with a text and remarks.
@@ -182,8 +198,13 @@ def _flattened(
         if high - low <= _FLAT * size:
             points = [(place[i], place[j]) for place in places]
             plane = "" if name == "z" else f" in a plane {name} = constant"
-            noise = f"{name} varies by {float(high - low):.2g} and is read as constant"
+            noise = f"{name} varies by {float(min(high - low, 10**LARGEST)):.2g} and is read as constant"
             return points, plane, [noise] if high > low else []
+    if size > 10**LARGEST:
+        raise TooLargeError(
+            f"the vertices fill a box larger than 1e{LARGEST}, and larger ones are not read: scale "
+            "the drawing down"
+        )
     extent = " x ".join(f"{float(high - low):.3g}" for low, high in bounds)
     low, high = (places.index(find(places, key=lambda p: p[2])) for find in (min, max))
     raise FoldedStateError(
@@ -192,7 +213,7 @@ def _flattened(
     )
 
 
-def _check_unfolded(
+def check_unfolded(
     frame: Mapping[str, Any],
     points: Sequence[tuple[Fraction, Fraction]],
     faces: Sequence[tuple[int, ...]],

@@ -23,7 +23,7 @@ from exactfold.pattern.drawing.formats.svg_path import (
     path_lines,
 )
 from exactfold.pattern.drawing.formats.svg_strokes import Stroke, lettered
-from exactfold.pattern.drawing.formats.svg_tree import NAMESPACE, NUMBER, plain_tree
+from exactfold.pattern.drawing.formats.svg_tree import MEANING, NAMESPACE, NUMBER, plain_tree
 from exactfold.pattern.drawing.segments import Place, drawing_of
 
 _LENGTH: Final = re.compile(rf"({NUMERAL})\s*([a-z]*)\Z")
@@ -67,7 +67,8 @@ def read_svg(text: str, reading: SvgReading | None = None) -> Drawing:
     omitted: Counter[str] = Counter()
     seen: Counter[str] = Counter()
     reading = reading or SvgReading()
-    shapes, given = _shapes(text)
+    shapes, given, words = _shapes(text)
+    omitted.update({"of the kind text": words} if words else {})
     for shape in shapes:
         values, tag = shape.values, shape.values["attributes"]["tag"]
         own = given[int(values["attributes"][NUMBER])]
@@ -76,7 +77,7 @@ def read_svg(text: str, reading: SvgReading | None = None) -> Drawing:
         if values.get("visibility") in ("hidden", "collapse"):
             omitted["with hidden visibility"] += 1
             continue
-        if colour in ("none", "transparent"):
+        if colour in ("none", "transparent") or _is_zero(values.get("stroke-width", "1")):
             omitted["without stroke"] += 1
             continue
         name = f"{tag} {seen[tag]}" + (f" (id {shown(own['id'])})" if "id" in own else "")
@@ -94,7 +95,19 @@ def read_svg(text: str, reading: SvgReading | None = None) -> Drawing:
             str(values.get(key, "1")) not in ("1", "1.0") for key in ("opacity", "stroke-opacity")
         )
         dashes = str(values.get("stroke-dasharray", "none"))
-        strokes.append(Stroke(name, colour, dashes, moved, found.unbent, found.bent, faint, fault))
+        strokes.append(
+            Stroke(
+                name,
+                str(values.get(MEANING, "")),
+                colour,
+                dashes,
+                moved,
+                found.unbent,
+                found.bent,
+                faint,
+                fault,
+            )
+        )
     letters, notes = lettered(strokes, reading)
     drawn = [(stroke, x) for stroke, x in zip(strokes, letters, strict=True) if x]
     for stroke, _ in drawn:
@@ -137,10 +150,11 @@ def _curves(strokes: Sequence[Stroke], chords: int | None) -> list[str]:
     return remarks
 
 
-def _shapes(text: str) -> tuple[Iterator[Any], list[Mapping[str, str]]]:
+def _shapes(text: str) -> tuple[Iterator[Any], list[Mapping[str, str]], int]:
     """The shapes that are drawn, with styles and transforms resolved, in the units of the file.
 
     The second value holds the attributes of all elements as written; a shape has its number in it.
+    The third is the number of texts.
     """
     from svgelements import SVG, Shape  # here: loading it takes longer than reading a pattern
 
@@ -151,12 +165,13 @@ def _shapes(text: str) -> tuple[Iterator[Any], list[Mapping[str, str]]]:
         )
     for key in _VIEW:
         root.attrib.pop(key, None)
+    words = sum(element.tag in ("text", f"{{{NAMESPACE}}}text") for element in root.iter())
     root, given = plain_tree(root)
     try:
         picture = SVG.parse(io.StringIO(ElementTree.tostring(root, "unicode")), reify=False)
     except _FAULTS as error:
         raise MalformedDrawingError(f"the SVG cannot be read: {error}") from None
-    return (element for element in picture.elements() if isinstance(element, Shape)), given
+    return (element for element in picture.elements() if isinstance(element, Shape)), given, words
 
 
 def _lines(tag: str, own: Mapping[str, str], name: str, chords: int) -> PathLines | None:
@@ -176,6 +191,13 @@ def _lines(tag: str, own: Mapping[str, str], name: str, chords: int) -> PathLine
     except (MalformedDrawingError, NumberError, TooLargeError) as error:
         raise type(error)(f"{name}: {error}") from None
     return None
+
+
+def _is_zero(width: object) -> bool:
+    try:
+        return _length({"width": str(width)}, "width") == 0
+    except (MalformedDrawingError, NumberError):
+        return False  # a percentage, say
 
 
 def _sides(places: list[Place]) -> list[tuple[Place, Place]]:

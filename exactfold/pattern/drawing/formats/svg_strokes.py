@@ -42,11 +42,13 @@ _FAULTS: Final = (ArithmeticError, AttributeError, LookupError, TypeError, Value
 class Stroke:
     """The lines of one element, with the colour and the dashes of its stroke as written.
 
+    `named` is the letter for which a name of the element or its group stands ("mountains"), if any.
     `unbent` and `bent` are those of `PathLines`. `faint` says that the stroke has an opacity, and
     `fault` why its lines cannot be read.
     """
 
     name: str
+    named: str
     colour: str
     dashes: str
     lines: Sequence[tuple[Place, Place]]
@@ -60,11 +62,12 @@ def lettered(strokes: Sequence[Stroke], reading: SvgReading) -> tuple[list[str],
     """The letter of each stroke, empty if it is left out, and remarks on how letters were found.
 
     The maps `reading.dashes` and `reading.colours` come first, in this order. Other strokes have
-    the letters of the colours of Origami Simulator. But if no colour says which lines are creases,
-    then all lines are creases without a letter (U), also those in colours that have no meaning.
-    Such lines get letters only if some are dashed and others are dash-dotted: by the convention of
-    Yoshizawa and Randlett these are valleys and mountains. The outermost lines become the boundary
-    by repair.
+    the letters of the colours of Origami Simulator. Where these say nothing, or only that a line is
+    black, a class, id or label such as "mountains" says more, of the element or of a group round
+    it. But if neither colour nor name says which lines are creases, then all lines are creases
+    without a letter (U), also those in colours that have no meaning. Such lines get letters only if
+    some are dashed and others are dash-dotted: by the convention of Yoshizawa and Randlett these
+    are valleys and mountains. The outermost lines become the boundary by repair.
 
     Raises `UsageError` for a colour or dashes in a map that no line has; the message lists those
     that the lines have.
@@ -75,22 +78,32 @@ def lettered(strokes: Sequence[Stroke], reading: SvgReading) -> tuple[list[str],
     )
     by_map = _mapped(strokes, [(_key(s),) for s in strokes], reading.colours, _rgb, "colours")
     usual = [_usual(stroke.colour) for stroke in strokes]
-    letters = [own or letter for own, (letter, _) in zip(by_map, usual, strict=True)]
+    named = [
+        stroke.named if letter in ("", "B") and not own and stroke.named != letter else ""
+        for stroke, (letter, _), own in zip(strokes, usual, by_map, strict=True)
+    ]
+    letters = [
+        own or name or letter for own, name, (letter, _) in zip(by_map, named, usual, strict=True)
+    ]
     plain: list[int] = []
     remarks: list[str] = []
-    if not {"M", "V", "U"} & set(letters):
+    known = {k for k in range(len(strokes)) if by_map[k] or by_dashes[k] or named[k]}
+    sure = known | {k for k, (_, exactly) in enumerate(usual) if exactly}
+    told = {x for k, x in enumerate(letters) if not by_dashes[k] and (x in ("M", "V") or k in sure)}
+    if not {"M", "V", "U"} & told:
         plain = [
             k
-            for k, stroke in enumerate(strokes)
-            if not by_map[k] and not by_dashes[k] and _usual(stroke.colour)[0] in ("B", "")
+            for k, (letter, exactly) in enumerate(usual)
+            if k not in known
+            and not _pale(strokes[k].colour)
+            and (letter in ("", "B") or not exactly)
         ]
-        plain = [k for k in plain if not _pale(strokes[k].colour)]
         guessed = {} if reading.dashes else _by_convention({k: patterns[k] for k in plain})
         for k in plain:
             letters[k] = guessed.get(k, "U")
         remarks = _one_colour([strokes[k] for k in plain], bool(guessed))
     letters = [own or letter for own, letter in zip(by_dashes, letters, strict=True)]
-    sure = {k for k in range(len(strokes)) if by_map[k] or by_dashes[k] or usual[k][1]} | {*plain}
+    sure |= {*plain}
     omitted = Counter(s.colour for s, x in zip(strokes, letters, strict=True) if not x)
     taken = Counter(
         (s.colour, x)
@@ -105,6 +118,11 @@ def lettered(strokes: Sequence[Stroke], reading: SvgReading) -> tuple[list[str],
     took = [
         f"took {counted(number, 'element')} of colour {shown(colour)} for {letter}"
         for (colour, letter), number in sorted(taken.items())
+    ]
+    by_name = Counter(x for k, x in enumerate(letters) if named[k] and not by_dashes[k])
+    took += [
+        f"took {counted(number, 'element')} for {letter} by the name of their class, id or layer"
+        for letter, number in sorted(by_name.items())
     ]
     return letters, left + took + remarks
 

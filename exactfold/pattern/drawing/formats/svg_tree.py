@@ -6,12 +6,19 @@ never ends, on text that nobody would draw. So it gets only the reduced tree.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Final, NoReturn
+from typing import Final, NoReturn, TypeAlias
 from xml.etree.ElementTree import Element
 
-from exactfold.checker.core.limits import MOST_DEPTH, MOST_TEXT, MOST_TRANSFORMS, MOST_USED
+from exactfold.checker.core.limits import (
+    MOST_DEPTH,
+    MOST_SELECTORS,
+    MOST_TEXT,
+    MOST_TRANSFORMS,
+    MOST_USED,
+)
 from exactfold.errors import MalformedDrawingError, TooLargeError
 from exactfold.exact.numbers import shown
 
@@ -23,6 +30,7 @@ _LINK: Final = "{http://www.w3.org/1999/xlink}href"
 _STYLED: Final = (
     "stroke",
     "stroke-dasharray",
+    "stroke-width",
     "color",
     "display",
     "visibility",
@@ -31,6 +39,21 @@ _STYLED: Final = (
     "transform",
 )
 _KEPT: Final = ("id", *_STYLED)
+MEANING: Final = "exactfold-meaning"
+"""The attribute that holds the letter which the name of an element or its group stands for."""
+_NAME: Final = re.compile(
+    r"(mountain|valley|boundar(?=y|ies)|border|outline|cut|flat|unassigned|join)"
+    r"(y|ies|s)?([-_ ]?(fold|crease|line)s?)?([-_ ]?[0-9]*_?)\Z"
+)
+_LABEL: Final = "{http://www.inkscape.org/namespaces/inkscape}label"
+_MEANT: Final = {
+    **{"mountain": "M", "valley": "V", "boundar": "B", "border": "B", "outline": "B"},
+    **{"cut": "C", "flat": "F", "unassigned": "U", "join": "J"},
+}
+_COMPOUND: Final = re.compile(r"(\*|[\w-]+)?((?:[.#][\w-]+)*)\Z")
+_SINGLE: Final = re.compile(r"([.#]?[\w-]+|[\w-]+\.[\w-]+|\*)\Z")
+_MARK: Final = re.compile(r"[.#][\w-]+")
+_Simple: TypeAlias = frozenset[str]
 _PLACED: Final = ("x", "y", "width", "height")
 _OF_TAG: Final = {
     "svg": (*_PLACED, "viewBox", "preserveAspectRatio"),
@@ -63,17 +86,17 @@ def plain_tree(root: Element) -> tuple[Element, list[Mapping[str, str]]]:
     Raises `TooLargeError` if nesting, repetition by `use` or text exceeds the limits, and
     `MalformedDrawingError` for a `use` that refers to itself.
     """
-    styles = _styles("".join(e.text or "" for e in root.iter() if _tag(e) == "style"))
+    styles = _Styles("".join(e.text or "" for e in root.iter() if _tag(e) == "style"))
     given: list[Mapping[str, str]] = []
-    plain = _alone(root, styles, given)
-    waiting = [(root, plain, 1)]
+    plain = _alone(root, styles, (), given)
+    waiting: list[tuple[Element, Element, tuple[Element, ...]]] = [(root, plain, (root,))]
     while waiting:
-        element, copy, depth = waiting.pop()
-        if depth > MOST_DEPTH:
+        element, copy, above = waiting.pop()
+        if len(above) > MOST_DEPTH:
             _too_deep()
         inside = [child for child in element if _tag(child) not in _DROPPED]
-        copy.extend([_alone(child, styles, given) for child in inside])
-        waiting += [(a, b, depth + 1) for a, b in zip(inside, copy, strict=True)]
+        copy.extend([_alone(child, styles, above, given) for child in inside])
+        waiting += [(a, b, (*above, a)) for a, b in zip(inside, copy, strict=True)]
     _check_cost(plain)
     return plain, given
 
@@ -83,15 +106,14 @@ def _tag(element: Element) -> str:
 
 
 def _alone(
-    element: Element, styles: Mapping[str, Mapping[str, str]], given: list[Mapping[str, str]]
+    element: Element, styles: _Styles, above: Sequence[Element], given: list[Mapping[str, str]]
 ) -> Element:
-    """A copy of an element without its children; its attributes are appended to `given`."""
+    """A copy of an element without its children; its attributes are appended to `given`.
+
+    `above` are the elements round it, the outermost first.
+    """
     tag, own = _tag(element), dict(element.attrib)
-    classes = own.get("class", "").split(" ")
-    selectors = ["*", tag, f"#{own.get('id')}"]
-    selectors += [name for c in classes for name in (f".{c}", f"{tag}.{c}")]
-    for selector in selectors:
-        own |= styles.get(selector, {})
+    own |= styles.of(element, above)
     own |= _declarations(own.get("style", ""))
     kept = {key: own[key] for key in (*_KEPT, *_OF_TAG.get(tag, ())) if key in own}
     for key, text in kept.items():
@@ -104,22 +126,84 @@ def _alone(
         kept["points"] = "0 0 1 0"  # the library leaves out elements without points
     elif tag == "path":
         kept["d"] = ""
+    names = [*own.get("class", "").split(), own.get("id", ""), own.get(_LABEL, "")]
+    matches = [match for name in names if (match := _NAME.match(name.strip().lower()))]
+    if matches:
+        kept[MEANING] = _MEANT[matches[0][1]]
     given.append(own)
     return Element(element.tag, kept | {NUMBER: str(len(given) - 1)})
 
 
-def _styles(text: str) -> dict[str, dict[str, str]]:
-    """The declarations of a style sheet, by selector."""
-    first, *others = text.split("/*")
-    text = first + "".join(part.partition("*/")[2] for part in others)
-    text = "\n".join(line.partition("//")[0] for line in text.split("\n"))
-    styles: dict[str, dict[str, str]] = {}
-    for rule in text.split("}"):
-        selectors, _, body = rule.partition("{")
-        if declared := _declarations(body):
-            for selector in selectors.split(","):
-                styles.setdefault(selector.strip(), {}).update(declared)
-    return styles
+class _Styles:
+    """The declarations of a style sheet.
+
+    For one element, those of `*` come first, then those of its tag, its id and its classes, then
+    those of selectors with several parts (`line.red`, `.fold.far`, `#folds > .red`), in their
+    order. Selectors with attributes or pseudo-classes are not read.
+    """
+
+    def __init__(self, text: str) -> None:
+        first, *others = text.split("/*")
+        text = first + "".join(part.partition("*/")[2] for part in others)
+        text = "\n".join(line.partition("//")[0] for line in text.split("\n"))
+        self._single: dict[str, dict[str, str]] = {}
+        self._compound: list[tuple[tuple[_Simple, ...], Mapping[str, str]]] = []
+        self._by_mark: dict[str, list[int]] = {}
+        for rule in text.split("}"):
+            selectors, _, body = rule.partition("{")
+            if declared := _declarations(body):
+                for selector in selectors.split(","):
+                    self._add(selector.strip(), declared)
+
+    def _add(self, selector: str, declared: Mapping[str, str]) -> None:
+        self._single.setdefault(selector, {}).update(declared)
+        words = selector.replace(">", " ").split()
+        parts = tuple(match for word in words if (match := _simple(word)))
+        if len(parts) == len(words) > 0 and not _SINGLE.match(selector):
+            mark = max(parts[-1], default="")
+            self._by_mark.setdefault(mark, []).append(len(self._compound))
+            self._compound.append((parts, declared))
+            if len(self._compound) > MOST_SELECTORS:
+                raise TooLargeError(
+                    f"the style sheet of the SVG file has more than {MOST_SELECTORS} selectors "
+                    "with several parts: give lines their colours as attributes"
+                )
+
+    def of(self, element: Element, above: Sequence[Element]) -> dict[str, str]:
+        """The declarations that hold for an element inside the elements `above`."""
+        declared: dict[str, str] = {}
+        own = _marks(element)
+        for key in ("*", _tag(element), f"#{element.get('id')}"):
+            declared |= self._single.get(key, {})
+        for name in element.get("class", "").split(" "):
+            declared |= self._single.get(f".{name}", {})
+            declared |= self._single.get(f"{_tag(element)}.{name}", {})
+        for k in sorted(k for mark in ("", *own) for k in self._by_mark.get(mark, ())):
+            (*outer, last), found = self._compound[k]
+            if last <= own and _are_round(outer, above):
+                declared |= found
+        return declared
+
+
+def _simple(text: str) -> _Simple | None:
+    """The tag, id and classes of one part of a selector; None if it has anything else."""
+    match = _COMPOUND.match(text)
+    if match is None:
+        return None
+    tag = {match[1]} if match[1] and match[1] != "*" else set()
+    return frozenset(tag | set(_MARK.findall(match[2])))
+
+
+def _marks(element: Element) -> _Simple:
+    """The tag, id and classes of an element, as in a selector."""
+    classes = {f".{name}" for name in element.get("class", "").split()}
+    return frozenset({_tag(element), f"#{element.get('id')}"} | classes)
+
+
+def _are_round(parts: Sequence[_Simple], above: Sequence[Element]) -> bool:
+    """Whether elements that fit the parts of a selector lie inside each other, in this order."""
+    waiting = iter(above)
+    return all(any(part <= _marks(element) for element in waiting) for part in parts)
 
 
 def _declarations(text: str) -> dict[str, str]:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from fractions import Fraction
 from typing import NamedTuple
 
 from exactfold.pattern.drawing.meant.drawn import Drawn, gathered
-from exactfold.pattern.drawing.meant.noise import is_rare
+from exactfold.pattern.drawing.meant.noise import LOOKED_FOR, is_rare
 from exactfold.pattern.drawing.meant.system import System
 from exactfold.pattern.drawing.meant.values import Edge, Relation
 
@@ -69,7 +70,7 @@ class Accepted:
         last = self._last([(p, r is not None) for p, r in trials])
         last_exact = self._last([(sharper * p, _is_exact(r)) for p, r in trials])
         for number, (_, relation) in enumerate(trials, 1):
-            believed = number <= (last_exact if _is_exact(relation) else last)
+            believed = number <= (max(last, last_exact) if _is_exact(relation) else last)
             if relation and believed and not self.is_implied(relation.terms, relation.parts):
                 self.add([relation])
 
@@ -79,22 +80,25 @@ class Accepted:
         for number, (probability, hit) in enumerate(trials, 1):
             expected += probability
             hits += hit
-            if is_rare(expected, hits):
+            if is_rare(expected, hits, unlikely=LOOKED_FOR):
                 last, chance = number, expected
         self.chance += chance
         return last
 
-    def reasons(self, relation: Relation) -> tuple[str, ...]:
-        """The names of accepted relations that imply a relation, or that contradict it."""
+    def reasons(self, relations: Iterable[Relation]) -> list[tuple[str, ...]]:
+        """For each relation, the names of accepted relations that imply or contradict it."""
         lengths = self.drawn.lengths
-        # Each relation gets an unknown of its own, its index, which is never solved for.
+        # Each accepted relation has an unknown of its own, its index, which is never solved for.
         system: System[Edge | int] = System(lambda u: None if isinstance(u, int) else lengths[u])
         for number, known in enumerate(self.relations):
             terms: dict[Edge | int, int] = {**dict(known.terms), number: -1}
             system.add(terms, self.drawn.turns(known.terms, known.parts))
-        target: dict[Edge | int, int] = {**dict(relation.terms)}
-        left, _ = system.rest(target, self.drawn.turns(relation.terms, relation.parts))
-        return tuple(self.relations[u].name for u in sorted(u for u in left if isinstance(u, int)))
+        reasons = []
+        for relation in relations:
+            left, _ = system.rest(dict(relation.terms), Fraction(0))
+            numbers = sorted(number for number in left if isinstance(number, int))
+            reasons.append(tuple(self.relations[number].name for number in numbers))
+        return reasons
 
     def free(self) -> list[Edge]:
         """The edges whose angles are free so far, the longest first.

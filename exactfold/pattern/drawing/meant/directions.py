@@ -7,28 +7,24 @@ one factor for the multiple of pi, with its tangent in a tower of square roots, 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Sequence
 from fractions import Fraction
-from math import cos, gcd, lcm, sin
+from math import ceil, cos, gcd, hypot, lcm, sin
 from typing import Final, TypeAlias
 
 from exactfold.exact.surds import RATIONALS, Number, Surd, SurdField, rational
+from exactfold.pattern.drawing.candidates import reduced_match
 from exactfold.pattern.drawing.meant.values import Angles, Edge
 
 Vector: TypeAlias = tuple[Surd, Surd]
 _MOST_ROOTS: Final = 4
 """Towers with more square roots are not used for directions."""
+_SURE: Final = 10.0
+"""By so many bits a short number must beat chance."""
+_ROUGH: Final = 2.0**-46
+"""Where positions determine free angles, floats find them no better than so, in radians."""
 _FINEST: Final = 2.0**-50
 """Floats hold free angles no better than so, in radians."""
-
-
-@dataclass(frozen=True)
-class Directions:
-    """A vector along each edge, with coordinates in one field."""
-
-    field: SurdField
-    vectors: Mapping[Edge, Vector]
 
 
 def in_a_tower(parts: int) -> bool:
@@ -43,29 +39,136 @@ def in_a_tower(parts: int) -> bool:
     return _roots(parts) is not None
 
 
-def exact_directions(angles: Angles, tolerance: float) -> Directions | None:
-    """The directions of all edges, with free angles within `tolerance` (radians) of their values.
+class Directions:
+    """Exact directions of edges, with coordinates in one field.
 
-    None if multiples of pi among the angles have directions in no small tower of square roots.
+    `free` holds the values of the free angles, in radians. Each free angle becomes one with a
+    tangent in the field, unless `fix` gave it a direction before it was used. The tangent is a
+    short number that chance does not explain, within four times the `noise` of the value, or else a
+    fraction far nearer to the value. If only a multiple of the angle has such a tangent, the field
+    is extended by the square roots that halve it. Unless `recognise`, all are fractions.
 
     >>> edge = {(0, 1): Fraction(1, 8)}, {(0, 1): ((0, Fraction(1, 2)),)}
-    >>> found = exact_directions(Angles(*edge, (0.2,)), 1e-3)
-    >>> [round(float(y / x), 4) for x, y in found.vectors.values()], found.field.name
-    ([0.5364], 'Q(sqrt 2)')
+    >>> found = Directions(Angles(*edge, (0.2,)), (0.2,), 1e-6)
+    >>> x, y = found.vector((0, 1))
+    >>> round(float(y / x), 4), found.field.name
+    (0.5369, 'Q(sqrt 2)')
     """
-    parts = lcm(*(c.denominator for c in angles.constants.values()))
-    if not in_a_tower(parts):
-        return None
-    grid = _Grid(parts)
-    free = _free_factors(angles, tolerance)
-    vectors = {}
-    for edge, constant in angles.constants.items():
+
+    def __init__(
+        self, angles: Angles, free: Sequence[float], noise: float, *, recognise: bool = True
+    ) -> None:
+        self.angles, self.free, self.noise = angles, free, noise
+        self._grid = _Grid(parts_of(angles))
+        self.field = self._grid.field
+        used: dict[int, list[Fraction]] = {}
+        for terms in angles.coefficients.values():
+            for k, coefficient in terms:
+                used.setdefault(k, []).append(coefficient)
+        self.scales = {k: lcm(*(c.denominator for c in each)) for k, each in used.items()}
+        self._most = {k: max(map(abs, each)) for k, each in used.items()}
+        self._fixed: dict[int, Vector] = {}
+        self._short: dict[int, Vector] = {}
+        self._whole: dict[int, tuple[int, int]] = {}
+        self._vectors: dict[tuple[Fraction, tuple[tuple[int, Fraction], ...]], Vector] = {}
+        for k in self.scales if recognise else ():
+            self._recognise(k)
+
+    def key(self, edge: Edge) -> tuple[Fraction, tuple[tuple[int, Fraction], ...]]:
+        """What the direction of an edge depends on: edges with equal keys are parallel."""
+        return self.angles.constants[edge] % 1, self.angles.coefficients.get(edge, ())
+
+    def power(self, edge: Edge, k: int) -> int:
+        """The power in which the direction of t / q stands in that of an edge; t has the number k.
+
+        q clears the denominators of all coefficients of the free angle t.
+        """
+        coefficients = dict(self.angles.coefficients.get(edge, ()))
+        return int(coefficients.get(k, Fraction(0)) * self.scales[k])
+
+    def vector(self, edge: Edge) -> Vector:
+        """A vector along an edge, in either sense."""
+        key = self.key(edge)
+        if key not in self._vectors:
+            self._vectors[key] = self._without(edge, None)
+        return self._vectors[key]
+
+    def fix(self, k: int, edge: Edge, vector: Vector) -> None:
+        """Give a free angle the value with which an edge has the direction of a vector.
+
+        The angle must stand in the direction of the edge in the power 1 or -1.
+        """
+        x, y = self._without(edge, k)
+        quotient = _product(vector, (x, -y))
+        if self.power(edge, k) < 0:
+            quotient = quotient[0], -quotient[1]
+        self._fixed[k] = _short(quotient)
+
+    def _without(self, edge: Edge, left_out: int | None) -> Vector:
+        constant, terms = self.key(edge)
         whole = (1, 0)
-        for k, coefficient in angles.coefficients.get(edge, ()):
-            scale, factor = free[k]
-            whole = _times(whole, _power(factor, int(coefficient * scale)))
-        vectors[edge] = _turned(grid.direction(constant), whole)
-    return Directions(grid.field, vectors)
+        total = self._grid.direction(constant)
+        for k, _ in terms:
+            power = self.power(edge, k)
+            if k == left_out:
+                continue
+            known = self._fixed.get(k) or self._short.get(k)
+            if known is None:
+                whole = _times(whole, _power(self._fraction(k), power))
+                continue
+            x, y = known
+            for _ in range(abs(power)):
+                total = _product(total, (x, y if power > 0 else -y))
+        return _turned(total, whole)
+
+    def _noise(self, k: int) -> float:
+        """The noise of a free angle over its q."""
+        return self.noise / (max(ceil(self._most[k]), 1) * self.scales[k])
+
+    def _recognise(self, k: int) -> None:
+        """Find a short number for the tangent or cotangent of t / q, or of a multiple of it."""
+        halvings = 0
+        while self.scales[k] % (1 << halvings) == 0:
+            angle = self.free[k] / self.scales[k] * (1 << halvings)
+            slope, steep = _slope(angle)
+            within = max(4 * self._noise(k) * (1 << halvings), _ROUGH)
+            match = reduced_match(Fraction(slope), Fraction(within), self.field, _SURE)
+            if match is not None:
+                short, one = self.field.number(match.value), self.field.number(1)
+                vector = (short, one) if steep else (one, short)
+                self._halve(k, vector, angle, halvings)
+                return
+            halvings += 1
+
+    def _halve(self, k: int, vector: Vector, angle: float, halvings: int) -> None:
+        """Halve the angle of a vector several times, and take it for a free angle."""
+        for _ in range(halvings):
+            scale = lcm(*(int(c.q) for part in vector for c in part.parts))
+            x, y = vector[0] * scale, vector[1] * scale
+            square = x * x + y * y
+            field = self.field.adjoined(square)
+            length = field.square_root(square)
+            if length is None or len(field.radicands) > _MOST_ROOTS:
+                return
+            self.field, angle = field, angle / 2
+            # (x + length, y) has half the angle of (x, y), and (x - length, y) is at right angles
+            half = [(x + length, field.number(y)), (x - length, field.number(y))]
+            vector = _short(min(half, key=lambda other: _off(other, angle)))
+        self._short[k] = vector
+
+    def _fraction(self, k: int) -> tuple[int, int]:
+        """A Gaussian integer whose angle is that of t / q, nearly."""
+        if k not in self._whole:
+            slope, steep = _slope(self.free[k] / self.scales[k])
+            near = _fraction(Fraction(slope), max(self._noise(k) / 100, _FINEST))
+            p, q = near.numerator, near.denominator
+            self._whole[k] = (p, q) if steep else (q, p)
+        return self._whole[k]
+
+
+def parts_of(angles: Angles) -> int:
+    """The least n such that all constants are multiples of pi / n."""
+    return lcm(*(c.denominator for c in angles.constants.values()))
 
 
 def cross(a: Vector, b: Vector) -> Surd:
@@ -126,10 +229,7 @@ class _Grid:
             share = steps * pow(self.parts // q, -1, q) % q
             for _ in range(share):
                 total = _product(total, factor)
-        x, y = total
-        if abs(float(x)) >= abs(float(y)):
-            return self.field.number(1), y / x
-        return x / y, self.field.number(1)
+        return _short(total)
 
 
 def _with_root(field: SurdField, square: Number) -> tuple[SurdField, Surd]:
@@ -142,38 +242,36 @@ def _product(a: Vector, b: Vector) -> Vector:
     return a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]
 
 
-def _free_factors(angles: Angles, tolerance: float) -> dict[int, tuple[int, tuple[int, int]]]:
-    """For each free angle t: q, and a Gaussian integer whose angle is nearly t / q.
-
-    q clears the denominators of all coefficients of t.
-    """
-    used: dict[int, list[Fraction]] = {}
-    for terms in angles.coefficients.values():
-        for k, coefficient in terms:
-            used.setdefault(k, []).append(coefficient)
-    factors = {}
-    for k, coefficients in used.items():
-        scale = lcm(*(c.denominator for c in coefficients))
-        most = max(abs(c) * scale for c in coefficients)
-        within = Fraction(max(tolerance, _FINEST)) / max(int(most), 1)
-        factors[k] = scale, _gaussian(angles.free[k] / scale, within)
-    return factors
+def _short(vector: Vector) -> Vector:
+    """A multiple of a vector with a coordinate 1."""
+    x, y = vector
+    one = x.field.number(1)
+    return (one, y / x) if abs(float(x)) >= abs(float(y)) else (x / y, one)
 
 
-def _gaussian(angle: float, within: Fraction) -> tuple[int, int]:
-    """A short Gaussian integer whose angle, modulo pi, is nearly the given one.
-
-    >>> _gaussian(0.5, Fraction(1, 1000)), _gaussian(2.0, Fraction(1, 1000))
-    ((11, 6), (-11, 24))
-    """
+def _slope(angle: float) -> tuple[float, bool]:
+    """The tangent of an angle, or its cotangent if that is smaller; whether it is the cotangent."""
     x, y = cos(angle), sin(angle)
     steep = abs(y) > abs(x)
-    slope = Fraction(x / y if steep else y / x)
+    return (x / y if steep else y / x), steep
+
+
+def _off(vector: Vector, angle: float) -> float:
+    """The sine of the angle between a vector and an angle, without its sign."""
+    x, y = float(vector[0]), float(vector[1])
+    return abs(y * cos(angle) - x * sin(angle)) / max(hypot(x, y), _FINEST)
+
+
+def _fraction(value: Fraction, within: float) -> Fraction:
+    """A short fraction near a value.
+
+    >>> _fraction(Fraction(1, 3), 0.1), _fraction(Fraction("0.46365"), 1e-4)
+    (Fraction(1, 3), Fraction(51, 110))
+    """
     limit = 1
-    while abs((near := slope.limit_denominator(limit)) - slope) > within:
+    while abs((near := value.limit_denominator(limit)) - value) > within:
         limit *= 2
-    p, q = near.numerator, near.denominator
-    return (p, q) if steep else (q, p)
+    return near
 
 
 def _power(factor: tuple[int, int], exponent: int) -> tuple[int, int]:

@@ -15,6 +15,7 @@ NEAR: Final = 0.3
 """A relation that is missed by a larger angle, in radians, is not near."""
 _EXACT_BELOW: Final = 1e-6
 """Smaller angles are computed again from the exact coordinates."""
+_FAR: Final = 4
 _SHORT: Final = 1e-7
 """The floats of the ends of a shorter edge say little about its direction."""
 _LEAST: Final = 1e-30
@@ -41,8 +42,14 @@ class Drawn:
 
     @cached_property
     def places(self) -> list[tuple[float, float]]:
-        """The points in floats."""
-        return [(float(x), float(y)) for x, y in self.points]
+        """The points in floats, moved to the origin if the sheet is small and far from it."""
+        places = [(float(x), float(y)) for x, y in self.points]
+        xs, ys = zip(*(places[v] for v in {v for edge in self.edges for v in edge}), strict=True)
+        size = max(max(xs) - min(xs), max(ys) - min(ys))
+        if max(map(abs, (*xs, *ys))) <= _FAR * size:
+            return places
+        x, y = self.points[self.edges[0][0]]
+        return [(float(px - x), float(py - y)) for px, py in self.points]
 
     @cached_property
     def size(self) -> float:

@@ -5,12 +5,12 @@ from __future__ import annotations
 from bisect import bisect, insort
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
-from math import inf, log2, pi
+from math import comb, log2, pi
 from typing import Final, NamedTuple
 
 from exactfold.pattern.drawing.meant.accepted import Accepted, Trial
 from exactfold.pattern.drawing.meant.drawn import Drawn
-from exactfold.pattern.drawing.meant.noise import is_rare
+from exactfold.pattern.drawing.meant.noise import LOOKED_FOR, is_rare
 from exactfold.pattern.drawing.meant.values import Edge, Relation
 
 UNITS: Final = (*range(1, 61), 64, 72, 80, 90, 96, 120, 144, 180)
@@ -22,7 +22,8 @@ _PLAIN: Final = 2
 """Without a grid, edges may be mirrored in the axes of the drawing."""
 _REFERENCES: Final = 3
 _DIRECTIONS: Final = 100
-"""So many directions, those of the longest edges, are enough to choose a grid."""
+_EDGES: Final = 300
+"""So many directions and so many edges, the longest, are enough to choose a grid."""
 
 
 class Grid(NamedTuple):
@@ -92,30 +93,52 @@ def _sure(accepted: Accepted) -> list[Edge]:
 
 def _chosen(accepted: Accepted, edges: Sequence[Edge], unit: int | None) -> Grid | None:
     """The grid that explains the directions best; None if chance explains them as well."""
-    directions = list(islice(_distinct(accepted, edges), _DIRECTIONS))
     units = UNITS if unit is None else (unit,)
-    best, most = None, 0.0 if unit is None else -inf
-    for reference in (None, *directions[:_REFERENCES]):
-        others = [edge for edge in directions if edge != reference]
+    grids = {}
+    for reference in (None, *islice(_unlike(accepted, edges, None), _REFERENCES)):
+        unlike = list(islice(_unlike(accepted, edges, reference), _DIRECTIONS))
+        # A turned grid has an angle of its own, which says as much as one edge on a grid.
+        cost = 0.0 if reference is None else -log2(2 * _spread(accepted, reference) / pi)
         for n in units:
-            bits = _explained(accepted, others, Grid(n, reference)) - log2(n)
-            if bits > most:
-                best, most = Grid(n, reference), bits
-    if best is None or unit is not None:
-        return best
-    trials = list(_on_grid(accepted, best, forced=False))
-    expected = best.unit * sum(trial.probability for trial in trials)
-    hits = sum(trial.relation is not None for trial in trials)
-    return best if is_rare(expected, hits) else None
+            grids[Grid(n, reference)] = _explained(accepted, unlike, Grid(n, reference)) - cost
+    if unit is not None:
+        return max(grids, key=lambda grid: grids[grid])
+    for grid, bits in sorted(grids.items(), key=lambda pair: -pair[1]):
+        if bits > 0 and _is_clear(accepted, edges[:_EDGES], grid):
+            return grid
+    return None
 
 
-def _distinct(accepted: Accepted, edges: Iterable[Edge]) -> Iterator[Edge]:
-    """One edge of each direction, the longest ones first."""
-    seen: list[tuple[float, Edge]] = []
+def _is_clear(accepted: Accepted, edges: Sequence[Edge], grid: Grid) -> bool:
+    """Whether chance hardly puts as many of the longest edges on a grid up to this one."""
+    expected, hits = 0.0, 0
     for edge in edges:
-        angle, spread = accepted.drawn.angles[edge] % pi, _spread(accepted, edge)
-        if all(_off(angle - other, pi) > spread for other, _ in _around(seen, angle)):
-            insort(seen, (angle, edge))
+        if edge != grid.reference:
+            off, spread, step = _off_grid(accepted, edge, grid)
+            expected += min(1.0, 2 * spread / step)
+            hits += off <= spread
+            if is_rare(expected, hits, unlikely=LOOKED_FOR / grid.unit):
+                return True
+    return False
+
+
+def _unlike(accepted: Accepted, edges: Iterable[Edge], reference: Edge | None) -> Iterator[Edge]:
+    """The longest edge of each direction, up to the symmetries that a grid usually has.
+
+    Mirrored directions are on a grid together. So are those that differ by a multiple of 15
+    degrees, if they are not at multiples of 7.5 degrees themselves. Edges parallel to the reference
+    are left out.
+    """
+    start = 0.0 if reference is None else accepted.drawn.angles[reference]
+    seen: dict[float, list[tuple[float, Edge]]] = {pi: [], pi / 12: []}
+    for edge in edges:
+        angle, spread = accepted.drawn.angles[edge] - start, _spread(accepted, edge)
+        period = pi if _off(angle, pi / 24) <= spread else pi / 12
+        place = _off(angle, period)
+        if reference is not None and _off(angle, pi) <= spread:
+            continue
+        if all(abs(place - other) > spread for other, _ in _around(seen[period], place)):
+            insort(seen[period], (place, edge))
             yield edge
 
 
@@ -125,17 +148,26 @@ def _off(angle: float, step: float) -> float:
     return min(rest, step - rest)
 
 
-def _explained(accepted: Accepted, edges: Sequence[Edge], grid: Grid) -> float:
-    """Minus the binary logarithm of the probability that chance puts as many edges on a grid."""
+def _off_grid(accepted: Accepted, edge: Edge, grid: Grid) -> tuple[float, float, float]:
+    """By how much an edge misses a grid, by how much it may, and the step of the grid."""
     angles = accepted.drawn.angles
     start = 0.0 if grid.reference is None else angles[grid.reference]
     step = pi / grid.unit
-    bits = 0.0
+    return _off(angles[edge] - start, step), _spread(accepted, edge), step
+
+
+def _explained(accepted: Accepted, edges: Sequence[Edge], grid: Grid) -> float:
+    """Minus the binary logarithm of the probability that chance puts as many edges on a grid.
+
+    Any of the edges might have been on the grid, and any unit up to this one might have been tried.
+    """
+    bits, hits = -2 * log2(grid.unit), 0
     for edge in edges:
-        spread = _spread(accepted, edge)
-        if _off(angles[edge] - start, step) <= spread:
+        off, spread, step = _off_grid(accepted, edge, grid)
+        if off <= spread:
             bits -= log2(min(1.0, 2 * spread / step))
-    return bits
+            hits += 1
+    return bits - log2(comb(len(edges), hits))
 
 
 def _on_grid(accepted: Accepted, grid: Grid, *, forced: bool) -> Iterator[Trial]:

@@ -117,21 +117,25 @@ def infer(
         accepted.add(stated(drawn, text, grid) for text in also)
         if accepted.contradicting:
             raise UsageError(_conflict(accepted, accepted.contradicting[0]))
+    implied = [r for r in deleted if accepted.is_implied(r.terms, r.parts)]
     return replace(
         plain,
         relations=tuple(accepted.relations),
         independent=accepted.system.rank,
         angles=_angles(drawn, accepted.system),
-        implied={
-            relation.name: accepted.reasons(relation)
-            for relation in deleted
-            if accepted.is_implied(relation.terms, relation.parts)
-        },
+        implied=_reasons(accepted, implied),
     )
 
 
+def _reasons(accepted: Accepted, implied: Sequence[Relation]) -> dict[str, tuple[str, ...]]:
+    if not implied:
+        return {}
+    names = [relation.name for relation in implied]
+    return dict(zip(names, accepted.reasons(implied), strict=True))
+
+
 def _conflict(accepted: Accepted, relation: Relation) -> str:
-    others = accepted.reasons(relation)
+    (others,) = accepted.reasons([relation])
     return f"the relation {relation.name} contradicts {', '.join(others)}"
 
 

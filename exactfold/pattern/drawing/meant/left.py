@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 NEAREST: Final = 1e-3
 """No relation whose defect is larger is near."""
-_CHANCE: Final = 1e-4
+_CHANCE: Final = 1e-3
 """Relations are near if random angles have so many as near with a lower probability."""
 _STEPS: Final = 30
 """On a grid of so many steps across the sheet, no relation misses by less than `NEAREST`."""
@@ -47,7 +47,7 @@ def left_relations(sheet: Sheet) -> tuple[Relation, ...]:
 
     These are straight paths through a vertex, straight borders, and sums of Kawasaki at vertices
     with four folds, with a defect of at most 1e-3. If k relations have at most the defect of the
-    k-th, and chance may bring k / 2 as near with a probability of at least 1e-4, these k are
+    k-th, and chance may bring k / 2 as near with a probability of at least 1e-3, these k are
     not near.
 
     >>> from exactfold.pattern.families import two_vertex

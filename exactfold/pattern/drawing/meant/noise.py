@@ -11,7 +11,7 @@ from typing import Final
 
 GAP: Final = 100.0
 """The noise is believed only if nothing else is off by less than this many times the noise."""
-TOLERANCE: Final = 30.0
+TOLERANCE: Final = 10.0
 """A relation holds if it is missed by at most this many times the noise."""
 CHANCE: Final = 1e-3
 """So many relations by chance are allowed for each relation that is found."""
@@ -19,8 +19,14 @@ FINEST: Final = 1e-16
 """No noise level is finer; angles are compared in double precision."""
 _EASILY: Final = 0.003
 _ALIKE: Final = 1e-6
-_EXCESS: Final = 0.02
+_EXCESS: Final = 0.05
+_TRUST: Final = 10.0
+"""How many relations must be expected, but not seen, until rays hardly count as uniform."""
 _UNLIKELY: Final = 1e-4
+LOOKED_FOR: Final = 1e-5
+"""What is looked for in many ways is believed only if chance brings it less often than this."""
+_VISIBLE: Final = 1e-3
+"""What is missed by a larger share of the size can be seen, and is no noise."""
 _FINER: Final = 1.02
 """Counts of near relations are told apart if one is this many times the other."""
 
@@ -63,9 +69,6 @@ def noise_level(
     Defects that are exactly 0 say nothing about noise. The others are cut into levels where one is
     `GAP` times the one before. A level is believed if chance hardly explains its defects
     (`is_rare`). The noise is the largest defect of the highest level that is believed.
-
-    The expected number of chance relations is the larger of two estimates: for independent uniform
-    rays, and for defects as dense as those above the level are.
     """
     missed = sorted((defect, density) for defect, density in found if defect)
     if not missed:
@@ -75,7 +78,7 @@ def noise_level(
     ends = [k for k, (eps, clear) in enumerate(zip(defects, above, strict=True), 1) if clear > eps]
 
     def expected(end: int) -> float:
-        return _expected(defects[end - 1], defects[end:], densities)
+        return _expected(defects[end - 1], defects[end:], densities, beyond)
 
     clear_ends = [0, *(k for k in ends if above[k - 1] >= GAP * defects[k - 1])]
     for start, end in reversed([*pairwise(clear_ends)]):
@@ -83,7 +86,10 @@ def noise_level(
             return Noise(defects[end - 1], above[end - 1], chance, end)
     near = 0
     for end in ends:
-        if end > _FINER * near and _suspicious(missed[:end], defects[end - 1], densities):
+        if defects[end - 1] > _VISIBLE:
+            break
+        worth = end > _FINER * near or end in clear_ends
+        if worth and _suspicious(missed[:end], defects[end - 1], densities):
             near = end
     if not near:
         return None
@@ -91,14 +97,16 @@ def noise_level(
     return Noise(eps, clear, chance, near, _refusal(eps, clear, chance, near))
 
 
-def is_rare(expected: float, hits: int, share: float = CHANCE) -> bool:
-    """Whether chance explains less than a share of the hits, and hardly ever brings as many.
+def is_rare(
+    expected: float, hits: int, *, share: float = CHANCE, unlikely: float = _UNLIKELY
+) -> bool:
+    """Whether chance explains less than a share of the hits, and is unlikely to bring as many.
 
     With expected hits m, chance brings k hits or more with a probability of at most m^k / k!.
     """
     if not hits or not expected:
         return bool(hits)
-    return expected < share * hits and hits * log(expected) - lgamma(hits + 1) < log(_UNLIKELY)
+    return expected < share * hits and hits * log(expected) - lgamma(hits + 1) < log(unlikely)
 
 
 def stated_level(
@@ -111,13 +119,26 @@ def stated_level(
     tolerance = TOLERANCE * eps
     above = sorted(defect for defect, _ in found if defect > tolerance)
     near = sum(0 < defect <= tolerance for defect, _ in found)
-    return Noise(eps, above[0] if above else beyond, _expected(tolerance, above, densities), near)
+    return Noise(
+        eps, above[0] if above else beyond, _expected(tolerance, above, densities, beyond), near
+    )
 
 
-def _expected(eps: float, above: Sequence[float], densities: Sequence[float]) -> float:
-    """How many relations chance brings within `eps`, if those in `above` are further off."""
+def _expected(
+    eps: float, above: Sequence[float], densities: Sequence[float], beyond: float
+) -> float:
+    """How many relations chance brings within `eps`, if those in `above` are further off.
+
+    Their number is at least that for defects as dense as those in `above`. Uniform rays give
+    another number. The more relations these let expect between `eps` and the first in `above`,
+    where there is none, the less uniform the rays are: the number becomes smaller by the factor
+    that a gamma distribution of the density, of shape `_TRUST`, gives for it.
+    """
+    clear = above[0] if above else beyond
     seen = max((k / defect for k, defect in enumerate(above, 1)), default=0.0)
-    return max(sum(min(1.0, density * eps) for density in densities), eps * seen)
+    uniform = sum(min(1.0, density * eps) for density in densities)
+    unseen = sum(min(1.0, density * clear) for density in densities) - uniform
+    return max(eps * seen, uniform * _TRUST / (_TRUST + unseen))
 
 
 def _suspicious(
@@ -131,18 +152,18 @@ def _suspicious(
     expected = sum(density for density in densities if density * eps < _EASILY) * eps
     copies = {round(log(defect) / _ALIKE) for defect, density in missed if density * eps < _EASILY}
     hits = len(copies)
-    return is_rare(expected, hits, _EXCESS)
+    return is_rare(expected, hits, share=_EXCESS, unlikely=LOOKED_FOR)
 
 
 def _refusal(eps: float, clear: float, chance: float, near: int) -> str:
     if clear < GAP * eps:
         return (
-            f"no gap: relations are missed by up to {eps:.1g} of the size, and others by "
-            f"{clear:.1g}; only {clear / eps:.2g} times more, and {GAP:g} times is needed"
+            f"no gap: relations are missed by up to {eps:.1g} of the size, and others by only "
+            f"{clear / eps:.2g} times more; {GAP:g} times is needed"
         )
     return (
-        f"chance: {chance:.1g} relations are expected by chance, and {near} were found; chance may "
-        f"explain {CHANCE:g} of them"
+        f"chance: {near} relations are missed by up to {eps:.1g} of the size, and {chance:.1g} are "
+        f"expected to be by chance; at most {CHANCE:g} times as many may be"
     )
 
 

@@ -92,7 +92,7 @@ class _Search:
             heappush(self.waiting, (0, -longest[v], v))
 
     def next(self) -> int | None:
-        """The vertex that the most lines place, or whose lines cross at the largest angle."""
+        """The vertex that the most lines place; among those, the one that they place best."""
         while self.waiting:
             _, _, v = heappop(self.waiting)
             if v not in self.placed:
@@ -146,7 +146,10 @@ class _Search:
             u = edge[0] + edge[1] - v
             if u not in self.placed:
                 best, how = self.lines(u)
-                heappush(self.waiting, (-len(best), -how, u))
+                slopes = (
+                    {round(self._slope(e), 6) for e in self.known(u)} if len(best) > 1 else best
+                )
+                heappush(self.waiting, (-len(slopes), -how, u))
 
     def order(self) -> Order:
         left = [k for k in range(len(self.free)) if k not in self.dead]
@@ -180,6 +183,9 @@ class _Search:
 
     def _length(self, edge: Edge) -> float:
         return float(np.hypot(*(self.places[edge[1]] - self.places[edge[0]])))
+
+    def _slope(self, edge: Edge) -> float:
+        return float(np.arctan2(*self.directions[edge][::-1]) % np.pi)
 
     def _sine(self, a: Edge, b: Edge) -> float:
         (ax, ay), (bx, by) = self.directions[a], self.directions[b]

@@ -5,44 +5,56 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
-from math import hypot
-from typing import TypeAlias
+from math import ceil, hypot, log10
+from typing import Final, TypeAlias
 
 import numpy as np
 
 from exactfold._support.arrays import FloatArray
-from exactfold.exact.surds import Number, Surd
+from exactfold.exact.surds import Number, Surd, SurdField
 from exactfold.pattern.drawing.meant.directions import Directions, Vector, cross
 from exactfold.pattern.drawing.meant.placing import Coordinate, Order, Step, placing_order
 from exactfold.pattern.drawing.meant.values import Angles, Edge
 
 Written: TypeAlias = Sequence[tuple[Fraction, Fraction]]
 """The points as the drawing states them."""
+Point: TypeAlias = tuple[Surd, Surd]
+_MOST_BITS: Final = 1 << 13
+"""The longest numerators and denominators of coordinates."""
+TOO_LONG: Final = f"its coordinates have numbers of more than {_MOST_BITS} bits"
+NO_PLACES: Final = "no sheet near the drawing has all these directions"
+_FAR: Final = 1000
+"""Positions that are off by so many times the noise are not near the drawing."""
+_ROUGH: Final = 1e-9
+"""Positions that floats find to be off by less may be near it, whatever the noise is."""
 
 
-def exact_positions(
-    written: Written, directions: Directions, bound: Sequence[Edge], noise: float
-) -> list[tuple[Surd, Surd]]:
-    """Positions near the written ones, such that the edges `bound` have the given directions.
+def placed_together(
+    written: Written,
+    places: FloatArray,
+    directions: Directions,
+    bound: Mapping[Edge, Edge],
+    noise: float,
+) -> list[Point] | str:
+    """Positions near the written ones, such that the lines `bound` have given directions.
 
-    If that is impossible, some of these edges miss their direction; `missed` lists them. The free
-    coordinates are short decimals, rounded far below the noise level `noise`, which is relative to
-    the larger side of the drawing.
+    Each line is a pair of vertices, and belongs to an edge that has the direction of this line.
+    `places` are the written positions in floats. The free coordinates are short decimals, rounded
+    far below the noise level `noise`, which is relative to the larger side of the drawing. Returns
+    `NO_PLACES` or `TOO_LONG` if there are no such positions.
     """
-    places = np.array([(float(x), float(y)) for x, y in written])
-    units = {edge: _unit(directions.vectors[edge]) for edge in bound}
+    vectors = {line: directions.vector(edge) for line, edge in bound.items()}
+    units = {line: _unit(vector) for line, vector in vectors.items()}
     order = placing_order(places, units, 100 * noise)
-    placed = _Placed(directions, _free_values(written, places, order, noise))
-    for step in order.steps:
-        placed.place(step)
-    return placed.points()
-
-
-def missed(
-    points: Sequence[tuple[Surd, Surd]], directions: Directions, bound: Sequence[Edge]
-) -> list[Edge]:
-    """The edges among `bound` that do not have their exact direction."""
-    return [edge for edge in bound if cross(directions.vectors[edge], _along(points, edge))]
+    free = _free_values(written, places, order, noise)
+    if free is None:
+        return NO_PLACES
+    placed = _Placed(directions.field, vectors, free)
+    if not all(placed.place(step) for step in order.steps):
+        return TOO_LONG
+    points = placed.points()
+    off = any(cross(vector, _along(points, line)) for line, vector in vectors.items())
+    return NO_PLACES if off else points
 
 
 def bound_edges(angles: Angles) -> list[Edge]:
@@ -71,19 +83,40 @@ def _unit(vector: Vector) -> tuple[float, float]:
 
 def _free_values(
     written: Written, places: FloatArray, order: Order, noise: float
-) -> dict[Coordinate, Fraction]:
-    """Short decimals for the free coordinates, with which all points are nearest to the drawing."""
+) -> dict[Coordinate, Fraction] | None:
+    """Short decimals for the free coordinates, with which all points are nearest to the drawing.
+
+    None if floats show that they are not near it.
+    """
     size = float(np.ptp(places, axis=0).max())
     start = np.array([places[v, axis] for v, axis in order.free])
     off = places.reshape(-1) - order.matrix @ start
+    if not np.all(np.isfinite(off)):
+        return None
     moves = np.linalg.lstsq(order.matrix, off, rcond=None)[0]
-    digits = 0
-    while 10.0**-digits * 4 > noise * size and digits < 40:
-        digits += 1
+    if abs(off - order.matrix @ moves).max() > max(_FAR * noise, _ROUGH) * size:
+        return None
+    digits = decimals(noise * size / 4)
     return {
         (v, axis): round(written[v][axis] + Fraction(float(move)), digits)
         for (v, axis), move in zip(order.free, moves, strict=True)
     }
+
+
+def too_long(value: Surd) -> bool:
+    """Whether a number has more bits than are of use."""
+    return any(max(x.p.bit_length(), x.q.bit_length()) > _MOST_BITS for x in value.parts)
+
+
+def decimals(step: float) -> int:
+    """The number of decimals with which numbers are rounded to multiples of at most `step`.
+
+    It is negative for a step of more than 10.
+
+    >>> decimals(0.02), decimals(500.0)
+    (2, -2)
+    """
+    return ceil(-log10(step))
 
 
 Form: TypeAlias = dict[Coordinate | None, Surd]
@@ -93,14 +126,22 @@ Form: TypeAlias = dict[Coordinate | None, Surd]
 class _Placed:
     """Places the vertices exactly; free coordinates that follow from others are open at first."""
 
-    def __init__(self, directions: Directions, free: Mapping[Coordinate, Fraction]) -> None:
-        self.field, self.vectors, self.free = directions.field, directions.vectors, free
+    def __init__(
+        self,
+        field: SurdField,
+        vectors: Mapping[Edge, Vector],
+        free: Mapping[Coordinate, Fraction],
+    ) -> None:
+        self.field, self.vectors, self.free = field, vectors, free
         self.forms: dict[int, tuple[Form, Form]] = {}
         self.solved: dict[Coordinate, Form] = {}
         self.inverses: dict[tuple[Vector, Vector], Surd] = {}
 
-    def place(self, step: Step) -> None:
-        """Do one step; a condition that must hold anyway is checked later."""
+    def place(self, step: Step) -> bool:
+        """Do one step; False if numbers become too long.
+
+        A condition that must hold anyway is checked later.
+        """
         v = step.vertex
         opened = [self._open(coordinate) for coordinate in step.free]
         if not step.lines:
@@ -125,10 +166,13 @@ class _Placed:
         for edge, open_one in step.checks:
             if open_one is not None:
                 self._solve(edge, open_one)
+        return not any(too_long(x) for form in self.forms[v] for x in form.values())
 
-    def points(self) -> list[tuple[Surd, Surd]]:
+    def points(self) -> list[Point]:
         """All points; a coordinate that is still open is set to 0."""
         zero = self.field.number(0)
+        for coordinate in reversed(self.solved):  # those that were solved last depend on no others
+            self.solved[coordinate] = self._known(self.solved[coordinate])
         points = []
         for v in range(len(self.forms)):
             x, y = self._of(v)
@@ -152,11 +196,10 @@ class _Placed:
 
     def _known(self, form: Form) -> Form:
         """The form, once all solved coordinates are replaced."""
-        while any(c in self.solved for c in form):
-            for c in [c for c in form if c in self.solved]:
-                factor = form[c]
-                rest = {k: x for k, x in form.items() if k != c}
-                form = _sum(rest, self.solved[c], factor)
+        while (solved := next((c for c in form if c in self.solved), None)) is not None:
+            rest = dict(form)
+            factor = rest.pop(solved)
+            form = _sum(rest, self.solved[solved], factor)
         return form
 
     def _solve(self, edge: Edge, open_one: Coordinate) -> None:
@@ -182,6 +225,6 @@ def _scaled(form: Form, scale: Number) -> Form:
     return {key: value * scale for key, value in form.items()} if scale else {}
 
 
-def _along(points: Sequence[tuple[Surd, Surd]], edge: Edge) -> Vector:
+def _along(points: Sequence[Point], edge: Edge) -> Vector:
     (ax, ay), (bx, by) = (points[v] for v in edge)
     return bx - ax, by - ay

@@ -1,0 +1,113 @@
+"""From digits that are inexact to the sheet that was meant, if it can be inferred."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import TYPE_CHECKING, Final
+
+from exactfold.errors import FoldError, PatternError, TooLargeError, UsageError
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.drawing.drawing import Drawing, Line
+from exactfold.pattern.drawing.meant.left import left_relations
+from exactfold.pattern.opened import Opened, panels, triangulated
+
+if TYPE_CHECKING:  # sheets with exact digits do without it
+    from exactfold.pattern.panel_pattern import PanelPattern
+
+
+_TIMES_NOISE: Final = 100
+"""Recognising coordinates must not move one by more than this many times the largest defect."""
+
+
+def meaning(found: Opened, written: Callable[[], Opened]) -> Opened:
+    """The sheet that was meant, if the digits of `found` are inexact; `found` itself if not.
+
+    Digits are inexact if relations between creases hold nearly but not exactly. `written` reads the
+    sheet with its digits as written. If no sheet can be inferred, `found` is returned, and its
+    `doubt` says why.
+    """
+    reading = found.reading
+    if reading.snap == "exact":
+        if reading.overrules:
+            raise UsageError(
+                "--snap exact takes the digits as written: leave out --without, --also, --noise "
+                "and --unit"
+            )
+        return found
+    left = left_relations(found.sheet)
+    if not left and not reading.overrules:
+        return found
+    from exactfold.pattern.meant import Meant, inferred
+
+    if isinstance(reading.snap, int):
+        return replace(found, meant=Meant(left=left, reason=f"--snap {reading.snap} leaves them"))
+    try:
+        raw = written()
+    except (FoldError, PatternError) as error:
+        reason = f"the digits as written are no sheet: {error}"
+        return replace(found, meant=Meant(left=left, reason=reason))
+    sheet = panels(raw.sheet) if isinstance(raw.sheet, CreasePattern) else raw.sheet
+    if sheet.field.radicands:
+        return replace(found, meant=Meant(left=left, reason="its coordinates are irrational"))
+    meant = inferred(sheet, reading)
+    if meant.realized is None or meant.realized.sheet is None:
+        meant = replace(meant, left=left)
+        lines = meant.listed if reading.relations else ()
+        return replace(found, meant=meant, lines=found.lines + lines)
+    exact = meant.realized.sheet
+    lines = tuple(line for line in raw.lines if not line.startswith("coordinates kept"))
+    return replace(
+        raw,
+        sheet=_triangles(exact),
+        lines=(*lines, *meant.lines, *(meant.listed if reading.relations else ())),
+        largest_move=meant.distance or 0.0,
+        field_name=exact.field_name,
+        meant=meant,
+        reading=reading,
+        again=found.again,
+    )
+
+
+def recognised(found: Opened) -> Opened | None:
+    """A triangulated sheet with recognised coordinates, if its digits are inexact without them.
+
+    None if its digits are exact, if `snap` or a relation was asked for, if relations nearly hold
+    even then, or if a coordinate would move far more than its noise.
+    """
+    reading = found.reading
+    if reading.snap is not None or reading.overrules:
+        return None
+    left = left_relations(found.sheet)
+    if not left:
+        return None
+    from exactfold.pattern.drawing.coordinates import exact_coordinates
+    from exactfold.pattern.panel_pattern import PanelPattern
+
+    if not isinstance(found.sheet, CreasePattern):
+        return None
+    lines = tuple(Line(i, j, found.assignment.get((i, j), "U")) for i, j in found.sheet.edges)
+    known = exact_coordinates(Drawing(tuple(found.sheet.vertices), lines, ""), "auto")
+    if known.largest_move > _TIMES_NOISE * left[-1].defect:
+        return None
+    try:
+        sheet = PanelPattern(known.points, found.sheet.edges)
+    except (FoldError, PatternError):
+        return None
+    if left_relations(sheet) or len(sheet.faces) != len(found.sheet.triangles):
+        return None
+    return replace(
+        found,
+        sheet=_triangles(sheet),
+        lines=(*found.lines, known.text),
+        largest_move=known.largest_move,
+        field_name=sheet.field_name,
+    )
+
+
+def _triangles(exact: PanelPattern) -> CreasePattern | PanelPattern:
+    """The sheet, triangulated if its coordinates are short enough for that."""
+    try:
+        return triangulated(exact) or exact
+    except TooLargeError:
+        return exact

@@ -1,0 +1,119 @@
+"""A sheet from a file, and what was done to read it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import TYPE_CHECKING, TypedDict
+
+from exactfold._support.documents import FieldName, NotNegative, Several
+from exactfold._support.notebook import Picture
+from exactfold.errors import MalformedPatternError
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.drawing.bounds import check_common_denominator
+from exactfold.pattern.reading import PLAIN, Reading
+
+# Drawings need libraries that take long to load; triangulated sheets are read without them.
+if TYPE_CHECKING:
+    from exactfold.pattern.meant import Meant
+    from exactfold.pattern.panel_pattern import Edge, PanelPattern
+
+
+class ReadDocument(TypedDict):
+    """What was read of a drawing."""
+
+    lines: Several[str]
+    """What was read, how coordinates were made exact, and each repair, one sentence each."""
+    field: FieldName
+    largest_move: NotNegative
+    """The largest change of a coordinate, as a fraction of the size of the sheet."""
+
+
+@dataclass(frozen=True)
+class Opened(Picture):
+    """A sheet from a file, and what was done to read it.
+
+    `sheet` is a `CreasePattern` if all faces are triangles with rational corners, else a
+    `PanelPattern`. `assignment` holds the letters of the file by edge. `lines` has one sentence
+    each for what was read, how coordinates were made exact, and each repair; it is empty if the
+    file needed nothing. `snapped` is the largest change of a coordinate by `snap`. `again` reads
+    the sheet once more with another `Reading` than `reading`; it is None for a sheet that was not
+    read from a file.
+
+    `meant` is None if no relation between creases holds nearly but not exactly. Otherwise the
+    digits of the file are inexact, and `meant` says what was inferred from them: either `sheet` is
+    the sheet that was meant, or `doubt` says why answers hold for these digits only.
+    """
+
+    sheet: CreasePattern | PanelPattern
+    assignment: Mapping[Edge, str] = field(default_factory=dict)
+    lines: tuple[str, ...] = ()
+    snapped: Fraction = Fraction(0)
+    largest_move: float = 0.0
+    field_name: str = "Q"
+    meant: Meant | None = None
+    reading: Reading = field(default=PLAIN, repr=False, compare=False)
+    again: Callable[[Reading], Opened] | None = field(default=None, repr=False, compare=False)
+
+    def __repr__(self) -> str:
+        return f"<Opened: {self.sheet!r}, in {self.field_name}>"
+
+    @property
+    def doubt(self) -> str:
+        """Why answers about the sheet hold for these digits only; empty if they do not."""
+        return "" if self.meant is None else self.meant.doubt
+
+    @property
+    def letters(self) -> dict[Edge, str]:
+        """The letter M, V, F or U of each fold in the file; empty if no fold has M or V.
+
+        Folds without a letter get U, and so do folds with J, which joins the triangles of a panel
+        that may bend. If no fold has a direction, F says no more than U.
+        """
+        known = {fold: self.assignment.get(fold, "U") for fold in self.sheet.folds}
+        letters = {fold: x if x in tuple("MVF") else "U" for fold, x in known.items()}
+        return letters if {"M", "V"} & set(letters.values()) else {}
+
+    @property
+    def read(self) -> ReadDocument | None:
+        """What was read, repaired and snapped, as JSON; None if the file needed nothing."""
+        lines = list(self.lines)
+        if self.snapped:
+            lines.append(f"rounding moved coordinates by up to {float(self.snapped):.1g}")
+        if not lines:
+            return None
+        return {
+            "lines": lines,
+            "field": self.field_name,
+            "largest_move": self.largest_move,
+        }
+
+
+def triangulated(pattern: PanelPattern) -> CreasePattern | None:
+    """The sheet as a `CreasePattern`; None if it has larger panels or irrational coordinates.
+
+    Raises `TooLargeError` if the common denominator of its coordinates is too long.
+    """
+    from exactfold.exact.surds import rational
+
+    if pattern.field.radicands or any(len(face) != 3 for face in pattern.faces):
+        return None
+    points = [(rational(x), rational(y)) for x, y in pattern.vertices]
+    check_common_denominator(points)
+    try:
+        return CreasePattern(points, pattern.faces)
+    except MalformedPatternError:
+        return None
+
+
+def panels(pattern: CreasePattern) -> PanelPattern:
+    """A triangulated sheet as a sheet of panels.
+
+    >>> from exactfold.pattern.families import single_vertex
+    >>> panels(single_vertex(4))
+    <PanelPattern: 1 interior vertex, 4 folds, 4 panels>
+    """
+    from exactfold.pattern.panel_pattern import PanelPattern
+
+    return PanelPattern(pattern.vertices, pattern.edges)

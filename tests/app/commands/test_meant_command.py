@@ -1,0 +1,179 @@
+"""Drawings with inexact digits: headlines and exit codes are about the sheet that was meant."""
+
+from __future__ import annotations
+
+import json
+import random
+from pathlib import Path
+from typing import Any
+
+import pytest
+from noise_put_back import SHEETS, noisy, turned
+from running import INVALID, PROVED, UNDECIDED, USAGE, run
+
+import exactfold
+from exactfold.errors import NotApplicableError, UsageError
+
+
+def written(tmp_path: Path, document: dict[str, Any], name: str = "noisy") -> Path:
+    path = tmp_path / f"{name}.fold"
+    path.write_text(json.dumps(document))
+    return path
+
+
+@pytest.fixture
+def miura(tmp_path: Path) -> Path:
+    """A turned Miura sheet with noise of 1e-9, and letters."""
+    document = turned(noisy(SHEETS["miura"], 1e-9))
+    letters = exactfold.read("miura").letters
+    edges = [tuple(edge) for edge in document["edges_vertices"]]
+    document["edges_assignment"] = [letters.get(edge, "B") for edge in edges]
+    return written(tmp_path, document)
+
+
+@pytest.fixture
+def by_hand(tmp_path: Path) -> Path:
+    """A map whose lines miss being straight by 1e-7 to 1e-2, so that nothing can be inferred."""
+    rng, document = random.Random(5), turned(noisy(SHEETS["map-fold"], 0.0))
+    size = max(max(point) for point in document["vertices_coords"])
+    for point in document["vertices_coords"]:
+        for k in (0, 1):
+            point[k] += rng.choice((-1, 1)) * size * 10 ** rng.uniform(-7, -2.3)
+    return written(tmp_path, document, "by-hand")
+
+
+def test_the_headline_is_about_the_sheet_that_was_meant(miura: Path) -> None:
+    result = run("count", miura)
+    said = " ".join(result.stdout.split())
+    assert result.exit_code == PROVED
+    assert said.startswith("the sheet that was meant, within ")
+    assert "of the drawing: 8 families of ways to fold, 7 of dimension 1 and 1 of" in said
+    assert "the digits as written: rigid - PROVED" in said
+    assert said.endswith("(--snap exact)")
+    lines = [line.removeprefix("exactfold: ") for line in result.stderr.splitlines()]
+    assert any(line.startswith("the drawing is inexact by ") for line in lines)
+    assert any(" relations of angles (" in line and " independent; by " in line for line in lines)
+    assert any(line.endswith("there is a sheet with all of them - PROVED") for line in lines)
+    exact = run("count", miura, "--snap", "exact")
+    assert exact.exit_code == PROVED
+    assert exact.stdout.startswith("rigid - PROVED")
+
+
+def test_json_has_both_answers(miura: Path) -> None:
+    data = json.loads(run("count", miura, "--json").stdout)
+    assert (data["status"], data["components"]["true"]) == ("proved", {"1": 7, "3": 1})
+    assert (data["as_written"]["rigid"], data["as_written"]["sheet"]) == (True, "as written")
+    meant = data["meant"]
+    assert (meant["existence"], meant["reason"], meant["left"]) == ("exact", "", [])
+    assert 0 < meant["eps"] < 1e-8
+    assert meant["gap"] == pytest.approx(meant["clear"] / meant["eps"])
+    assert meant["gap"] > 100
+    assert 0 < meant["distance"] < 1e-8
+    assert meant["independent"] <= len(meant["relations"])
+    listed = run("count", miura, "--relations").stderr
+    for relation in meant["relations"]:
+        assert f"{relation['name']} is off by {relation['defect']:.1e}" in listed
+    assert json.loads(run("count", "two-vertex", "--json").stdout)["meant"] is None
+
+
+def test_match_and_python_answer_about_the_same_sheet(miura: Path) -> None:
+    matched = run("match", miura, "--json")
+    assert matched.exit_code == PROVED
+    assert json.loads(matched.stdout)["meant"]["existence"] == "exact"
+    assert run("match", miura, "--snap", "exact").exit_code == INVALID
+    opened = exactfold.read(miura)
+    assert opened.meant is not None
+    assert opened.meant.inferred
+    assert exactfold.match(opened).starts is exactfold.Verdict.PROVED
+    assert exactfold.count(opened).meant == opened.meant
+    assert exactfold.read(miura, snap="exact").meant is None
+
+
+@pytest.mark.parametrize(
+    "command", [("fold",), ("draw", "--branch", "1"), ("info",), ("view",), ("convert",)]
+)
+def test_all_commands_take_the_sheet_that_was_meant(
+    miura: Path, tmp_path: Path, command: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    name, *more = command
+    output = {"draw": ["-o", "a.svg"], "view": ["-o", "a.html"], "convert": ["a.fold"]}
+    result = run(name, miura, *more, *output.get(name, []))
+    assert result.exit_code == PROVED
+    said = result.stderr + result.stdout
+    assert "of the drawing there is a sheet with all of them - PROVED" in said
+
+
+def test_a_batch_takes_the_sheet_that_was_meant(miura: Path, by_hand: Path) -> None:
+    result = run("count", miura, by_hand, "--json", "--jobs", 1)
+    lines = {line["name"]: line for line in map(json.loads, result.stdout.splitlines())}
+    assert lines[str(miura)]["result"]["meant"]["existence"] == "exact"
+    assert [lines[str(path)]["status"] for path in (miura, by_hand)] == ["proved", "undecided"]
+    assert result.exit_code == UNDECIDED
+
+
+def test_the_certificate_of_the_sheet_is_checked(miura: Path, tmp_path: Path) -> None:
+    sheet, evidence = tmp_path / "sheet.fold", tmp_path / "meant.json"
+    done = run("convert", miura, sheet, "--certificate", evidence, "--json")
+    assert done.exit_code == PROVED
+    assert json.loads(done.stdout)["meant"]["existence"] == "exact"
+    checked = run("check", evidence)
+    assert checked.exit_code == PROVED
+    assert checked.stdout.startswith("VALID: within ")
+    again = run("count", sheet, "--json")  # an exact file, of which nothing need be inferred
+    assert json.loads(again.stdout)["meant"] is None
+    assert json.loads(again.stdout)["components"]["true"] == {"1": 7, "3": 1}
+    none = run("convert", "two-vertex", tmp_path / "two.fold", "--certificate", tmp_path / "n.json")
+    assert "no certificate was written" in none.stderr
+    assert not (tmp_path / "n.json").exists()
+
+
+def test_what_was_inferred_can_be_overruled(miura: Path) -> None:
+    meant = json.loads(run("count", miura, "--json").stdout)["meant"]
+    names = [relation["name"] for relation in meant["relations"]]
+    kawasaki = next(name for name in names if name.startswith("kawasaki"))
+    result = run("count", miura, "--without", kawasaki, "--json")
+    left = json.loads(result.stdout)["meant"]
+    assert kawasaki not in [relation["name"] for relation in left["relations"]]
+    stated = json.loads(run("count", miura, "--noise", "1e-8", "--json").stdout)["meant"]
+    assert stated["eps"] == 1e-8
+
+
+@pytest.mark.parametrize(
+    ("options", "code", "said"),
+    [
+        (("--noise", "0"), USAGE, "0 is not positive"),
+        (("--noise", "2"), USAGE, "between 0 and 1, not 2"),
+        (("--unit", "0"), USAGE, "0 is less than 1"),
+        (("--without", "straight@99999"), USAGE, "there is no relation 'straight@99999'"),
+        (("--without", "nonsense"), USAGE, "'nonsense' names no relation"),
+        (("--also", "parallel 0-1,0-99"), USAGE, "there is no edge 0-1"),
+        (("--snap", "exact", "--unit", "24"), USAGE, "--snap exact takes the digits as written"),
+    ],
+)
+def test_bad_overruling_is_an_error_of_its_own(
+    miura: Path, options: tuple[str, ...], code: int, said: str
+) -> None:
+    result = run("count", miura, *options)
+    assert result.exit_code == code
+    assert said in " ".join(result.stderr.replace("│", " ").split())
+
+
+def test_a_relation_that_the_drawing_misses_by_far_is_refused(miura: Path) -> None:
+    with pytest.raises(UsageError, match="the drawing misses 'parallel 0-9,0-10' by"):
+        exactfold.read(miura, also=["parallel 0-9,0-10"])
+
+
+def test_nothing_is_inferred_from_a_drawing_by_hand(by_hand: Path) -> None:
+    result = run("count", by_hand)
+    assert result.exit_code == UNDECIDED
+    said = " ".join(result.stdout.split())
+    assert said.startswith("the number of ways to fold is UNDECIDED")
+    assert "relations nearly hold, such as" in said
+    assert "so that answers hold only for these digits: " in said
+    assert "(--snap exact)" in said
+    assert run("count", by_hand, "--snap", "exact").exit_code == PROVED
+    meant = exactfold.read(by_hand).meant
+    assert meant is not None
+    with pytest.raises(NotApplicableError, match="no sheet was inferred"):
+        meant.certificate()
