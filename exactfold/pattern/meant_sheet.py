@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import cos, hypot, log10, pi, sin
-from typing import Any, Literal, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -27,12 +27,11 @@ from exactfold.pattern.drawing.meant.directions import Directions, in_a_tower, p
 from exactfold.pattern.drawing.meant.peeling import Lines
 from exactfold.pattern.drawing.meant.positions import Point, bound_edges, placed_together
 from exactfold.pattern.drawing.meant.refining import refined
-from exactfold.pattern.drawing.meant.values import Angles, Edge, Relation
+from exactfold.pattern.drawing.meant.values import Angles, Edge, Existence, Relation
 from exactfold.pattern.panel_entries import panels_document
 from exactfold.pattern.panel_pattern import PanelPattern
 
 Written: TypeAlias = tuple[tuple[Fraction, Fraction], ...]
-Existence: TypeAlias = Literal["exact", "none"]
 
 
 @dataclass(frozen=True)
