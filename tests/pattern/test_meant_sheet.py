@@ -285,3 +285,16 @@ def test_no_certificate_without_a_sheet() -> None:
     made = realize(square, Angles({(0, 1): Fraction(1, 9)}, {}, ()), 1e-9)
     with pytest.raises(NotApplicableError, match="no exact sheet was found: some angles are"):
         certificate(made, [])
+
+
+@pytest.mark.parametrize(("digits", "fits"), [(3000, True), (6000, False)])
+def test_a_certificate_that_the_checker_would_not_take(digits: int, fits: bool) -> None:
+    """The checker takes coordinates with 6000 digits, but only a few of them."""
+    long = Fraction(10**digits + 1, 10**digits + 3)
+    square = PanelPattern([(0, 0), (long, 0), (long, long), (0, long)], SQUARE)
+    made = Realized(square, square, Fraction(0), "exact", "")
+    if fits:
+        checker.check(checker.load(json.dumps(certificate(made, []))))
+    else:
+        with pytest.raises(NotApplicableError, match="numbers of 19932 bits"):
+            certificate(made, [])

@@ -114,6 +114,44 @@ def test_hypar_with_a_straight_diagonal():
     assert [branch.vertex_signs[v] for branch in multiple for v in pattern.interior].count(0) > 0
 
 
+def pleated(rings):
+    """Concentric squares about a centre; all diagonals between squares turn the same way."""
+    sizes = range(rings + 1, 0, -1)
+    points = [(s * x, s * y) for s in sizes for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+    faces = []
+    for k in range(rings):
+        for j in range(4):
+            a, b = 4 * k + j, 4 * k + (j + 1) % 4
+            faces += [(a, b, b + 4), (a, b + 4, a + 4)]
+    centre, last = len(points), 4 * rings
+    faces += [(last + j, last + (j + 1) % 4, centre) for j in range(4)]
+    return CreasePattern([*points, (0, 0)], faces)
+
+
+def test_flat_sheets_with_more_conditions_than_unknowns(monkeypatch):
+    """With a flat centre the inner square is rigid: four conditions, and three unknowns."""
+    exact = count_branches(pleated(1))
+    monkeypatch.setattr(multiple_roots, "GROEBNER_LIMIT", 2)
+    monkeypatch.setattr(lines, "GROEBNER_LIMIT", 2)
+    boxes = count_branches(pleated(1))
+    assert counts(exact) == counts(boxes) == (25, 32, 25, 0)
+    assert Counter(b.multiplicity for b in boxes.branches) == {1: 22, 2: 1, 4: 2}
+    assert [(b.sign_text, b.assignment_text) for b in exact.branches] == [
+        (b.sign_text, b.assignment_text) for b in boxes.branches
+    ]
+    monkeypatch.setattr(multiple_roots, "_MOST_TOGETHER", 0)
+    assert count_branches(pleated(1)).status is UNDECIDED
+
+
+@pytest.mark.slow
+def test_a_pleated_hypar_with_nine_vertices():
+    """352 simple branches; the others fold a diagonal, or leave the centre or corners flat."""
+    result = count_branches(pleated(2))
+    assert counts(result) == (394, 512, 394, 0)
+    assert Counter(b.multiplicity for b in result.branches) == {1: 352, 2: 16, 4: 24, 16: 2}
+    assert checker.check(certificate(result))["distinct"] == 394
+
+
 def test_flat_vertices_in_a_non_convex_sheet():
     """A straight crease 3-4-6 in a non-convex quadrilateral: multiple branches again."""
     points = [(7, -1), (5, -6), (9, 2), (0, -8), ("23/5", "-16/5"), ("23/3", "-1/3")]
