@@ -16,6 +16,8 @@ class BatchNumbers(TypedDict):
     files: Natural
     proved: Natural
     undecided: Natural
+    in_part: Natural
+    """The number of undecided files of which something is proved: see "known" in their lines."""
     failed: Natural
     skipped: Natural
     """The number of files that an earlier run has counted."""
@@ -40,7 +42,7 @@ class AskedDocument(TypedDict):
     snap: Positive | Literal["auto", "exact"] | None
     sheet: Positive | None
     overruled: list[str]
-    """The options that overrule what is inferred, such as --noise and its value."""
+    """The options that overrule how a drawing is read, such as --noise and its value."""
 
 
 class _LineDocument(TypedDict):
@@ -50,6 +52,8 @@ class _LineDocument(TypedDict):
     sha256: Digest | None
     asked: AskedDocument
     exit_code: Natural
+    known: list[str]
+    """What is proved of a sheet whose ways to fold are not all known, one sentence each."""
 
 
 class CountedLine(_LineDocument):
