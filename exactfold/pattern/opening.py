@@ -146,7 +146,8 @@ def from_drawing(drawing: Drawing, reading: Reading = PLAIN) -> Opened:
     """The sheet of a drawing, after repair, with exact coordinates and traced panels.
 
     A drawing with exact coordinates of its own keeps them, and is repaired only if it is not a
-    sheet otherwise. Its lines F and J join panels in any case.
+    sheet otherwise. Its lines F and J join panels in any case. With `reading.box`, the rectangle
+    round the drawing is its boundary.
 
     >>> from exactfold.pattern.drawing.drawing import Line
     >>> crossed = Drawing(((0, 0), (2, 0), (2, 2), (0, 2), (1, 0), (1, 2)),
@@ -157,14 +158,16 @@ def from_drawing(drawing: Drawing, reading: Reading = PLAIN) -> Opened:
     (<PanelPattern: 0 interior vertices, 1 fold, 2 panels>, 'M', 3)
     """
     from exactfold.pattern.drawing.repair import attempts, exact_sheets
+    from exactfold.pattern.drawing.segments import boxed
 
     rule: Snap = reading.snap or ("exact" if drawing.exact else "auto")
-    tried = attempts(drawing, reading.steps, reading.merge)
+    given = boxed(drawing) if reading.box else drawing
+    tried = attempts(given, reading.steps, reading.merge)
     for k, chosen in enumerate(tried, 1):
         try:
-            sheets = exact_sheets(drawing, snap=rule, merge=reading.merge, steps=chosen)
+            sheets = exact_sheets(given, snap=rule, merge=reading.merge, steps=chosen)
             again = partial(from_drawing, drawing)
-            found = replace(_chosen(drawing, sheets, reading), reading=reading, again=again)
+            found = replace(_chosen(given, sheets, reading), reading=reading, again=again)
             return meaning(found, lambda: from_drawing(drawing, reading.as_written))
         except (FoldError, PatternError):
             if k == len(tried):

@@ -18,6 +18,7 @@ class Reading:
     are merged. With `force`, a sheet is read even if creases of the drawing are missing in it, or
     if it has no folds. `colours` and `dashes` give letters to the lines of an SVG file, such as
     {"orange": "M"} and {"3 2": "V", "solid": "B"}; its curves become `chords` straight lines each.
+    With `box`, the edge of the paper is the rectangle round the drawing.
 
     The others overrule what is inferred from a drawing with inexact digits. `without` names
     relations that were not meant, `also` relations that were. `noise` is the noise level, as a
@@ -38,11 +39,13 @@ class Reading:
     unit: int | None = None
     relations: bool = False
     force: bool = False
+    box: bool = False
 
     @property
     def repairs(self) -> bool:
         """Whether something was asked for that only the reader of drawings does."""
-        return self.merge is not None or not isinstance(self.steps, str) or self.svg != SvgReading()
+        particular = self.merge is not None or not isinstance(self.steps, str) or self.box
+        return particular or self.svg != SvgReading()
 
     @property
     def svg(self) -> SvgReading:

@@ -18,6 +18,7 @@ from exactfold.errors import NotApplicableError, UsageError
 from exactfold.exact.surds import ball
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.data import example_path
+from exactfold.pattern.drawing.meant import positions
 from exactfold.pattern.drawing.meant.inference import infer
 from exactfold.pattern.drawing.meant.values import Angles, Edge
 from exactfold.pattern.meant_sheet import Realized, certificate, realize
@@ -298,3 +299,13 @@ def test_a_certificate_that_the_checker_would_not_take(digits: int, fits: bool) 
     else:
         with pytest.raises(NotApplicableError, match="numbers of 19932 bits"):
             certificate(made, [])
+
+
+def test_numbers_that_become_too_long(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn = with_noise(tiling(3, 3), 1e-9)
+    angles = angles_of(tiling(3, 3), 4)
+    assert realize(drawn, angles, 1e-9).bits > 50
+    monkeypatch.setattr(positions, "_MOST_BITS", 40)
+    made = realize(drawn, angles, 1e-9)
+    assert (made.existence, made.sheet) == ("none", None)
+    assert made.reason == "its coordinates have numbers of more than 8192 bits"

@@ -244,3 +244,34 @@ def test_a_sheet_that_hangs_by_a_vertex_is_refused() -> None:
     }
     with pytest.raises(PatternError, match="vertex 0"):
         opened(json.dumps(document).encode(), "s.fold")
+
+
+def test_the_rectangle_round_a_drawing_is_the_edge_of_the_paper(tmp_path):
+    path = tmp_path / "open.cp"
+    path.write_text("2 0 0 3 2\n3 3 0 0 2\n2 1 0 1 2\n")
+    with pytest.raises(InputError, match="rectangle round the drawing for it with `--box`"):
+        open_pattern(path)
+    found = open_pattern(path, Reading(box=True))
+    assert len(found.sheet.interior) == 3
+    assert len(found.sheet.faces) == 7
+    assert len(found.sheet.boundary_edges) == 6
+    assert (
+        "the rectangle round the drawing, 3 x 2, is taken for the edge of the paper" in found.lines
+    )
+    again = found.again(Reading(box=True, snap="exact"))
+    assert again.sheet == found.sheet
+
+
+def test_a_file_of_triangles_in_a_box_is_read_as_a_drawing(tmp_path):
+    corner = {
+        "vertices_coords": [[0, 0], [2, 0], [0, 2]],
+        "edges_vertices": [[0, 1], [1, 2], [2, 0]],
+        "edges_assignment": [*"UMU"],
+        "faces_vertices": [[0, 1, 2]],
+    }
+    path = tmp_path / "corner.fold"
+    path.write_text(json.dumps(corner))
+    assert len(open_pattern(path, Reading(force=True)).sheet.vertices) == 3
+    boxed = open_pattern(path, Reading(box=True))
+    assert len(boxed.sheet.vertices) == 4
+    assert boxed.letters == {(1, 2): "M"}

@@ -17,6 +17,7 @@ from exactfold._support.processes import available_cores
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.app.commands.jsonl import Lines
 from exactfold.app.options.patterns import CountOptions
+from exactfold.app.options.reading import overruling
 from exactfold.app.shell.guard import NO_MEMORY
 from exactfold.app.shell.patterns import located
 from exactfold.app.shell.shell import (
@@ -254,9 +255,11 @@ class Known:
         for data in documents:
             if data["sha256"] is not None and data["status"] != FAILED:
                 result = data["result"] or {}
+                if "meant" not in result:  # earlier versions answered for the digits as written
+                    continue
                 warned = bool(result.get("warnings") or result.get("near_misses"))
                 line = Line(data["name"], data["status"], data["exit_code"], warned=warned)
-                asked = {"sheet": None, **data["asked"]}  # earlier versions wrote no "sheet"
+                asked = data["asked"]
                 self._lines.setdefault(_key(data["sha256"], asked), []).append(line)
 
     def take(self, job: Job, names: set[str]) -> Line | None:
@@ -338,7 +341,13 @@ def _digest(job: Job) -> str | None:
 
 def _asked(job: Job) -> AskedDocument:
     asked = job.reading
-    return {"method": job.method, "seed": job.seed, "snap": asked.snap, "sheet": asked.number}
+    return {
+        "method": job.method,
+        "seed": job.seed,
+        "snap": asked.snap,
+        "sheet": asked.number,
+        "overruled": overruling(asked),
+    }
 
 
 def _key(digest: str | None, asked: Mapping[str, Any]) -> str:

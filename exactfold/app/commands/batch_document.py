@@ -39,6 +39,8 @@ class AskedDocument(TypedDict):
     seed: Natural
     snap: Positive | Literal["auto", "exact"] | None
     sheet: Positive | None
+    overruled: list[str]
+    """The options that overrule what is inferred, such as --noise and its value."""
 
 
 class _LineDocument(TypedDict):

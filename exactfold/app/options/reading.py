@@ -31,6 +31,9 @@ class ReadingOptions:
     colours: Colours = None
     dashes: Dashes = None
     chords: Chords = None
+    box: Annotated[
+        bool, flag("--box", text="Take the rectangle round the drawing for the edge of the paper.")
+    ] = False
     relations: Annotated[
         bool,
         flag(
@@ -93,6 +96,7 @@ class ReadingOptions:
             unit=self.unit,
             relations=self.relations,
             force=self.force,
+            box=self.box,
         )
 
 

@@ -47,6 +47,7 @@ def read(
     noise: float | None = None,
     unit: int | None = None,
     force: bool = False,
+    box: bool = False,
 ) -> Opened:
     """Read a sheet from any source; the attribute `sheet` of the result is the pattern.
 
@@ -59,7 +60,8 @@ def read(
     `merge` say what is repaired (`exactfold.pattern.STEPS`). `colours` and `dashes` give letters to
     the lines of an SVG file: `colours={"orange": "M"}`, `dashes={"3 2": "V", "solid": "B"}`. Each
     of its curves is read as `chords` straight lines. If creases of the drawing are missing in the
-    sheet, or if it has no folds, it is read only with `force`.
+    sheet, or if it has no folds, it is read only with `force`. With `box`, the edge of the paper is
+    the rectangle round the drawing.
 
     If the digits of a drawing are inexact, the sheet that was meant is inferred
     (docs/import.md, The sheet that was meant), and `meant` of the result says how. `without` names
@@ -89,6 +91,7 @@ def read(
         noise=noise,
         unit=unit,
         force=force,
+        box=box,
     )
     return open_sheet(sheet, reading)
 

@@ -14,7 +14,7 @@ _WHY = {
     "dangling": "creases that end inside a panel or meet no other line cannot fold; draw them "
     "from line to line, or leave them out",
     "border": "creases with no panel on one side are taken for the boundary; draw a closed "
-    "boundary round them",
+    "boundary round them, or take the rectangle round the drawing for it with `--box`",
 }
 
 

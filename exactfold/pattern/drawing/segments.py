@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from typing import Final, TypeAlias
 
@@ -50,6 +51,33 @@ def drawing_of(segments: Iterable[Segment], source: str, remarks: Sequence[str] 
         why = f" ({'; '.join(notes)})" if notes else ""
         raise MalformedDrawingError(f"the {source} file has no lines of a crease pattern{why}")
     return Drawing(tuple(numbers), tuple(lines), source, tuple(notes))
+
+
+def boxed(drawing: Drawing) -> Drawing:
+    """The drawing with the rectangle round its lines as boundary lines, and a remark.
+
+    >>> drawn = boxed(Drawing(((0, 0), (2, 1), (9, 9)), (Line(0, 1, "M"),), "CP"))
+    >>> drawn.points[3:], drawn.lines[1], drawn.remarks
+    (((0, 0), (2, 0), (2, 1), (0, 1)), Line(start=3, end=4, letter='B'),
+    ('the rectangle round the drawing, 2 x 1, is taken for the edge of the paper',))
+    """
+    used = [drawing.points[v] for line in drawing.lines for v in line[:2]]
+    if not used:
+        return drawing
+    (left, right), (low, high) = ((min(c), max(c)) for c in zip(*used, strict=True))
+    n = len(drawing.points)
+    corners = ((left, low), (right, low), (right, high), (left, high))
+    rim = tuple(Line(n + k, n + (k + 1) % 4, "B") for k in range(4))
+    remark = (
+        f"the rectangle round the drawing, {float(right - left):.6g} x {float(high - low):.6g}, is "
+        "taken for the edge of the paper"
+    )
+    return replace(
+        drawing,
+        points=drawing.points + corners,
+        lines=drawing.lines + rim,
+        remarks=(*drawing.remarks, remark),
+    )
 
 
 def left_out(number: int, noun: str) -> list[str]:

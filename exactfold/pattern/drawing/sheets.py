@@ -73,7 +73,8 @@ def sheets(drawing: Drawing) -> tuple[tuple[Drawing, ...], list[Repair]]:
     parts = _parts(drawing)
     if not parts:
         raise MalformedPatternError(
-            "the lines of the drawing enclose no face: draw the boundary of the sheet"
+            "the lines of the drawing enclose no face: draw the boundary of the sheet (`--box` "
+            "takes the rectangle round the drawing)"
         )
     places = floats(drawing.points)
     _check_all(drawing, parts, places)

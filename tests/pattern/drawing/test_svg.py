@@ -429,7 +429,6 @@ def test_a_cut_by_its_colour_stays_a_cut():
         ('class="boundaries"', "B"),
         ('id="unassigned"', "U"),
         ('id="cuts"', "C"),
-        ('id="flat"', "F"),
     ],
 )
 def test_names_of_groups_say_what_black_and_grey_lines_are(name, letter):
@@ -449,7 +448,7 @@ def test_the_nearest_name_counts_and_colours_of_creases_come_before_names():
     assert letters(inner.format("black"), dashes={"solid": "F"}) == ["F"]
 
 
-@pytest.mark.parametrize("name", ["mount", "cutting", "flatland", "edges", "marks", "crease"])
+@pytest.mark.parametrize("name", ["mount", "cutting", "flat", "edges", "marks", "crease"])
 def test_names_that_say_nothing(name):
     assert letters(f'<g id="{name}"><line x2="1" stroke="black"/></g>' + CREASE) == ["B", "M"]
 

@@ -42,13 +42,13 @@ _KEPT: Final = ("id", *_STYLED)
 MEANING: Final = "exactfold-meaning"
 """The attribute that holds the letter which the name of an element or its group stands for."""
 _NAME: Final = re.compile(
-    r"(mountain|valley|boundar(?=y|ies)|border|outline|cut|flat|unassigned|join)"
+    r"(mountain|valley|boundar(?=y|ies)|border|outline|cut|unassigned)"
     r"(y|ies|s)?([-_ ]?(fold|crease|line)s?)?([-_ ]?[0-9]*_?)\Z"
 )
 _LABEL: Final = "{http://www.inkscape.org/namespaces/inkscape}label"
 _MEANT: Final = {
     **{"mountain": "M", "valley": "V", "boundar": "B", "border": "B", "outline": "B"},
-    **{"cut": "C", "flat": "F", "unassigned": "U", "join": "J"},
+    **{"cut": "C", "unassigned": "U"},
 }
 _COMPOUND: Final = re.compile(r"(\*|[\w-]+)?((?:[.#][\w-]+)*)\Z")
 _SINGLE: Final = re.compile(r"([.#]?[\w-]+|[\w-]+\.[\w-]+|\*)\Z")
