@@ -7,7 +7,7 @@ from typing import Annotated, Literal, TypedDict
 from exactfold._support.documents import Digest, Keywords, Natural, Positive
 from exactfold.app.shell.shell import CommandError
 from exactfold.branches.values.count_document import BranchCountDocument
-from exactfold.panels.result import PanelCountDocument
+from exactfold.panels.count_document import PanelCountDocument
 
 
 class BatchNumbers(TypedDict):
