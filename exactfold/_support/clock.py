@@ -39,6 +39,14 @@ class Clock:
             return self
         return replace(self, _share=1.0, _start=time.monotonic() + seconds - (self.limit or 0.0))
 
+    def at_most(self, seconds: float) -> Clock:
+        """A new clock that ends after so many seconds, or with this one; for side questions.
+
+        >>> Clock().at_most(5).limit, Clock(0).at_most(5).passed
+        (5, True)
+        """
+        return Clock(seconds if self.left is None else min(seconds, self.left))
+
     @property
     def left(self) -> float | None:
         """The seconds that are left, at least 0; None if there is no limit."""

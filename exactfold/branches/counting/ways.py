@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from exactfold._support.clock import LIMIT, UNLIMITED, Clock
+from exactfold._support.clock import LIMIT, QUICK, UNLIMITED, Clock
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.branches.counting.collect import count_branches, not_convex
@@ -80,7 +80,8 @@ def count_opened(
     written = _written(opened)
     if written is None or result.doubt:
         return result
-    return replace(result, as_written=_counted(written, method, seed, progress, clock))
+    brief = clock.at_most(QUICK)  # the answer is the one about the sheet that was meant
+    return replace(result, as_written=_counted(written, method, seed, progress, brief))
 
 
 def _written(opened: Opened) -> Opened | None:
