@@ -11,6 +11,18 @@ def test_a_clock_without_limit_never_passes() -> None:
     assert (UNLIMITED.left, UNLIMITED.share(0.0).passed) == (None, False)
 
 
+def test_facts_that_are_always_wanted_have_a_few_seconds(monkeypatch: pytest.MonkeyPatch) -> None:
+    now = 100.0
+    monkeypatch.setattr("time.monotonic", lambda: now)
+    clock = Clock(60, _start=now)
+    assert clock.at_least(5) is clock
+    assert UNLIMITED.at_least(5) is UNLIMITED
+    now = 158.0
+    assert (clock.left, clock.at_least(5).left) == (2.0, 5.0)
+    assert clock.at_least(5).said == clock.said
+    assert clock.share(0.5).at_least(5).left == 5.0
+
+
 def test_a_share_of_the_time_ends_first(monkeypatch: pytest.MonkeyPatch) -> None:
     now = 100.0
     monkeypatch.setattr("time.monotonic", lambda: now)

@@ -10,6 +10,8 @@ from exactfold.errors import TooManyModesError
 
 LIMIT: Final = 60.0
 """The seconds that a command takes for one sheet, unless another limit is asked for."""
+QUICK: Final = 5.0
+"""The seconds that facts may take which are wanted even if the time is over."""
 
 
 @dataclass(frozen=True)
@@ -30,6 +32,20 @@ class Clock:
     def share(self, part: float) -> Clock:
         """The clock of a search that may take this part of the time, so that some is left after."""
         return replace(self, _share=part * self._share)
+
+    def at_least(self, seconds: float) -> Clock:
+        """This clock, or a new one if fewer seconds are left; for facts that are always wanted."""
+        if self.left is None or self.left >= seconds:
+            return self
+        return replace(self, _share=1.0, _start=time.monotonic() + seconds - (self.limit or 0.0))
+
+    def at_most(self, seconds: float) -> Clock:
+        """A new clock that ends after so many seconds, or with this one; for side questions.
+
+        >>> Clock().at_most(5).limit, Clock(0).at_most(5).passed
+        (5, True)
+        """
+        return Clock(seconds if self.left is None else min(seconds, self.left))
 
     @property
     def left(self) -> float | None:

@@ -36,8 +36,8 @@ DOCUMENTS: Final = {
         "branches.values.count_document:EnumeratedBranches",
         "branches.values.count_document:BranchesByTheorem",
         "branches.values.count_document:UndecidedBranches",
-        "panels.result:ProvedPanels",
-        "panels.result:UndecidedPanels",
+        "panels.count_document:ProvedPanels",
+        "panels.count_document:UndecidedPanels",
     ),
     "count-stream": (
         "exactfold count --stream FILE --json",

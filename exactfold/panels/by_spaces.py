@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from exactfold._support.clock import UNLIMITED, Clock
+from exactfold._support.clock import QUICK, UNLIMITED, Clock
 from exactfold._support.plurals import counted
 from exactfold.errors import TooManyModesError
 from exactfold.panels.cones import cone_motion, is_one_family
 from exactfold.panels.folding_modes import folding_mode, folding_modes
 from exactfold.panels.found import FoundComponent, found_components
-from exactfold.panels.freedom import most_freedom
+from exactfold.panels.freedom import most_first_order, most_freedom
 from exactfold.panels.kernel import Rows, entry, first_order
 from exactfold.panels.regular import (
     Forms,
@@ -41,7 +41,10 @@ def by_spaces(pattern: PanelPattern, moving: Mapping[int, Star], clock: Clock = 
     vertices form a tree. Otherwise the result contains the components that were found, and the
     folds that stay flat to second order.
     """
-    rows, size = first_order(moving)
+    try:
+        rows, size = first_order(moving, clock.share(1 / 2).at_least(QUICK))
+    except TooManyModesError as error:
+        return _without_space(pattern, moving, str(error), clock)
     small, left = reduced(moving, rows, size, MOST_REDUCTION, clock)
     if left == 0:
         still = tuple(sorted({edge for star in moving.values() for edge in star.folds}))
@@ -202,6 +205,22 @@ def _partial(
         modes=tuple(modes),
         still=_still(moving, smaller[0]),
         reason=reason,
+    )
+
+
+def _without_space(
+    pattern: PanelPattern, moving: Mapping[int, Star], reason: str, clock: Clock
+) -> Part:
+    """What is proved of a part whose first-order motions take too long to compute."""
+    return Part(
+        tuple(moving),
+        "subspaces",
+        None,
+        None,
+        most=most_first_order(moving),
+        modes=tuple(folding_modes(pattern, moving, {}, 0, 0, clock)),
+        reason=f"the first-order motions of {counted(len(moving), 'vertex')} round vertex "
+        f"{next(iter(moving))} are not known: {reason}",
     )
 
 

@@ -10,7 +10,7 @@ from typing import Final
 
 import networkx as nx
 
-from exactfold._support.clock import UNLIMITED, Clock
+from exactfold._support.clock import QUICK, UNLIMITED, Clock
 from exactfold._support.plurals import counted
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
@@ -19,7 +19,7 @@ from exactfold.panels.by_spaces import by_spaces, by_tree
 from exactfold.panels.densities import UndecidedDensityError
 from exactfold.panels.elementary import ElementaryMode, ModeSearch, Support
 from exactfold.panels.extension import Extension, Loops, extend_together, extension
-from exactfold.panels.freedom import most_freedom
+from exactfold.panels.freedom import most_first_order, most_freedom
 from exactfold.panels.kernel import first_order
 from exactfold.panels.result import Decomposition, Mode, Part, product
 from exactfold.panels.stars import Star, stars
@@ -153,11 +153,15 @@ def _part(pattern: PanelPattern, moving: Mapping[int, Star], listed: int, clock:
     except (TooManyModesError, UndecidedDensityError) as error:
         where = f"the part of {counted(len(vertices), 'vertex')} with vertex {vertices[0]}"
         theory = "modes" if few else "subspaces"
-        rows, size = first_order(moving)
+        reason = f"{where}: {error}"
+        try:
+            rows, size = first_order(moving, clock.at_least(QUICK))
+        except TooManyModesError:
+            most = most_first_order(moving)
+            return Part(vertices, theory, None, None, most=most, reason=reason)
         if (tree := by_tree(moving, size)) is not None:
             return tree
         most = most_freedom(moving, rows, size)
-        reason = f"{where}: {error}"
         return Part(vertices, theory, None, None, dimension=size, most=most, reason=reason)
 
 

@@ -41,12 +41,12 @@ def folding_modes(
     Straight creases from boundary to boundary are modes. Others are found by clauses, if python-sat
     is installed (`ModeClauses`). If there are none, or without python-sat, `Proposals` suggests
     linear spaces on which all forms vanish, and each is computed again exactly. `rows` is a space
-    that contains all real motions of the part. A proposed space may be a direct sum of spaces. If
-    one of these is a line on which no vertex has more than four active folds, the line is a mode,
-    and the extension theorem says whether it truly folds (docs/panels.md, Which modes truly
-    fold). The motions of a mode need not be a component: they may lie in a larger family, and there
-    may be many more modes. The work is limited to `most` steps, as in `found_components`, and by
-    the clock. If no mode is found, nothing follows.
+    that contains all real motions of the part; it is empty if none is known. A proposed space may
+    be a direct sum of spaces. If one of these is a line on which no vertex has more than four
+    active folds, the line is a mode, and the extension theorem says whether it truly folds
+    (docs/panels.md, Which modes truly fold). The motions of a mode need not be a component: they
+    may lie in a larger family, and there may be many more modes. The work is limited to `most`
+    steps, as in `found_components`, and by the clock. If no mode is found, nothing follows.
     """
     straight = (folding_mode(pattern, moving, line) for line in straight_creases(moving))
     modes = _by_letters(mode for mode in straight if mode is not None)
@@ -71,7 +71,7 @@ def _proposed(
     clock: Clock,
 ) -> Iterator[Mode]:
     """Modes on lines that `Proposals` suggests."""
-    if clock.passed or is_too_large(rows, size):
+    if not rows or clock.passed or is_too_large(rows, size):
         return
     work, found = 0, False
     for tried, proposal in enumerate(Proposals(moving, rows, size, regular=False, clock=clock)):

@@ -6,12 +6,12 @@ from collections.abc import Collection, Iterable, Mapping
 from typing import Final
 
 import numpy as np
-from flint import arb_mat, ctx
+from flint import arb_mat, ctx, fmpq, nmod_mat
 from scipy.linalg import qr
 
 from exactfold._support.arrays import FloatArray
 from exactfold.exact.surds import ball
-from exactfold.panels.kernel import Rows
+from exactfold.panels.kernel import Rows, entry
 from exactfold.panels.proposals import in_floats
 from exactfold.panels.regular import BITS
 from exactfold.panels.stars import Star
@@ -20,6 +20,7 @@ from exactfold.pattern.panel_pattern import Edge
 _TINY: Final = 1e-6
 _MOST_RANK: Final = 200
 _MOST_TURNED: Final = 400
+_PRIME: Final = 2**61 - 1
 
 
 def most_freedom(stars: Mapping[int, Star], rows: Rows, size: int) -> int:
@@ -41,6 +42,26 @@ def most_freedom(stars: Mapping[int, Star], rows: Rows, size: int) -> int:
     while chosen and not _restricts_onto(stars, rows, size, chosen):
         chosen = chosen[: 3 * len(chosen) // 4]
     return size - len(chosen)
+
+
+def most_first_order(stars: Mapping[int, Star]) -> int | None:
+    """An upper bound for the dimension of the first-order motions of a sheet with rational
+    coordinates.
+
+    The rank of the conditions modulo a prime is a lower bound of their rank. None if a coordinate
+    is not rational.
+    """
+    folds = {edge: k for k, edge in enumerate({e for star in stars.values() for e in star.folds})}
+    matrix = nmod_mat(2 * len(stars), len(folds), _PRIME)
+    for row, star in enumerate(stars.values()):
+        for edge, direction in zip(star.folds, star.directions, strict=True):
+            for axis, x in enumerate(direction):
+                value = entry(x)
+                if not isinstance(value, fmpq) or int(value.q) % _PRIME == 0:
+                    return None
+                inverse = pow(int(value.q), -1, _PRIME)
+                matrix[2 * row + axis, folds[edge]] = int(value.p) * inverse % _PRIME
+    return len(folds) - int(matrix.rank())
 
 
 def _chosen(stars: Mapping[int, Star], rows: Rows) -> list[int]:

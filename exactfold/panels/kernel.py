@@ -7,6 +7,7 @@ from typing import TypeAlias, TypeVar
 
 from flint import fmpq
 
+from exactfold._support.clock import UNLIMITED, Clock
 from exactfold.exact.linalg import from_fmpq
 from exactfold.exact.root_tower import to_fmpq
 from exactfold.exact.surds import Number, Surd
@@ -32,10 +33,11 @@ def number(value: Entry) -> Number:
     return value if isinstance(value, Surd) else from_fmpq(value)
 
 
-def first_order(stars: Mapping[int, Star]) -> tuple[Rows, int]:
+def first_order(stars: Mapping[int, Star], clock: Clock = UNLIMITED) -> tuple[Rows, int]:
     """The first-order motions sum_j w_j d_j = 0 at all vertices, and their number of parameters.
 
-    The conditions are eliminated one by one. Each parameter is the density of one fold.
+    The conditions are eliminated one by one. Each parameter is the density of one fold. Raises
+    `TooManyModesError` when the clock has passed.
 
     >>> star = Star(0, ((0, 1), (0, 2)), ((1, 0), (-2, 0)))
     >>> first_order({0: star})
@@ -48,6 +50,7 @@ def first_order(stars: Mapping[int, Star]) -> tuple[Rows, int]:
             row: dict[Edge, Entry] = {}
             for edge, direction in zip(star.folds, star.directions, strict=True):
                 if direction[axis]:
+                    clock.check()
                     _add(row, edge, entry(direction[axis]), pivots)
             if not row:
                 continue
@@ -55,6 +58,7 @@ def first_order(stars: Mapping[int, Star]) -> tuple[Rows, int]:
             scale = row.pop(pivot)
             solved: dict[Edge, Entry] = {edge: -x / scale for edge, x in row.items()}
             for user in users.pop(pivot, set()):
+                clock.check()
                 weight = pivots[user].pop(pivot)
                 for edge, x in solved.items():
                     increase(pivots[user], edge, weight * x)

@@ -5,161 +5,35 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Annotated, ClassVar, Literal, Protocol, TypeAlias, TypedDict
+from typing import ClassVar, Literal
 
-from exactfold._support.documents import (
-    Empty,
-    FoldText,
-    Keywords,
-    Natural,
-    NotNegative,
-    Positive,
-    VerdictText,
-    VertexText,
-)
 from exactfold._support.notebook import Page
 from exactfold._support.results import Certified, Ways
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
+from exactfold.panels.count_document import (
+    AsWrittenDocument,
+    ByDimension,
+    ComponentsDocument,
+    ModeDocument,
+    MotionKeys,
+    OfDigits,
+    PanelCountDocument,
+    PanelCountKeys,
+)
 from exactfold.panels.elementary import Support
 from exactfold.panels.extension import Extension
 from exactfold.panels.found import FoundComponent
 from exactfold.panels.local import LocalMode
-from exactfold.panels.near_misses import NearMiss, NearMissDocument, near_limit
-from exactfold.panels.partial import Drawn, DrawnDocument, Freedom, FreedomDocument
+from exactfold.panels.near_misses import NearMiss, near_limit
+from exactfold.panels.partial import Drawn, Freedom
 from exactfold.panels.subspaces import Leaf
-from exactfold.pattern.described import PanelsDocument, described_panels
-from exactfold.pattern.meant import Meant, MeantDocument
-from exactfold.pattern.near_degeneracy import WarningDocument
+from exactfold.pattern.described import described_panels
+from exactfold.pattern.meant import Meant
 from exactfold.pattern.opening import ReadDocument
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
 Counts = Mapping[int, int]
 """{dimension: number of components}."""
-
-_Theory: TypeAlias = Annotated[str, Keywords(enum=["modes", "subspaces"])]
-_ByDimension: TypeAlias = dict[VertexText, Positive]
-
-
-class ComponentsDocument(TypedDict):
-    """How many components of motions there are, by dimension."""
-
-    second_order: _ByDimension | None
-    """To second order."""
-    true: _ByDimension | None
-    """Of true motions."""
-    found: _ByDimension | None
-    """At least so many to second order, where not all are known."""
-    found_true: _ByDimension | None
-    """At least so many that truly fold, where not all are known."""
-
-
-class ModeDocument(TypedDict):
-    """One elementary mode."""
-
-    active: list[Natural]
-    assignment: dict[FoldText, Annotated[str, Keywords(enum=["M", "V"])]]
-    extends: VerdictText
-    """Whether the mode truly folds."""
-    by: str
-
-
-class AsWrittenDocument(TypedDict):
-    """The count for the digits of an inexact drawing."""
-
-    sheet: Literal["as written", "as read", "inferred"]
-    """Whose digits: those of the file, the coordinates after some were recognised, or those of the
-    inferred sheet, if relations nearly hold even there."""
-    status: VerdictText
-    reason: str
-    rigid: bool | None
-    distinct: Natural | None
-    components: ComponentsDocument | None
-
-
-class OfDigits(Protocol):
-    """A count for the digits of an inexact drawing."""
-
-    def of_digits(self) -> AsWrittenDocument:
-        """The key `as_written` of the answer for the sheet that was meant."""
-
-
-class MotionKeys(TypedDict):
-    """The keys of a count that belong to motions of rigid panels."""
-
-    components: ComponentsDocument | None
-    freedom: FreedomDocument | None
-    drawn: DrawnDocument | None
-    """The answer for the letters of the drawing; null if all ways are known."""
-    modes_count: Natural | None
-    modes: list[ModeDocument]
-    flat_folds: list[FoldText]
-    """Folds that are flat in every motion."""
-    still_folds: list[FoldText]
-    """Flat in every motion to second order, beside flat_folds."""
-    free_folds: list[FoldText]
-    """Folds from boundary to boundary."""
-    near_misses: list[NearMissDocument]
-
-
-class CountKeys(MotionKeys):
-    """The keys that a count of branches and one of motions of panels have in common."""
-
-    format: Literal["exactfold count result"]
-    version: Literal[2]
-    reason: str
-    why: str
-    """Why the method was chosen."""
-    true_branches: VerdictText
-    """Whether the count also holds for true motions."""
-    certificate: str | None
-    """The file."""
-    warnings: list[WarningDocument]
-    seconds: NotNegative
-    open_questions: list[str]
-    settings: dict[str, int | str]
-    rigid: bool | None
-    exceptional_vertices: list[Natural]
-    read: ReadDocument | None
-    meant: MeantDocument | None
-    """The sheet that an inexact drawing means; null if no relation nearly holds."""
-    as_written: AsWrittenDocument | None
-    """What is known for the digits alone, if they are not the sheet that was meant."""
-
-
-class PanelCountKeys(CountKeys):
-    """The keys of a count of motions of panels; what belongs to branches is null or empty."""
-
-    pattern: PanelsDocument
-    method: _Theory
-    theory: _Theory
-    distinct: None
-    with_multiplicity: None
-    real: None
-    nonreal: None
-    true_bounds: None
-    dimension: None
-    degree: None
-    pieces: None
-    branches: Empty
-    letters: None
-
-
-class ProvedPanels(PanelCountKeys):
-    """Motions of rigid panels, all of which are known to second order."""
-
-    status: Literal["proved"]
-    by: Literal["enumeration"]
-    """How what is stated was proved."""
-
-
-class UndecidedPanels(PanelCountKeys):
-    """Motions of rigid panels, not all of which are known."""
-
-    status: Literal["undecided"]
-    by: None
-
-
-PanelCountDocument: TypeAlias = ProvedPanels | UndecidedPanels
 
 
 @dataclass(frozen=True)
@@ -448,7 +322,7 @@ def digits(
     return "as read" if read is not None and read["largest_move"] else "as written"
 
 
-def _texts(counts: Counts | None) -> _ByDimension | None:
+def _texts(counts: Counts | None) -> ByDimension | None:
     return None if counts is None else {str(k): n for k, n in counts.items()}
 
 

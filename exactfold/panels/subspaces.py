@@ -123,7 +123,7 @@ class SubspaceSearch:
             weight = common_field(x for row in rows.values() for x in row).dimension ** 2
             for v in sorted({v for edge in rows for v in edge if v in self.stars}):
                 self.count(len(self.stars[v].folds) * size * weight)
-                squares = squares_of(self.stars[v], rows, size)
+                squares = squares_of(self.stars[v], rows, size, self.clock)
                 if is_semidefinite(squares):
                     rows, size = imposed(rows, size, *(functional for _, functional in squares))
                 elif len(squares) == 2:
@@ -182,8 +182,12 @@ def made_leaf(rows: Rows, size: int, left: Iterable[int]) -> Leaf:
     return Leaf(numbers, size, tuple(left))
 
 
-def squares_of(star: Star, rows: Rows, size: int) -> Squares:
-    """The form of a vertex on the space, as sum d_i l_i^2 with independent l_i."""
+def squares_of(star: Star, rows: Rows, size: int, clock: Clock = UNLIMITED) -> Squares:
+    """The form of a vertex on the space, as sum d_i l_i^2 with independent l_i.
+
+    One product of numbers with many nested roots may take long, so the clock is asked in between.
+    Raises `TooManyModesError` if it has passed.
+    """
     local = [(d, rows[e]) for e, d in zip(star.folds, star.directions, strict=True) if e in rows]
     directions = [(entry(x), entry(y)) for (x, y), _ in local]
     basis, coordinates = _row_space([row for _, row in local], size)
@@ -192,6 +196,7 @@ def squares_of(star: Star, rows: Rows, size: int) -> Squares:
     form: list[Vector] = [[fmpq(0)] * count for _ in range(count)]
     for j, dj in enumerate(directions):
         for k, dk in enumerate(directions[:j]):
+            clock.check()
             c = dk[0] * dj[1] - dk[1] * dj[0]
             if not c:
                 continue
@@ -203,7 +208,7 @@ def squares_of(star: Star, rows: Rows, size: int) -> Squares:
                         term = c * left * coordinates[j][b]
                         form[a][b] = form[a][b] + term
                         form[b][a] = form[b][a] + term
-    return [(d, _combined(functional, basis, size)) for d, functional in _diagonalised(form)]
+    return [(d, _combined(functional, basis, size)) for d, functional in _diagonalised(form, clock)]
 
 
 def _row_space(rows: Sequence[Sequence[Entry]], size: int) -> tuple[list[Vector], list[Vector]]:
@@ -241,7 +246,7 @@ def row_rank(rows: Sequence[Sequence[Entry]], size: int) -> int:
     return len(_row_space(rows, size)[0])
 
 
-def _diagonalised(form: Sequence[Sequence[Entry]]) -> list[tuple[Entry, Vector]]:
+def _diagonalised(form: Sequence[Sequence[Entry]], clock: Clock) -> list[tuple[Entry, Vector]]:
     """A symmetric matrix as sum d_i l_i^2 with d_i not 0, by completing squares."""
     size = len(form)
     work = [list(row) for row in form]
@@ -260,6 +265,7 @@ def _diagonalised(form: Sequence[Sequence[Entry]]) -> list[tuple[Entry, Vector]]
         weight = 1 / value
         squares.append((weight, functional))
         for a in range(size):
+            clock.check()
             for b in range(size):
                 if functional[a] and functional[b]:
                     work[a][b] = work[a][b] - weight * functional[a] * functional[b]

@@ -12,8 +12,7 @@ from exactfold._support.documents import Natural, NotNegative
 from exactfold._support.plurals import agreeing, counted
 from exactfold.errors import NotApplicableError
 from exactfold.pattern.drawing.meant.left import left_relations, nearly
-from exactfold.pattern.drawing.meant.values import Kind, Relation
-from exactfold.pattern.meant_sheet import Existence
+from exactfold.pattern.drawing.meant.values import Existence, Kind, Relation
 
 if TYPE_CHECKING:
     from exactfold.pattern.drawing.meant.inference import Inference

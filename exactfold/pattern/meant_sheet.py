@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from math import cos, hypot, pi, sin
-from typing import Any, Literal, TypeAlias
+from math import cos, hypot, log10, pi, sin
+from typing import Any, TypeAlias
 
 import numpy as np
 
+from exactfold.checker.core.limits import LONG_COORDINATE, MOST_PRODUCTS
 from exactfold.checker.sheets.meant import MEANT, MeantClaims
 from exactfold.checker.sheets.relations import RelationClaim
 from exactfold.errors import (
@@ -26,12 +27,11 @@ from exactfold.pattern.drawing.meant.directions import Directions, in_a_tower, p
 from exactfold.pattern.drawing.meant.peeling import Lines
 from exactfold.pattern.drawing.meant.positions import Point, bound_edges, placed_together
 from exactfold.pattern.drawing.meant.refining import refined
-from exactfold.pattern.drawing.meant.values import Angles, Edge, Relation
+from exactfold.pattern.drawing.meant.values import Angles, Edge, Existence, Relation
 from exactfold.pattern.panel_entries import panels_document
 from exactfold.pattern.panel_pattern import PanelPattern
 
 Written: TypeAlias = tuple[tuple[Fraction, Fraction], ...]
-Existence: TypeAlias = Literal["exact", "none"]
 
 
 @dataclass(frozen=True)
@@ -128,11 +128,17 @@ def _lines(
 def certificate(made: Realized, relations: Iterable[Relation]) -> dict[str, Any]:
     """The certificate of an exact sheet with its relations, for `exactfold.checker`.
 
-    Raises `NotApplicableError` if there is no exact sheet.
+    Raises `NotApplicableError` if there is no exact sheet, or if its numbers are too long for the
+    checker.
     """
     if made.sheet is None:
         raise NotApplicableError(f"no certificate, as no exact sheet was found: {made.reason}")
     sheet = made.sheet
+    if _products(sheet) > MOST_PRODUCTS:
+        raise NotApplicableError(
+            f"no certificate: the checker takes no sheet of this size with numbers of {made.bits} "
+            "bits"
+        )
     claims: MeantClaims = {
         "interior": len(sheet.interior),
         "border": len(sheet.boundary_set),
@@ -159,6 +165,16 @@ def _claim(relation: Relation) -> RelationClaim:
         "terms": [[i, j, factor] for (i, j), factor in relation.terms],
         "parts": relation.parts,
     }
+
+
+def _products(sheet: PanelPattern) -> float:
+    """What the checker limits by `MOST_PRODUCTS`, or slightly more."""
+    total = 0.0
+    for part in (part for point in sheet.vertices for c in point for part in _parts(c)):
+        above, below = (number.bit_length() * log10(2) + 2 for number in part.as_integer_ratio())
+        if max(above, below) > LONG_COORDINATE:
+            total += above * below
+    return total
 
 
 def _written(point: Sequence[Number]) -> tuple[Fraction, Fraction]:

@@ -72,6 +72,7 @@ ALL = exactfold.design.all_assignments(single_vertex(5))
 MATCH = exactfold.design.match(PATTERN, exactfold.branches.find_branch(PATTERN, "+-").assignment)
 OVER_A_RIM = exactfold.design.match_boundary(single_vertex(5), "MMVMV")
 TWIST = exactfold.design.match_panels("square-twist")
+TWELVE = exactfold.design.panel_assignments("square-twist")
 ONE = exactfold.random_square(1, seed=0)
 LEAVING = exactfold.branches.find_branch(ONE, "+")
 TRACK = exactfold.motion.follow_proved(LEAVING, until=0.3)
@@ -145,6 +146,9 @@ VALUES = {
     ),
     "problem": Problem.of(PATTERN),
     "all assignments": ALL,
+    "all assignments of panels": TWELVE,
+    "assignments of a part": TWELVE.parts[0],
+    "forcing set": exactfold.design.forcing_set(TWELVE),
     "circle": ALL.circles[0],
     "arc of a circle": ALL.circles[0].arcs[0],
     "crossing": ALL.circles[0].crossings[0],

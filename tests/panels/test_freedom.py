@@ -5,15 +5,18 @@ from itertools import combinations
 import pytest
 from flint import fmpq_mat
 from panel_sheets import mesh, miura, shifted_columns, tiling
+from test_folding_modes import boxes
 
 from exactfold._support.clock import Clock
 from exactfold._support.verdict import UNDECIDED
-from exactfold.panels import freedom
+from exactfold.exact.surds import RATIONALS
+from exactfold.panels import by_spaces, freedom
 from exactfold.panels.decomposition import decompose
-from exactfold.panels.freedom import most_freedom
+from exactfold.panels.freedom import most_first_order, most_freedom
 from exactfold.panels.kernel import first_order
 from exactfold.panels.stars import stars
 from exactfold.pattern.families import single_vertex
+from exactfold.pattern.loading import open_sheet
 from exactfold.pattern.opening import panels
 from exactfold.pattern.panel_pattern import PanelPattern
 
@@ -65,6 +68,36 @@ def test_a_choice_that_is_not_onto_gives_a_weaker_bound(monkeypatch: pytest.Monk
     assert most_freedom(moving, rows, size) == size - 1
 
 
+@pytest.mark.parametrize("name", SHEETS)
+def test_the_rank_modulo_a_prime_bounds_the_first_order_motions(name: str) -> None:
+    moving = stars(SHEETS[name])
+    assert most_first_order(moving) == first_order(moving)[1]
+
+
+def test_irrational_coordinates_have_no_rank_modulo_a_prime() -> None:
+    sheet = open_sheet("square-twist").sheet
+    assert isinstance(sheet, PanelPattern)
+    points = [tuple(RATIONALS.adjoined(2).root * x for x in point) for point in sheet.vertices]
+    assert most_first_order(stars(PanelPattern(points, sheet.edges))) is None
+
+
+def test_without_first_order_motions_modes_and_a_bound_are_known(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def stopped(*_: object) -> None:
+        Clock(0).check()
+
+    pattern = boxes(7, "/")
+    known = decompose(pattern, clock=Clock(0)).freedom
+    monkeypatch.setattr(by_spaces, "first_order", stopped)
+    found = decompose(pattern, clock=Clock(0))
+    assert "are not known: the time limit of 0 seconds" in found.reason
+    assert known is not None
+    assert found.freedom is not None
+    assert (found.freedom.least, found.freedom.first_order) == (known.least, None)
+    assert found.freedom.most == known.first_order
+
+
 def test_bounds_of_a_complete_answer_are_its_dimension() -> None:
     known = decompose(miura(2, 3)).freedom
     assert known is not None
@@ -72,7 +105,7 @@ def test_bounds_of_a_complete_answer_are_its_dimension() -> None:
 
 
 def test_a_search_without_time_still_bounds_the_degrees_of_freedom() -> None:
-    for pattern in (miura(2, 3), panels(single_vertex(7))):
+    for pattern in (miura(2, 3), tiling(3, 3)):
         stopped = decompose(pattern, clock=Clock(0))
         assert stopped.status is UNDECIDED
         assert "the time limit of 0 seconds (--limit) was reached" in stopped.reason

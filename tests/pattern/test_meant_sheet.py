@@ -18,6 +18,7 @@ from exactfold.errors import NotApplicableError, UsageError
 from exactfold.exact.surds import ball
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.data import example_path
+from exactfold.pattern.drawing.meant import positions
 from exactfold.pattern.drawing.meant.inference import infer
 from exactfold.pattern.drawing.meant.values import Angles, Edge
 from exactfold.pattern.meant_sheet import Realized, certificate, realize
@@ -285,3 +286,26 @@ def test_no_certificate_without_a_sheet() -> None:
     made = realize(square, Angles({(0, 1): Fraction(1, 9)}, {}, ()), 1e-9)
     with pytest.raises(NotApplicableError, match="no exact sheet was found: some angles are"):
         certificate(made, [])
+
+
+@pytest.mark.parametrize(("digits", "fits"), [(3000, True), (6000, False)])
+def test_a_certificate_that_the_checker_would_not_take(digits: int, fits: bool) -> None:
+    """The checker takes coordinates with 6000 digits, but only a few of them."""
+    long = Fraction(10**digits + 1, 10**digits + 3)
+    square = PanelPattern([(0, 0), (long, 0), (long, long), (0, long)], SQUARE)
+    made = Realized(square, square, Fraction(0), "exact", "")
+    if fits:
+        checker.check(checker.load(json.dumps(certificate(made, []))))
+    else:
+        with pytest.raises(NotApplicableError, match="numbers of 19932 bits"):
+            certificate(made, [])
+
+
+def test_numbers_that_become_too_long(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn = with_noise(tiling(3, 3), 1e-9)
+    angles = angles_of(tiling(3, 3), 4)
+    assert realize(drawn, angles, 1e-9).bits > 50
+    monkeypatch.setattr(positions, "_MOST_BITS", 40)
+    made = realize(drawn, angles, 1e-9)
+    assert (made.existence, made.sheet) == ("none", None)
+    assert made.reason == "its coordinates have numbers of more than 8192 bits"

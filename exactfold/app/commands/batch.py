@@ -17,6 +17,7 @@ from exactfold._support.processes import available_cores
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.app.commands.jsonl import Lines
 from exactfold.app.options.patterns import CountOptions
+from exactfold.app.options.reading import overruling
 from exactfold.app.shell.guard import NO_MEMORY
 from exactfold.app.shell.patterns import located
 from exactfold.app.shell.shell import (
@@ -30,6 +31,7 @@ from exactfold.app.shell.shell import (
     interruptible,
     stopped,
 )
+from exactfold.app.verbs.counting import counted_with_letters
 from exactfold.branches.counting.batch import Job, Source, count_job, read_source
 from exactfold.branches.counting.on_dask import LOCAL
 from exactfold.branches.counting.pools import Pool, dask_pool, process_pool
@@ -77,6 +79,7 @@ class Line:
     distinct: int | None = None
     message: str = ""
     warned: bool = False
+    in_part: bool = False
 
 
 @dataclass(frozen=True)
@@ -96,12 +99,14 @@ class Tally:
     code: int = 0
     skipped: int = 0
     warned: int = 0
+    in_part: int = 0
 
     def add(self, line: Line) -> None:
         """Add the outcome of one file."""
         self.statuses[line.status] += 1
         self.code = max(self.code, line.code, key=_WORST.index)
         self.warned += line.warned
+        self.in_part += line.in_part
 
     @property
     def note(self) -> str:
@@ -235,6 +240,7 @@ class Batch(CountOptions):
             "files": len(self._parts),
             "proved": tally.statuses[str(PROVED)],
             "undecided": tally.statuses[str(UNDECIDED)],
+            "in_part": tally.in_part,
             "failed": tally.statuses[FAILED],
             "skipped": tally.skipped,
             "warned": tally.warned,
@@ -254,9 +260,17 @@ class Known:
         for data in documents:
             if data["sha256"] is not None and data["status"] != FAILED:
                 result = data["result"] or {}
+                if "meant" not in result:  # earlier versions answered for the digits as written
+                    continue
                 warned = bool(result.get("warnings") or result.get("near_misses"))
-                line = Line(data["name"], data["status"], data["exit_code"], warned=warned)
-                asked = {"sheet": None, **data["asked"]}  # earlier versions wrote no "sheet"
+                line = Line(
+                    data["name"],
+                    data["status"],
+                    data["exit_code"],
+                    warned=warned,
+                    in_part=bool(data.get("known")),
+                )
+                asked = data["asked"]
                 self._lines.setdefault(_key(data["sha256"], asked), []).append(line)
 
     def take(self, job: Job, names: set[str]) -> Line | None:
@@ -279,7 +293,7 @@ def _source(path: Path) -> Source:
 
 def line_of(job: Job) -> Line:
     """Count a file and make its line in the worker, which sends back less than a result."""
-    return line_for(job, count_job(job))
+    return line_for(job, count_job(job, counted_with_letters))
 
 
 def line_for(job: Job, result: BranchCount | Decomposition | Exception) -> Line:
@@ -287,12 +301,14 @@ def line_for(job: Job, result: BranchCount | Decomposition | Exception) -> Line:
     if not isinstance(result, Exception):
         status, code = str(result.status), EXIT[result.status]
         document = _counted(job, result, status, code)
-        message = "" if result.status is PROVED else result.reason
+        known = _known(result)
+        message = "" if result.status is PROVED else "; ".join([*known, result.reason])
         if (warning := result.warning) is not None:
             message = f"{message}{'; ' if message else ''}warning: {warning}"
         warned = warning is not None
         ways = _ways(result)
-        return Line(job.name, status, code, json.dumps(document), ways, message, warned)
+        text = json.dumps(document)
+        return Line(job.name, status, code, text, ways, message, warned, in_part=bool(known))
     failed = _failed(job, result)
     return Line(job.name, FAILED, failed["exit_code"], json.dumps(failed), None, str(result))
 
@@ -307,6 +323,7 @@ def _counted(job: Job, result: BranchCount | Decomposition, status: str, code: i
         "status": status,
         "exit_code": code,
         "error": None,
+        "known": _known(result),
         "result": result.to_dict(name=job.name),
     }
 
@@ -321,8 +338,26 @@ def _failed(job: Job, error: Exception) -> FailedLine:
         "status": FAILED,
         "exit_code": exit_code(error),
         "error": error_document(error)["error"],
+        "known": [],
         "result": None,
     }
+
+
+def _known(result: BranchCount | Decomposition) -> list[str]:
+    """What is proved of a sheet whose ways to fold are not all known, one sentence each.
+
+    Bounds for the degrees of freedom count if they say that the sheet folds or that it is rigid,
+    and the answer for the drawn letters if it is decided.
+    """
+    if isinstance(result, BranchCount) or result.status is not UNDECIDED or result.doubt:
+        return []
+    known = []
+    if result.freedom is not None and (result.freedom.least or not result.freedom.most):
+        known.append(result.freedom.text)
+    if result.drawn is not None and result.drawn.starts is not UNDECIDED:
+        word = "starts" if result.drawn.starts is PROVED else "does not start"
+        known.append(f"it {word} to fold with the drawn letters")
+    return known
 
 
 def _ways(result: BranchCount | Decomposition) -> int | None:
@@ -338,7 +373,13 @@ def _digest(job: Job) -> str | None:
 
 def _asked(job: Job) -> AskedDocument:
     asked = job.reading
-    return {"method": job.method, "seed": job.seed, "snap": asked.snap, "sheet": asked.number}
+    return {
+        "method": job.method,
+        "seed": job.seed,
+        "snap": asked.snap,
+        "sheet": asked.number,
+        "overruled": overruling(asked),
+    }
 
 
 def _key(digest: str | None, asked: Mapping[str, Any]) -> str:

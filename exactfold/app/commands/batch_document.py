@@ -7,7 +7,7 @@ from typing import Annotated, Literal, TypedDict
 from exactfold._support.documents import Digest, Keywords, Natural, Positive
 from exactfold.app.shell.shell import CommandError
 from exactfold.branches.values.count_document import BranchCountDocument
-from exactfold.panels.result import PanelCountDocument
+from exactfold.panels.count_document import PanelCountDocument
 
 
 class BatchNumbers(TypedDict):
@@ -16,6 +16,8 @@ class BatchNumbers(TypedDict):
     files: Natural
     proved: Natural
     undecided: Natural
+    in_part: Natural
+    """The number of undecided files of which something is proved: see "known" in their lines."""
     failed: Natural
     skipped: Natural
     """The number of files that an earlier run has counted."""
@@ -39,6 +41,8 @@ class AskedDocument(TypedDict):
     seed: Natural
     snap: Positive | Literal["auto", "exact"] | None
     sheet: Positive | None
+    overruled: list[str]
+    """The options that overrule how a drawing is read, such as --noise and its value."""
 
 
 class _LineDocument(TypedDict):
@@ -48,6 +52,8 @@ class _LineDocument(TypedDict):
     sha256: Digest | None
     asked: AskedDocument
     exit_code: Natural
+    known: list[str]
+    """What is proved of a sheet whose ways to fold are not all known, one sentence each."""
 
 
 class CountedLine(_LineDocument):

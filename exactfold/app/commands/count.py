@@ -19,7 +19,6 @@ from exactfold.branches.certificates.listing import certificate as certificate_o
 from exactfold.branches.counting.stream import StreamedCount
 from exactfold.branches.values.result import BranchCount
 from exactfold.certificates.entries import write_certificate
-from exactfold.design.panels.vertices import vertices
 from exactfold.errors import NotApplicableError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.opening import Opened
@@ -77,6 +76,8 @@ class Asked(CountOptions):
             report.show(shown)
             self._of_digits(result)
         if opened is not None and result.status is UNDECIDED and not self.as_json:
+            from exactfold.design.panels.vertices import vertices
+
             report.show(report.vertices_line(vertices(opened)))
         return EXIT[result.status]
 

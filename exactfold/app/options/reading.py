@@ -101,8 +101,13 @@ class ReadingOptions:
 
 
 def overruling(reading: Reading) -> list[str]:
-    """The options that overrule what is inferred, as words of a command."""
-    words = []
+    """The options that overrule how a drawing is read, as words of a command."""
+    words = ["--force"] * reading.force + ["--box"] * reading.box
+    for option, letters in (("--colours", reading.colours), ("--dashes", reading.dashes)):
+        if letters:
+            words += [option, ",".join(f"{name}={letter}" for name, letter in letters.items())]
+    if reading.chords is not None:
+        words += ["--chords", str(reading.chords)]
     for relation in reading.without:
         words += ["--without", relation]
     for relation in reading.also:

@@ -31,6 +31,9 @@ def batch_report(
         table.add_row(name, ways, status_text(status), message)
     parts: list[Any] = [table, *more_text(len(rows) - limit), ""] if rows else []
     counts = ", ".join(f"{summary[key]} {key}" for key in ("proved", "undecided", "failed"))
+    if summary["in_part"]:
+        undecided = f"{summary['undecided']} undecided"
+        counts = counts.replace(undecided, f"{undecided} ({summary['in_part']} known in part)")
     text = f"{counted(summary['files'], 'pattern')}: {counts}"
     if summary["warned"]:
         text += f"; {summary['warned']} with a warning"

@@ -10,7 +10,8 @@ from rich.text import Text
 from exactfold.branches.values.result import BranchCount
 
 if TYPE_CHECKING:
-    from exactfold.panels.result import Decomposition, OfDigits
+    from exactfold.panels.count_document import OfDigits
+    from exactfold.panels.result import Decomposition
 
 _SHEETS = {
     "as written": "the digits as written: ",

@@ -174,6 +174,7 @@ def count(
         reading=Reading(snap, number),
         progress=progress,
         limit=limit,
+        counting=counted_with_letters,
     )
 
 
@@ -190,7 +191,7 @@ def _counted(
 
 
 def counted_with_letters(
-    opened: Opened, method: str, seed: int, clock: Clock, progress: Progress | None
+    opened: Opened, method: str, seed: int, clock: Clock, progress: Progress | None = None
 ) -> BranchCount | Decomposition:
     """The count, with the answer for the drawn letters where not all motions are known.
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Generator, Iterable, Sized
+from collections.abc import Callable, Generator, Iterable, Sized
 from contextlib import closing
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, TypeAlias
 
 from exactfold._support.clock import Clock
@@ -25,6 +26,7 @@ from exactfold.pattern.reading import PLAIN, Reading
 if TYPE_CHECKING:
     from exactfold.panels.result import Decomposition
 
+Counting: TypeAlias = "Callable[[Opened, str, int, Clock], BranchCount | Decomposition]"
 Source: TypeAlias = "bytes | PatternLike | InputError"
 """What a worker gets: the bytes of a file, a sheet, or the error that reading it raised."""
 
@@ -58,10 +60,14 @@ def read_source(path: str | os.PathLike[str]) -> bytes | UnreadableFileError:
         return error
 
 
-def count_job(job: Job) -> BranchCount | Decomposition | Exception:
+def _plainly(opened: Opened, method: str, seed: int, clock: Clock) -> BranchCount | Decomposition:
+    return count_opened(opened, method=method, seed=seed, clock=clock)
+
+
+def count_job(job: Job, counting: Counting = _plainly) -> BranchCount | Decomposition | Exception:
     """The count of one pattern, or the error that ended it, so that the other patterns go on."""
     try:
-        return count_opened(job.opened, method=job.method, seed=job.seed, clock=Clock(job.limit))
+        return counting(job.opened, job.method, job.seed, Clock(job.limit))
     except Exception as error:  # even a bug must not stop the other patterns
         return NotEnoughMemoryError(shortage(error)) if is_shortage(error) else error
 
@@ -76,6 +82,7 @@ def count_many(
     reading: Reading = PLAIN,
     progress: Progress | None = None,
     limit: float | None = None,
+    counting: Counting = _plainly,
 ) -> Generator[tuple[str, BranchCount | Decomposition | Exception], None, None]:
     """Count many sheets and yield each name with its count, as soon as the count is ready.
 
@@ -87,7 +94,8 @@ def count_many(
     and a script needs the usual `if __name__ == "__main__"`. An `engine`, such as `dask_pool`,
     replaces these processes. This process reads the files, a few at a time, and sends them to the
     workers. The `warning` of a count says what one must know before relying on it.
-    `limit` is a number of seconds for the motions of each sheet of panels.
+    `limit` is a number of seconds for the motions of each sheet of panels. `counting` counts one
+    open sheet; its arguments are the sheet, the method, the seed and the clock.
     `progress("counting", done, total)` reports a total of 0 if `patterns` has no length.
 
     Raises `UsageError` for an unknown method, a negative seed or fewer jobs than 1, before
@@ -118,7 +126,9 @@ def count_many(
     given = (job(place, pattern) for place, pattern in enumerate(patterns))
 
     def counted() -> Generator[tuple[str, BranchCount | Decomposition | Exception], None, None]:
-        with closing((engine or process_pool(jobs))(count_job, given)) as results:
+        with closing(
+            (engine or process_pool(jobs))(partial(count_job, counting=counting), given)
+        ) as results:
             for done, (finished, result) in enumerate(results, 1):
                 if progress is not None:
                     progress("counting", done, total)

@@ -277,7 +277,8 @@ def _with_flat_vertices(attempt: _Attempt, candidates: Candidates) -> BranchCoun
         zeros = Zeros()
         for chosen, where in guess.flat.items():
             solve_flat(attempt.chart, chosen, points[where], zeros)
-        if zeros.total + int(guess.simple.sum()) != attempt.total:
+        # More points than zeros may seem simple: paths that end near multiple zeros do.
+        if zeros.total + int(guess.simple.sum()) < attempt.total:
             continue
         simple = points[guess.simple].astype(candidates.points.dtype)
         isolation = isolate(

@@ -16,7 +16,6 @@ from exactfold._support.documents import (
     VertexText,
 )
 from exactfold._support.plurals import agreeing, counted
-from exactfold.panels.decomposition import groups_of as groups
 from exactfold.panels.stars import stars
 from exactfold.pattern.described import PanelsDocument, described_panels
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
@@ -159,6 +158,8 @@ def panel_facts(pattern: PanelPattern) -> PanelFacts:
     '1 part with vertices that may fold, at most four folds at each: all ways to fold, by the
     structure theorem'
     """
+    from exactfold.panels.decomposition import groups_of  # it loads NumPy
+
     moving = stars(pattern)
     interior = set(pattern.interior)
     free = tuple(edge for edge in pattern.folds if not interior.intersection(edge))
@@ -168,6 +169,6 @@ def panel_facts(pattern: PanelPattern) -> PanelFacts:
         {v: len(near) for v, near in pattern.stars.items()},
         tuple(edge for edge in pattern.folds if edge not in active and edge not in free),
         free,
-        tuple(groups(moving)),
+        tuple(groups_of(moving)),
         {v: len(star.folds) for v, star in moving.items()},
     )

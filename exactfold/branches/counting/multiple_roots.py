@@ -12,11 +12,12 @@ from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.classify import Undecided
 from exactfold.branches.values.letters import UPSIDE_DOWN
 from exactfold.branches.values.roots import AlgebraicRoot, BoxRoot, FlatBoxRoot, Root
+from exactfold.errors import SolverError
 from exactfold.exact.univariate import Interval
 from exactfold.rigidity.equations.branch_system import Chart
-from exactfold.rigidity.equations.flat_sheets import flat_sheets
+from exactfold.rigidity.equations.flat_sheets import FlatSheets, flat_sheets
 from exactfold.solve.algebraic.exact_solution import RootClass
-from exactfold.solve.algebraic.flat_zeros import lift, zeros_flat_at
+from exactfold.solve.algebraic.flat_zeros import flat_equations, lift, zeros_flat_at
 from exactfold.solve.certify.algebraic import FlatBox
 from exactfold.solve.certify.box import IsolatingBox
 from exactfold.solve.certify.isolation import isolate
@@ -62,6 +63,32 @@ def solve_flat(chart: Chart, vertices: frozenset[int], points: FloatArray, zeros
         inner = points[:, list(sheets.free)].astype(np.complex128)
         isolation = isolate(sheets.system, Candidates("flat sheets", inner))
         zeros.flat_boxes += [(sheets, box) for box in isolation.boxes if box.is_real]
+    elif sheets.squared is not None:
+        inner = points[:, list(sheets.free)].astype(np.complex128)
+        isolation = isolate(sheets.squared, Candidates("flat sheets", inner))
+        boxes = [box for box in isolation.boxes if box.is_real]
+        if 0 < len(boxes) <= _MOST_TOGETHER:
+            zeros.classes += _flat_classes(sheets, boxes)
+
+
+def _flat_classes(sheets: FlatSheets, boxes: Sequence[IsolatingBox]) -> list[RootClass]:
+    """The exact zeros in boxes on flat sheets with more conditions than unknowns.
+
+    The boxes hold zeros of as many combinations of the conditions. The classes that satisfy all
+    conditions are kept; they are verified by substitution.
+    """
+    system = sheets.squared
+    classes = None if system is None else recognise(system, boxes)
+    kept: list[RootClass] = []
+    for inner in classes or ():
+        lifted = lift(sheets, inner)
+        try:
+            lifted.verify(sheets.chart.system)
+        except SolverError:
+            continue
+        if frozenset(flat_equations(sheets.chart, lifted)) == sheets.vertices:
+            kept.append(lifted)
+    return kept
 
 
 def recognised(chart: Chart, zeros: Zeros, undecided: Sequence[Undecided]) -> Zeros | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from exactfold._support.clock import UNLIMITED, Clock
+from exactfold._support.clock import LIMIT, QUICK, UNLIMITED, Clock
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.branches.counting.collect import count_branches, not_convex
@@ -80,7 +80,8 @@ def count_opened(
     written = _written(opened)
     if written is None or result.doubt:
         return result
-    return replace(result, as_written=_counted(written, method, seed, progress, clock))
+    brief = clock.at_most(QUICK)  # the answer is the one about the sheet that was meant
+    return replace(result, as_written=_counted(written, method, seed, progress, brief))
 
 
 def _written(opened: Opened) -> Opened | None:
@@ -147,10 +148,13 @@ def _counted(
 
 
 def decompose_opened(
-    opened: Opened, *, progress: Progress | None = None, clock: Clock = UNLIMITED
+    opened: Opened, *, progress: Progress | None = None, clock: Clock | None = None
 ) -> Decomposition:
-    """The motions of an open sheet whose faces are treated as rigid panels; see `decompose`."""
-    return doubted(_decomposed(opened, progress, clock), opened)
+    """The motions of an open sheet whose faces are treated as rigid panels; see `decompose`.
+
+    Without a clock the search ends after 60 seconds.
+    """
+    return doubted(_decomposed(opened, progress, clock or Clock(LIMIT)), opened)
 
 
 def _decomposed(opened: Opened, progress: Progress | None, clock: Clock) -> Decomposition:

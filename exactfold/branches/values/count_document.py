@@ -15,7 +15,7 @@ from exactfold._support.documents import (
 )
 from exactfold.branches.connected_components.result import PiecesDocument
 from exactfold.branches.values.branch import ListedBranch
-from exactfold.panels.result import CountKeys
+from exactfold.panels.count_document import CountKeys
 from exactfold.pattern.described import PatternDocument
 
 Power: TypeAlias = Natural | Annotated[str, Keywords(pattern="^2\\^[0-9]+$")]

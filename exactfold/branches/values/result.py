@@ -32,7 +32,8 @@ if TYPE_CHECKING:  # counting branches does not load what panels need
         LetteredWay,
         Power,
     )
-    from exactfold.panels.result import AsWrittenDocument, Decomposition, MotionKeys, OfDigits
+    from exactfold.panels.count_document import AsWrittenDocument, MotionKeys, OfDigits
+    from exactfold.panels.result import Decomposition
     from exactfold.pattern.meant import Meant
     from exactfold.pattern.opening import ReadDocument
 

@@ -57,23 +57,30 @@ class Cases:
 
         It does if all vertices that the steps name have at most four folds, or if they name only
         one vertex: a vertex without motions to second order has no configurations near the flat
-        state (docs/vertices.md, Theorem 1). A step about a fold that stays flat names no vertex.
+        state (docs/vertices.md, Theorem 1). It does as well if all cases are refuted by sums that
+        are not 0 at any fold of these vertices: the terms of lowest order of a true motion are a
+        motion in which each fold follows its letter or is flat, and some fold is not. A step about
+        a fold that stays flat names no vertex.
         """
         sets = [self._refuted(entry, f"refuted set {k}") for k, entry in enumerate(refuted)]
         stack = [State()]
         named: set[int] = set()
+        sums: list[set[Edge]] = []
+        only_sums = True
         for step in tree:
             state = stack.pop()
             kind, *at = items(step, "a step")
+            only_sums = only_sums and kind in ("split", "refuted")
             if kind == "split":
                 (v,) = (natural(v, "a vertex") for v in at)
                 stack += [State(state.signs | {v: s}, state.lines, state.sides) for s in (-1, 1)]
             elif kind == "refuted":
                 (k,) = at
-                signs, vertices = sets[natural(k, "a set")]
+                signs, vertices, strict = sets[natural(k, "a set")]
                 contained = signs.items() <= state.signs.items()
                 require(contained, f"the signs of set {k} are not among those of the case")
                 named |= vertices
+                sums.append(strict)
             elif kind == "curved":
                 (v,) = (natural(v, "a vertex") for v in at)
                 own = {self.wanted[pair(v, u)] for u in self.near[v]}
@@ -102,7 +109,9 @@ class Cases:
                 require(held, f"fold {i}-{j} may fold, or is not asked to fold")
         require(not stack, "the tree does not cover all cases")
         few = all(len(self.near[v]) <= 4 for v in named)
-        return few or len(named) == 1
+        folds = {pair(v, u) for v in named for u in self.near[v]}
+        strict_sums = only_sums and all(folds <= strict for strict in sums)
+        return few or len(named) == 1 or strict_sums
 
     # --- lines of vertices -----------------------------------------------------------------------
 
@@ -148,10 +157,11 @@ class Cases:
 
     # --- heights of stars ------------------------------------------------------------------------
 
-    def _refuted(self, entry: Any, what: str) -> tuple[Signs, set[int]]:
+    def _refuted(self, entry: Any, what: str) -> tuple[Signs, set[int], set[Edge]]:
         """Verify that no motion with the letters has the signs of an entry.
 
-        Returns the signs, and all vertices whose stars the proof uses.
+        Returns the signs, all vertices whose stars the proof uses, and the folds whose sums are not
+        0.
         """
         keys(entry, "signs planes heights", what)
         signs: Signs = {}
@@ -165,16 +175,17 @@ class Cases:
             around = sorted(self.near[natural(v, "a vertex")])
             heights[v] = dict(zip(around, numbers(self.sheet, values, len(around)), strict=True))
             self._check_nappe(v, signs[v], heights[v], what)
-        strict = False
+        strict: set[Edge] = set()
         for i, j in sorted({pair(v, u) for v, star in heights.items() for u in star}):
             zero = self.sheet.tower.number(0)
             total = heights.get(i, {}).get(j, zero) + heights.get(j, {}).get(i, zero)
             side, letter = total.sign(), self.wanted[i, j]
             agrees = side in (0, -SIDES.get(letter, 0))
             require(agrees, f"{what}: the sum at fold {i}-{j} has the wrong sign")
-            strict = strict or side != 0
-        require(strict, f"{what}: no fold contradicts its letter")
-        return signs, {*heights}
+            if side:
+                strict.add((i, j))
+        require(bool(strict), f"{what}: no fold contradicts its letter")
+        return signs, {*heights}, strict
 
     def _check_nappe(self, v: int, sign: int, star: Mapping[int, Number], what: str) -> None:
         """Raise unless the form of a star is not negative, and its nappe has the right sign.

@@ -93,6 +93,8 @@ def _refuted(matched: PanelMatch, moving: Mapping[int, Star]) -> tuple[Document,
     if not part.refutations:
         return {"refuted": [], "tree": _open_loops(matched, own, part.named)}, part.truly
     sets = [_set(matched, own, refutation) for refutation in part.refutations]
+    if part.tree:
+        return {"refuted": sets, "tree": [list(step) for step in part.tree]}, part.truly
     signs = [(v, s) for refutation in part.refutations for v, s in refutation.signs.items()]
     if not signs:
         return {"refuted": sets, "tree": [["refuted", 0]]}, part.truly

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from itertools import chain, islice
-from typing import Final
+from typing import Any, Final
 
 import networkx as nx
 
@@ -16,6 +16,7 @@ from exactfold.design.panels.candidates import MotionSearch
 from exactfold.design.panels.cells import Cell, CellSearch, OpenLoop
 from exactfold.design.panels.first_order_program import FirstOrderProgram
 from exactfold.design.panels.lettered_spaces import LetteredSpaces, truly_begin
+from exactfold.design.panels.nappe_program import NappeCases
 from exactfold.design.panels.proof import ProvedMotion, proved_motion
 from exactfold.design.panels.refutation import PanelRefutation
 from exactfold.design.panels.vertex_reasons import VertexReason, vertex_reason
@@ -31,6 +32,8 @@ from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
 _MOST_CELLS: Final = 64
 _MOST_STARTS: Final = 8
+_MOST_CASED: Final = 6
+"""The nappes of up to so many vertices are distinguished."""
 _MOST_FOLDS: Final = 1_200
 """From so many folds on, the search starts once only; with fewer folds it starts more often."""
 
@@ -44,7 +47,8 @@ class PartAnswer:
     motion, approximately, and `motion` is one exactly if it is that of a vertex or was found in a
     linear space. `named` are the vertices that the reason names. `vertex` is a vertex that the
     theorem of Abel et al. refutes, where no vectors do. `by_list` says that the complete list of
-    motions refutes the letters. `loop` is the loop that refutes the letters, if one does.
+    motions refutes the letters. `loop` is the loop that refutes the letters, if one does. `tree`
+    are the cases of which each is refuted by one of the refutations, where there are several.
     """
 
     vertices: tuple[int, ...]
@@ -59,6 +63,7 @@ class PartAnswer:
     motion: Mapping[Edge, Number] = field(default_factory=dict, repr=False)
     vertex: int | None = None
     by_list: bool = False
+    tree: tuple[tuple[str, Any], ...] = ()
 
 
 def answered(
@@ -158,6 +163,19 @@ def block_answer(
         return _by_cells(pattern, moving, letters)
     if (loop := _loop(pattern, moving, letters)) is not None:
         return PartAnswer(vertices, REFUTED, REFUTED, loop.text, named=loop.loop, loop=loop)
+    cases = NappeCases(moving, letters, clock)
+    if len(vertices) <= _MOST_CASED and cases.refute():
+        strict = all(letters[edge] in "MV" for edge in cases.folds)
+        text = "in each nappe of the forms of these vertices, vectors contradict the letters"
+        return PartAnswer(
+            vertices,
+            REFUTED,
+            REFUTED if strict else UNDECIDED,
+            f"{_where(vertices)}: {text}",
+            refutations=tuple(cases.refutations),
+            named=vertices,
+            tree=tuple(cases.steps),
+        )
     if start is not None and (proved := _found(program, start)) is not None:
         truly = PROVED if proved.folds else UNDECIDED
         return PartAnswer(vertices, PROVED, truly, densities=proved.densities)

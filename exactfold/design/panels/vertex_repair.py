@@ -6,10 +6,6 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Final
 
-import numpy as np
-from scipy.optimize import Bounds, LinearConstraint, milp
-from scipy.sparse import csr_array
-
 from exactfold.design.refutations.refutation import Letters
 from exactfold.panels.stars import Star
 from exactfold.panels.vertex_motions import Fan
@@ -77,6 +73,10 @@ class _Program:
         """The unknowns that are 1 in the best solution found; none if there is none."""
         if not self.rows:
             return set()
+        import numpy as np  # imported here: commands that only ask which vertices start go on fast
+        from scipy.optimize import Bounds, LinearConstraint, milp
+        from scipy.sparse import csr_array
+
         entries = [
             (k, self.places[key], x)
             for k, (terms, _) in enumerate(self.rows)

@@ -31,7 +31,7 @@ class ForcingDocument(TypedDict):
     """Proved: the set is a least one, that is, `at_least` is the number of its folds."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Forcing:
     """A least set of folds whose letters force the letters of all others.
 
@@ -48,6 +48,10 @@ class Forcing:
     def status(self) -> Verdict:
         """PROVED if no smaller set of folds forces the letters."""
         return PROVED if self.at_least == len(self.folds) else UNDECIDED
+
+    def __repr__(self) -> str:
+        names = ", ".join(f"{i}-{j}" for i, j in self.folds[:12])
+        return f"<Forcing: {names} force {len(self.letters)} letters, {self.status}>"
 
     def to_dict(self) -> ForcingDocument:
         """The object in the JSON output."""

@@ -71,9 +71,28 @@ class FlatSheets:
         """These quadrics as a square system; None unless they are as many as the unknowns."""
         if not self.free or len(self.quadrics) != len(self.free):
             return None
-        return QuadraticSystem.from_rational(
-            [[[from_fmpq(c) for c in line] for line in form.tolist()] for form in self.quadrics]
-        )
+        return _system(self.quadrics)
+
+    @cached_property
+    def squared(self) -> QuadraticSystem | None:
+        """As many combinations of these quadrics as unknowns; None if there are too few quadrics.
+
+        If there are more quadrics than unknowns, multiples of the others are added to the first
+        ones. So the system may have further zeros, at which not all quadrics vanish.
+        """
+        size = len(self.free)
+        if not size or len(self.quadrics) < size:
+            return None
+        square = list(self.quadrics[:size])
+        for number, extra in enumerate(self.quadrics[size:], 2):
+            square = [form + (k * k + number) * extra for k, form in enumerate(square)]
+        return _system(square)
+
+
+def _system(forms: Iterable[fmpq_mat]) -> QuadraticSystem:
+    return QuadraticSystem.from_rational(
+        [[[from_fmpq(c) for c in line] for line in form.tolist()] for form in forms]
+    )
 
 
 def flat_sheets(

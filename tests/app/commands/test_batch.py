@@ -36,7 +36,8 @@ from exactfold.pattern import write_fold
 from exactfold.pattern.data import example_path
 
 KEYS = {
-    *("format", "version", "name", "sha256", "asked", "status", "exit_code", "error", "result"),
+    *("format", "version", "name", "sha256", "asked", "status", "exit_code", "error", "known"),
+    "result",
 }
 
 
@@ -59,7 +60,8 @@ def test_a_line_for_each_file_and_the_worst_exit_code(tmp_path: Path) -> None:
     given = ("count", good, open_, bad, tmp_path / "none.fold", "--jobs", 1, "--jsonl", out)
     result = run(*given)
     assert result.exit_code == BAD_INPUT
-    assert "4 patterns: 1 proved, 1 undecided, 2 failed; results in" in result.stdout
+    words = " ".join(result.stdout.split())
+    assert "4 patterns: 1 proved, 1 undecided (1 known in part), 2 failed; results in" in words
     found = lines(out)
     assert all(set(line) == KEYS for line in found)
     assert [line["name"] for line in found] == [
@@ -146,7 +148,10 @@ def test_a_sheet_that_is_refused_takes_no_other_with_it(tmp_path: Path) -> None:
     assert statuses == {f"{path} sheet 1": "proved", f"{path} sheet 2": "failed"}
     forced = run("count", path, "--sheet", "all", "--force", "--jsonl", out, "--jobs", 1)
     assert forced.exit_code == 0
-    assert "1 counted in an earlier run" in " ".join(forced.stdout.split())
+    words = " ".join(forced.stdout.split())
+    assert words.startswith("2 patterns: 2 proved, 0 undecided, 0 failed; results in")
+    again = run("count", path, "--sheet", "all", "--force", "--jsonl", out, "--jobs", 1)
+    assert "2 counted in an earlier run" in " ".join(again.stdout.split())
 
 
 def test_a_file_that_cannot_be_read_is_one_line_of_all_sheets(tmp_path: Path) -> None:
@@ -423,3 +428,16 @@ def test_on_dask(tmp_path: Path) -> None:
     assert {name: result.distinct for name, result in found.items()} == {
         str(k): 4 for k in range(5)
     }
+
+
+def test_what_is_known_in_part_is_counted(tmp_path: Path) -> None:
+    path, out = tmp_path / "partly.fold", tmp_path / "o.jsonl"
+    write_fold(scrambled(2, DENTED, 4, loose=True), path)
+    result = run("count", path, "two-vertex", "--jobs", 1, "--jsonl", out)
+    partly, complete = sorted(lines(out), key=lambda line: line["name"] != str(path))
+    assert partly["known"] == ["degrees of freedom: between 3 and 6"]
+    assert complete["known"] == []
+    words = " ".join(result.stdout.split())
+    assert "2 patterns: 1 proved, 1 undecided (1 known in part), 0 failed" in words
+    again = run("count", path, "two-vertex", "--jobs", 1, "--jsonl", out)
+    assert "1 undecided (1 known in part)" in " ".join(again.stdout.split())

@@ -208,7 +208,7 @@ def test_signs_are_not_for_panels():
 def test_a_sheet_without_ways_is_told(tmp_path):
     square = '<svg xmlns="http://www.w3.org/2000/svg"><path stroke="black" d="M0 0H9V9H0Z"/></svg>'
     (tmp_path / "s.svg").write_text(square)
-    result = run("draw", tmp_path / "s.svg", "--all")
+    result = run("draw", tmp_path / "s.svg", "--all", "--force")
     assert result.exit_code == UNDECIDED
     assert "the sheet is rigid: no fold can fold" in result.stderr
 

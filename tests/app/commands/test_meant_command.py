@@ -177,3 +177,29 @@ def test_nothing_is_inferred_from_a_drawing_by_hand(by_hand: Path) -> None:
     assert meant is not None
     with pytest.raises(NotApplicableError, match="no sheet was inferred"):
         meant.certificate()
+
+
+def test_a_batch_counts_again_what_was_overruled_or_taken_literally(
+    miura: Path, tmp_path: Path
+) -> None:
+    lines = tmp_path / "o.jsonl"
+
+    def skipped(*options: object) -> int:
+        done = run("count", miura, "--jsonl", lines, "--jobs", 1, "--json", *options)
+        return int(json.loads(done.stdout)["skipped"])
+
+    assert [skipped(), skipped(), skipped("--noise", "1e-8"), skipped("--noise", "1e-8")] == [
+        *(0, 1),
+        *(0, 1),
+    ]
+    first, second = (json.loads(line) for line in lines.read_text().splitlines())
+    assert (first["asked"]["overruled"], second["asked"]["overruled"]) == ([], ["--noise", "1e-08"])
+    del first["result"]["meant"]  # as versions wrote that took every drawing literally
+    lines.write_text(json.dumps(first) + "\n")
+    assert skipped() == 0
+
+
+def test_a_denominator_that_leaves_near_relations_is_no_remedy(miura: Path) -> None:
+    result = run("count", miura, "--snap", 10**7)
+    assert result.exit_code == UNDECIDED
+    assert "--snap 10000000 leaves them" in " ".join(result.stdout.split())

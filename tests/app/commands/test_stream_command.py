@@ -301,7 +301,7 @@ def test_every_command_ends_with_130_on_ctrl_c(monkeypatch: pytest.MonkeyPatch) 
     def stop(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("exactfold.app.commands.count.count_opened", stop)
+    monkeypatch.setattr("exactfold.app.commands.count.counted_with_letters", stop)
     result = run("count", TWO)
     assert result.exit_code == INTERRUPTED
     assert result.stderr == "exactfold: interrupted\n"

@@ -114,6 +114,51 @@ def test_hypar_with_a_straight_diagonal():
     assert [branch.vertex_signs[v] for branch in multiple for v in pattern.interior].count(0) > 0
 
 
+def pleated(rings, *, turning=True):
+    """Concentric squares about a centre.
+
+    The diagonals between squares all turn the same way, or every second one the other way.
+    """
+    sizes = range(rings + 1, 0, -1)
+    points = [(s * x, s * y) for s in sizes for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+    faces = []
+    for k in range(rings):
+        for j in range(4):
+            a, b = 4 * k + j, 4 * k + (j + 1) % 4
+            if turning or j % 2 == 0:
+                faces += [(a, b, b + 4), (a, b + 4, a + 4)]
+            else:
+                faces += [(a, b, a + 4), (b, b + 4, a + 4)]
+    centre, last = len(points), 4 * rings
+    faces += [(last + j, last + (j + 1) % 4, centre) for j in range(4)]
+    return CreasePattern([*points, (0, 0)], faces)
+
+
+def test_flat_sheets_with_more_conditions_than_unknowns(monkeypatch):
+    """With a flat centre the inner square is rigid: four conditions, and three unknowns."""
+    exact = count_branches(pleated(1))
+    monkeypatch.setattr(multiple_roots, "GROEBNER_LIMIT", 2)
+    monkeypatch.setattr(lines, "GROEBNER_LIMIT", 2)
+    boxes = count_branches(pleated(1))
+    assert counts(exact) == counts(boxes) == (25, 32, 25, 0)
+    assert Counter(b.multiplicity for b in boxes.branches) == {1: 22, 2: 1, 4: 2}
+    assert [(b.sign_text, b.assignment_text) for b in exact.branches] == [
+        (b.sign_text, b.assignment_text) for b in boxes.branches
+    ]
+    monkeypatch.setattr(multiple_roots, "_MOST_TOGETHER", 0)
+    assert count_branches(pleated(1)).status is UNDECIDED
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("turning", "simple", "distinct"), [(True, 352, 394), (False, 192, 257)])
+def test_a_pleated_hypar_with_nine_vertices(turning, simple, distinct):
+    """The branches that are not simple fold a diagonal, or leave the centre or corners flat."""
+    result = count_branches(pleated(2, turning=turning))
+    assert counts(result) == (distinct, 512, distinct, 0)
+    assert Counter(b.multiplicity for b in result.branches)[1] == simple
+    assert checker.check(certificate(result))["distinct"] == distinct
+
+
 def test_flat_vertices_in_a_non_convex_sheet():
     """A straight crease 3-4-6 in a non-convex quadrilateral: multiple branches again."""
     points = [(7, -1), (5, -6), (9, 2), (0, -8), ("23/5", "-16/5"), ("23/3", "-1/3")]

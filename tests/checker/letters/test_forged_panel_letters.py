@@ -172,6 +172,13 @@ def test_several_vertices_with_more_than_four_folds_say_nothing_of_true_motions(
     refused(document, message)
 
 
+def test_strict_sums_exclude_true_motions_and_others_do_not() -> None:
+    document = sheet("nappes")
+    assert verified(document)["truly"] == "refuted"
+    document["claims"]["letters"] = "U" + document["claims"]["letters"][1:]
+    refused(document, "refuted set 0: the sum at fold 0-1 has the wrong sign")
+
+
 def test_one_vertex_alone_excludes_true_motions() -> None:
     document = sheet("curved")
     document["claims"]["truly"] = "refuted"

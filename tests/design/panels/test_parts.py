@@ -23,7 +23,7 @@ HARD = [
     (((-8, -7), (2, -5), (6, -7), (8, 0), (5, 1), (-6, 2)), "VMVMVM"),
     (((-7, -3), (1, -6), (1, -4), (3, -5), (8, -3), (0, 3), (-5, 7), (-8, 6)), "MMVVMVVM"),
 ]
-"""Some of the 20 of 668 letterings that the search from one point leaves undecided."""
+"""Letterings that fold and that the search from one point misses."""
 
 
 @pytest.mark.parametrize(("directions", "letters"), HARD)

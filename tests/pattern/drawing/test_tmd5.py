@@ -48,7 +48,7 @@ CREASE = "crse\n6\n0\n2\n3\n5\n1\n0\n2"
         ("\n6\n0\n0\nnode", "\n0\n0\n0\nnode", "a tree but no crease pattern"),
         ("\n6\n0\n0\nnode", "\n7\n0\n0\nnode", "after 6 of 7 parts 'crse'"),
         ("\n5\n6\n0\n0\nnode", "\n-5\n6\n0\n0\nnode", "row 21 is '-5', not a whole number"),
-        ("vrtx\n1\n0\n", "vrtx\n1\nnan\n", "row 32: 'nan'"),
+        ("vrtx\n1\n0\n", "vrtx\n1\nnan\n", "row 33: 'nan'"),
         (CREASE, CREASE.replace("\n5\n1", "\n6\n1"), "vertex 3 to 6 .* there are 5 vertices"),
         (CREASE, CREASE.replace("\n3\n5", "\n0\n5"), "vertex 0 to 5"),
         (CREASE, CREASE[:-1] + "4", "with the direction 4"),

@@ -198,7 +198,8 @@ def flattened(
         if high - low <= _FLAT * size:
             points = [(place[i], place[j]) for place in places]
             plane = "" if name == "z" else f" in a plane {name} = constant"
-            noise = f"{name} varies by {float(min(high - low, 10**LARGEST)):.2g} and is read as constant"
+            height = float(min(high - low, 10**LARGEST))
+            noise = f"{name} varies by {height:.2g} and is read as constant"
             return points, plane, [noise] if high > low else []
     if size > 10**LARGEST:
         raise TooLargeError(

@@ -61,10 +61,12 @@ def left_relations(sheet: Sheet) -> tuple[Relation, ...]:
     """
     if _is_on_a_grid(sheet):
         return ()
-    places = [(float(x), float(y)) for x, y in sheet.vertices]
+    places = _places(sheet.vertices)
     size = max(max(column) - min(column) for column in zip(*places, strict=True))
     tests = list(_tests(sheet, places))
     shortest = [min(_length(places, edge) for edge, _ in terms) for _, _, terms, _ in tests]
+    if not all(shortest):
+        return ()  # floats cannot tell the points of this sheet apart
     expected = sum(2 * size / (pi * length) for length in shortest)  # below a defect of 1
     near = []
     for (kind, name, terms, off), length in zip(tests, shortest, strict=True):
@@ -81,10 +83,23 @@ def left_relations(sheet: Sheet) -> tuple[Relation, ...]:
     return tuple(near[: max(believed, default=0)])
 
 
+def _places(vertices: Sequence[tuple[Number, Number]]) -> list[tuple[float, float]]:
+    """The points as floats; points beyond floats are moved and scaled to the size 1 first."""
+    try:
+        return [(float(x), float(y)) for x, y in vertices]
+    except OverflowError:
+        xs, ys = zip(*vertices, strict=True)
+        left, low = min(xs), min(ys)
+        size = max(max(xs) - left, max(ys) - low)
+        return [(float((x - left) / size), float((y - low) / size)) for x, y in vertices]
+
+
 def _chance(mean: float, number: int) -> float:
     """An upper bound (Chernoff's) of the probability of `number` or more events, if so many are
     expected as `mean` says.
     """
+    if mean == 0:
+        return 0.0
     return exp(number - mean + number * log(mean / number)) if number > mean else 1.0
 
 

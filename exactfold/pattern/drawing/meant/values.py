@@ -17,6 +17,7 @@ Edge: TypeAlias = tuple[int, int]
 Kind: TypeAlias = Literal[
     "straight", "border", "kawasaki", "grid", "parallel", "mirrored", "sectors"
 ]
+Existence: TypeAlias = Literal["exact", "none"]
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ import pytest
 
 from exactfold.pattern.drawing.drawing import Drawing, Line
 from exactfold.pattern.drawing.meant.inference import Inference, infer
+from exactfold.pattern.loading import open_sheet
 from exactfold.pattern.opening import from_drawing
 from exactfold.pattern.panel_pattern import PanelPattern
 from exactfold.pattern.reading import Reading
@@ -157,3 +158,20 @@ def test_the_fitted_angles_are_within_the_noise_of_the_drawing() -> None:
         dx, dy = (float(b - a) for a, b in zip(points[i], points[j], strict=True))
         assert abs(dy * cos(angle) - dx * sin(angle)) < 1e-8
         assert dx * cos(angle) + dy * sin(angle) > 0, "the sense is that of the drawn vector"
+
+
+@pytest.mark.parametrize("name", ["single-vertex-4", "bird-base", "waterbomb", "yoshimura"])
+def test_noise_put_back_on_shipped_sheets_changes_no_local_relation(name: str) -> None:
+    sheet = open_sheet(name).sheet
+    exact = [(Fraction(float(x)), Fraction(float(y))) for x, y in sheet.vertices]
+    found = [
+        infer(noisy(exact, eps, seed=5), sheet.edges, sheet.boundary_edges)
+        for eps in (1e-14, 1e-12, 1e-9, 1e-7, 1e-6)
+    ]
+    local = [
+        {r.name for r in inference.relations if r.kind in ("straight", "border", "kawasaki")}
+        for inference in found
+    ]
+    assert local[0]
+    assert all(names == local[0] for names in local)
+    assert len({inference.unit for inference in found}) == 1

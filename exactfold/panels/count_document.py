@@ -1,0 +1,147 @@
+"""The types of the JSON of a count of motions of rigid panels."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, Protocol, TypeAlias, TypedDict
+
+from exactfold._support.documents import (
+    Empty,
+    FoldText,
+    Keywords,
+    Natural,
+    NotNegative,
+    Positive,
+    VerdictText,
+    VertexText,
+)
+from exactfold.panels.near_misses import NearMissDocument
+from exactfold.panels.partial import DrawnDocument, FreedomDocument
+from exactfold.pattern.described import PanelsDocument
+from exactfold.pattern.meant import MeantDocument
+from exactfold.pattern.near_degeneracy import WarningDocument
+from exactfold.pattern.opening import ReadDocument
+
+_Theory: TypeAlias = Annotated[str, Keywords(enum=["modes", "subspaces"])]
+ByDimension: TypeAlias = dict[VertexText, Positive]
+
+
+class ComponentsDocument(TypedDict):
+    """How many components of motions there are, by dimension."""
+
+    second_order: ByDimension | None
+    """To second order."""
+    true: ByDimension | None
+    """Of true motions."""
+    found: ByDimension | None
+    """At least so many to second order, where not all are known."""
+    found_true: ByDimension | None
+    """At least so many that truly fold, where not all are known."""
+
+
+class ModeDocument(TypedDict):
+    """One elementary mode."""
+
+    active: list[Natural]
+    assignment: dict[FoldText, Annotated[str, Keywords(enum=["M", "V"])]]
+    extends: VerdictText
+    """Whether the mode truly folds."""
+    by: str
+
+
+class AsWrittenDocument(TypedDict):
+    """The count for the digits of an inexact drawing."""
+
+    sheet: Literal["as written", "as read", "inferred"]
+    """Whose digits: those of the file, the coordinates after some were recognised, or those of the
+    inferred sheet, if relations nearly hold even there."""
+    status: VerdictText
+    reason: str
+    rigid: bool | None
+    distinct: Natural | None
+    components: ComponentsDocument | None
+
+
+class OfDigits(Protocol):
+    """A count for the digits of an inexact drawing."""
+
+    def of_digits(self) -> AsWrittenDocument:
+        """The key `as_written` of the answer for the sheet that was meant."""
+
+
+class MotionKeys(TypedDict):
+    """The keys of a count that belong to motions of rigid panels."""
+
+    components: ComponentsDocument | None
+    freedom: FreedomDocument | None
+    drawn: DrawnDocument | None
+    """The answer for the letters of the drawing; null if all ways are known."""
+    modes_count: Natural | None
+    modes: list[ModeDocument]
+    flat_folds: list[FoldText]
+    """Folds that are flat in every motion."""
+    still_folds: list[FoldText]
+    """Flat in every motion to second order, beside flat_folds."""
+    free_folds: list[FoldText]
+    """Folds from boundary to boundary."""
+    near_misses: list[NearMissDocument]
+
+
+class CountKeys(MotionKeys):
+    """The keys that a count of branches and one of motions of panels have in common."""
+
+    format: Literal["exactfold count result"]
+    version: Literal[2]
+    reason: str
+    why: str
+    """Why the method was chosen."""
+    true_branches: VerdictText
+    """Whether the count also holds for true motions."""
+    certificate: str | None
+    """The file."""
+    warnings: list[WarningDocument]
+    seconds: NotNegative
+    open_questions: list[str]
+    settings: dict[str, int | str]
+    rigid: bool | None
+    exceptional_vertices: list[Natural]
+    read: ReadDocument | None
+    meant: MeantDocument | None
+    """The sheet that an inexact drawing means; null if no relation nearly holds."""
+    as_written: AsWrittenDocument | None
+    """What is known for the digits alone, if they are not the sheet that was meant."""
+
+
+class PanelCountKeys(CountKeys):
+    """The keys of a count of motions of panels; what belongs to branches is null or empty."""
+
+    pattern: PanelsDocument
+    method: _Theory
+    theory: _Theory
+    distinct: None
+    with_multiplicity: None
+    real: None
+    nonreal: None
+    true_bounds: None
+    dimension: None
+    degree: None
+    pieces: None
+    branches: Empty
+    letters: None
+
+
+class ProvedPanels(PanelCountKeys):
+    """Motions of rigid panels, all of which are known to second order."""
+
+    status: Literal["proved"]
+    by: Literal["enumeration"]
+    """How what is stated was proved."""
+
+
+class UndecidedPanels(PanelCountKeys):
+    """Motions of rigid panels, not all of which are known."""
+
+    status: Literal["undecided"]
+    by: None
+
+
+PanelCountDocument: TypeAlias = ProvedPanels | UndecidedPanels
