@@ -45,11 +45,13 @@ def meaning(found: Opened, written: Callable[[], Opened]) -> Opened:
     try:
         raw = written()
     except (FoldError, PatternError) as error:
-        reason = f"the digits as written are no sheet: {error}"
+        reason = f"the digits as written do not make a sheet: {error}"
         return replace(found, meant=Meant(left=left, reason=reason))
     sheet = panels(raw.sheet) if isinstance(raw.sheet, CreasePattern) else raw.sheet
     if sheet.field.radicands:
-        return replace(found, meant=Meant(left=left, reason="its coordinates are irrational"))
+        return replace(
+            found, meant=Meant(left=left, reason="the coordinates in the file are irrational")
+        )
     meant = inferred(sheet, reading)
     if meant.realized is None or meant.realized.sheet is None:
         meant = replace(meant, left=left)

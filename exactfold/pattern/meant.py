@@ -111,7 +111,9 @@ class Meant:
         if not self.left:
             return ""
         text = f"{nearly(self.left)}, so that answers hold only for these digits"
-        return f"{text}: {self.reason}" if self.reason else text
+        if not self.reason:
+            return text
+        return f"{text}; the sheet that was meant is not known, because {self.reason}"
 
     @property
     def name(self) -> str:

@@ -308,4 +308,4 @@ def test_numbers_that_become_too_long(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(positions, "_MOST_BITS", 40)
     made = realize(drawn, angles, 1e-9)
     assert (made.existence, made.sheet) == ("none", None)
-    assert made.reason == "its coordinates have numbers of more than 8192 bits"
+    assert made.reason == positions.TOO_LONG

@@ -100,7 +100,12 @@ def panels_info(facts: PanelFacts, found: Vertices, *, exact: bool = False) -> T
 
 
 def _motion_rows(facts: PanelFacts) -> list[tuple[str, str]]:
-    parts = [f"{counted(len(part), 'vertex')} with {part[0]}" for part in facts.parts]
+    parts = [
+        f"{counted(len(part), 'vertex')} round vertex {part[0]}"
+        if len(part) > 1
+        else f"vertex {part[0]}"
+        for part in facts.parts
+    ]
     return [
         ("folds that stay flat", _listed([f"{i}-{j}" for i, j in facts.flat], ", ")),
         ("folds from boundary to boundary", _listed([f"{i}-{j}" for i, j in facts.free], ", ")),

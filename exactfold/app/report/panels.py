@@ -23,6 +23,14 @@ if TYPE_CHECKING:
 NAMED = 12
 """At most this many folds are named in a line."""
 
+SPELLED = 128
+"""Letters are spelled out, one for each fold, on sheets with at most this many folds."""
+
+_SIDES = (
+    "Each mode is shown on one side; on the other all is reversed. Modes that share no vertex fold "
+    "independently."
+)
+
 
 def panels_report(
     result: Decomposition, certificate: str | None, *, everything: bool, verbose: bool = False
@@ -37,7 +45,7 @@ def panels_report(
     if result.modes:
         parts += ["", _table(result, everything)]
         parts += more_text(len(result.modes) - (len(result.modes) if everything else SHOWN))
-        parts += ["", Text(_legend(result))]
+        parts += ["", Text(_legend(result, everything))]
     if verbose:
         parts += ["", *(Text(line) for line in _details(result))]
     return Group(*parts)
@@ -64,9 +72,10 @@ def panels_answer(result: Decomposition) -> Text:
         plain = panels_answer(replace(result, meant=None))
         return Text.assemble(f"{result.meant.name}: ", plain)
     if result.rigid is PROVED:
-        return Text.assemble(
-            "rigid - ", status_text(PROVED), took, "; no fold can fold while the panels stay rigid"
-        )
+        why = "no fold can fold while the panels stay rigid"
+        if not result.pattern.folds:
+            why = "the sheet has no folds"
+        return Text.assemble("rigid - ", status_text(PROVED), f"{took}; {why}")
     if result.true is not None:
         return Text.assemble(_ways(result.true), " - ", status_text(PROVED), took, _each(result))
     if result.second_order is not None and result.second_order == result.found_true:
@@ -169,7 +178,11 @@ def _notes(result: Decomposition, everything: bool) -> list[str]:
     if result.still and result.rigid is not PROVED:
         notes.append(_flat(result.still, "in every motion to second order", everything))
     if result.free:
-        notes.append(f"{counted(len(result.free), 'fold')} from boundary to boundary, each free")
+        number = len(result.free)
+        notes.append(
+            f"{counted(number, 'fold')} from boundary to boundary "
+            f"{'folds' if number == 1 else 'fold'} independently of everything else"
+        )
     if result.second_order is None and not result.doubt and not has_solver():
         notes.append(
             "with python-sat (pip install 'exactfold[sat]') a search by clauses may find more ways"
@@ -197,6 +210,7 @@ def _flat(folds: Sequence[Edge], when: str, everything: bool) -> str:
 
 def _table(result: Decomposition, everything: bool) -> Table:
     modes = result.modes if everything else result.modes[:SHOWN]
+    spelled = everything or len(result.pattern.folds) <= SPELLED
     table = Table(box=None, pad_edge=False)
     table.add_column("mode", justify="right")
     table.add_column("vertices", justify="right")
@@ -204,25 +218,38 @@ def _table(result: Decomposition, everything: bool) -> Table:
     table.add_column("truly folds")
     for number, mode in enumerate(modes, 1):
         letters = "".join(mode.assignment.get(fold, ".") for fold in result.pattern.folds)
+        shown = letters_text(letters) if spelled else Text(_numbers(letters))
         verdict = mode.extends.verdict
         said = {str(PROVED): "yes", str(UNDECIDED): "undecided"}.get(str(verdict), "no")
         table.add_row(
             str(number),
             str(len(mode.active)),
-            letters_text(letters),
+            shown,
             f"{said}: {mode.extends.by}",
         )
     return table
 
 
-def _legend(result: Decomposition) -> str:
+def _numbers(letters: str) -> str:
+    """How many folds have each letter in a mode, in words.
+
+    >>> _numbers("VV.M..")
+    '1 mountain, 2 valleys, 3 flat'
+    """
+    known = {"M": "mountain", "V": "valley"}
+    bent = [counted(letters.count(one), word) for one, word in known.items() if one in letters]
+    return ", ".join([*bent, f"{letters.count('.')} flat"])
+
+
+def _legend(result: Decomposition, everything: bool) -> str:
     folds = result.pattern.folds
+    if len(folds) > SPELLED and not everything:
+        return (
+            "Mountains and valleys are counted as seen from above (--all shows the letter of each "
+            f"fold). {_SIDES}"
+        )
     order = ", ".join(f"{i}-{j}" for i, j in folds) if len(folds) <= NAMED else "of --json"
-    return (
-        f"Folds in the order {order}; M mountain, V valley, . flat, seen from above. Each mode is "
-        "shown on one side; on the other all is reversed. Modes that share no vertex fold "
-        "independently."
-    )
+    return f"Folds in the order {order}; M mountain, V valley, . flat, seen from above. {_SIDES}"
 
 
 def _details(result: Decomposition) -> list[str]:

@@ -28,7 +28,7 @@ def chosen(sheets: Sequence[Drawing], number: int | None) -> int:
         raise SeveralSheetsError(f"there is no sheet {number}: {known}{_listed(sheets)}")
     raise SeveralSheetsError(
         f"{known}{_listed(sheets)}: choose one with --sheet N (`number=` in Python), or count all "
-        "with `exactfold count --sheet all`",
+        "with `exactfold count FILE --sheet all`",
         len(sheets),
     )
 

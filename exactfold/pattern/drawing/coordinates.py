@@ -173,7 +173,9 @@ def _unfit(best: Exact | None) -> str:
     if best is None:
         return "they do not fit small numbers of Q, Q(sqrt 2), Q(sqrt 3) or Q(sqrt 5)"
     fit = len(best.points) - len(best.kept)
-    return f"only {fit} of {counted(len(best.points), 'vertex')} fit numbers of {best.field_name}"
+    known = f"only {fit}" if fit else "none"
+    verb = "fit" if fit > 1 else "fits"
+    return f"{known} of {counted(len(best.points), 'vertex')} {verb} numbers of {best.field_name}"
 
 
 def resolution(drawing: Drawing) -> Fraction:

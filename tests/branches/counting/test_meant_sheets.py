@@ -117,7 +117,9 @@ def test_a_drawing_by_hand_has_no_gap_and_nothing_is_inferred() -> None:
     opened = open_sheet(document, Reading("auto"))
     assert opened.meant is not None
     assert opened.meant.existence == "none"
-    assert opened.meant.reason.startswith("no gap: relations are missed by up to")
+    assert opened.meant.reason.startswith(
+        "noise and design show no gap: relations are missed by up to"
+    )
     assert "relations nearly hold, such as" in opened.doubt
     result = count_ways(opened)
     assert (result.status, result.reason) == (UNDECIDED, opened.doubt)

@@ -158,12 +158,12 @@ def _suspicious(
 def _refusal(eps: float, clear: float, chance: float, near: int) -> str:
     if clear < GAP * eps:
         return (
-            f"no gap: relations are missed by up to {eps:.1g} of the size, and others by only "
-            f"{clear / eps:.2g} times more; {GAP:g} times is needed"
+            f"noise and design show no gap: relations are missed by up to {eps:.1g} of the size, "
+            f"and others by only {clear / eps:.2g} times as much; {GAP:g} times is needed"
         )
     return (
-        f"chance: {near} relations are missed by up to {eps:.1g} of the size, and {chance:.1g} are "
-        f"expected to be by chance; at most {CHANCE:g} times as many may be"
+        f"chance may explain them: {near} relations are missed by up to {eps:.1g} of the size, and "
+        f"{chance:.1g} are expected by chance; at most {CHANCE:g} for each relation is allowed"
     )
 
 

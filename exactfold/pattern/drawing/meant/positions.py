@@ -21,7 +21,9 @@ Written: TypeAlias = Sequence[tuple[Fraction, Fraction]]
 Point: TypeAlias = tuple[Surd, Surd]
 _MOST_BITS: Final = 1 << 13
 """The longest numerators and denominators of coordinates."""
-TOO_LONG: Final = f"its coordinates have numbers of more than {_MOST_BITS} bits"
+TOO_LONG: Final = (
+    f"the coordinates of a sheet with these relations have more than {_MOST_BITS} bits"
+)
 NO_PLACES: Final = "no sheet near the drawing has all these directions"
 _FAR: Final = 1000
 """Positions that are off by so many times the noise are not near the drawing."""

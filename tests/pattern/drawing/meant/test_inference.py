@@ -117,5 +117,5 @@ def test_a_drawing_by_hand_has_no_gap() -> None:
     ]
     inference = inferred(sheet, points)
     assert inference.relations == ()
-    assert inference.reason.startswith("no gap")
+    assert inference.reason.startswith("noise and design show no gap")
     assert inference.near

@@ -45,14 +45,16 @@ def test_a_level_that_chance_explains_is_not_believed_but_one_below_is() -> None
 def test_noise_without_a_gap_is_refused() -> None:
     found = level([10**-k for k in range(3, 9)])
     assert found is not None
-    assert found.reason.startswith("no gap: relations are missed by up to ")
+    assert found.reason.startswith("noise and design show no gap: relations are missed by up to ")
     assert found.near >= 3
 
 
 def test_a_gap_that_chance_explains_is_refused() -> None:
     found = level([5e-4 - 1e-6 * k for k in range(35)] + [0.06])
     assert found is not None
-    assert found.reason.startswith("chance: 35 relations are missed by up to 0.0005 of the size")
+    assert found.reason.startswith(
+        "chance may explain them: 35 relations are missed by up to 0.0005 of the size"
+    )
     assert found.clear > 100 * found.eps
 
 
