@@ -46,7 +46,7 @@ def are_multiples(polynomials: Sequence[fmpz_poly], divisor: fmpz_poly) -> list[
     if extra < 0:
         return [p == 0 for p in polynomials]
     height = max(p.height_bits() for p in polynomials) + (extra + divisor.length()).bit_length()
-    modulus = (1 << max(0, height - lead.bit_length() + extra + 4)) + 1
+    modulus = (1 << max(1, height - lead.bit_length() + extra + 4)) + 1  # odd, and so is each next
     while gcd(modulus, lead) != 1:
         modulus += 2
     ring = fmpz_mod_poly_ctx(fmpz_mod_ctx(modulus))

@@ -43,6 +43,12 @@ def test_quotients_longer_than_the_product_are_found():
     assert are_multiples([left * right, left * left], right) == [True, False]
 
 
+def test_a_divisor_longer_than_all_polynomials_with_an_even_leading_coefficient() -> None:
+    """A modulus that starts even would never become prime to the leading coefficient."""
+    divisor = fmpz_poly([-31, 500000000])
+    assert are_multiples([fmpz_poly([2762, 1307]), fmpz_poly()], divisor) == [False, True]
+
+
 def test_the_content_of_the_divisor_does_not_matter():
     """Over Q: 6 T divides T, though not over Z."""
     assert are_multiples([fmpz_poly([0, 1]), fmpz_poly([1, 1])], fmpz_poly([0, 6])) == [True, False]
