@@ -191,12 +191,13 @@ class Wanted(FoldOptions):
             "branches of triangulated sheets with four corners, or with more and --rim, and this "
             "sheet folds along modes of rigid panels: name them by --component or --modes",
         )
-        ways = decompose_opened(opened, progress=bar).known
+        answer = decompose_opened(opened, progress=bar)
+        ways = answer.known
         if ways.warning is not None:
             say(f"warning: {ways.warning}")
         bar("following")
         motion = follow_panels(
-            ways,
+            answer,
             component=self.component,
             modes=self.modes,
             until=self.until,

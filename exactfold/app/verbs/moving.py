@@ -109,14 +109,15 @@ def follow(
                 start, drive_found, until, frames, by, held, through_branch_points, progress
             )
         letters = None if letters is None else asked_letters(opened, letters)
-        sheet = decompose_opened(opened, progress=progress).known
+        sheet = decompose_opened(opened, progress=progress)
+    answer, sheet = sheet, sheet.known
     asked.refuse_of_panels(through_branch_points)
     wanted = None if letters is None else by_fold(sheet.pattern.folds, letters)
     rates = modes_with(sheet, way, wanted)
     if rates is not None and side == -1:
         rates = {number: -rate for number, rate in rates.items()}
     return follow_panels(
-        sheet,
+        answer,
         modes=None if rates is None else [n for n in rates if isinstance(n, int)],
         amounts=rates,
         until=str(until),

@@ -121,11 +121,16 @@ def _facts(sheet: PanelPattern, star: Star, letters: Letters, exactly: bool) -> 
     fan = Fan(star)
     starts, able = _answers(fan, given)
     reason = _why(star, given, fan) if not starts or not able else ""
-    verdict = PROVED if starts else REFUTED
+    verdict, possible = PROVED if starts else REFUTED, able
     for straight, pairs in () if exactly else _straightened(star):
-        if _answers(Fan(straight), given) != (starts, able):
+        straight_starts, straight_able = _answers(Fan(straight), given)
+        if straight_starts != starts:
             verdict, reason = UNDECIDED, _open_text(star, pairs, starts)
             break
+        if straight_able != able and {"M", "V"}.isdisjoint(given):
+            verdict, reason = UNDECIDED, _open_text(star, pairs, able)
+            break
+        possible = possible or straight_able
     flat = star.only(f for f, x in zip(star.folds, given, strict=True) if x != "F")
     kawasaki, off = _alternating(flat)
     kept = given.replace("F", "")
@@ -134,7 +139,7 @@ def _facts(sheet: PanelPattern, star: Star, letters: Letters, exactly: bool) -> 
         star.folds,
         given,
         verdict,
-        able,
+        possible,
         reason,
         _flips(star, given, fan) if verdict is REFUTED else (),
         _forced(star, given, fan) if verdict is PROVED else {},

@@ -75,12 +75,13 @@ def follow_panels(
     <PanelMotion: mode 1, proved, 5 frames to angle at 1.5708>
     """
     began = clock.perf_counter()
-    result = sheet if isinstance(sheet, Decomposition) else decompose(sheet)
+    answer = sheet if isinstance(sheet, Decomposition) else decompose(sheet)
+    result = answer.known
     pattern = result.pattern
     goal = _goal(until)
     if frames < 2:
         raise UsageError(f"{frames} frames: a motion needs at least 2")
-    number, chosen = _chosen(result, component, modes)
+    number, chosen = _chosen(result, component, modes, answer.doubt)
     rates, free_rates = _rates(result, chosen, amounts)
     kept = [(mode, rate) for mode, rate in zip(chosen, rates, strict=True) if rate]
     curves = tuple(curve_of(mode) for mode, _ in kept)
@@ -144,7 +145,7 @@ def _goal(until: str) -> float:
 
 
 def _chosen(
-    result: Decomposition, component: int | None, numbers: Sequence[int] | None
+    result: Decomposition, component: int | None, numbers: Sequence[int] | None, doubt: str
 ) -> tuple[int | None, tuple[PanelMode, ...]]:
     """The modes that have to fold, and the number of their component if one was chosen."""
     if component is not None and numbers is not None:
@@ -153,7 +154,10 @@ def _chosen(
     if numbers is not None:
         return None, _named_modes(known, numbers)
     if result.rigid is PROVED:
-        raise NotFollowedError("the sheet is rigid - PROVED; there is no motion to follow")
+        sheet = "the sheet is rigid - PROVED"
+        if doubt:
+            sheet = f"the digits as written are rigid, but {doubt}"
+        raise NotFollowedError(f"{sheet}; there is no motion to follow")
     components = panel_components(result, known)
     if not components:
         raise NotFollowedError(

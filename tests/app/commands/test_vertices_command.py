@@ -155,3 +155,45 @@ def test_info_has_a_line_about_the_vertices() -> None:
     plain = run("info", "two-vertex").stdout
     assert "each of the 2 vertices starts" in words(plain)
     assert "folding flat" not in plain
+
+
+def row_of_three(letters: str) -> dict[str, object]:
+    """Three vertices with three folds each on a crease that misses a straight line by 1e-4."""
+    places = [("1.130014494456087", "1.589308330024756"), ("2.30999235456349", "1.683056078267849")]
+    places.append(("3.770000313345168", "1.797945445634967"))
+    coords: list[list[float]] = [[0, 0], [5.2, 0], [5.2, 4], [0, 4], [0, 1.500012881847532]]
+    coords += [[float(x), float(y)] for x, y in places]
+    coords += [[5.2, 1.910958965038882]]
+    coords += [[0.830001993119765, 4], [2.010001333746047, 4], [3.470005464683004, 4]]
+    rim = [(0, 1), (1, 8), (8, 2), (2, 11), (11, 10), (10, 9), (9, 3), (3, 4), (4, 0)]
+    folds = [(4, 5), (5, 6), (6, 7), (7, 8), (5, 9), (6, 10), (7, 11)]
+    return {
+        "vertices_coords": coords,
+        "edges_vertices": [*rim, *folds],
+        "edges_assignment": ["B"] * len(rim) + list(letters),
+    }
+
+
+def test_what_neither_reading_allows_is_refuted_and_what_one_allows_is_open(tmp_path: Path) -> None:
+    """As written three folds cannot move; if two of them are straight, they can, but not all."""
+    path = tmp_path / "row.fold"
+    path.write_text(json.dumps(row_of_three("MMMMMVM")))
+    refuted = run("vertices", path)
+    assert refuted.exit_code == INVALID
+    assert "never" not in words(refuted.stdout)
+    path.write_text(json.dumps(row_of_three("UUUUUUU")))
+    free = run("vertices", path)
+    assert free.exit_code == UNDECIDED
+    assert (
+        "the vertex does not start to fold as it is written, and with a straight line it does"
+        in words(free.stdout)
+    )
+
+
+def test_fold_does_not_call_the_digits_of_a_doubted_drawing_rigid(tmp_path: Path) -> None:
+    path = tmp_path / "row.fold"
+    path.write_text(json.dumps(row_of_three("MMMMMVM")))
+    result = run("fold", path)
+    assert result.exit_code == UNDECIDED
+    assert "PROVED" not in result.stderr + result.stdout
+    assert "the digits as written are rigid, but 3 relations nearly hold" in words(result.stderr)
