@@ -39,6 +39,7 @@ def info_report(
     """
     pattern = facts.pattern
     rows = [
+        *_digits(found),
         ("vertices", f"{pattern.Vi} interior, {pattern.Ve} boundary"),
         (
             "faces, edges, folds",
@@ -84,6 +85,7 @@ def panels_info(facts: PanelFacts, found: Vertices, *, exact: bool = False) -> T
     pattern = facts.pattern
     degrees = ", ".join(f"{n} of degree {d}" for d, n in facts.degree_counts.items())
     rows = [
+        *_digits(found),
         ("vertices", f"{len(pattern.interior)} interior, {len(pattern.boundary_set)} boundary"),
         (
             "panels, edges, folds",
@@ -97,6 +99,13 @@ def panels_info(facts: PanelFacts, found: Vertices, *, exact: bool = False) -> T
         ("expected", facts.expected),
     ]
     return facts_table([*rows, ("sha256", pattern.sha256)] if exact else list(rows))
+
+
+def _digits(found: Vertices) -> list[tuple[str, str]]:
+    """The row that says so if the facts hold for the digits as written only."""
+    if found.meant is None or not found.meant.doubt:
+        return []
+    return [("these facts", f"hold for the digits as written: {found.meant.doubt}")]
 
 
 def _motion_rows(facts: PanelFacts) -> list[tuple[str, str]]:

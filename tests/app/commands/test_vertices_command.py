@@ -196,4 +196,6 @@ def test_fold_does_not_call_the_digits_of_a_doubted_drawing_rigid(tmp_path: Path
     result = run("fold", path)
     assert result.exit_code == UNDECIDED
     assert "PROVED" not in result.stderr + result.stdout
+    info = words(run("info", path).stdout)
+    assert "these facts hold for the digits as written: 3 relations nearly hold" in info
     assert "the digits as written are rigid, but 3 relations nearly hold" in words(result.stderr)
