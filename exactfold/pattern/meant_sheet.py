@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import cos, hypot, log10, pi, sin
-from typing import Any, TypeAlias
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from exactfold.errors import (
     UsageError,
 )
 from exactfold.exact.numbers import decimal_above, format_rational
-from exactfold.exact.surds import Number, Surd, simple
+from exactfold.exact.surds import Number, Surd, sign, simple
 from exactfold.pattern.drawing.meant.constructing import constructed
 from exactfold.pattern.drawing.meant.directions import Directions, in_a_tower, parts_of
 from exactfold.pattern.drawing.meant.peeling import Lines
@@ -32,6 +32,8 @@ from exactfold.pattern.panel_entries import panels_document
 from exactfold.pattern.panel_pattern import PanelPattern
 
 Written: TypeAlias = tuple[tuple[Fraction, Fraction], ...]
+_LEAST: Final = 1e-300
+"""A move that floats cannot tell from 0 is proposed to be this long."""
 
 
 @dataclass(frozen=True)
@@ -204,13 +206,21 @@ def _compared(
 
 
 def _distance(written: Written, points: Sequence[tuple[Surd, Surd]]) -> Fraction:
-    """An upper bound, in three digits, of how far points moved, relative to the larger side."""
+    """An upper bound of how far points moved, relative to the larger side.
+
+    Floats propose three digits, and the bound is doubled until exact squares confirm it.
+    """
     size = max(max(axis) - min(axis) for axis in zip(*written, strict=True))
-    moved = max(
-        hypot(float(x - a), float(y - b)) for (x, y), (a, b) in zip(points, written, strict=True)
-    )
-    above = Fraction(moved) * Fraction(1 + 2.0**-40)  # floats of differences are correctly rounded
-    return Fraction(decimal_above(above / size, 3)) if moved else Fraction(0)
+    moves = [(x - a, y - b) for (x, y), (a, b) in zip(points, written, strict=True)]
+    moves = [move for move in moves if sign(move[0]) or sign(move[1])]
+    if not moves:
+        return Fraction(0)
+    moved = max(hypot(float(dx), float(dy)) for dx, dy in moves) or _LEAST
+    above = Fraction(moved) * Fraction(1 + 2.0**-40)
+    bound = Fraction(decimal_above(above / size, 3))
+    while any(sign(dx * dx + dy * dy - (bound * size) ** 2) > 0 for dx, dy in moves):
+        bound *= 2
+    return bound
 
 
 def _parts(value: Number) -> Iterator[Fraction]:

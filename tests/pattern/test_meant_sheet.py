@@ -15,13 +15,13 @@ from panel_sheets import chicken_wire, mesh, miura, tiling
 
 from exactfold import checker
 from exactfold.errors import NotApplicableError, UsageError
-from exactfold.exact.surds import ball
+from exactfold.exact.surds import RATIONALS, ball
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.data import example_path
 from exactfold.pattern.drawing.meant import positions
 from exactfold.pattern.drawing.meant.inference import infer
 from exactfold.pattern.drawing.meant.values import Angles, Edge
-from exactfold.pattern.meant_sheet import Realized, certificate, realize
+from exactfold.pattern.meant_sheet import Realized, _distance, certificate, realize
 from exactfold.pattern.opening import open_pattern, panels
 from exactfold.pattern.panel_pattern import PanelPattern
 
@@ -309,3 +309,16 @@ def test_numbers_that_become_too_long(monkeypatch: pytest.MonkeyPatch) -> None:
     made = realize(drawn, angles, 1e-9)
     assert (made.existence, made.sheet) == ("none", None)
     assert made.reason == positions.TOO_LONG
+
+
+def test_the_distance_is_an_exact_bound() -> None:
+    """Floats take a move of 1e-400 for none, and the digits of a longer one are rounded up."""
+    written = ((Fraction(0), Fraction(0)), (Fraction(1), Fraction(0)))
+    for move in (Fraction(1, 10**400), Fraction(1, 3), Fraction(2, 7 * 10**9)):
+        points = [
+            (RATIONALS.number(move), RATIONALS.number(0)),
+            (RATIONALS.number(1), RATIONALS.number(0)),
+        ]
+        assert move <= _distance(written, points)
+    still = [(RATIONALS.number(x), RATIONALS.number(y)) for x, y in written]
+    assert _distance(written, still) == 0
