@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final, TypedDict
 from exactfold._support.documents import Natural, NotNegative
 from exactfold._support.plurals import agreeing, counted
 from exactfold.errors import NotApplicableError
+from exactfold.exact.numbers import decimal_above
 from exactfold.pattern.drawing.meant.left import left_relations, nearly
 from exactfold.pattern.drawing.meant.values import Existence, Kind, Relation
 
@@ -118,7 +119,12 @@ class Meant:
     @property
     def name(self) -> str:
         """What the sheet of the answer is."""
-        return f"the sheet that was meant, within {self.distance or 0:.1e} of the drawing"
+        return f"the sheet that was meant, within {self._within} of the drawing"
+
+    @property
+    def _within(self) -> str:
+        """The distance in two digits, rounded up, so that what is proved of it still holds."""
+        return decimal_above(Fraction(repr(self.distance or 0)), 2)
 
     @property
     def lines(self) -> tuple[str, ...]:
@@ -137,8 +143,7 @@ class Meant:
             f"{self.independent} independent{chance}"
         )
         lines.append(
-            f"within {self.distance or 0:.1e} of the drawing there is a sheet with all of them - "
-            "PROVED"
+            f"within {self._within} of the drawing there is a sheet with all of them - PROVED"
         )
         if self.left_out:
             lines.append(

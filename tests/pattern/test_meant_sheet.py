@@ -21,6 +21,7 @@ from exactfold.pattern.data import example_path
 from exactfold.pattern.drawing.meant import positions
 from exactfold.pattern.drawing.meant.inference import infer
 from exactfold.pattern.drawing.meant.values import Angles, Edge
+from exactfold.pattern.meant import Meant
 from exactfold.pattern.meant_sheet import Realized, _distance, certificate, realize
 from exactfold.pattern.opening import open_pattern, panels
 from exactfold.pattern.panel_pattern import PanelPattern
@@ -322,3 +323,9 @@ def test_the_distance_is_an_exact_bound() -> None:
         assert move <= _distance(written, points)
     still = [(RATIONALS.number(x), RATIONALS.number(y)) for x, y in written]
     assert _distance(written, still) == 0
+
+
+def test_the_distance_is_shown_rounded_up() -> None:
+    assert Meant(distance=6.84e-13, existence="exact").name.startswith(
+        "the sheet that was meant, within 6.9e-13"
+    )
