@@ -161,14 +161,15 @@ def write_system(asked: Wanted) -> int:
 
     Raises the errors of `read_any`, `sheet_system` and `numbers_in`.
     """
-    from exactfold.app.verbs.systems import sheet_system
+    from exactfold.app.verbs.systems import PROGRAMS, sheet_system
 
     with Bar("reading") as bar:
         opened = read_any(asked.file, asked.reading)
         bar("equations")
         system = sheet_system(opened, asked.given.heights)
         text = system.text(str(asked.system))
-    tell(f"{system.about}; unknowns: {', '.join(system.unknowns)}")
+    if not PROGRAMS[str(asked.system)][1]:  # the text has no comments
+        tell(system.about)
     if asked.written is None:
         sys.stdout.write(text)
     else:
