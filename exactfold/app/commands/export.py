@@ -1,6 +1,7 @@
 """`exactfold export`: writes a branch, named by its signs or its number, as a FOLD file.
 
-With `--coq` it writes the sheet as a file that applies the formal proof to this sheet.
+With `--coq` it writes the sheet as a file that applies the formal proof to this sheet, and with
+`--system` the equations of the sheet for another program.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.app.commands.branch import chosen
 from exactfold.app.options.branches import ExportOptions
 from exactfold.app.shell.given import Given
-from exactfold.app.shell.patterns import read
+from exactfold.app.shell.patterns import read, read_any
 from exactfold.app.shell.shell import EXIT, Bar, name_of, one_at_least, one_at_most, say, tell
 from exactfold.branches.counting.find import find_branches
 from exactfold.branches.values.branch import Branch, GaugeText
@@ -152,6 +153,28 @@ def write_coq(asked: Wanted) -> int:
         write_text(output, text)
         tell(f"wrote {output}; after `make -C proofs/formal`, verify it with")
         tell(f"coqc -Q proofs/formal Exactfold {shlex.quote(str(output))}")
+    return EXIT[PROVED]
+
+
+def write_system(asked: Wanted) -> int:
+    """Write the equations of the sheet for another program; return the exit code.
+
+    Raises the errors of `read_any`, `sheet_system` and `numbers_in`.
+    """
+    from exactfold.app.verbs.systems import PROGRAMS, sheet_system
+
+    with Bar("reading") as bar:
+        opened = read_any(asked.file, asked.reading)
+        bar("equations")
+        system = sheet_system(opened, asked.given.heights)
+        text = system.text(str(asked.system))
+    if not PROGRAMS[str(asked.system)][1]:  # the text has no comments
+        tell(system.about)
+    if asked.written is None:
+        sys.stdout.write(text)
+    else:
+        write_text(asked.written, text)
+        tell(f"wrote {asked.written}")
     return EXIT[PROVED]
 
 

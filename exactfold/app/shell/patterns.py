@@ -48,17 +48,23 @@ def read(path: Path, reading: Reading, needs: str) -> Triangulated:
     return Triangulated(triangles(opened, needs), opened)
 
 
-def read_any(path: Path, reading: Reading = PLAIN) -> Opened:
+def read_any(path: Path, reading: Reading = PLAIN, *, doubted: bool = True) -> Opened:
     """Open a sheet in any format; print to stderr what was read and repaired, and warnings.
+
+    The doubt about a sheet is a warning unless `doubted` is False: then the answer says it.
 
     Raises the errors of `located` and `open_pattern`.
     """
     opened = open_pattern(located(path), reading, name=said(path))
     for line in opened.lines:
         say(line)
-    if opened.doubt:
+    if opened.doubt and doubted:
         say(f"warning: {opened.doubt}; --snap exact takes the digits as written")
-    elif isinstance(opened.sheet, CreasePattern) and (near := near_degenerate(opened.sheet)):
+    elif (
+        not opened.doubt
+        and isinstance(opened.sheet, CreasePattern)
+        and (near := near_degenerate(opened.sheet))
+    ):
         say(f"warning: {near.text}")
     return opened
 

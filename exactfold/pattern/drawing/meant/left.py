@@ -113,6 +113,11 @@ def nearly(relations: tuple[Relation, ...]) -> str:
     return f"{near}, off by {least.defect:.1g} of the size"
 
 
+def off_by(relations: tuple[Relation, ...]) -> tuple[str, ...]:
+    """A line for each relation, with its defect."""
+    return tuple(f"{one.name} is off by {one.defect:.1e}" for one in relations)
+
+
 _Terms = tuple[tuple[Edge, int], ...]
 _Places = Sequence[tuple[float, float]]
 
