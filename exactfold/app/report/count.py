@@ -315,7 +315,7 @@ def branch_table(branches: Sequence[Branch], *, everything: bool = True) -> list
         table.add_column("vertices up", overflow="fold")
     table.add_column("folds", overflow="fold")
     if counts:
-        table.add_column("counts", justify="right")
+        table.add_column("multiplicity", justify="right")
     for k, branch in enumerate(branches[:limit], 1):
         signs = branch.vertex_signs
         cells: list[Any] = [str(k)]
