@@ -14,7 +14,7 @@ from exactfold._support.verdict import PROVED
 from exactfold.app.options.pictures import ViewOptions
 from exactfold.app.report.terminal import show
 from exactfold.app.shell.patterns import read_any
-from exactfold.app.shell.shell import Bar, apart, interruptible, name_of, say, tell
+from exactfold.app.shell.shell import Bar, apart, interruptible, say, tell, wrote
 from exactfold.app.viewer.page import checked_page, write_view
 from exactfold.app.viewer.server import view_server
 from exactfold.errors import UsageError
@@ -51,7 +51,7 @@ class Wanted(ViewOptions):
             self._serve(opened, name)
             return
         show(Text(document["answer"]))
-        tell(f"written: {name_of(output)}, with {_contents(document)}")
+        wrote(output, _contents(document))
 
     def _serve(self, opened: Opened, name: str) -> None:
         with Bar("counting") as bar:
