@@ -61,7 +61,7 @@ def meaning(found: Opened, written: Callable[[], Opened]) -> Opened:
     lines = tuple(line for line in raw.lines if not line.startswith("coordinates kept"))
     return replace(
         raw,
-        sheet=_triangles(exact),
+        sheet=_triangles(exact) if meant.existence == "exact" else exact,
         lines=(*lines, *meant.lines, *(meant.listed if reading.relations else ())),
         largest_move=meant.distance or 0.0,
         field_name=exact.field_name,
