@@ -12,7 +12,8 @@ from exactfold._support.documents import Natural, NotNegative
 from exactfold._support.plurals import agreeing, counted
 from exactfold.errors import NotApplicableError
 from exactfold.exact.numbers import decimal_above
-from exactfold.pattern.drawing.meant.left import left_relations, nearly
+from exactfold.pattern.drawing.meant.left import left_relations, nearly, off_by
+from exactfold.pattern.drawing.meant.noise import TOLERANCE
 from exactfold.pattern.drawing.meant.values import Existence, Kind, Relation
 
 if TYPE_CHECKING:
@@ -119,6 +120,14 @@ class Meant:
         return f"{text}; the sheet that was meant is not known, because {self.reason}"
 
     @property
+    def tolerance(self) -> float:
+        """What is missed by no more than this, as a share of the size, may be meant to hold.
+
+        It is 0 unless answers are doubted.
+        """
+        return TOLERANCE * (self.noise or self.left[-1].defect) if self.left else 0.0
+
+    @property
     def name(self) -> str:
         """What the sheet of the answer is."""
         return f"the sheet that was meant, within {self._within} of the drawing"
@@ -164,8 +173,7 @@ class Meant:
     @property
     def listed(self) -> tuple[str, ...]:
         """The relations, or those that nearly hold if none was inferred, one line each."""
-        shown = self.relations if self.inferred else self.left
-        return tuple(f"{one.name} is off by {one.defect:.1e}" for one in shown)
+        return off_by(self.relations if self.inferred else self.left)
 
     def certificate(self) -> dict[str, Any]:
         """The certificate that the sheet exists near the drawing and has all relations.
