@@ -16,6 +16,7 @@ from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.app.options.branches import (
     AssignmentsOptions,
     BranchOptions,
+    CertifyOptions,
     ExportOptions,
     MatchOptions,
     VerticesOptions,
@@ -187,17 +188,33 @@ def vertices(**options: Any) -> int:
 @app.command(cls=Command)
 @taking(ExportOptions)
 def export(**options: Any) -> int:
-    """Write one branch as a FOLD file that simulators can fold, or a sheet for Coq.
+    """Write one branch as a FOLD file, a sheet for Coq, or equations for other programs.
 
     The fold angles in the file are proportional to those of the branch, so that a
     simulator that they drive stays on the branch. A second frame shows the sheet
     in space, to second order. With --coq the file is for Coq instead: it applies
-    what is proved of every sheet to this sheet and to the named branches.
+    what is proved of every sheet to this sheet and to the named branches. With
+    --system it holds the equations of the sheet, of any kind.
     """
-    from exactfold.app.commands.export import Wanted, write_coq
+    from exactfold.app.commands.export import Wanted, write_coq, write_system
 
     asked = Wanted(**options)
+    if asked.system is not None:
+        return write_system(asked)
     return write_coq(asked) if asked.coq else asked.answer()
+
+
+@app.command(cls=Command)
+@taking(CertifyOptions)
+def certify(**options: Any) -> int:
+    """Prove solutions that another program found: one zero in a small box around each.
+
+    The points are those of the system that `exactfold export --system` writes.
+    Floating point only proposes: Krawczyk's test in integers decides.
+    """
+    from exactfold.app.commands.certify import Asked
+
+    return Asked(**options).answer()
 
 
 @app.command(cls=Command)

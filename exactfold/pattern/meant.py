@@ -12,7 +12,7 @@ from exactfold._support.documents import Natural, NotNegative
 from exactfold._support.plurals import agreeing, counted
 from exactfold.errors import NotApplicableError
 from exactfold.exact.numbers import decimal_above
-from exactfold.pattern.drawing.meant.left import left_relations, nearly
+from exactfold.pattern.drawing.meant.left import left_relations, nearly, off_by
 from exactfold.pattern.drawing.meant.values import Existence, Kind, Relation
 
 if TYPE_CHECKING:
@@ -158,8 +158,7 @@ class Meant:
     @property
     def listed(self) -> tuple[str, ...]:
         """The relations, or those that nearly hold if none was inferred, one line each."""
-        shown = self.relations if self.inferred else self.left
-        return tuple(f"{one.name} is off by {one.defect:.1e}" for one in shown)
+        return off_by(self.relations if self.inferred else self.left)
 
     def certificate(self) -> dict[str, Any]:
         """The certificate that the sheet exists near the drawing and has all relations.

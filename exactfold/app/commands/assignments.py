@@ -30,7 +30,7 @@ class Listed(AssignmentsOptions):
         Raises the errors of `read_any`, and `UsageError` if the letters do not fit.
         """
         with Bar("reading") as bar:
-            opened = read_any(self.file, self.reading)
+            opened = read_any(self.file, self.reading, doubted=self.as_json)
             listed = self._listed(opened, bar)
             self._write(listed, bar)
             forcing = self._forcing(listed, opened) if self.forcing else None
@@ -45,7 +45,7 @@ class Listed(AssignmentsOptions):
 
     def _listed(self, opened: Opened, bar: Bar) -> AllAssignments | PanelAssignments:
         """The list for a sheet with five corners if there is one, else that for rigid panels."""
-        if isinstance(opened.sheet, CreasePattern):
+        if isinstance(opened.sheet, CreasePattern) and not opened.doubt:
             try:
                 return all_assignments(opened.sheet, progress=bar)
             except NotCountedError:

@@ -128,7 +128,7 @@ class Asked(CountOptions):
             raise UsageError("--resume, --workers and --dask go with --stream")
         clock = Clock(self.limit)
         with Bar("reading") as bar:
-            opened = read_any(self.pattern, self.reading)
+            opened = read_any(self.pattern, self.reading, doubted=self.as_json)
             sheet = opened.sheet
             if isinstance(sheet, CreasePattern) and (better := advice(sheet)) is not None:
                 say(better)

@@ -1,6 +1,7 @@
 """`exactfold export`: writes a branch, named by its signs or its number, as a FOLD file.
 
-With `--coq` it writes the sheet as a file that applies the formal proof to this sheet.
+With `--coq` it writes the sheet as a file that applies the formal proof to this sheet, and with
+`--system` the equations of the sheet for another program.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.app.commands.branch import chosen
 from exactfold.app.options.branches import ExportOptions
 from exactfold.app.shell.given import Given
-from exactfold.app.shell.patterns import read
+from exactfold.app.shell.patterns import in_doubt, read, read_any, tell_doubt, verdict
 from exactfold.app.shell.shell import EXIT, Bar, name_of, one_at_least, one_at_most, say, tell
 from exactfold.branches.counting.find import find_branches
 from exactfold.branches.values.branch import Branch, GaugeText
@@ -60,7 +61,8 @@ class Wanted(ExportOptions):
         if output is None and self.as_json:
             raise UsageError("--json describes the file that is written: name it with -o")
         with Bar("reading") as bar:
-            pattern = read(self.file, self.reading, "export").pattern
+            read_sheet = read(self.file, self.reading, "export")
+            pattern, opened = read_sheet.pattern, read_sheet.opened
             one_at_least(*options)
             branch = chosen(pattern, self.signs, self.up, self.place, bar, self.given)
             bar("writing")
@@ -79,12 +81,14 @@ class Wanted(ExportOptions):
         if output is None:
             sys.stdout.write(export.text)
         elif self.as_json:
-            print(json.dumps(_summary(branch, export, output, name_of(self.file))))
+            summary = _summary(branch, export, output, name_of(self.file))
+            print(json.dumps(in_doubt(opened, summary)))
         else:
             from exactfold.app import report
 
+            tell_doubt(opened)
             report.show(report.export_report(str(output), branch, export))
-        return EXIT[export.status]
+        return EXIT[verdict(opened, export.status)]
 
     @property
     def written(self) -> Path | None:
@@ -152,6 +156,28 @@ def write_coq(asked: Wanted) -> int:
         write_text(output, text)
         tell(f"wrote {output}; after `make -C proofs/formal`, verify it with")
         tell(f"coqc -Q proofs/formal Exactfold {shlex.quote(str(output))}")
+    return EXIT[PROVED]
+
+
+def write_system(asked: Wanted) -> int:
+    """Write the equations of the sheet for another program; return the exit code.
+
+    Raises the errors of `read_any`, `sheet_system` and `numbers_in`.
+    """
+    from exactfold.app.verbs.systems import PROGRAMS, sheet_system
+
+    with Bar("reading") as bar:
+        opened = read_any(asked.file, asked.reading)
+        bar("equations")
+        system = sheet_system(opened, asked.given.heights)
+        text = system.text(str(asked.system))
+    if not PROGRAMS[str(asked.system)][1]:  # the text has no comments
+        tell(system.about)
+    if asked.written is None:
+        sys.stdout.write(text)
+    else:
+        write_text(asked.written, text)
+        tell(f"wrote {asked.written}")
     return EXIT[PROVED]
 
 

@@ -9,6 +9,7 @@ import typer
 from exactfold._support.clock import LIMIT
 from exactfold.app.options.reading import ReadingOptions
 from exactfold.app.shell.parameters import (
+    PROGRAM_NAMES,
     BoundaryHeights,
     Curvature,
     Json,
@@ -21,6 +22,7 @@ from exactfold.app.shell.parameters import (
     degrees,
     flag,
     number,
+    program_name,
     written,
 )
 from exactfold.app.shell.shell import apart, one_at_most
@@ -190,9 +192,47 @@ class ExportOptions(ReadingOptions):
             text="Write a file for the Coq proof instead: the sheet and the named branches.",
         ),
     ] = False
+    system: Annotated[
+        str | None,
+        typer.Option(
+            metavar="PROGRAM",
+            parser=program_name,
+            help="Write the equations of the sheet instead, for "
+            f"{', '.join(PROGRAM_NAMES[:-1])} or {PROGRAM_NAMES[-1]}.",
+        ),
+    ] = None
     as_json: Json = False
 
     def __post_init__(self) -> None:
         apart(self.output, self.file, self.boundary_heights)
         if self.everything and not self.coq:
             raise UsageError("--all goes with --coq")
+        if self.system is not None:
+            branch = self.signs, self.up, self.place, self.amount
+            if self.coq or self.as_json or any(given is not None for given in branch):
+                raise UsageError(
+                    "--system writes the equations of the whole sheet: of the other options only "
+                    "-o, --rim and those for reading go with it"
+                )
+
+
+@dataclass(frozen=True, eq=False, repr=False, match_args=False)
+class CertifyOptions(ReadingOptions):
+    """The options of `exactfold certify`."""
+
+    file: Pattern
+    points: Annotated[
+        Path,
+        typer.Argument(
+            metavar="POINTS.json",
+            help="A list of points; each is a list of coordinates in the order of the unknowns of "
+            "`exactfold export --system`, or an object by unknown. A coordinate is a number, text "
+            'such as "1/3", or a pair [real part, imaginary part].',
+        ),
+    ]
+    boundary_heights: BoundaryHeights = None
+    as_json: Json = False
+    everything: Annotated[bool, flag("--all", text="List every point.")] = False
+
+    def __post_init__(self) -> None:
+        apart(self.points, self.file, self.boundary_heights)

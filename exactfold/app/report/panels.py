@@ -127,7 +127,8 @@ def _known(result: Decomposition) -> list[str]:
     lines = []
     if result.true is None and (freedom := result.freedom) is not None:
         first = freedom.first_order
-        more = "" if first is None else f"; the first-order motions have dimension {first}"
+        said = first is None or f"dimension {first}" in result.reason
+        more = "" if said else f"; the first-order motions have dimension {first}"
         lines.append(f"{_where(freedom.within)}{freedom.text} - PROVED{more}")
     if result.drawn is not None:
         lines.append(f"{_where(result.drawn.within)}{_drawn(result.drawn)}")

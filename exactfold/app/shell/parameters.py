@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable
 from fractions import Fraction
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Final, Literal
 
 import typer
 
@@ -165,6 +165,17 @@ def method_name(text: object) -> str:
     if name not in METHODS and name not in ALIASES:
         raise typer.BadParameter(f"{name!r} is not one of {', '.join(METHODS)}")
     return name
+
+
+PROGRAM_NAMES: Final = ("msolve", "m2", "singular", "sage", "julia", "sympy")
+"""The programs for which `exactfold export --system` writes equations."""
+
+
+def program_name(text: object) -> str:
+    """A program of `PROGRAM_NAMES`; raises `BadParameter`."""
+    if str(text) not in PROGRAM_NAMES:
+        raise typer.BadParameter(f"{text!r} is none of {', '.join(PROGRAM_NAMES)}")
+    return str(text)
 
 
 def complete_method(incomplete: str) -> list[str]:

@@ -119,7 +119,7 @@ class PanelAssignments:
         left = sum(len(part.undecided) for part in self.parts)
         if left:
             why.append(f"of {counted(left, 'assignment')} of parts it is not known")
-        return "; ".join([*filter(None, [self.doubt]), *why])
+        return "; ".join(dict.fromkeys([*filter(None, [self.doubt]), *why]))
 
     @property
     def number(self) -> int | None:
@@ -186,6 +186,8 @@ def panel_assignments(
     given = opened.sheet
     sheet = panels(given) if isinstance(given, CreasePattern) else given
     moving, interior = stars(sheet), set(sheet.interior)
+    if opened.doubt:
+        return _doubted(sheet, opened.doubt, time.perf_counter() - start)
     free = tuple(e for e in sheet.folds if not interior & set(e))
     active = {edge for star in moving.values() for edge in star.folds}
     parts: list[PartLetters] = []
@@ -203,9 +205,14 @@ def panel_assignments(
         tuple(parts),
         free,
         tuple(e for e in sheet.folds if e not in active and e not in free),
-        opened.doubt,
-        time.perf_counter() - start,
+        seconds=time.perf_counter() - start,
     )
+
+
+def _doubted(sheet: PanelPattern, doubt: str, seconds: float) -> PanelAssignments:
+    """The answer for inexact digits: no list, as a list would hold for these digits only."""
+    why = f"{doubt}; --snap exact lists the assignments of the digits"
+    return PanelAssignments(sheet, (PartLetters(sheet.folds, (), (), why),), (), (), why, seconds)
 
 
 def _of_branches(sheet: CreasePattern, active: set[Edge]) -> PartLetters | None:

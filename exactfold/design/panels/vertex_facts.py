@@ -212,6 +212,8 @@ def _straightened(star: Star) -> Iterator[tuple[Star, tuple[_Pair, ...]]]:
         if 1 < size < len(pairs) > _MOST_PAIRS:
             continue
         for chosen in combinations(pairs, size):
+            if len({place for pair in chosen for place in pair[:2]}) < 2 * size:
+                continue  # a fold is in two pairs, and not both can be straight
             directions = list(star.directions)
             for pair in chosen:
                 x, y = directions[pair.one]

@@ -92,10 +92,10 @@ class Exact:
         if self.largest_move == 0:
             parts.append("nothing moved")
         else:
-            parts.append(
-                f"largest move {self.largest_move:.1g} of the size, "
-                f"tolerance {float(self.tolerance):.1g}"
-            )
+            within = f"tolerance {float(self.tolerance):.1g}"
+            if self.largest_move > self.tolerance:
+                within = f"{within} of a number, to which crossings and the common unit add"
+            parts.append(f"largest move {self.largest_move:.1g} of the size, {within}")
         return "; ".join(parts)
 
 

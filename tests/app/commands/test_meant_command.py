@@ -205,3 +205,25 @@ def test_a_denominator_that_leaves_near_relations_is_no_remedy(miura: Path) -> N
     result = run("count", miura, "--snap", 10**7)
     assert result.exit_code == UNDECIDED
     assert "--snap 10000000 leaves them" in " ".join(result.stdout.split())
+
+
+def test_a_doubt_is_said_once_and_no_letters_of_the_digits_are_listed(by_hand: Path) -> None:
+    for command in ("count", "match", "info", "assignments"):
+        letters = ["--letters", "M" * 10] if command == "match" else []
+        result = run(command, by_hand, *letters)
+        said = " ".join((result.stderr + result.stdout).split())
+        assert said.count("the sheet that was meant is not known") == 1, command
+    assert run("count", by_hand, "--json").stderr.count("is not known") == 1
+    data = json.loads(run("assignments", by_hand, "--json").stdout)
+    assert (data["status"], data["number"], data["at_most"]) == ("undecided", None, None)
+    assert [part["assignments"] for part in data["parts"]] == [[]]
+    assert "--snap exact lists the assignments of the digits" in data["reason"]
+    assert run("assignments", by_hand, "--snap", "exact").exit_code == PROVED
+
+
+def test_relations_say_so_where_none_is_near() -> None:
+    for pattern in ("miura", "two-vertex"):
+        for more in ([], ["--snap", "exact"]):
+            said = run("count", pattern, "--relations", *more).stderr
+            assert said.endswith("no relation between creases holds nearly but not exactly\n")
+    assert "nearly but not exactly" not in run("count", "miura").stderr
