@@ -129,9 +129,9 @@ def _known(result: Decomposition) -> list[str]:
         first = freedom.first_order
         said = first is None or f"dimension {first}" in result.reason
         more = "" if said else f"; the first-order motions have dimension {first}"
-        lines.append(f"{freedom.text} - PROVED{more}")
+        lines.append(f"{_where(freedom.within)}{freedom.text} - PROVED{more}")
     if result.drawn is not None:
-        lines.append(_drawn(result.drawn))
+        lines.append(f"{_where(result.drawn.within)}{_drawn(result.drawn)}")
         if result.drawn.together:
             number = len(result.drawn.together)
             lines.append(
@@ -146,6 +146,16 @@ def _known(result: Decomposition) -> list[str]:
             f"{agreeing(len(solved), 'is')} known completely: {_ways(known)}"
         )
     return lines
+
+
+def _where(within: float | None) -> str:
+    """For which sheets an answer holds, if not for the one that was read."""
+    if within is None:
+        return ""
+    return (
+        f"on every sheet with these panels whose vertices lie within {within:g} of the size from "
+        "those drawn: "
+    )
 
 
 def _drawn(drawn: Drawn) -> str:
