@@ -13,6 +13,7 @@ from exactfold._support.plurals import agreeing, counted
 from exactfold.errors import NotApplicableError
 from exactfold.exact.numbers import decimal_above
 from exactfold.pattern.drawing.meant.left import left_relations, nearly, off_by
+from exactfold.pattern.drawing.meant.noise import TOLERANCE
 from exactfold.pattern.drawing.meant.values import Existence, Kind, Relation
 
 if TYPE_CHECKING:
@@ -115,6 +116,14 @@ class Meant:
         if not self.reason:
             return text
         return f"{text}; the sheet that was meant is not known, because {self.reason}"
+
+    @property
+    def tolerance(self) -> float:
+        """What is missed by no more than this, as a share of the size, may be meant to hold.
+
+        It is 0 unless answers are doubted.
+        """
+        return TOLERANCE * (self.noise or self.left[-1].defect) if self.left else 0.0
 
     @property
     def name(self) -> str:

@@ -9,7 +9,7 @@ from pathlib import Path
 from exactfold.app.commands.branch import given_signs
 from exactfold.app.options.motions import ActuateOptions
 from exactfold.app.shell.json_numbers import numbers_by_name
-from exactfold.app.shell.patterns import read, verdict
+from exactfold.app.shell.patterns import in_doubt, read, tell_doubt, verdict
 from exactfold.app.shell.shell import EXIT, Bar, name_of, one_at_least
 from exactfold.branches.counting.find import BranchFinder
 from exactfold.design.actuation.actuate import actuate
@@ -40,10 +40,12 @@ class Driven(ActuateOptions):
                 progress=bar,
             )
         if self.as_json:
-            print(json.dumps(actuation.to_dict(name_of(self.file))))
+            document = actuation.to_dict(name_of(self.file))
+            print(json.dumps(in_doubt(read_sheet.opened, document)))
         else:
             from exactfold.app import report
 
+            tell_doubt(read_sheet.opened)
             report.show(report.actuation_report(actuation, everything=self.everything))
         return EXIT[verdict(read_sheet.opened, actuation.status)]
 

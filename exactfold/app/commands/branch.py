@@ -11,7 +11,7 @@ from exactfold._support.verdict import PROVED
 from exactfold.app.commands.driving import Angles, driven_angles
 from exactfold.app.options.branches import BranchOptions
 from exactfold.app.shell.given import Given
-from exactfold.app.shell.patterns import Triangulated, read
+from exactfold.app.shell.patterns import Triangulated, in_doubt, read, tell_doubt
 from exactfold.app.shell.shell import Bar, name_of, one_at_least, say
 from exactfold.branches.counting.find import BranchFinder
 from exactfold.branches.values.branch import Branch
@@ -53,9 +53,12 @@ class Asked(BranchOptions):
             for name, result in self._found(finder, bar):
                 proved &= result.status is PROVED
                 if self.as_json:
-                    print(json.dumps(result.to_dict(self.name)), flush=True)
+                    document = in_doubt(read_sheet.opened, result.to_dict(self.name))
+                    print(json.dumps(document), flush=True)
                 elif name:
                     rows.append(report.branch_row(name, result))
+        if not self.as_json:
+            tell_doubt(read_sheet.opened)
         if not self._is_many:
             self._certify(result)
             if not self.as_json:
@@ -87,8 +90,9 @@ class Asked(BranchOptions):
             say(also_found(driven.others))
         self._certify(driven.branch)
         if self.as_json:
-            print(json.dumps(driven.to_dict(self.name)))
+            print(json.dumps(in_doubt(read_sheet.opened, driven.to_dict(self.name))))
         else:
+            tell_doubt(read_sheet.opened)
             report.show(report.branch_report(driven.branch, driven))
         sure = not read_sheet.opened.doubt
         return sure and driven.branch.status is PROVED and status is PROVED

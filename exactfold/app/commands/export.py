@@ -26,7 +26,7 @@ from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.app.commands.branch import chosen
 from exactfold.app.options.branches import ExportOptions
 from exactfold.app.shell.given import Given
-from exactfold.app.shell.patterns import read, read_any
+from exactfold.app.shell.patterns import in_doubt, read, read_any, tell_doubt, verdict
 from exactfold.app.shell.shell import EXIT, Bar, name_of, one_at_least, one_at_most, say, tell
 from exactfold.branches.counting.find import find_branches
 from exactfold.branches.values.branch import Branch, GaugeText
@@ -61,7 +61,8 @@ class Wanted(ExportOptions):
         if output is None and self.as_json:
             raise UsageError("--json describes the file that is written: name it with -o")
         with Bar("reading") as bar:
-            pattern = read(self.file, self.reading, "export").pattern
+            read_sheet = read(self.file, self.reading, "export")
+            pattern, opened = read_sheet.pattern, read_sheet.opened
             one_at_least(*options)
             branch = chosen(pattern, self.signs, self.up, self.place, bar, self.given)
             bar("writing")
@@ -80,12 +81,14 @@ class Wanted(ExportOptions):
         if output is None:
             sys.stdout.write(export.text)
         elif self.as_json:
-            print(json.dumps(_summary(branch, export, output, name_of(self.file))))
+            summary = _summary(branch, export, output, name_of(self.file))
+            print(json.dumps(in_doubt(opened, summary)))
         else:
             from exactfold.app import report
 
+            tell_doubt(opened)
             report.show(report.export_report(str(output), branch, export))
-        return EXIT[export.status]
+        return EXIT[verdict(opened, export.status)]
 
     @property
     def written(self) -> Path | None:

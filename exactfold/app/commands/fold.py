@@ -14,7 +14,7 @@ from exactfold.app.commands.driving import driven_angles
 from exactfold.app.options.motions import FoldOptions
 from exactfold.app.pictures.picture_files import checked_picture, write_picture
 from exactfold.app.shell.given import Given
-from exactfold.app.shell.patterns import read_any, verdict
+from exactfold.app.shell.patterns import in_doubt, read_any, tell_doubt, verdict
 from exactfold.app.shell.shell import EXIT, Bar, name_of, say
 from exactfold.branches.values.branch import Branch
 from exactfold.errors import UndecidedBranchError, UsageError
@@ -80,9 +80,10 @@ class Wanted(FoldOptions):
             bar("writing")
             written = self._written(motion, proof)
         if self.as_json:
-            document = motion.to_dict(name_of(self.file), written)
+            document = in_doubt(opened, motion.to_dict(name_of(self.file), written))
             print(json.dumps({**document, "proof": None if proof is None else proof.to_dict()}))
         else:
+            tell_doubt(opened)
             report.show(report.motion_report(motion, written, proof))
         if isinstance(motion, Motion) and motion.branch.status is not PROVED:
             say(f"the branch is not proved: {motion.branch.reason}")

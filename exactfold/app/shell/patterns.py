@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from exactfold._support.verdict import UNDECIDED, Verdict
-from exactfold.app.shell.shell import STDIN, said, say
+from exactfold.app.shell.shell import STDIN, said, say, tell
 from exactfold.errors import UnreadableFileError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.data import EXAMPLES, example_path
@@ -72,3 +73,19 @@ def read_any(path: Path, reading: Reading = PLAIN, *, doubted: bool = True) -> O
 def verdict(opened: Opened, status: Verdict) -> Verdict:
     """The verdict of an answer about the sheet: UNDECIDED if it holds for its digits only."""
     return UNDECIDED if opened.doubt else status
+
+
+def tell_doubt(opened: Opened) -> None:
+    """Print, above an answer that holds for the digits of the sheet only, that it does."""
+    if opened.doubt:
+        tell("UNDECIDED for the sheet that was meant; for the digits as written (--snap exact):\n")
+
+
+def in_doubt(opened: Opened, document: Mapping[str, object]) -> Mapping[str, object]:
+    """The JSON of an answer: undecided, with the doubt, if it holds for its digits only."""
+    if not opened.doubt or document["status"] == str(UNDECIDED):
+        return document
+    known = {"status": str(UNDECIDED)}
+    if reason := document.get("reason"):
+        known["reason"] = f"{opened.doubt}; the digits as written: {document['status']}, {reason}"
+    return {**document, **known}

@@ -15,7 +15,7 @@ from exactfold._support.progress import Progress
 from exactfold.app.viewer.document import FRAMES, Known
 from exactfold.app.viewer.page import view_page
 from exactfold.app.viewer.ways import Following, Way, branch_way
-from exactfold.branches.counting.find import BranchFinder
+from exactfold.branches.counting.find import BranchFinder, branch_finder
 from exactfold.errors import ExactfoldError, NumberError, UsageError
 from exactfold.exact.numbers import parse_whole
 from exactfold.pattern.crease_pattern import CreasePattern
@@ -53,7 +53,7 @@ def view_server(
     known = Known.of(
         sheet, name=name, branches=branches, frames=frames, proving=proving, progress=progress
     )
-    return ViewServer(known, Following(frames, proving), port)
+    return ViewServer(known, port)
 
 
 class ViewServer(ThreadingHTTPServer):
@@ -65,8 +65,8 @@ class ViewServer(ThreadingHTTPServer):
 
     daemon_threads = True
 
-    def __init__(self, known: Known, following: Following, port: int) -> None:
-        self._known, self._following = known, following
+    def __init__(self, known: Known, port: int) -> None:
+        self._known = known
         self._lock = threading.Lock()
         self._finder: BranchFinder | None = None
         document = known.document([way for way, _ in known.listed], served=True)
@@ -111,16 +111,16 @@ class ViewServer(ThreadingHTTPServer):
         """The branch with these vertex signs, and its motion; raises the errors of
         `BranchFinder`.
         """
-        pattern = self._known.opened.sheet
-        if not isinstance(pattern, CreasePattern):
+        pattern, following = self._known.opened.sheet, self._known.follower
+        if not isinstance(pattern, CreasePattern) or not isinstance(following, Following):
             raise UsageError(
                 "this sheet folds along modes of rigid panels, and modes have no vertex signs"
             )
         with self._lock:
             if self._finder is None:
-                self._finder = BranchFinder(pattern)
+                self._finder = branch_finder(pattern)
             branch = self._finder.find(self._finder.signs(signs, None))
-            return {**branch_way(branch), **self._following(branch)}
+            return {**branch_way(branch), **following(branch)}
 
 
 class _Handler(BaseHTTPRequestHandler):

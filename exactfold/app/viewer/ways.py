@@ -2,30 +2,38 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, NamedTuple, NotRequired, TypeAlias, TypedDict
+from typing import TYPE_CHECKING, Annotated, Final, NamedTuple, NotRequired, TypeAlias, TypedDict
 
-from exactfold._support.documents import Keywords, NotNegative, Positive, Sign, VerdictText
+from exactfold._support.documents import Keywords, Natural, NotNegative, Positive, Sign, VerdictText
 from exactfold._support.plurals import counted
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.app.report.motion import ending_text, event_text
 from exactfold.app.viewer.coding import CodedFrames, coded_frames, levelled
+from exactfold.app.viewer.families import Representative
 from exactfold.branches.values.export import AMOUNT
 from exactfold.errors import ExactfoldError, WorkerDiedError
 from exactfold.motion.following import follow
 from exactfold.motion.panels.followable import LINEAR
 from exactfold.motion.proving import prove
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.opening import panels
 
 if TYPE_CHECKING:
     from exactfold.branches.values.branch import Branch
     from exactfold.motion.curves.in_motion import SheetInMotion
     from exactfold.motion.curves.motion import Motion
+    from exactfold.motion.panels.families import FamilyMotion
     from exactfold.motion.panels.followable import PanelComponent, PanelMode
     from exactfold.motion.panels.motion import PanelMotion
     from exactfold.panels.result import Decomposition
-    from exactfold.pattern.crease_pattern import CreasePattern, Edge
+    from exactfold.pattern.crease_pattern import Edge
     from exactfold.pattern.panel_pattern import PanelPattern
+
+MOST_DRIVERS: Final = 6
+"""Up to this many free fold angles of a family have sliders."""
 
 Letters: TypeAlias = Annotated[str, Keywords(pattern="^[MVFU]*$")]
 
@@ -60,6 +68,15 @@ class Followed(TypedDict):
     """Why there is no motion."""
     letters: NotRequired[Letters]
     angles: NotRequired[list[float]]
+    family: NotRequired[Family | None]
+
+
+class Family(TypedDict):
+    """A family of infinitely many ways, one of which is shown."""
+
+    dimension: Positive
+    drivers: list[Natural]
+    """Folds, by their place in `folds`, whose angles can be chosen independently."""
 
 
 class Way(TypedDict):
@@ -78,6 +95,8 @@ class Way(TypedDict):
     motion: DrawnMotion | None
     why: str
     """Why there is no motion."""
+    family: Family | None
+    """If infinitely many ways belong together and this one represents them."""
 
 
 @dataclass(frozen=True)
@@ -89,13 +108,20 @@ class Following:
 
     frames: int
     proving: bool = False
+    dimension: int = 1
+    """The dimension of the family of each branch."""
 
     def __call__(self, branch: Branch) -> Followed:
         """The motion along a branch up to the first contact, or the reason why there is none."""
         try:
+            if self.dimension > 1 and not self.proving:
+                return _family_of(branch, self.dimension, self.frames)
             motion = follow(branch, frames=self.frames)
             proof = _proof(motion) if self.proving else _in_floats(motion)
-            return {"motion": _drawn(motion, proof), "why": ""}
+            found: Followed = {"motion": _drawn(motion, proof), "why": ""}
+            if self.dimension > 1:
+                found["family"] = _family(motion, self.dimension)
+            return found
         except WorkerDiedError:
             raise
         except ExactfoldError as error:
@@ -113,13 +139,21 @@ class FollowingPanels:
     frames: int
     proving: bool = False
 
-    def __call__(self, component: int) -> Followed:
-        """The motion along a component up to the first contact, or the reason why there is none."""
+    def __call__(self, component: int | Representative) -> Followed:
+        """The motion along a component or a family, or the reason why there is none."""
+        from exactfold.motion.panels.families import follow_family
         from exactfold.motion.panels.following import follow_panels
 
+        motion: PanelMotion | FamilyMotion
         try:
-            motion = follow_panels(self.ways, component=component, frames=self.frames)
-            drawn = _drawn(motion, _proof_of_panels(motion, self.proving))
+            if isinstance(component, Representative):
+                motion = follow_family(self.ways.pattern, component.densities, frames=self.frames)
+                drawn = _drawn(motion, _in_floats(motion))
+                dimension = component.dimension or motion.dimension
+            else:
+                motion = follow_panels(self.ways, component=component, frames=self.frames)
+                drawn = _drawn(motion, _proof_of_panels(motion, self.proving))
+                dimension = len(motion.curves) + len(self.ways.free)
         except WorkerDiedError:
             raise
         except ExactfoldError as error:
@@ -129,6 +163,7 @@ class FollowingPanels:
             "why": "",
             "letters": letters_of(motion.pattern, motion.assignment),
             "angles": _angles(motion.pattern, motion.leading_angles),
+            "family": _family(motion, dimension) if dimension > 1 else None,
         }
 
 
@@ -154,6 +189,31 @@ def _drawn(motion: SheetInMotion, known: _Known) -> DrawnMotion:
         "exists": known.exists,
         "said": known.said,
     }
+
+
+def _family_of(branch: Branch, dimension: int, frames: int) -> Followed:
+    """A motion that starts like a branch, in the family over all boundary heights."""
+    from exactfold.motion.panels.families import follow_family
+
+    sheet = panels(branch.pattern)
+    densities = {
+        (i, j): angle / math.hypot(*map(float, sheet.direction(i, j)))
+        for (i, j), angle in branch.fold_angles.degrees(AMOUNT).items()
+    }
+    motion = follow_family(sheet, densities, frames=frames)
+    family = _family(motion, dimension)
+    return {"motion": _drawn(motion, _in_floats(motion)), "why": "", "family": family}
+
+
+def _family(motion: SheetInMotion, dimension: int) -> Family:
+    """The family to which a motion belongs; its drivers are independent in the middle of it."""
+    from exactfold.motion.panels.closing import Closing
+
+    sheet = motion.pattern
+    pattern = panels(sheet) if isinstance(sheet, CreasePattern) else sheet
+    drivers = Closing(pattern).drivers(motion.angles[(len(motion.angles) + 1) // 2])
+    places = [sheet.folds.index(fold) for fold in drivers[:MOST_DRIVERS]]
+    return {"dimension": dimension, "drivers": places}
 
 
 def _in_floats(motion: SheetInMotion) -> _Known:
@@ -236,7 +296,14 @@ def branch_way(branch: Branch) -> Way:
         "angles": _angles(branch.pattern, leading),
         "motion": None,
         "why": "",
+        "family": None,
     }
+
+
+def family_way(ways: Decomposition, family: Representative) -> Way:
+    """A family, or the letters of the file, without the motion."""
+    letters = {e: "V" if x > 0 else "M" for e, x in family.densities.items() if x}
+    return _panel_way(ways.pattern, family.name, letters, str(PROVED), family.why)
 
 
 def component_way(
@@ -309,6 +376,7 @@ def _panel_way(
         "angles": [],
         "motion": None,
         "why": "",
+        "family": None,
     }
 
 

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import combinations
-from math import degrees, pi
+from math import degrees, hypot, pi
 from typing import Final, NamedTuple
 
 from flint import arb
@@ -20,6 +20,8 @@ from exactfold.pattern.panel_pattern import Edge, PanelPattern, Point
 
 NEAR: Final = 1e-3
 """Two folds are nearly straight if they miss a straight line by less than this angle."""
+_BENT: Final = 0.1
+"""No noise makes folds nearly straight that miss a straight line by more than this angle."""
 _CLOSE: Final = 0.1
 """Kawasaki's condition nearly holds if it is off by less than so many degrees."""
 _MEANT: Final = 1e-3
@@ -98,14 +100,16 @@ class VertexFacts:
 
 
 def vertex_facts(
-    sheet: PanelPattern, letters: Letters, *, exactly: bool = False
+    sheet: PanelPattern, letters: Letters, *, exactly: bool = False, tolerance: float = 0.0
 ) -> tuple[VertexFacts, ...]:
     """The facts about every interior vertex of a sheet with the letters M, V, F and U of its folds.
 
     All verdicts are exact. Where two folds nearly form a straight crease and the answer depends on
     whether they do, the verdict is UNDECIDED, unless `exactly` says that the coordinates are meant
-    as they are. If one vertex is refuted, no finite folding of the sheet near the flat state has
-    the letters.
+    as they are. Folds are nearly straight, too, if the angle by which they miss a straight line,
+    times the length of the shorter fold, is at most `tolerance` times the size of the sheet: in a
+    drawing whose noise is known, but not the sheet that was meant. If one vertex is refuted, no
+    finite folding of the sheet near the flat state has the letters.
 
     >>> from exactfold.pattern.opening import open_pattern
     >>> from exactfold.pattern.data import example_path
@@ -113,16 +117,21 @@ def vertex_facts(
     >>> [(v.vertex, str(v.starts)) for v in vertex_facts(opened.sheet, opened.letters)][:2]
     [(9, 'refuted'), (10, 'refuted')]
     """
-    return tuple(_facts(sheet, star_at(sheet, v), letters, exactly) for v in sheet.interior)
+    sides = zip(*sheet.scaled_vertices, strict=True) if tolerance else ()
+    reach = tolerance * max((float(max(side) - min(side)) for side in sides), default=0.0)
+    stars = (star_at(sheet, v) for v in sheet.interior)
+    return tuple(_facts(sheet, star, letters, exactly, reach) for star in stars)
 
 
-def _facts(sheet: PanelPattern, star: Star, letters: Letters, exactly: bool) -> VertexFacts:
+def _facts(
+    sheet: PanelPattern, star: Star, letters: Letters, exactly: bool, reach: float
+) -> VertexFacts:
     given = "".join(letters.get(fold, "U") for fold in star.folds)
     fan = Fan(star)
     starts, able = _answers(fan, given)
     reason = _why(star, given, fan) if not starts or not able else ""
     verdict, possible = PROVED if starts else REFUTED, able
-    for straight, pairs in () if exactly else _straightened(star):
+    for straight, pairs in () if exactly else _straightened(star, reach):
         straight_starts, straight_able = _answers(Fan(straight), given)
         if straight_starts != starts:
             verdict, reason = UNDECIDED, _open_text(star, pairs, starts)
@@ -185,17 +194,24 @@ def _forced(star: Star, given: str, fan: Fan) -> dict[Edge, str]:
     return forced
 
 
-def _straightened(star: Star) -> Iterator[tuple[Star, tuple[_Pair, ...]]]:
-    """The star with nearly straight pairs made straight: one, several, or all of them."""
+def _straightened(star: Star, reach: float) -> Iterator[tuple[Star, tuple[_Pair, ...]]]:
+    """The star with nearly straight pairs made straight: one, several, or all of them.
+
+    Pairs that miss a straight line by up to `reach` at the end of the shorter fold count, too.
+    """
+    lengths = [hypot(float(x), float(y)) for x, y in star.directions] if reach else []
     pairs = tuple(
         _Pair(i, j, off)
         for i, j in combinations(range(len(star.folds)), 2)
         if 0 < (off := _bend(star.directions[i], star.directions[j])) < NEAR
+        or (reach and 0 < off < _BENT and off * min(lengths[i], lengths[j]) <= reach)
     )
     for size in range(1, len(pairs) + 1):
         if 1 < size < len(pairs) > _MOST_PAIRS:
             continue
         for chosen in combinations(pairs, size):
+            if len({place for pair in chosen for place in pair[:2]}) < 2 * size:
+                continue  # a fold is in two pairs, and not both can be straight
             directions = list(star.directions)
             for pair in chosen:
                 x, y = directions[pair.one]

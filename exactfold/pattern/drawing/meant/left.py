@@ -16,12 +16,13 @@ from exactfold.pattern.drawing.meant.values import Edge, Kind, Relation
 if TYPE_CHECKING:
     from exactfold.exact.surds import Number
 
-NEAREST: Final = 1e-3
+NEAREST: Final = 3e-3
 """No relation whose defect is larger is near."""
 _CHANCE: Final = 1e-3
 """Relations are near if random angles have so many as near with a lower probability."""
 _STEPS: Final = 30
-"""On a grid of so many steps across the sheet, no relation misses by less than `NEAREST`."""
+"""Points on a grid of so many steps across the sheet are not rounded; no relation there misses by
+less than 1e-3."""
 _TRUST: Final = 1e-9
 """Angles from floats are good to this; smaller defects are computed exactly."""
 
@@ -46,7 +47,7 @@ def left_relations(sheet: Sheet) -> tuple[Relation, ...]:
     """The relations that the sheet nearly has but does not have exactly, the nearest first.
 
     These are straight paths through a vertex, straight borders, and sums of Kawasaki at vertices
-    with four folds, with a defect of at most 1e-3. If k relations have at most the defect of the
+    with four folds, with a defect of at most 3e-3. If k relations have at most the defect of the
     k-th, and chance may bring k / 2 as near with a probability of at least 1e-3, these k are
     not near.
 
