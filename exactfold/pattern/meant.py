@@ -157,9 +157,22 @@ class Meant:
                 f"{agreeing(len(self.left_out), 'is')} nearly true, but no exact sheet with all "
                 "relations was found; no condition at a vertex needs them"
             )
-        for name, others in self.implied.items():
-            lines.append(f"{name} holds all the same, because of {', '.join(others)}")
-        return tuple(lines)
+        return (*lines, *self.held)
+
+    @property
+    def held(self) -> tuple[str, ...]:
+        """The relations that were deleted and hold all the same, one sentence each."""
+        return tuple(
+            f"{name} holds all the same, because of {', '.join(others)}"
+            for name, others in self.implied.items()
+        )
+
+    @property
+    def brief(self) -> str:
+        """What was inferred, in a few words."""
+        inexact = "" if self.noise is None else f"inexact by {self.noise:.0e} of its size, "
+        relations = counted(len(self.relations), "relation")
+        return f"{inexact}{relations} inferred, moved by up to {self._within}"
 
     @property
     def listed(self) -> tuple[str, ...]:
