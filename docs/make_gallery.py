@@ -157,7 +157,7 @@ class Card:
             return [count, f"{draw} -o {name}.svg"]
         most = f" --most {MOST}" if number > MOST else ""
         lines = [count, f"{draw} --all{most} -o {name}.svg"]
-        still = f"{draw} --branch {self.way} --folded {AMOUNT} -o {name}-folded.svg"
+        still = f"{draw} --way {self.way} --folded {AMOUNT} -o {name}-folded.svg"
         return [*lines, still] if self.way else lines
 
     @property
