@@ -100,7 +100,7 @@ def test_match_and_python_answer_about_the_same_sheet(miura: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "command", [("fold",), ("draw", "--branch", "1"), ("info",), ("view",), ("convert",)]
+    "command", [("fold",), ("draw", "--way", "1"), ("info",), ("view",), ("convert",)]
 )
 def test_all_commands_take_the_sheet_that_was_meant(
     miura: Path, tmp_path: Path, command: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
