@@ -150,13 +150,14 @@ def view(**options: Any) -> int:
 @app.command(cls=Command, rich_help_panel="Ask")
 @taking(BranchOptions)
 def branch(**options: Any) -> int:
-    """Find and prove the one branch with given vertex signs, without finding the others.
+    """Find and prove one branch of a triangulated sheet, without finding the others.
 
-    The signs belong to the side with boundary saddle +1 (with a reflex corner: the
-    side on which the corner pops up); on the other side all signs are reversed. On
-    a sheet with more corners, the branch is the one with the boundary heights of
-    --rim, or one on which folds start in the ratio of --drive. --json prints one
-    object per line.
+    The branch is named by its number, vertex signs or letters. The signs belong to
+    the side with boundary saddle +1 (with a reflex corner: the side on which the
+    corner pops up); on the other side all signs are reversed. On a sheet with more
+    corners, the branch is the one with the boundary heights of --boundary-heights,
+    or one on which folds start in the ratio of --drive. --json prints one object
+    per line.
     """
     from exactfold.app.commands.branch import Asked
 
@@ -243,13 +244,13 @@ def assignments(**options: Any) -> int:
 def fold(**options: Any) -> int:
     """Fold a sheet with rigid faces in space, until faces touch or another event.
 
-    A triangulated sheet with four corners follows the branch that --signs, --up or
-    --branch names; by default the branch on which all vertices pop up. A
-    triangulated sheet with more corners follows a branch if --signs, --up or --rim
-    is given (its boundary then moves in the ratio of the boundary heights), or
-    --drive (the chosen folds then drive it). Any other sheet follows modes of rigid
-    panels, which --component or --modes names. The existence of the branch or mode
-    is proved; the answer says what is proved of the motion.
+    The sheet follows the way that --way, --signs, --up or --letters names; by
+    default the way with the mountains and valleys of the drawing, if one is known,
+    else the branch on which all vertices pop up, or the first way that `count`
+    lists. A line says which. The boundary of a sheet with more than four corners
+    moves in the ratio of --boundary-heights, or --drive names folds that drive it.
+    The existence of the way is proved; the answer says what is proved of the
+    motion.
     """
     from exactfold.app.commands.fold import Wanted
 

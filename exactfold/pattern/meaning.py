@@ -78,7 +78,7 @@ def _meaning(found: Opened, written: Callable[[], Opened]) -> Opened:
     lines = tuple(line for line in raw.lines if not line.startswith("coordinates kept"))
     return replace(
         raw,
-        sheet=_triangles(exact),
+        sheet=_triangles(exact) if meant.existence == "exact" else exact,
         lines=(*lines, *meant.lines),
         brief=_with_coordinates(raw, meant.brief),
         seen=(*raw.seen, *meant.held),

@@ -91,7 +91,8 @@ class Asked(CountOptions):
 
         if self.given.curvature is None:
             raise UsageError(
-                "--rim goes with --curvature: without it, all boundary heights are covered"
+                "--boundary-heights goes with --curvature: without it, all boundary heights are "
+                "covered"
             )
         for option, value in (
             ("--certificate", self.certificate),

@@ -115,8 +115,8 @@ class CountOptions(ReadingOptions):
         )
         if self.resume or any(value is not None for value in single):
             raise UsageError(
-                "--certificate, --stream, --resume, --workers, --curvature and --rim go with one "
-                "pattern, without --jsonl and without --sheet all"
+                "--certificate, --stream, --resume, --workers, --curvature and --boundary-heights "
+                "go with one pattern, without --jsonl and without --sheet all"
             )
 
 

@@ -239,4 +239,4 @@ def test_sheets_in_order_whose_branches_have_no_names_exit_4(tmp_path, words):
         assert result.exit_code == UNDECIDED
         assert words in result.stderr
         assert result.stderr.count("\n") == 1
-        assert "--rim" not in result.stderr
+        assert "--boundary-heights" not in result.stderr
