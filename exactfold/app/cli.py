@@ -16,6 +16,7 @@ from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.app.options.branches import (
     AssignmentsOptions,
     BranchOptions,
+    CertifyOptions,
     ExportOptions,
     MatchOptions,
     VerticesOptions,
@@ -142,13 +143,14 @@ def view(**options: Any) -> int:
 @app.command(cls=Command)
 @taking(BranchOptions)
 def branch(**options: Any) -> int:
-    """Find and prove the one branch with given vertex signs, without finding the others.
+    """Find and prove one branch of a triangulated sheet, without finding the others.
 
-    The signs belong to the side with boundary saddle +1 (with a reflex corner: the
-    side on which the corner pops up); on the other side all signs are reversed. On
-    a sheet with more corners, the branch is the one with the boundary heights of
-    --rim, or one on which folds start in the ratio of --drive. --json prints one
-    object per line.
+    The branch is named by its number, vertex signs or letters. The signs belong to
+    the side with boundary saddle +1 (with a reflex corner: the side on which the
+    corner pops up); on the other side all signs are reversed. On a sheet with more
+    corners, the branch is the one with the boundary heights of --boundary-heights,
+    or one on which folds start in the ratio of --drive. --json prints one object
+    per line.
     """
     from exactfold.app.commands.branch import Asked
 
@@ -187,17 +189,33 @@ def vertices(**options: Any) -> int:
 @app.command(cls=Command)
 @taking(ExportOptions)
 def export(**options: Any) -> int:
-    """Write one branch as a FOLD file that simulators can fold, or a sheet for Coq.
+    """Write one branch as a FOLD file, a sheet for Coq, or equations for other programs.
 
     The fold angles in the file are proportional to those of the branch, so that a
     simulator that they drive stays on the branch. A second frame shows the sheet
     in space, to second order. With --coq the file is for Coq instead: it applies
-    what is proved of every sheet to this sheet and to the named branches.
+    what is proved of every sheet to this sheet and to the named branches. With
+    --system it holds the equations of the sheet, of any kind.
     """
-    from exactfold.app.commands.export import Wanted, write_coq
+    from exactfold.app.commands.export import Wanted, write_coq, write_system
 
     asked = Wanted(**options)
+    if asked.system is not None:
+        return write_system(asked)
     return write_coq(asked) if asked.coq else asked.answer()
+
+
+@app.command(cls=Command)
+@taking(CertifyOptions)
+def certify(**options: Any) -> int:
+    """Prove solutions that another program found: one zero in a small box around each.
+
+    The points are those of the system that `exactfold export --system` writes.
+    Floating point only proposes: Krawczyk's test in integers decides.
+    """
+    from exactfold.app.commands.certify import Asked
+
+    return Asked(**options).answer()
 
 
 @app.command(cls=Command)
@@ -219,13 +237,13 @@ def assignments(**options: Any) -> int:
 def fold(**options: Any) -> int:
     """Fold a sheet with rigid faces in space, until faces touch or another event.
 
-    A triangulated sheet with four corners follows the branch that --signs, --up or
-    --branch names; by default the branch on which all vertices pop up. A
-    triangulated sheet with more corners follows a branch if --signs, --up or --rim
-    is given (its boundary then moves in the ratio of the boundary heights), or
-    --drive (the chosen folds then drive it). Any other sheet follows modes of rigid
-    panels, which --component or --modes names. The existence of the branch or mode
-    is proved; the answer says what is proved of the motion.
+    The sheet follows the way that --way, --signs, --up or --letters names; by
+    default the way with the mountains and valleys of the drawing, if one is known,
+    else the branch on which all vertices pop up, or the first way that `count`
+    lists. A line says which. The boundary of a sheet with more than four corners
+    moves in the ratio of --boundary-heights, or --drive names folds that drive it.
+    The existence of the way is proved; the answer says what is proved of the
+    motion.
     """
     from exactfold.app.commands.fold import Wanted
 

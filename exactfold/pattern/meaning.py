@@ -6,10 +6,11 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
+from exactfold._support.plurals import counted
 from exactfold.errors import FoldError, PatternError, TooLargeError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.drawing.drawing import Drawing, Line
-from exactfold.pattern.drawing.meant.left import left_relations
+from exactfold.pattern.drawing.meant.left import left_relations, off_by
 from exactfold.pattern.opened import Opened, panels, triangulated
 
 if TYPE_CHECKING:  # sheets with exact digits do without it
@@ -18,6 +19,7 @@ if TYPE_CHECKING:  # sheets with exact digits do without it
 
 _TIMES_NOISE: Final = 100
 """Recognising coordinates must not move one by more than this many times the largest defect."""
+_NONE_NEAR: Final = "no relation between creases holds nearly but not exactly"
 
 
 def meaning(found: Opened, written: Callable[[], Opened]) -> Opened:
@@ -25,15 +27,32 @@ def meaning(found: Opened, written: Callable[[], Opened]) -> Opened:
 
     Digits are inexact if relations between creases hold nearly but not exactly. `written` reads the
     sheet with its digits as written. If no sheet can be inferred, `found` is returned, and its
-    `doubt` says why.
+    `doubt` says why. If the reading asks for relations, they are listed in the lines of the sheet.
     """
     reading = found.reading
+    if reading.snap == "exact" and reading.overrules:
+        raise UsageError(
+            "--snap exact takes the digits as written: leave out --without, --also, --noise and "
+            "--unit"
+        )
+    return _with_relations(_meaning(found, written))
+
+
+def _with_relations(known: Opened) -> Opened:
+    """The same sheet; its lines list the relations if the reading asks for them."""
+    if not known.reading.relations:
+        return known
+    if known.meant is not None:
+        listed = known.meant.listed
+    else:
+        listed = off_by(left_relations(known.sheet)) or (_NONE_NEAR,)
+    return replace(known, lines=known.lines + listed, seen=known.seen + listed)
+
+
+def _meaning(found: Opened, written: Callable[[], Opened]) -> Opened:
+    """`meaning` without a list of the relations."""
+    reading = found.reading
     if reading.snap == "exact":
-        if reading.overrules:
-            raise UsageError(
-                "--snap exact takes the digits as written: leave out --without, --also, --noise "
-                "and --unit"
-            )
         return found
     left = left_relations(found.sheet)
     if not left and not reading.overrules:
@@ -54,15 +73,15 @@ def meaning(found: Opened, written: Callable[[], Opened]) -> Opened:
         )
     meant = inferred(sheet, reading)
     if meant.realized is None or meant.realized.sheet is None:
-        meant = replace(meant, left=left)
-        lines = meant.listed if reading.relations else ()
-        return replace(found, meant=meant, lines=found.lines + lines)
+        return replace(found, meant=replace(meant, left=left))
     exact = meant.realized.sheet
     lines = tuple(line for line in raw.lines if not line.startswith("coordinates kept"))
     return replace(
         raw,
-        sheet=_triangles(exact),
-        lines=(*lines, *meant.lines, *(meant.listed if reading.relations else ())),
+        sheet=_triangles(exact) if meant.existence == "exact" else exact,
+        lines=(*lines, *meant.lines),
+        brief=_with_coordinates(raw, meant.brief),
+        seen=(*raw.seen, *meant.held),
         largest_move=meant.distance or 0.0,
         field_name=exact.field_name,
         meant=meant,
@@ -98,13 +117,22 @@ def recognised(found: Opened) -> Opened | None:
         return None
     if left_relations(sheet) or len(sheet.faces) != len(found.sheet.triangles):
         return None
-    return replace(
-        found,
-        sheet=_triangles(sheet),
-        lines=(*found.lines, known.text),
-        largest_move=known.largest_move,
-        field_name=sheet.field_name,
+    return _with_relations(
+        replace(
+            found,
+            sheet=_triangles(sheet),
+            lines=(*found.lines, known.text),
+            brief=_with_coordinates(found, known.brief),
+            largest_move=known.largest_move,
+            field_name=sheet.field_name,
+        )
     )
+
+
+def _with_coordinates(found: Opened, coordinates: str) -> tuple[str, ...]:
+    """The words of `brief` with these about the coordinates."""
+    lines, _, *more = found.brief or (counted(len(found.sheet.edges), "line"), "")
+    return lines, coordinates, *more
 
 
 def _triangles(exact: PanelPattern) -> CreasePattern | PanelPattern:

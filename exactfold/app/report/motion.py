@@ -92,9 +92,7 @@ def _branch_rows(motion: Motion) -> list[tuple[str, RenderableType]]:
 
 
 def _mode_rows(motion: PanelMotion) -> list[tuple[str, RenderableType]]:
-    if motion.component is None:
-        return [("modes", cut(", ".join(map(str, motion.modes))))]
-    return [("component", cut(f"{motion.component} ({motion.name})"))]
+    return [("way", cut(motion.name.removeprefix("way ")))]
 
 
 def _proof(proof: MotionProof | PanelProof) -> RenderableType:

@@ -101,8 +101,21 @@ def plain_usage(error: Any) -> str:
         r"^Invalid value for (.+?): ", lambda match: match[1].replace("'", "") + ": ", text
     )
     text = re.sub(r"^(Missing|No such|Got unexpected)", lambda match: match[0].lower(), text)
+    option = re.match(r"no such option: (--[\w-]+)", text)
+    if option and option[1] in _RENAMED:
+        text = f"{option[1]} is now {_RENAMED[option[1]]}"
     where = f"; see {error.ctx.command_path} --help" if getattr(error, "ctx", None) else ""
     return f"{text}{where}"
+
+
+_RENAMED = {
+    "--branch": "--way N, the number in the list of `count`, or --signs",
+    "--component": "--way N, the number in the list of `count`",
+    "--modes": "--way N, the number in the list of `count`, or --letters",
+    "--branches": "--way N, --signs, --up or --letters, for one way",
+    "--rim": "--boundary-heights",
+}
+"""Options of earlier versions, and what does the same now."""
 
 
 def _no_type(ctx: Any) -> None:

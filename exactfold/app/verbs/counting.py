@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, TypeGuard, cast, overload
 
 from exactfold._support.clock import LIMIT, Clock
 from exactfold._support.progress import Progress
-from exactfold.app.verbs.choosing import the_branch
+from exactfold.app.verbs.choosing import Choice, the_branch
 from exactfold.branches.counting.batch import count_many
 from exactfold.branches.counting.find import BoundaryHeights, Deficits, Signs
 from exactfold.branches.counting.registry import choose
@@ -264,17 +264,8 @@ def branch(
     >>> exactfold.branch("two-vertex", way=3).sign_text
     '+-'
     """
-    chosen, _ = the_branch(
-        open_sheet(sheet),
-        way,
-        signs,
-        up,
-        letters,
-        boundary_heights=boundary_heights,
-        curvature=curvature,
-        progress=progress,
-    )
-    return chosen
+    choice = Choice(way, signs, up, letters, boundary_heights, curvature)
+    return the_branch(open_sheet(sheet), choice, progress).branch
 
 
 def _is_one(sheet: object) -> TypeGuard[PatternLike]:

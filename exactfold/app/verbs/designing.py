@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from exactfold._support.clock import LIMIT, Clock
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED
-from exactfold.app.verbs.choosing import Letters, asked_letters, the_branch
+from exactfold.app.verbs.choosing import Choice, Letters, asked_letters, the_branch
 from exactfold.branches.counting.find import Signs
 from exactfold.design.actuation.actuate import actuate as actuate_branch
 from exactfold.design.assignments.boundary_match import can_pop, match_boundary
@@ -121,8 +121,9 @@ def actuate(
     pattern = triangles(opened, "actuate")
     wanted: Signs | None = signs
     if way is not None or letters is not None:
-        branch, side = the_branch(opened, way, signs, up, letters, progress=progress)
-        wanted, up = {v: side * sign for v, sign in branch.vertex_signs.items()}, None
+        chosen = the_branch(opened, Choice(way, signs, up, letters), progress, needs="actuate")
+        signed = chosen.branch.vertex_signs.items()
+        wanted, up = {v: chosen.side * sign for v, sign in signed}, None
     return actuate_branch(
         pattern, wanted, up=up, creases=creases, torques=torques, progress=progress
     )

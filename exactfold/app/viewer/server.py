@@ -15,7 +15,8 @@ from exactfold._support.progress import Progress
 from exactfold.app.viewer.document import FRAMES, Known
 from exactfold.app.viewer.page import view_page
 from exactfold.app.viewer.ways import Following, Way, branch_way
-from exactfold.branches.counting.find import BranchFinder
+from exactfold.branches.counting.find import BranchFinder, branch_finder
+from exactfold.branches.values.branch import Branch
 from exactfold.errors import ExactfoldError, NumberError, UsageError
 from exactfold.exact.numbers import parse_whole
 from exactfold.pattern.crease_pattern import CreasePattern
@@ -31,7 +32,8 @@ def view_server(
     sheet: PatternLike,
     *,
     name: str | None = None,
-    branches: Sequence[str] | None = None,
+    branches: Sequence[str | Branch] | None = None,
+    ways: Sequence[int] | None = None,
     frames: int = FRAMES,
     proving: bool = False,
     port: int = 0,
@@ -51,9 +53,15 @@ def view_server(
     if not 0 <= port <= _MOST_PORT:
         raise UsageError(f"port {port}: give a number from 0 to {_MOST_PORT}")
     known = Known.of(
-        sheet, name=name, branches=branches, frames=frames, proving=proving, progress=progress
+        sheet,
+        name=name,
+        branches=branches,
+        ways=ways,
+        frames=frames,
+        proving=proving,
+        progress=progress,
     )
-    return ViewServer(known, Following(frames, proving), port)
+    return ViewServer(known, port)
 
 
 class ViewServer(ThreadingHTTPServer):
@@ -65,8 +73,8 @@ class ViewServer(ThreadingHTTPServer):
 
     daemon_threads = True
 
-    def __init__(self, known: Known, following: Following, port: int) -> None:
-        self._known, self._following = known, following
+    def __init__(self, known: Known, port: int) -> None:
+        self._known = known
         self._lock = threading.Lock()
         self._finder: BranchFinder | None = None
         document = known.document([way for way, _ in known.listed], served=True)
@@ -111,16 +119,16 @@ class ViewServer(ThreadingHTTPServer):
         """The branch with these vertex signs, and its motion; raises the errors of
         `BranchFinder`.
         """
-        pattern = self._known.opened.sheet
-        if not isinstance(pattern, CreasePattern):
+        pattern, following = self._known.opened.sheet, self._known.follower
+        if not isinstance(pattern, CreasePattern) or not isinstance(following, Following):
             raise UsageError(
                 "this sheet folds along modes of rigid panels, and modes have no vertex signs"
             )
         with self._lock:
             if self._finder is None:
-                self._finder = BranchFinder(pattern)
+                self._finder = branch_finder(pattern)
             branch = self._finder.find(self._finder.signs(signs, None))
-            return {**branch_way(branch), **self._following(branch)}
+            return {**branch_way(branch), **following(branch)}
 
 
 class _Handler(BaseHTTPRequestHandler):

@@ -197,29 +197,35 @@ class Spaces:
         return parts
 
     def _split(self, space: Space) -> list[Leaf]:
-        """The leaves of a part.
+        """The leaves of a part."""
+        smaller, left = self.narrowed(space)
+        if smaller is None:
+            return [Leaf(space, left)]
+        leaves = []
+        for each in smaller:
+            leaves += self._leaves(each)
+            at_most(len(leaves), MOST_LEAVES, "the spaces of motions", "SPACE_LEAVES")
+        return leaves
 
-        A semidefinite form leaves its kernel, and a form of inertia (1, 1) the zeros of both
-        factors.
+    def narrowed(self, part: Space) -> tuple[Iterator[Space] | None, tuple[int, ...]]:
+        """Smaller spaces that hold all motions of a part; or None, and the vertices of its forms.
+
+        A semidefinite form leaves its kernel, and one of inertia (1, 1) the zeros of its factors.
         """
         products: list[Squares] = []
         left: list[int] = []
-        for v in sorted({v for fold in folds_of(space) for v in fold if v in self.near}):
-            squares = self.squares(v, space)
+        for v in sorted({v for fold in folds_of(part) for v in fold if v in self.near}):
+            squares = self.squares(v, part)
             signs = [d.sign() for d, _ in squares]
             if signs and abs(sum(signs)) == len(signs):
-                return self._leaves(self.vanishing(space, [values for _, values in squares]))
+                return iter([self.vanishing(part, [values for _, values in squares])]), ()
             if len(signs) == 2:
                 products.append(squares)
             elif signs:
                 left.append(v)
         if not products:
-            return [Leaf(space, tuple(left))]
-        leaves = []
-        for values in self.factors(products, space):
-            leaves += self._leaves(self.vanishing(space, [values]))
-            at_most(len(leaves), MOST_LEAVES, "the spaces of motions", "SPACE_LEAVES")
-        return leaves
+            return None, tuple(left)
+        return (self.vanishing(part, [values]) for values in self.factors(products, part)), ()
 
     def squares(self, v: int, space: Space) -> Squares:
         """The form of a vertex as sum d_k l_k^2; each l_k is given by its values on the basis."""

@@ -14,6 +14,7 @@ from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.certificates.entries import Document
 from exactfold.checker.letters.panels import PANEL_LETTERS, PanelLettersClaims
 from exactfold.design.panels.cells import CellSearch, Steps
+from exactfold.design.panels.excluding import excluded
 from exactfold.design.panels.match import PanelMatch, flat_with_letters, rests
 from exactfold.design.panels.parts import PartAnswer
 from exactfold.design.panels.refutation import PanelRefutation, held
@@ -84,10 +85,9 @@ def _refuted(matched: PanelMatch, moving: Mapping[int, Star]) -> tuple[Document,
     part = min(parts, key=lambda part: part.truly is not REFUTED)
     own = {v: moving[v] for v in part.vertices}
     if part.by_list:
-        raise NotApplicableError(
-            "no certificate can be written: the complete list of motions refutes the letters, and "
-            "that list has a certificate of its own (`exactfold count --certificate`)"
-        )
+        truly = part.truly is REFUTED
+        step = excluded(matched.pattern, matched.letters, part.vertices, truly=truly)
+        return {"refuted": [], "tree": [step]}, part.truly
     if part.vertex is not None:
         return {"refuted": [], "tree": [["vertex", part.vertex]]}, part.truly
     if not part.refutations:

@@ -199,3 +199,22 @@ def test_fold_does_not_call_the_digits_of_a_doubted_drawing_rigid(tmp_path: Path
     info = words(run("info", path).stdout)
     assert "these facts hold for the digits as written: 3 relations nearly hold" in info
     assert "the digits as written are rigid, but 3 relations nearly hold" in words(result.stderr)
+
+
+def test_many_vertices_are_summed_up_and_the_first_ten_are_listed(tmp_path: Path) -> None:
+    """A grid of 12 vertices with a wrong letter at each, and one that is right."""
+    sheet = PanelPattern(
+        [(i, j) for i in range(6) for j in range(5)],
+        [(5 * i + j, 5 * i + j + 5) for i in range(5) for j in range(5)]
+        + [(5 * i + j, 5 * i + j + 1) for i in range(6) for j in range(4)],
+    )
+    path = tmp_path / "grid.fold"
+    letters = dict.fromkeys(sheet.folds, "M")
+    path.write_text(document_text(converted(Opened(sheet, letters)).document(None)))
+    shown = run("vertices", path)
+    rows = [line.split() for line in shown.stdout.splitlines()]
+    assert ["12", "4", "no", "holds", "no:", "M", "-", "V", "=", "4"] in rows
+    assert sum(row[1:3] == ["4", "MMMM"] for row in rows) == 10
+    assert "... and 2 more (--all shows them)" in shown.stdout
+    rows = [line.split() for line in run("vertices", path, "--all").stdout.splitlines()]
+    assert sum(row[1:3] == ["4", "MMMM"] for row in rows) == 12

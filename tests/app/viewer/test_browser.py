@@ -50,7 +50,41 @@ def test_it_opens_without_a_complaint_and_asks_nothing_of_a_network(browser, pag
     browser.open(pages["waterbomb"])
     assert browser.run("document.title") == "waterbomb - exactfold"
     assert "one family of dimension 3" in browser.text("#answer")
-    assert browser.run("document.getElementById('play').disabled")
+
+
+def test_sliders_choose_another_way_of_a_family_and_play_goes_on(browser, pages):
+    browser.open(pages["waterbomb"])
+    sheet = load("waterbomb")
+    i, j = np.array(sheet.edges).T
+    at = [browser.run(f"exactfold.store.get().ways[0].family.drivers[{k}]") for k in range(3)]
+    names = browser.run(
+        "Array.from(document.querySelectorAll('#family label span'), (n) => n.textContent)"
+    )
+    assert names == ["Fold {}–{}".format(*sheet.folds[k]) for k in at]
+    before = browser.run("exactfold.angles()")
+    wish = round(before[at[0]]) + 25
+    browser.run(
+        "(() => { const slider = document.querySelector('#family input');"
+        f" slider.value = {wish}; slider.dispatchEvent(new Event('input')) }})()"
+    )
+    after = browser.run("exactfold.angles()")
+    assert after[at[0]] == pytest.approx(wish, abs=1e-3)
+    assert [after[k] for k in at[1:]] == pytest.approx([before[k] for k in at[1:]], abs=1e-3)
+    shape = np.array(browser.run("exactfold.positions()")).reshape(-1, 3)
+    flat = np.array([[float(x), float(y)] for x, y in sheet.vertices])
+    lengths = [np.linalg.norm(c[i] - c[j], axis=1) for c in (shape, flat)]
+    assert np.allclose(*lengths, atol=1e-6)
+    browser.click("#play")
+    browser.until("exactfold.store.get().time !== 0.55")
+    assert browser.complaints() == []
+
+
+def test_without_a_motion_there_is_nothing_to_play(browser, pages):
+    browser.open(pages["zigzags"])
+    browser.click(".way:last-child")
+    assert browser.run("document.getElementById('transport').hidden")
+    browser.click(".way:first-child")
+    assert not browser.run("document.getElementById('transport').hidden")
 
 
 def test_the_slider_folds_the_sheet(browser, pages):
@@ -72,13 +106,13 @@ def test_the_slider_folds_the_sheet(browser, pages):
 def test_vertices_to_look_at_have_a_ring_and_say_why(browser, pages):
     browser.open(pages["zigzags"])
     ring = "[data-vertex='9'] .ring.refuted"
-    assert browser.run('document.querySelectorAll(".ring").length') == 4
+    assert browser.run('document.querySelectorAll("#pattern .ring").length') == 4
     assert browser.run(f'document.querySelector("{ring}") !== null')
     label = browser.run("document.querySelector(\"[data-vertex='9']\").getAttribute('aria-label')")
     assert "It cannot start to fold with the letters of the file: its mountains 9-13, 4-9" in label
     assert "vertex that cannot start to fold" in browser.text("#legend")
     browser.open(pages["h1-4"])
-    assert browser.run('document.querySelectorAll(".ring").length') == 0
+    assert browser.run('document.querySelectorAll("#pattern .ring").length') == 0
 
 
 def _pixels(browser):
@@ -288,7 +322,7 @@ def test_panes_stack_on_a_phone(browser, pages):
     browser.open(pages["h1-4"], width=360, height=740)
     assert browser.run("document.documentElement.scrollWidth") <= 360
     boxes = browser.run(
-        "Array.from(document.querySelectorAll('main > .pane, .side > .pane'), (branch point) => {"
+        "Array.from(document.querySelectorAll('main > .pane, .side > .pane'), (node) => {"
         " const b = node.getBoundingClientRect(); return [b.left, b.top, b.right, b.bottom] })"
     )
     assert len(boxes) == 4
@@ -298,7 +332,7 @@ def test_panes_stack_on_a_phone(browser, pages):
         assert top >= bottom
     small = browser.run(
         "Array.from(document.querySelectorAll('#play, #mirror, #home, #download'),"
-        " (branch point) => node.getBoundingClientRect().height)"
+        " (node) => node.getBoundingClientRect().height)"
     )
     assert min(small) >= 32
 
@@ -311,10 +345,10 @@ def test_panels_are_followed_or_have_a_reason(browser, pages):
     assert names[-1] == "mode 4does not fold on"
     browser.click(".way:last-child")
     assert "does not close" in browser.text("#empty")
-    assert browser.run("document.getElementById('play').disabled")
+    assert browser.run("document.getElementById('transport').hidden")
     browser.click(".way:first-child")
     assert browser.run("document.getElementById('empty').hidden")
-    assert not browser.run("document.getElementById('play').disabled")
+    assert not browser.run("document.getElementById('transport').hidden")
     assert browser.complaints() == []
 
 

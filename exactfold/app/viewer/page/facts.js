@@ -37,6 +37,7 @@ function wayFacts(page, way) {
   if (way.status === "proved") facts.push(["good", `This ${noun}: proved`, way.reason]);
   else if (way.status === "refuted") facts.push(["good", "Proved: it starts to fold but does not truly fold", way.reason]);
   else facts.push(["open", `This ${noun}: ${way.status}`, way.reason]);
+  if (way.family) facts.push(["note", "One of infinitely many", `a family of dimension ${way.family.dimension}; the sliders choose others in floats, without contacts`]);
   if (way.multiplicity > 1) facts.push(["note", `Counted ${way.multiplicity} times`, "because flat vertices count double"]);
   if (way.motion) {
     const drawn = way.motion.said;

@@ -1,7 +1,6 @@
 // The list of the ways that agree with what is asked for; one of them is shown.
 
 import { agreeing, difference, seen } from "./choose.js";
-import { sentence } from "./facts.js";
 
 const NOUNS = { branches: ["branch", "branches"], panels: ["way", "ways"] };
 
@@ -24,9 +23,9 @@ export function createList(page, store) {
     const total = `${ways.length} ${ways.length === 1 ? one : many}`;
     count.textContent = narrowed ? `${found.length} of ${total} ${found.length === 1 ? "agrees" : "agree"}` : ways.length ? total : "";
     clear.hidden = !narrowed;
-    box.replaceChildren(...found.map(({ way, mirrored }) => row(ways[way], way, mirrored)));
+    box.replaceChildren(...found.map(({ way, mirrored }) => row(ways[way], way, mirrored, page.drawn)));
     search.hidden = !ways.length;
-    if (!found.length) box.append(paragraph(ways.length ? nothing() : `Nothing to list. ${sentence(page.answer.split(" - ")[0])}.`));
+    if (!found.length) box.append(paragraph(ways.length ? nothing() : `No way to list: ${page.answer.split(" - ")[0]}.`));
     settle();
     mark();
   }
@@ -96,7 +95,7 @@ export function createList(page, store) {
   return { step };
 }
 
-function row(way, k, mirrored) {
+function row(way, k, mirrored, drawn) {
   const side = seen(way, mirrored);
   const node = document.createElement("div");
   node.className = "way";
@@ -107,6 +106,8 @@ function row(way, k, mirrored) {
   const signs = span(side.signs ? "signs" : "signs plain", side.signs ? side.signs.replaceAll("-", "−") : way.name);
   const notes = [];
   if (mirrored) notes.push("mirror image");
+  if (drawn?.way === k && way.name !== "letters of the file") notes.push("letters of the file");
+  if (way.family) notes.push(`family of dimension ${way.family.dimension}`);
   if (way.status === "refuted") notes.push("does not fold on");
   else if (way.status !== "proved") notes.push(way.status);
   else if (way.why) notes.push("no motion drawn");

@@ -3,6 +3,7 @@
 import { popped, poppedSigns, seen } from "./choose.js";
 import { decodeFrames, positionsAt } from "./frames.js";
 import { download, fileName, foldFile } from "./foldfile.js";
+import { createFamily } from "./family.js";
 import { sentence, showFacts } from "./facts.js";
 import { createList } from "./list.js";
 import { createPattern, legendItems } from "./pattern.js";
@@ -19,7 +20,7 @@ const page = JSON.parse(document.getElementById("data").textContent);
 const sheet = readSheet(page.sheet);
 const flat = flatPositions(sheet);
 const store = createStore({
-  ways: page.ways, way: 0, mirrored: false, time: 0, playing: false, asks: new Map(), search: "",
+  ways: page.ways, way: page.drawn?.way ?? 0, mirrored: page.drawn?.mirrored ?? false, time: 0, playing: false, asks: new Map(), search: "",
 });
 const positions = new Float64Array(flat.length);
 const decoded = new Map();
@@ -50,6 +51,7 @@ function paintSheet() {
   if (frames) positionsAt(frames, Math.min(time, 1 - APART), mirrored, positions);
   else positions.set(flat);
   scene?.show(positions);
+  family?.leave();
   transport.angle(frames ? foldAngles(sheet, positions).reduce((most, angle) => Math.max(most, Math.abs(angle)), 0) : null);
 }
 
@@ -66,13 +68,27 @@ function describe() {
   const shown = ways[way];
   showFacts(page, shown);
   transport.describe(shown?.motion);
+  family?.describe(shown, mirrored);
   byId("mirror").disabled = !shown;
   byId("mirror").setAttribute("aria-pressed", String(mirrored));
   byId("download").disabled = !shown;
   const waiting = page.served && shown && !shown.motion && !shown.why;
   byId("empty").hidden = Boolean(shown?.motion);
-  byId("empty").textContent = !shown ? "The sheet lies flat here: there is no motion to show." : waiting ? "Following the motion …" : sentence(`no motion is drawn: ${shown.why}`);
+  byId("empty").textContent = !shown ? nothingMoves() : waiting ? "Following the motion …" : sentence(`no motion is drawn: ${shown.why}`);
   if (waiting) follow(way);
+}
+
+// Why the sheet lies flat, if no way to fold is listed.
+function nothingMoves() {
+  if (/\brigid\b/.test(page.answer) && page.status === "proved") return "The sheet is rigid: it lies flat, and nothing can move.";
+  return `The sheet lies flat: no way to fold is known. ${sentence(page.notes[0] ?? page.reason)}`;
+}
+
+// Positions that were chosen by hand, instead of those of the motion.
+function pose(chosen) {
+  positions.set(chosen);
+  scene?.show(positions);
+  transport.angle(foldAngles(sheet, positions).reduce((most, angle) => Math.max(most, Math.abs(angle)), 0));
 }
 
 let messageTimer = 0;
@@ -165,6 +181,7 @@ createPattern(byId("pattern"), sheet, store, {
   poppable: (at) => page.served || popped(store.get().ways, store.get().way, store.get().mirrored, at) !== null,
 });
 const list = createList(page, store);
+const family = createFamily(byId("family"), sheet, store, { positions: () => positions, pose, say });
 const radius = flat.reduce((most, _, i) => (i % 3 ? most : Math.max(most, Math.hypot(flat[i], flat[i + 1]))), 1e-12);
 try {
   scene = createScene(byId("canvas"), sheet, flat, radius);
@@ -175,7 +192,7 @@ store.on(["way", "mirrored", "time", "ways"], paintSheet);
 store.on(["way", "mirrored", "ways"], describe);
 describe();
 fitScene();
-if (framesOf(page.ways[0])) store.set({ time: OPENING });
+if (framesOf(store.get().ways[store.get().way])) store.set({ time: OPENING });
 paintSheet();
 
 byId("mirror").addEventListener("click", () => store.set({ mirrored: !store.get().mirrored }));
@@ -219,5 +236,5 @@ document.addEventListener("keydown", (event) => {
 // Used by tests and in the console of the browser.
 window.exactfold = {
   page, store, foldFile: () => foldFile(page, sheet, store.get().ways[store.get().way], store.get().mirrored),
-  positions: () => Array.from(positions), drawn: () => scene?.drawn() ?? 0,
+  positions: () => Array.from(positions), angles: () => foldAngles(sheet, positions), drawn: () => scene?.drawn() ?? 0,
 };

@@ -32,7 +32,7 @@ export function createTransport(store) {
 
   function toggle() {
     const { playing, time } = store.get();
-    if (play.disabled) return;
+    if (document.getElementById("transport").hidden) return;
     if (!playing) forward = time < 1;
     store.set({ playing: !playing });
   }
@@ -54,7 +54,8 @@ export function createTransport(store) {
   }
 
   function describe(motion) {
-    slider.disabled = play.disabled = !motion;
+    document.getElementById("transport").hidden = !motion;
+    if (!motion && store.get().playing) store.set({ playing: false });
     slider.value = motion ? Math.round(store.get().time * 1000) : 0;
     document.getElementById("ending").textContent = motion ? ENDINGS[motion.end] ?? motion.end : "";
     const ticks = (motion?.events ?? []).filter(({ time }) => time < motion.duration * 0.999).map(({ time }) => {
