@@ -28,7 +28,7 @@ class Driven(ActuateOptions):
         `UsageError` if neither `signs` nor `up` is given.
         """
         with Bar("reading") as bar:
-            read_sheet = read(self.file, self.reading, "actuate")
+            read_sheet = read(self.file, self.reading, "actuate", verbose=self.verbose)
             pattern = read_sheet.pattern
             one_at_least("either --signs or --up", self.signs, self.up)
             torques = None if self.torques is None else torques_in(self.torques, pattern)

@@ -31,7 +31,7 @@ class Listed(AssignmentsOptions):
         Raises the errors of `read_any`, and `UsageError` if the letters do not fit.
         """
         with Bar("reading") as bar:
-            opened = read_any(self.file, self.reading, doubted=self.as_json)
+            opened = read_any(self.file, self.reading, verbose=self.verbose, doubted=self.as_json)
             listed = self._listed(opened, bar)
             forcing = self._forcing(listed, opened) if self.forcing else None
             self._write(listed, forcing, bar)

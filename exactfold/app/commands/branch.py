@@ -98,7 +98,7 @@ class Asked(BranchOptions):
         return sure and driven.branch.status is PROVED and status is PROVED
 
     def _read(self, bar: Bar) -> Triangulated:
-        read_sheet = read(self.pattern, self.reading, "branch")
+        read_sheet = read(self.pattern, self.reading, "branch", verbose=self.verbose)
         one_at_least("one of --signs, --up and --batch", self.signs, self.up, self.batch)
         bar("setting up")
         return read_sheet

@@ -61,7 +61,7 @@ class Wanted(ExportOptions):
         if output is None and self.as_json:
             raise UsageError("--json describes the file that is written: name it with -o")
         with Bar("reading") as bar:
-            read_sheet = read(self.file, self.reading, "export")
+            read_sheet = read(self.file, self.reading, "export", verbose=self.verbose)
             pattern, opened = read_sheet.pattern, read_sheet.opened
             one_at_least(*options)
             branch = chosen(pattern, self.signs, self.up, self.place, bar, self.given)
@@ -132,7 +132,7 @@ def write_coq(asked: Wanted) -> int:
             "digits and _, then .v"
         )
     with Bar("reading") as bar:
-        pattern = read(asked.file, asked.reading, "export").pattern
+        pattern = read(asked.file, asked.reading, "export", verbose=asked.verbose).pattern
         text = to_coq(pattern)
         branches = []
         if named:

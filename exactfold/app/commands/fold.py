@@ -63,7 +63,7 @@ class Wanted(FoldOptions):
 
         self._check_outputs()  # before the work
         with Bar("reading") as bar:
-            opened = read_any(self.file, self.reading)
+            opened = read_any(self.file, self.reading, verbose=self.verbose)
             sheet = opened.sheet
             motion: Motion | PanelMotion
             if isinstance(sheet, CreasePattern) and (self._named or has_branches(sheet)):

@@ -11,7 +11,15 @@ from rich.text import Text
 
 from exactfold._support.plurals import agreeing, counted
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED
-from exactfold.app.report.terminal import SHOWN, letters_text, more_text, status_text
+from exactfold.app.report.terminal import (
+    COUNTED,
+    SPELLED,
+    in_numbers,
+    letters_text,
+    listed,
+    more_text,
+    status_text,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -22,9 +30,6 @@ if TYPE_CHECKING:
 
 NAMED = 12
 """At most this many folds are named in a line."""
-
-SPELLED = 128
-"""Letters are spelled out, one for each fold, on sheets with at most this many folds."""
 
 _SIDES = (
     "Each mode is shown on one side; on the other all is reversed. Modes that share no vertex fold "
@@ -44,7 +49,8 @@ def panels_report(
         parts += ["", Text(f"certificate: {certificate}")]
     if result.modes:
         parts += ["", _table(result, everything)]
-        parts += more_text(len(result.modes) - (len(result.modes) if everything else SHOWN))
+        number = len(result.modes)
+        parts += more_text(number - listed(number, everything=everything))
         parts += ["", Text(_legend(result, everything))]
     if verbose:
         parts += ["", *(Text(line) for line in _details(result))]
@@ -129,9 +135,9 @@ def _known(result: Decomposition) -> list[str]:
         first = freedom.first_order
         said = first is None or f"dimension {first}" in result.reason
         more = "" if said else f"; the first-order motions have dimension {first}"
-        lines.append(f"{freedom.text} - PROVED{more}")
+        lines.append(f"{_where(freedom.within)}{freedom.text} - PROVED{more}")
     if result.drawn is not None:
-        lines.append(_drawn(result.drawn))
+        lines.append(f"{_where(result.drawn.within)}{_drawn(result.drawn)}")
         if result.drawn.together:
             number = len(result.drawn.together)
             lines.append(
@@ -146,6 +152,16 @@ def _known(result: Decomposition) -> list[str]:
             f"{agreeing(len(solved), 'is')} known completely: {_ways(known)}"
         )
     return lines
+
+
+def _where(within: float | None) -> str:
+    """For which sheets an answer holds, if not for the one that was read."""
+    if within is None:
+        return ""
+    return (
+        f"on every sheet with these panels whose vertices lie within {within:g} of the size from "
+        "those drawn: "
+    )
 
 
 def _drawn(drawn: Drawn) -> str:
@@ -210,7 +226,7 @@ def _flat(folds: Sequence[Edge], when: str, everything: bool) -> str:
 
 
 def _table(result: Decomposition, everything: bool) -> Table:
-    modes = result.modes if everything else result.modes[:SHOWN]
+    modes = result.modes[: listed(len(result.modes), everything=everything)]
     spelled = everything or len(result.pattern.folds) <= SPELLED
     table = Table(box=None, pad_edge=False)
     table.add_column("mode", justify="right")
@@ -218,8 +234,8 @@ def _table(result: Decomposition, everything: bool) -> Table:
     table.add_column("folds", overflow="fold")
     table.add_column("truly folds")
     for number, mode in enumerate(modes, 1):
-        letters = "".join(mode.assignment.get(fold, ".") for fold in result.pattern.folds)
-        shown = letters_text(letters) if spelled else Text(_numbers(letters))
+        letters = "".join(mode.assignment.get(fold, "F") for fold in result.pattern.folds)
+        shown = letters_text(letters) if spelled else Text(in_numbers(letters))
         verdict = mode.extends.verdict
         said = {str(PROVED): "yes", str(UNDECIDED): "undecided"}.get(str(verdict), "no")
         table.add_row(
@@ -231,26 +247,12 @@ def _table(result: Decomposition, everything: bool) -> Table:
     return table
 
 
-def _numbers(letters: str) -> str:
-    """How many folds have each letter in a mode, in words.
-
-    >>> _numbers("VV.M..")
-    '1 mountain, 2 valleys, 3 flat'
-    """
-    known = {"M": "mountain", "V": "valley"}
-    bent = [counted(letters.count(one), word) for one, word in known.items() if one in letters]
-    return ", ".join([*bent, f"{letters.count('.')} flat"])
-
-
 def _legend(result: Decomposition, everything: bool) -> str:
     folds = result.pattern.folds
     if len(folds) > SPELLED and not everything:
-        return (
-            "Mountains and valleys are counted as seen from above (--all shows the letter of each "
-            f"fold). {_SIDES}"
-        )
+        return f"{COUNTED} {_SIDES}"
     order = ", ".join(f"{i}-{j}" for i, j in folds) if len(folds) <= NAMED else "of --json"
-    return f"Folds in the order {order}; M mountain, V valley, . flat, seen from above. {_SIDES}"
+    return f"Folds in the order {order}; M mountain, V valley, F flat, seen from above. {_SIDES}"
 
 
 def _details(result: Decomposition) -> list[str]:
