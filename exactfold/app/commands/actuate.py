@@ -30,7 +30,7 @@ class Driven(ActuateOptions):
         no way is named.
         """
         with Bar("reading") as bar:
-            read_sheet = read(self.file, self.reading, "actuate")
+            read_sheet = read(self.file, self.reading, "actuate", verbose=self.verbose)
             pattern = read_sheet.pattern
             self.require_name()
             torques = None if self.torques is None else torques_in(self.torques, pattern)

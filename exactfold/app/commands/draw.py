@@ -107,7 +107,7 @@ class Wanted(DrawOptions):
     def _drawn(self, bar: Bar) -> tuple[str, Verdict]:
         """The picture, and the verdict on the way that it shows."""
         try:
-            opened = read_any(self.file, self.reading)
+            opened = read_any(self.file, self.reading, verbose=self.verbose)
         except (FoldError, PatternError, SeveralSheetsError) as error:
             if not self._is_plain or self.sheet is not None:
                 raise

@@ -60,7 +60,7 @@ class Wanted(ExportOptions):
         if output is None and self.as_json:
             raise UsageError("--json describes the file that is written: name it with -o")
         with Bar("reading") as bar:
-            opened = read(self.file, self.reading, "export").opened
+            opened = read(self.file, self.reading, "export", verbose=self.verbose).opened
             self.require_name()
             branch = self.branch(opened, bar)
             bar("writing")
@@ -139,7 +139,7 @@ def write_coq(asked: Wanted) -> int:
             "digits and _, then .v"
         )
     with Bar("reading") as bar:
-        read_sheet = read(asked.file, asked.reading, "export")
+        read_sheet = read(asked.file, asked.reading, "export", verbose=asked.verbose)
         pattern = read_sheet.pattern
         text = to_coq(pattern)
         branches = []

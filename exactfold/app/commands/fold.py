@@ -52,7 +52,7 @@ class Wanted(FoldOptions):
 
         self._check_outputs()  # before the work
         with Bar("reading") as bar:
-            opened = read_any(self.file, self.reading)
+            opened = read_any(self.file, self.reading, verbose=self.verbose)
             chosen = self._chosen(opened, bar)
             if chosen.why:
                 say(chosen.why)

@@ -53,7 +53,7 @@ class Asked(MatchOptions):
         clock = Clock(self.limit)
         nearest = None
         with Bar("reading") as bar:
-            opened = read_any(self.file, self.reading, doubted=self.as_json)
+            opened = read_any(self.file, self.reading, verbose=self.verbose, doubted=self.as_json)
             letters = self._letters(opened.sheet, opened)
             if isinstance(opened.sheet, PanelPattern) or opened.sheet.Ve > 4:
                 popping = isinstance(opened.sheet, CreasePattern) and can_pop(opened.sheet)

@@ -38,7 +38,7 @@ class Wanted(ViewOptions):
             apart(output, self.file)
             checked_page(output)  # before the work
         with Bar("reading") as bar, interruptible():
-            opened = read_any(self.file, self.reading)
+            opened = read_any(self.file, self.reading, verbose=self.verbose)
             if not self.serve:
                 document = write_view(
                     opened,

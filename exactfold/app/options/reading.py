@@ -31,6 +31,10 @@ class ReadingOptions:
     colours: Colours = None
     dashes: Dashes = None
     chords: Chords = None
+    verbose: Annotated[
+        bool,
+        flag("-v", "--verbose", text="Say each step of reading and repair, and where it was done."),
+    ] = False
     box: Annotated[
         bool, flag("--box", text="Take the rectangle round the drawing for the edge of the paper.")
     ] = False

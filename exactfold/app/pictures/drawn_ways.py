@@ -43,10 +43,8 @@ class DrawnWay:
 
     @property
     def text(self) -> str:
-        """The letters in the order of the folds; a fold of panels that stays flat is a point."""
-        flat = "F" if isinstance(self.pattern, CreasePattern) else "."
-        letters = (self.letters.get(fold, "U") for fold in self.pattern.folds)
-        return "".join(flat if letter == "F" else letter for letter in letters)
+        """The letters in the order of the folds."""
+        return "".join(self.letters.get(fold, "U") for fold in self.pattern.folds)
 
     @property
     def shared(self) -> str:

@@ -11,7 +11,15 @@ from rich.text import Text
 
 from exactfold._support.plurals import agreeing, counted
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED
-from exactfold.app.report.terminal import SHOWN, letters_text, more_text, status_text
+from exactfold.app.report.terminal import (
+    COUNTED,
+    SPELLED,
+    in_numbers,
+    letters_text,
+    listed,
+    more_text,
+    status_text,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -23,9 +31,6 @@ if TYPE_CHECKING:
 
 NAMED = 12
 """At most this many folds are named in a line."""
-
-SPELLED = 128
-"""Letters are spelled out, one for each fold, on sheets with at most this many folds."""
 
 _SIDES = "Each way is shown on one side; on the other all is reversed."
 _FAMILIES = "A family has infinitely many ways; one is shown."
@@ -55,7 +60,7 @@ def panels_report(
         parts += ["", Text(f"certificate: {certificate}")]
     if ways:
         parts += ["", _table(result, ways, everything)]
-        parts += more_text(0 if everything else len(ways) - SHOWN)
+        parts += more_text(len(ways) - listed(len(ways), everything=everything))
         parts += ["", Text(_legend(result, ways, everything))]
     if verbose:
         parts += ["", *(Text(line) for line in _details(result))]
@@ -140,9 +145,9 @@ def _known(result: Decomposition) -> list[str]:
         first = freedom.first_order
         said = first is None or f"dimension {first}" in result.reason
         more = "" if said else f"; the first-order motions have dimension {first}"
-        lines.append(f"{freedom.text} - PROVED{more}")
+        lines.append(f"{_where(freedom.within)}{freedom.text} - PROVED{more}")
     if result.drawn is not None:
-        lines.append(_drawn(result.drawn))
+        lines.append(f"{_where(result.drawn.within)}{_drawn(result.drawn)}")
         if result.drawn.together:
             number = len(result.drawn.together)
             lines.append(
@@ -157,6 +162,16 @@ def _known(result: Decomposition) -> list[str]:
             f"{agreeing(len(solved), 'is')} known completely: {_ways(known)}"
         )
     return lines
+
+
+def _where(within: float | None) -> str:
+    """For which sheets an answer holds, if not for the one that was read."""
+    if within is None:
+        return ""
+    return (
+        f"on every sheet with these panels whose vertices lie within {within:g} of the size from "
+        "those drawn: "
+    )
 
 
 def _drawn(drawn: Drawn) -> str:
@@ -229,27 +244,14 @@ def _table(result: Decomposition, ways: Sequence[PanelWay], everything: bool) ->
         table.add_column("dimension", justify="right")
     table.add_column("folds", overflow="fold")
     table.add_column("truly folds")
-    for way in ways if everything else ways[:SHOWN]:
-        letters = "".join(way.letters.get(fold, ".") for fold in result.pattern.folds)
-        shown = letters_text(letters) if spelled else Text(_numbers(letters))
+    for way in ways[: listed(len(ways), everything=everything)]:
+        letters = "".join(way.letters.get(fold, "F") for fold in result.pattern.folds)
+        shown = letters_text(letters) if spelled else Text(in_numbers(letters))
         verdict = way.verdict
         said = {str(PROVED): "yes", str(UNDECIDED): "undecided"}.get(str(verdict), "no")
         cells = [str(way.dimension)] if families else []
         table.add_row(str(way.number), *cells, shown, f"{said}: {way.by}")
     return table
-
-
-def _numbers(letters: str) -> str:
-    """How many folds have each letter in a way, in words.
-
-    >>> _numbers("VV.M..")
-    '1 mountain, 2 valleys, 3 flat'
-    """
-    known = {"M": "mountain", "V": "valley"}
-    bent = [counted(letters.count(one), word) for one, word in known.items() if one in letters]
-    if "U" in letters:
-        bent.append(f"{letters.count('U')} of either letter")
-    return ", ".join([*bent, f"{letters.count('.')} flat"])
 
 
 def _legend(result: Decomposition, ways: Sequence[PanelWay], everything: bool) -> str:
@@ -259,12 +261,9 @@ def _legend(result: Decomposition, ways: Sequence[PanelWay], everything: bool) -
         either = f"{_EITHER} " * any("U" in way.letters.values() for way in ways)
         sides = f"{_FAMILIES} {either}{_SIDES}"
     if len(folds) > SPELLED and not everything:
-        return (
-            "Mountains and valleys are counted as seen from above (--all shows the letter of each "
-            f"fold). {sides}"
-        )
+        return f"{COUNTED} {sides}"
     order = ", ".join(f"{i}-{j}" for i, j in folds) if len(folds) <= NAMED else "of --json"
-    return f"Folds in the order {order}; M mountain, V valley, . flat, seen from above. {sides}"
+    return f"Folds in the order {order}; M mountain, V valley, F flat, seen from above. {sides}"
 
 
 def _details(result: Decomposition) -> list[str]:

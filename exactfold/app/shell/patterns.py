@@ -40,24 +40,31 @@ def located(path: Path) -> Path:
     )
 
 
-def read(path: Path, reading: Reading, needs: str) -> Triangulated:
+def read(path: Path, reading: Reading, needs: str, *, verbose: bool = False) -> Triangulated:
     """Open a triangulated sheet for the command `needs`, and print warnings to stderr.
 
     Raises the errors of `located`, `open_pattern` and `triangles`.
     """
-    opened = read_any(path, reading)
+    opened = read_any(path, reading, verbose=verbose)
     return Triangulated(triangles(opened, needs), opened)
 
 
-def read_any(path: Path, reading: Reading = PLAIN, *, doubted: bool = True) -> Opened:
+def read_any(
+    path: Path, reading: Reading = PLAIN, *, verbose: bool = False, doubted: bool = True
+) -> Opened:
     """Open a sheet in any format; print to stderr what was read and repaired, and warnings.
+
+    This is one line, and a line for each thing that nobody should miss; or, with `verbose`, a line
+    for each step of reading and each kind of repair.
 
     The doubt about a sheet is a warning unless `doubted` is False: then the answer says it.
 
     Raises the errors of `located` and `open_pattern`.
     """
     opened = open_pattern(located(path), reading, name=said(path))
-    for line in opened.lines:
+    if opened.brief and not verbose:
+        say(f"read {Path(said(path)).name}: {', '.join(opened.brief)}; -v for more")
+    for line in opened.lines if verbose else opened.seen:
         say(line)
     if opened.doubt and doubted:
         say(f"warning: {opened.doubt}; --snap exact takes the digits as written")

@@ -58,6 +58,8 @@ NODE_WORK = 16  # an arc through a branch point counts as much work as so many t
 
 # --- letters and pieces --------------------------------------------------------------------------
 MOST_OPEN = 1 << 12  # ways to complete the open letters of one assignment
+MOST_ASSIGNMENTS = 1 << 18  # assignments of a part of a sheet of rigid panels
+LETTER_STEPS = 1 << 20  # letters of a vertex, or forcing sets, that are tried fold by fold
 ASSIGNED_VERTICES = 8  # vertices that can pop, of a sheet whose assignments are listed
 PIECE_VERTICES = 16  # vertices that can pop, of a sheet whose pieces are counted
 PIECE_UNKNOWNS = 9  # unknowns of a system for solutions with flat vertices

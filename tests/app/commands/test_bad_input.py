@@ -116,7 +116,7 @@ MENDED = {
 def test_what_is_no_triangulated_sheet_is_read_as_a_drawing(tmp_path, document, said, code):
     path = written(tmp_path, document)
     for command, expected in ((["count"], 0), (["info"], 0), (["branch", "--signs", "+"], code)):
-        result = run(*command, "--force", path)
+        result = run(*command, "--force", path, "-v")
         assert result.exit_code == expected
         assert f"exactfold: read {path}: FOLD, " in result.stderr
         assert said in result.stderr

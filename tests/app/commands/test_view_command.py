@@ -42,7 +42,7 @@ def test_a_drawing_with_panels_is_shown_by_its_modes(tmp_path):
     assert result.stdout.endswith(
         f"written: {target}, with 3 ways to fold, and 1 mode not followed\n"
     )
-    assert "read zigzags: SVG" in result.stderr
+    assert "read zigzags: 12 lines, exact in Q" in result.stderr
 
 
 @pytest.mark.parametrize(
