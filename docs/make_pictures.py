@@ -66,7 +66,7 @@ def rim() -> str:
 
 def folding() -> str:
     """The sheet of the first page, which folds along a motion that is proved."""
-    motion = follow("miura", 8)
+    motion = follow("miura")
     if motion.closes is not PROVED:
         raise RuntimeError("the motion on the first page is not proved")
     return motion_animation(motion, title="miura")

@@ -47,7 +47,7 @@ class Asked(BranchOptions):
             return self._driven(driven_angles(self.drive))
         rows = []
         with Bar("reading") as bar:
-            opened = read(self.file, self.reading, "branch").opened
+            opened = read(self.file, self.reading, "branch", verbose=self.verbose).opened
             if self.batch is None:
                 self.require_name()
             proved = not opened.doubt
@@ -78,7 +78,7 @@ class Asked(BranchOptions):
         if self._is_many or shape:
             raise UsageError("--drive goes with --signs or --up, and with --boundary-heights")
         with Bar("reading") as bar:
-            read_sheet = read(self.file, self.reading, "branch")
+            read_sheet = read(self.file, self.reading, "branch", verbose=self.verbose)
             self.require_name()
             bar("setting up")
             chosen = self._chosen(read_sheet.opened, bar, angles)
