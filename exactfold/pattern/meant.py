@@ -170,7 +170,7 @@ class Meant:
     @property
     def brief(self) -> str:
         """What was inferred, in a few words."""
-        inexact = "" if self.noise is None else f"inexact by {self.noise:.0e} of its size, "
+        inexact = "" if self.noise is None else f"inexact by {self.noise:.0e}, "
         relations = counted(len(self.relations), "relation")
         enclosed = ", positions enclosed" if self.existence == "box" else ""
         return f"{inexact}{relations} inferred, moved by up to {self._within}{enclosed}"

@@ -231,7 +231,10 @@ class Vertices:
         """What follows for the sheet, what is asked for, and what is known of folding flat."""
         notes = []
         if self.refuted:
-            notes.append("so the sheet as a whole cannot start to fold with these letters")
+            notes.append(
+                "so the sheet as a whole cannot start to fold with these letters if its panels are "
+                "rigid and all move together; a model that is folded step by step can be right"
+            )
         if self.facts:
             notes.append(self.flat_line)
         return tuple(notes)
