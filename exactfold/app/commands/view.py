@@ -1,4 +1,4 @@
-"""`exactfold view`: writes or serves the page that shows a sheet and its ways to fold."""
+"""`exactfold view` and `serve`: write or serve the page that shows a sheet and its ways to fold."""
 
 from __future__ import annotations
 
@@ -11,14 +11,13 @@ from rich.text import Text
 from exactfold._support.plurals import counted, visible
 from exactfold._support.processes import available_cores
 from exactfold._support.verdict import PROVED
-from exactfold.app.options.pictures import ViewOptions
+from exactfold.app.options.pictures import ServeOptions, ViewOptions
 from exactfold.app.report.terminal import show
-from exactfold.app.shell.patterns import read_any
+from exactfold.app.shell.patterns import located, read_any
 from exactfold.app.shell.shell import Bar, apart, interruptible, name_of, say, tell
 from exactfold.app.viewer.page import checked_page, write_view
-from exactfold.app.viewer.server import view_server
 from exactfold.errors import UsageError
-from exactfold.pattern.opening import Opened
+from exactfold.pattern.reading import Reading
 
 
 class Wanted(ViewOptions):
@@ -31,49 +30,53 @@ class Wanted(ViewOptions):
         """
         name = "sheet" if str(self.file) == "/dev/stdin" else self.file.stem
         output = self.output or Path(f"{name}.view.html")
-        if not self.serve:
-            apart(output, self.file)
-            checked_page(output)  # before the work
-        with Bar("reading") as bar, interruptible():
-            opened = read_any(self.file, self.reading)
-            if not self.serve:
-                document = write_view(
-                    opened,
-                    output,
-                    name=visible(name),
-                    branches=self.branches,
-                    frames=self.frames,
-                    proving=self.proving,
-                    workers=self.workers or available_cores(),
-                    progress=bar,
-                )
         if self.serve:
-            self._serve(opened, name)
+            sheet, port = located(self.file), self.port or 0
+            how = {"branches": self.branches, "frames": self.frames, "proving": self.proving}
+            serve(sheet, visible(name), self.reading, port=port, **how)
             return
+        apart(output, self.file)
+        checked_page(output)  # before the work
+        with Bar("reading") as bar, interruptible():
+            document = write_view(
+                read_any(self.file, self.reading),
+                output,
+                name=visible(name),
+                branches=self.branches,
+                frames=self.frames,
+                proving=self.proving,
+                workers=self.workers or available_cores(),
+                progress=bar,
+            )
         show(Text(document["answer"]))
         tell(f"written: {name_of(output)}, with {_contents(document)}")
 
-    def _serve(self, opened: Opened, name: str) -> None:
-        with Bar("counting") as bar:
-            try:
-                server = view_server(
-                    opened,
-                    name=visible(name),
-                    branches=self.branches,
-                    frames=self.frames,
-                    proving=self.proving,
-                    port=self.port or 0,
-                    progress=bar,
-                )
-            except OSError as error:
-                raise UsageError(f"port {self.port or 0}: {error.strerror}") from None
-        with server:
-            tell(f"{name} is at {server.address} (Ctrl-C ends it)")
-            try:
-                with interruptible():
-                    server.serve_forever(poll_interval=0.2)
-            except KeyboardInterrupt:
-                say("the server has ended")
+
+class Served(ServeOptions):
+    """The options of one call of `exactfold serve`, and how they are answered."""
+
+    def run(self) -> None:
+        """Serve the page until Ctrl-C; raises the errors of `located` and `view_server`."""
+        name = "" if self.file is None else self.file.stem
+        sheet = None if self.file is None else located(self.file)
+        serve(sheet, name, self.reading, port=self.port or 0, limit=float(self.limit))
+
+
+def serve(sheet: Path | None, name: str, reading: Reading, **how: Any) -> None:
+    """Serve the page with a sheet, or without one, until Ctrl-C."""
+    from exactfold.app.serving import view_server
+
+    try:
+        server = view_server(sheet, name=visible(name), reading=reading, **how)
+    except OSError as error:
+        raise UsageError(f"port {how.get('port', 0)}: {error.strerror}") from None
+    with server:
+        tell(f"{name or 'the page'} is at {server.address} (Ctrl-C ends it)")
+        try:
+            with interruptible():
+                server.serve_forever(poll_interval=0.2)
+        except KeyboardInterrupt:
+            say("the server has ended")
 
 
 def _contents(document: Mapping[str, Any]) -> str:

@@ -124,8 +124,7 @@ class ViewOptions(ReadingOptions):
         bool,
         flag(
             "--serve",
-            text="Write no file, but serve the page on this machine, and follow each branch when "
-            "it is looked at.",
+            text="Write no file, but serve the page on this machine, as `exactfold serve` does.",
         ),
     ] = False
     port: Annotated[
@@ -137,8 +136,29 @@ class ViewOptions(ReadingOptions):
         if self.serve:
             if self.output is not None or self.workers is not None:
                 raise UsageError(
-                    "--serve writes no file and follows one branch at a time: leave out -o and "
-                    "--workers"
+                    "--serve writes no file and has its own processes: leave out -o and --workers"
                 )
         elif self.port is not None:
             raise UsageError("--port goes with --serve")
+
+
+@dataclass(frozen=True, eq=False, repr=False, match_args=False)
+class ServeOptions(ReadingOptions):
+    """The options of `exactfold serve`."""
+
+    file: Annotated[
+        Path | None,
+        typer.Argument(
+            metavar="PATTERN",
+            help="A drawing to begin with: a file, or the name of a shipped pattern. Others are "
+            "dropped into the page.",
+        ),
+    ] = None
+    port: Annotated[
+        int | None,
+        number("The port. Default: any free port.", "P"),
+    ] = None
+    limit: Annotated[
+        int,
+        number("Seconds after which the work on one sheet ends.", "SECONDS"),
+    ] = 60

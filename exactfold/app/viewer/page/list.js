@@ -25,7 +25,7 @@ export function createList(page, store) {
     clear.hidden = !narrowed;
     box.replaceChildren(...found.map(({ way, mirrored }) => row(ways[way], way, mirrored, page.drawn)));
     search.hidden = !ways.length;
-    if (!found.length) box.append(paragraph(ways.length ? nothing() : `No way to list: ${page.answer.split(" - ")[0]}.`));
+    if (!found.length) box.append(paragraph(page.busy && !ways.length ? "Looking for ways to fold …" : ways.length ? nothing() : `No way to list: ${page.answer.split(" - ")[0]}.`));
     settle();
     mark();
   }
