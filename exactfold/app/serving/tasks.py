@@ -120,7 +120,9 @@ class Session:
             "sheet": sheet_json(opened),
         }
         seconds = _LIVE_SECONDS if task.live else task.limit / 2
-        listed = listed_ways(opened, task.branches, task.frames, task.proving, None, limit=seconds)
+        listed = listed_ways(
+            opened, task.branches, None, task.frames, task.proving, None, limit=seconds
+        )
         self.known, self._finders = Known(opened, name, listed), {}
         document = self.known.document([way for way, _ in listed.ways], served=True)
         yield {"kind": "listed", "document": document}

@@ -102,7 +102,7 @@ function row(way, k, mirrored, drawn) {
   node.id = `way-${k}`;
   node.setAttribute("role", "option");
   node.setAttribute("aria-selected", "false");
-  const number = span("number", String(k + 1));
+  const number = span("number", way.number ? String(way.number) : "–");
   const signs = span(side.signs ? "signs" : "signs plain", side.signs ? side.signs.replaceAll("-", "−") : way.name);
   const notes = [];
   if (mirrored) notes.push("mirror image");

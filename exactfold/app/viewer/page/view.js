@@ -216,7 +216,7 @@ export function createView(page, { server, signal, begin = {}, changed }) {
     byId("beside").setAttribute("aria-pressed", String(Boolean(beside)));
     if (!beside) return;
     const name = seen(ways[beside.way], beside.mirrored).signs.replaceAll("-", "−") || ways[beside.way].name;
-    byId("beside-name").textContent = `${beside.way + 1}: ${name}${beside.mirrored ? ", mirror image" : ""}`;
+    byId("beside-name").textContent = `${ways[beside.way].number ? `${ways[beside.way].number}: ` : ""}${name}${beside.mirrored ? ", mirror image" : ""}`;
     if (!second && scene) second = createScene(byId("canvas2"), sheet, flat, radius, signal);
     second?.fit(shapesOf(ways[beside.way]));
     paintSheet();
