@@ -37,7 +37,7 @@ def panels_report(
 ) -> Group:
     """The answer, the modes, what stays flat, and what is undecided."""
     parts: list[Any] = [panels_answer(result)]
-    notes = [*_known(result), *_notes(result, everything)]
+    notes = [*known_lines(result), *_notes(result, everything)]
     if notes:
         parts += ["", *(Text(note) for note in notes)]
     if certificate is not None:
@@ -120,7 +120,7 @@ def _each(result: Decomposition) -> str:
     return "; the dimension is the number of folds that can be folded independently"
 
 
-def _known(result: Decomposition) -> list[str]:
+def known_lines(result: Decomposition) -> list[str]:
     """What is proved where not all motions are known: degrees of freedom, and the drawn letters."""
     from exactfold.panels.result import product
 
