@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
+from exactfold._support.plurals import counted
 from exactfold.errors import FoldError, PatternError, TooLargeError, UsageError
 from exactfold.exact.surds import rational
 from exactfold.pattern.crease_pattern import CreasePattern
@@ -83,8 +84,10 @@ def _meaning(found: Opened, written: Callable[[], Opened]) -> Opened:
     lines = tuple(line for line in raw.lines if not line.startswith("coordinates kept"))
     return replace(
         raw,
-        sheet=_triangles(exact),
+        sheet=_triangles(exact) if meant.existence == "exact" else exact,
         lines=(*lines, *meant.lines),
+        brief=_with_coordinates(raw, meant.brief),
+        seen=(*raw.seen, *meant.held),
         largest_move=meant.distance or 0.0,
         field_name=exact.field_name,
         meant=meant,
@@ -125,6 +128,7 @@ def recognised(found: Opened) -> Opened | None:
             found,
             sheet=_triangles(sheet),
             lines=(*found.lines, known.text),
+            brief=_with_coordinates(found, known.brief),
             largest_move=known.largest_move,
             field_name=sheet.field_name,
         )
@@ -174,6 +178,12 @@ def _levels(sheet: PanelPattern) -> list[float]:
     drawn = Drawn(points, sheet.edges, frozenset(sheet.boundary_edges))
     defects = [relation.defect for relation, _ in local_relations(drawn)[0]]
     return proposed_levels(defects, NEAR * min(drawn.lengths.values()))
+
+
+def _with_coordinates(found: Opened, coordinates: str) -> tuple[str, ...]:
+    """The words of `brief` with these about the coordinates."""
+    lines, _, *more = found.brief or (counted(len(found.sheet.edges), "line"), "")
+    return lines, coordinates, *more
 
 
 def _triangles(exact: PanelPattern) -> CreasePattern | PanelPattern:

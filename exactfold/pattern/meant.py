@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, Final, TypedDict
@@ -17,6 +17,7 @@ from exactfold.pattern.drawing.meant.values import Existence, Kind, Relation
 
 if TYPE_CHECKING:
     from exactfold.pattern.drawing.meant.inference import Inference
+    from exactfold.pattern.drawing.meant.values import Angles
     from exactfold.pattern.meant_sheet import Realized
     from exactfold.pattern.panel_pattern import PanelPattern
     from exactfold.pattern.reading import Reading
@@ -62,7 +63,8 @@ class MeantDocument(TypedDict):
     distance: NotNegative | None
     """The largest distance of a vertex from the drawing, by its size."""
     existence: Existence
-    """How a sheet with all relations was proved to exist."""
+    """How a sheet with all relations was proved to exist: by exact coordinates, or by exact
+    directions of its folds and boxes that contain its vertices."""
     left_out: list[RelationDocument]
     """Relations that were found, too, but no exact sheet that has them."""
     left: list[RelationDocument]
@@ -104,7 +106,7 @@ class Meant:
     @property
     def inferred(self) -> bool:
         """Whether the sheet of the answer is the sheet that was meant, not the drawing itself."""
-        return self.existence == "exact"
+        return self.existence != "none"
 
     @property
     def doubt(self) -> str:
@@ -145,15 +147,33 @@ class Meant:
         lines.append(
             f"within {self._within} of the drawing there is a sheet with all of them - PROVED"
         )
+        if self.existence == "box":
+            lines.append(
+                "the directions of its folds are exact; the positions of its vertices are enclosed"
+            )
         if self.left_out:
             lines.append(
                 f"{counted(len(self.left_out), 'more relation')} such as {self.left_out[0].name} "
                 f"{agreeing(len(self.left_out), 'is')} nearly true, but no exact sheet with all "
                 "relations was found; no condition at a vertex needs them"
             )
-        for name, others in self.implied.items():
-            lines.append(f"{name} holds all the same, because of {', '.join(others)}")
-        return tuple(lines)
+        return (*lines, *self.held)
+
+    @property
+    def held(self) -> tuple[str, ...]:
+        """The relations that were deleted and hold all the same, one sentence each."""
+        return tuple(
+            f"{name} holds all the same, because of {', '.join(others)}"
+            for name, others in self.implied.items()
+        )
+
+    @property
+    def brief(self) -> str:
+        """What was inferred, in a few words."""
+        inexact = "" if self.noise is None else f"inexact by {self.noise:.0e} of its size, "
+        relations = counted(len(self.relations), "relation")
+        enclosed = ", positions enclosed" if self.existence == "box" else ""
+        return f"{inexact}{relations} inferred, moved by up to {self._within}{enclosed}"
 
     @property
     def listed(self) -> tuple[str, ...]:
@@ -217,8 +237,10 @@ def inferred(written: PanelPattern, reading: Reading) -> Meant:
     `_DISTANT`; this is done for sheets of up to 1,000 edges. Raises the errors of `infer` for
     relations that do not exist or contradict each other.
     """
+    from exactfold.pattern.meant_sheet import enclose, realize
+
     all_found = _found(written, reading, ())
-    meant = _realized(written, all_found)
+    first = meant = _realized(written, all_found, realize)
     attempts = len(_DISTANT) if len(written.edges) <= _MOST_EDGES else 0
     for number in range(1, attempts + 1):
         if all_found.angles is None or meant.inferred:
@@ -227,11 +249,14 @@ def inferred(written: PanelPattern, reading: Reading) -> Meant:
         dropped = [kind for kind in _DISTANT[:number] if kind in kinds_found]
         if not dropped or dropped[-1] != _DISTANT[number - 1]:
             continue
-        fewer = _realized(written, _found(written, reading, dropped))
+        fewer = _realized(written, _found(written, reading, dropped), realize)
         kept = {relation.name for relation in fewer.relations}
         out = tuple(one for one in all_found.relations if one.name not in kept)
         meant = replace(fewer, left_out=out)
-    return meant
+    if all_found.angles is None or meant.inferred:
+        return meant
+    box = _realized(written, all_found, enclose)
+    return box if box.inferred else replace(meant, reason=first.reason)
 
 
 def _found(written: PanelPattern, reading: Reading, dropped: Sequence[Kind]) -> Inference:
@@ -248,9 +273,12 @@ def _found(written: PanelPattern, reading: Reading, dropped: Sequence[Kind]) -> 
     )
 
 
-def _realized(written: PanelPattern, found: Inference) -> Meant:
-    from exactfold.pattern.meant_sheet import realize
-
+def _realized(
+    written: PanelPattern,
+    found: Inference,
+    make: Callable[[PanelPattern, Angles, float], Realized],
+) -> Meant:
+    """What is known of the sheet that was meant, once `make` looked for it."""
     known = Meant(
         noise=found.noise or None,
         clear=found.clear,
@@ -263,7 +291,7 @@ def _realized(written: PanelPattern, found: Inference) -> Meant:
     )
     if found.angles is None:
         return known
-    made = realize(written, found.angles, found.noise)
+    made = make(written, found.angles, found.noise)
     known = replace(known, free_angles=len(found.angles.free), realized=made, reason=made.reason)
     if made.sheet is None:
         return known

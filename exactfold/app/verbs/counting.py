@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Final, TypeGuard, cast, overload
 
 from exactfold._support.clock import LIMIT, Clock
 from exactfold._support.progress import Progress
-from exactfold.app.verbs.choosing import the_branch
+from exactfold.app.verbs.choosing import Choice, the_branch
 from exactfold.branches.counting.batch import count_many
+from exactfold.branches.counting.doubted import doubted_branch
 from exactfold.branches.counting.find import BoundaryHeights, Deficits, Signs
 from exactfold.branches.counting.registry import choose
 from exactfold.branches.counting.ways import count_opened, decompose_opened
@@ -276,6 +277,8 @@ def branch(
     with more than four corners, and `curvature` angle deficits of interior vertices, both as in
     `exactfold.branches.find_branch`.
 
+    If the digits of a drawing are in doubt, the branch is UNDECIDED, and `reason` says why.
+
     Raises `NotCountedError` for a sheet of panels, which has modes, and if no branch has the
     letters; `UsageError` if none or several of the arguments name the branch, if several branches
     have the letters, and for a number that is not in the list; and the errors of `find_branch`.
@@ -288,17 +291,9 @@ def branch(
     >>> exactfold.branch("two-vertex", way=3).sign_text
     '+-'
     """
-    chosen, _ = the_branch(
-        open_sheet(sheet),
-        way,
-        signs,
-        up,
-        letters,
-        boundary_heights=boundary_heights,
-        curvature=curvature,
-        progress=progress,
-    )
-    return chosen
+    choice = Choice(way, signs, up, letters, boundary_heights, curvature)
+    opened = open_sheet(sheet)
+    return doubted_branch(the_branch(opened, choice, progress).branch, opened)
 
 
 def _is_one(sheet: object) -> TypeGuard[PatternLike]:

@@ -102,7 +102,7 @@ class Directions:
         quotient = _product(vector, (x, -y))
         if self.power(edge, k) < 0:
             quotient = quotient[0], -quotient[1]
-        self._fixed[k] = _short(quotient)
+        self._fixed[k] = with_a_one(quotient)
 
     def _without(self, edge: Edge, left_out: int | None) -> Vector:
         constant, terms = self.key(edge)
@@ -153,7 +153,7 @@ class Directions:
             self.field, angle = field, angle / 2
             # (x + length, y) has half the angle of (x, y), and (x - length, y) is at right angles
             half = [(x + length, field.number(y)), (x - length, field.number(y))]
-            vector = _short(min(half, key=lambda other: _off(other, angle)))
+            vector = with_a_one(min(half, key=lambda other: _off(other, angle)))
         self._short[k] = vector
 
     def _fraction(self, k: int) -> tuple[int, int]:
@@ -229,7 +229,7 @@ class _Grid:
             share = steps * pow(self.parts // q, -1, q) % q
             for _ in range(share):
                 total = _product(total, factor)
-        return _short(total)
+        return with_a_one(total)
 
 
 def _with_root(field: SurdField, square: Number) -> tuple[SurdField, Surd]:
@@ -242,7 +242,7 @@ def _product(a: Vector, b: Vector) -> Vector:
     return a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]
 
 
-def _short(vector: Vector) -> Vector:
+def with_a_one(vector: Vector) -> Vector:
     """A multiple of a vector with a coordinate 1."""
     x, y = vector
     one = x.field.number(1)

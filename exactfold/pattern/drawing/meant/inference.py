@@ -117,7 +117,10 @@ def infer(
         accepted = Accepted(drawn, level.tolerance, floor)
         accepted.add(relation for relation in found_all if relation.name not in gone)
     if not accepted.contradicting:
-        accepted.add(stated(drawn, text, grid) for text in also)
+        for text in also:
+            relation = stated(drawn, text, grid)
+            if not accepted.has(relation):
+                accepted.add([relation])
         if accepted.contradicting:
             raise UsageError(_conflict(accepted, accepted.contradicting[0]))
     if accepted.contradicting:

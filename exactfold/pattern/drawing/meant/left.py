@@ -6,7 +6,7 @@ of a proof.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import combinations
 from math import atan2, cos, exp, hypot, lcm, log, pi, sin
 from typing import TYPE_CHECKING, Final, Protocol
@@ -74,7 +74,7 @@ def left_relations(sheet: Sheet) -> tuple[Relation, ...]:
         if off * length / size >= NEAREST:
             continue
         if off < _TRUST:
-            off = _exact(sheet.vertices, terms)
+            off = _exact(sheet, terms)
         if off:
             near.append(Relation(kind, name, terms, 1, off * length / size))
     near.sort(key=lambda relation: relation.defect)
@@ -163,17 +163,19 @@ def _test(
     return kind, name, tuple((_edge(v, w), sign) for w, sign in signs), off
 
 
-def _exact(vertices: Sequence[tuple[Number, Number]], terms: _Terms) -> float:
-    """The angle by which a sum misses a multiple of pi, from exact coordinates; 0 if it does not.
+def _exact(sheet: Sheet, terms: _Terms) -> float:
+    """The angle by which a sum misses a multiple of pi, from exact vectors; 0 if it does not.
 
     The product of the directions, conjugated where the sign is negative, is real if the sum is a
     multiple of pi.
     """
+    directions: Mapping[Edge, tuple[Number, Number]] = getattr(sheet, "directions", {})
     x: Number = 1
     y: Number = 0
-    for (i, j), sign in terms:
-        (ax, ay), (bx, by) = vertices[i], vertices[j]
-        u, w = bx - ax, (by - ay) * sign
+    for edge, sign in terms:
+        (ax, ay), (bx, by) = (sheet.vertices[v] for v in edge)
+        u, w = directions.get(edge, (bx - ax, by - ay))
+        w = w * sign
         x, y = x * u - y * w, x * w + y * u
     return abs(float(y / x)) if x else pi / 2
 
