@@ -82,7 +82,8 @@ class Decomposition(Page, Ways[Mode], Certified):
 
     `meant` says what was inferred if the digits of the drawing are inexact, and `as_written` is the
     answer for these digits alone. If `doubt` says why an answer would hold for the digits of the
-    sheet only, the status is UNDECIDED, and `as_written` has that answer.
+    sheet only, the status is UNDECIDED, and `as_written` has that answer. `nearby` then has bounds
+    of the degrees of freedom that hold for every sheet near the drawing.
     """
 
     pattern: PanelPattern
@@ -107,6 +108,7 @@ class Decomposition(Page, Ways[Mode], Certified):
     doubt: str = ""
     as_written: OfDigits | None = None
     drawn: Drawn | None = None
+    nearby: Freedom | None = None
     seconds: float = field(default=0.0, compare=False)
 
     WRITER: ClassVar = "exactfold.panels.certificate:certificate_of_panels"
@@ -193,9 +195,11 @@ class Decomposition(Page, Ways[Mode], Certified):
     @property
     def freedom(self) -> Freedom | None:
         """Bounds for the degrees of freedom near the flat sheet; None if nothing bounds them."""
+        if self.doubt:
+            return self.nearby
         bounds = [part.freest for part in self.parts]
         dimensions = [part.dimension for part in self.parts]
-        if None in bounds or self.doubt:
+        if None in bounds:
             return None
         free = len(self.free)
         return Freedom(
@@ -290,8 +294,16 @@ class Part:
 
     @property
     def freest(self) -> int | None:
-        """An upper bound for the dimension of true motions; None if nothing bounds it."""
-        return self.most if self.true is None else max(self.true)
+        """An upper bound for the dimension of true motions; None if nothing bounds it.
+
+        The tangent cone of the true motions has their dimension, and lies in the motions to second
+        order.
+        """
+        if self.true is not None:
+            return max(self.true)
+        if self.second_order is not None:
+            return max(self.second_order)
+        return self.most
 
     @property
     def least(self) -> int:

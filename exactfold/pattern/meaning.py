@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
+from exactfold._support.plurals import counted
 from exactfold.errors import FoldError, PatternError, TooLargeError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.drawing.drawing import Drawing, Line
@@ -79,6 +80,8 @@ def _meaning(found: Opened, written: Callable[[], Opened]) -> Opened:
         raw,
         sheet=_triangles(exact) if meant.existence == "exact" else exact,
         lines=(*lines, *meant.lines),
+        brief=_with_coordinates(raw, meant.brief),
+        seen=(*raw.seen, *meant.held),
         largest_move=meant.distance or 0.0,
         field_name=exact.field_name,
         meant=meant,
@@ -119,10 +122,17 @@ def recognised(found: Opened) -> Opened | None:
             found,
             sheet=_triangles(sheet),
             lines=(*found.lines, known.text),
+            brief=_with_coordinates(found, known.brief),
             largest_move=known.largest_move,
             field_name=sheet.field_name,
         )
     )
+
+
+def _with_coordinates(found: Opened, coordinates: str) -> tuple[str, ...]:
+    """The words of `brief` with these about the coordinates."""
+    lines, _, *more = found.brief or (counted(len(found.sheet.edges), "line"), "")
+    return lines, coordinates, *more
 
 
 def _triangles(exact: PanelPattern) -> CreasePattern | PanelPattern:

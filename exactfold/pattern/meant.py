@@ -14,7 +14,6 @@ from exactfold._support.plurals import agreeing, counted
 from exactfold.errors import NotApplicableError
 from exactfold.exact.numbers import decimal_above
 from exactfold.pattern.drawing.meant.left import left_relations, nearly, off_by
-from exactfold.pattern.drawing.meant.noise import TOLERANCE
 from exactfold.pattern.drawing.meant.values import Existence, Kind, Relation
 
 if TYPE_CHECKING:
@@ -121,14 +120,6 @@ class Meant:
         return f"{text}; the sheet that was meant is not known, because {self.reason}"
 
     @property
-    def tolerance(self) -> float:
-        """What is missed by no more than this, as a share of the size, may be meant to hold.
-
-        It is 0 unless answers are doubted.
-        """
-        return TOLERANCE * (self.noise or self.left[-1].defect) if self.left else 0.0
-
-    @property
     def name(self) -> str:
         """What the sheet of the answer is."""
         return f"the sheet that was meant, within {self._within} of the drawing"
@@ -167,9 +158,23 @@ class Meant:
                 f"{agreeing(len(self.left_out), 'is')} nearly true, but no exact sheet with all "
                 "relations was found; no condition at a vertex needs them"
             )
-        for name, others in self.implied.items():
-            lines.append(f"{name} holds all the same, because of {', '.join(others)}")
-        return tuple(lines)
+        return (*lines, *self.held)
+
+    @property
+    def held(self) -> tuple[str, ...]:
+        """The relations that were deleted and hold all the same, one sentence each."""
+        return tuple(
+            f"{name} holds all the same, because of {', '.join(others)}"
+            for name, others in self.implied.items()
+        )
+
+    @property
+    def brief(self) -> str:
+        """What was inferred, in a few words."""
+        inexact = "" if self.noise is None else f"inexact by {self.noise:.0e} of its size, "
+        relations = counted(len(self.relations), "relation")
+        enclosed = ", positions enclosed" if self.existence == "box" else ""
+        return f"{inexact}{relations} inferred, moved by up to {self._within}{enclosed}"
 
     @property
     def listed(self) -> tuple[str, ...]:

@@ -95,6 +95,7 @@ def opened(raw: bytes, name: str, reading: Reading = PLAIN) -> Opened:
                 file.pattern,
                 file.assignment,
                 lines,
+                seen=lines,
                 snapped=file.snapped,
                 reading=reading,
                 again=again,
@@ -206,7 +207,7 @@ def _chosen(drawing: Drawing, sheets: Sheets, reading: Reading) -> Opened:
     folds; with `force`, the first line says so instead.
     """
     from exactfold.pattern.drawing.chosen import chosen
-    from exactfold.pattern.drawing.losses import missing
+    from exactfold.pattern.drawing.losses import brief, loud, missing
     from exactfold.pattern.panel_pattern import PanelPattern
 
     k = chosen(sheets.sheets, reading.number)
@@ -216,17 +217,21 @@ def _chosen(drawing: Drawing, sheets: Sheets, reading: Reading) -> Opened:
         (min(line.start, line.end), max(line.start, line.end)): line.letter for line in sheet.lines
     }
     lines = [drawing.source, *drawing.remarks, sheets.coordinates.text]
+    seen = loud(drawing, sheets)
     loss = missing(drawing, sheets, k, folds=bool(pattern.folds))
     if loss is not None:
         if not reading.force:
             left_out = () if pattern.folds else drawing.remarks
             raise MalformedDrawingError("; ".join((loss, *left_out)))
         lines.insert(0, f"warning: {loss}")
+        seen = (lines[0], *seen)
     lines += [str(repair) for repair in sheets.repairs]
     return Opened(
         triangulated(pattern) or pattern,
         letters,
         tuple(lines),
+        brief(drawing, sheets),
+        seen,
         largest_move=sheets.coordinates.largest_move,
         field_name=pattern.field_name,
     )

@@ -94,10 +94,10 @@ def test_panels_stay_polygons_with_exact_corners(tmp_path):
     assert opened.field_name == "Q(sqrt 3)"
     assert {len(face) for face in document["faces_vertices"]} == {3, 4, 6}
     assert document["faces_vertices"] == [list(face) for face in sheet.faces]
-    assert document["file_title"] == "twist, motion along mode 1"
+    assert document["file_title"] == "twist, motion along way 1"
     assert document["frame_title"].startswith("flat sheet, with the fold angles at time 0.524 of")
     facts = document["frame_exactfold:motion"]
-    assert (facts["modes"], facts["component"], facts["free_folds"]) == ([1], 1, [])
+    assert (facts["modes"], facts["way"], facts["free_folds"]) == ([1], 1, [])
     assert (facts["status"], facts["pattern"]) == (str(PANELS.status), sheet.sha256)
     assert max(map(abs, document["edges_foldAngle"])) == pytest.approx(30)
     edges = [tuple(edge) for edge in document["edges_vertices"]]

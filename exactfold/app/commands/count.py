@@ -91,7 +91,8 @@ class Asked(CountOptions):
 
         if self.given.curvature is None:
             raise UsageError(
-                "--rim goes with --curvature: without it, all boundary heights are covered"
+                "--boundary-heights goes with --curvature: without it, all boundary heights are "
+                "covered"
             )
         for option, value in (
             ("--certificate", self.certificate),
@@ -104,7 +105,7 @@ class Asked(CountOptions):
                     "a certificate of one shape"
                 )
         with Bar("reading") as bar:
-            pattern = read(self.pattern, self.reading, "count").pattern
+            pattern = read(self.pattern, self.reading, "count", verbose=self.verbose).pattern
             finder = self.given.finder(pattern)
             result = count_shapes(
                 pattern,
@@ -128,7 +129,9 @@ class Asked(CountOptions):
             raise UsageError("--resume, --workers and --dask go with --stream")
         clock = Clock(self.limit)
         with Bar("reading") as bar:
-            opened = read_any(self.pattern, self.reading, doubted=self.as_json)
+            opened = read_any(
+                self.pattern, self.reading, verbose=self.verbose, doubted=self.as_json
+            )
             sheet = opened.sheet
             if isinstance(sheet, CreasePattern) and (better := advice(sheet)) is not None:
                 say(better)

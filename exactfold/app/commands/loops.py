@@ -50,7 +50,7 @@ class Wanted(MotionsOptions):
             raise UsageError("--resume continues a file: it goes with --certificate")
         apart(self.certificate, self.file)
         with Bar("reading") as bar:
-            read_sheet = read(self.file, self.reading, "motions")
+            read_sheet = read(self.file, self.reading, "motions", verbose=self.verbose)
             pattern = read_sheet.pattern
             with ExitStack() as stack:
                 if self.certificate is not None:

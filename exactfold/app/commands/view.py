@@ -11,10 +11,13 @@ from rich.text import Text
 from exactfold._support.plurals import counted, visible
 from exactfold._support.processes import available_cores
 from exactfold._support.verdict import PROVED
+from exactfold.app.commands.ways import choice_of
 from exactfold.app.options.pictures import ViewOptions
 from exactfold.app.report.terminal import show
 from exactfold.app.shell.patterns import read_any
-from exactfold.app.shell.shell import Bar, apart, interruptible, name_of, say, tell
+from exactfold.app.shell.shell import Bar, apart, interruptible, say, tell, wrote
+from exactfold.app.verbs.choosing import choose
+from exactfold.app.verbs.showing import shown
 from exactfold.app.viewer.page import checked_page, write_view
 from exactfold.app.viewer.server import view_server
 from exactfold.errors import UsageError
@@ -35,13 +38,13 @@ class Wanted(ViewOptions):
             apart(output, self.file)
             checked_page(output)  # before the work
         with Bar("reading") as bar, interruptible():
-            opened = read_any(self.file, self.reading)
+            opened = read_any(self.file, self.reading, verbose=self.verbose)
             if not self.serve:
                 document = write_view(
                     opened,
                     output,
                     name=visible(name),
-                    branches=self.branches,
+                    **self._only(opened, bar),
                     frames=self.frames,
                     proving=self.proving,
                     workers=self.workers or available_cores(),
@@ -51,7 +54,13 @@ class Wanted(ViewOptions):
             self._serve(opened, name)
             return
         show(Text(document["answer"]))
-        tell(f"written: {name_of(output)}, with {_contents(document)}")
+        wrote(output, _contents(document))
+
+    def _only(self, opened: Opened, bar: Bar) -> dict[str, Any]:
+        """The way that is shown, as arguments of `write_view`; empty if none was named."""
+        if not self.is_named:
+            return {}
+        return shown(choose(opened, choice_of(self, opened), bar))
 
     def _serve(self, opened: Opened, name: str) -> None:
         with Bar("counting") as bar:
@@ -59,7 +68,7 @@ class Wanted(ViewOptions):
                 server = view_server(
                     opened,
                     name=visible(name),
-                    branches=self.branches,
+                    **self._only(opened, bar),
                     frames=self.frames,
                     proving=self.proving,
                     port=self.port or 0,

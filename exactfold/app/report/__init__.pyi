@@ -1,7 +1,7 @@
 from exactfold.app.pictures.animation import motion_animation as motion_animation
 from exactfold.app.pictures.crease_drawing import pattern_picture as pattern_picture
 from exactfold.app.pictures.drawn_ways import branch_way as branch_way
-from exactfold.app.pictures.drawn_ways import mode_way as mode_way
+from exactfold.app.pictures.drawn_ways import panel_way as panel_way
 from exactfold.app.pictures.drawn_ways import ways_of as ways_of
 from exactfold.app.pictures.multiples import sheet_of_multiples as sheet_of_multiples
 from exactfold.app.pictures.picture_files import write_picture as write_picture

@@ -18,7 +18,7 @@ from exactfold.pattern.crease_pattern import CreasePattern
 
 @dataclass(frozen=True)
 class Given:
-    """The files that --rim and --curvature name; None for an option that is not given."""
+    """The files of --boundary-heights and --curvature; None for an option that is not given."""
 
     boundary_heights: Path | None = None
     curvature: Path | None = None

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, TypeGuard, cast, overload
 
 from exactfold._support.clock import LIMIT, Clock
 from exactfold._support.progress import Progress
-from exactfold.app.verbs.choosing import the_branch
+from exactfold.app.verbs.choosing import Choice, the_branch
 from exactfold.branches.counting.batch import count_many
+from exactfold.branches.counting.doubted import doubted_branch
 from exactfold.branches.counting.find import BoundaryHeights, Deficits, Signs
 from exactfold.branches.counting.registry import choose
 from exactfold.branches.counting.ways import count_opened, decompose_opened
@@ -252,6 +253,8 @@ def branch(
     with more than four corners, and `curvature` angle deficits of interior vertices, both as in
     `exactfold.branches.find_branch`.
 
+    If the digits of a drawing are in doubt, the branch is UNDECIDED, and `reason` says why.
+
     Raises `NotCountedError` for a sheet of panels, which has modes, and if no branch has the
     letters; `UsageError` if none or several of the arguments name the branch, if several branches
     have the letters, and for a number that is not in the list; and the errors of `find_branch`.
@@ -264,17 +267,9 @@ def branch(
     >>> exactfold.branch("two-vertex", way=3).sign_text
     '+-'
     """
-    chosen, _ = the_branch(
-        open_sheet(sheet),
-        way,
-        signs,
-        up,
-        letters,
-        boundary_heights=boundary_heights,
-        curvature=curvature,
-        progress=progress,
-    )
-    return chosen
+    choice = Choice(way, signs, up, letters, boundary_heights, curvature)
+    opened = open_sheet(sheet)
+    return doubted_branch(the_branch(opened, choice, progress).branch, opened)
 
 
 def _is_one(sheet: object) -> TypeGuard[PatternLike]:

@@ -7,7 +7,7 @@ from contextlib import closing
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from typing import Annotated, Any, Final, Literal, TypedDict
+from typing import TYPE_CHECKING, Annotated, Any, Final, Literal, TypedDict
 
 from exactfold._support.documents import Fold, Keywords, Natural, Triangle
 from exactfold._support.progress import Progress
@@ -21,6 +21,9 @@ from exactfold.pattern.fold_writing import fold_document
 from exactfold.pattern.loading import PatternLike, open_sheet
 from exactfold.pattern.opening import Opened, has_branches
 from exactfold.pattern.triangulating import triangles_of
+
+if TYPE_CHECKING:
+    from exactfold.branches.values.branch import Branch
 
 FRAMES: Final = 32
 MOST_FRAMES: Final = 1000
@@ -66,7 +69,8 @@ def view_document(
     sheet: PatternLike,
     *,
     name: str | None = None,
-    branches: Sequence[str] | None = None,
+    branches: Sequence[str | Branch] | None = None,
+    ways: Sequence[int] | None = None,
     frames: int = FRAMES,
     proving: bool = False,
     workers: int = 1,
@@ -77,13 +81,14 @@ def view_document(
     For a triangulated sheet with four corners, the document has its branches, each of which
     represents two mirror images. With up to ten foldable vertices these are all branches. For
     larger sheets they are the branch on which all vertices pop up, and its neighbours. `branches`
-    selects branches by their vertex signs instead. A convex triangulated sheet with more corners
-    has one branch for each choice of vertices that pop up, and each represents a family over all
-    boundary heights. For any other sheet, the document has the components of the motions of its
-    rigid panels, up to 200, a representative of each family of several dimensions, up to 24, and
-    the modes that cannot be followed. If no way in the list has the letters of the file, but the
-    sheet is proved to fold with them, that motion comes first. Each way is followed in `frames`
-    frames to the first contact; if it cannot be followed, the document says why.
+    selects branches instead, by their vertex signs or as they were found, and `ways` selects ways
+    of rigid panels by their numbers. A convex triangulated sheet with more corners has one branch
+    for each choice of vertices that pop up, and each represents a family over all boundary heights.
+    For any other sheet, the document has the ways of its rigid panels, up to 200, in the order in
+    which `count` lists them; a family is represented by one of its motions. If no way in the list
+    has the letters of the file, but the sheet is proved to fold with them, that motion comes first.
+    Each way is followed in `frames` frames to the first contact; if it cannot be followed, the
+    document says why.
 
     With `proving`, motions along branches are proved, too (`prove`), and so are the first contacts
     of motions of panels that are proved to exist (`prove_contacts`). `workers` is the number of
@@ -97,7 +102,13 @@ def view_document(
     [('+-', 'MVVVMVM', 'flat-fold')]
     """
     known = Known.of(
-        sheet, name=name, branches=branches, frames=frames, proving=proving, progress=progress
+        sheet,
+        name=name,
+        branches=branches,
+        ways=ways,
+        frames=frames,
+        proving=proving,
+        progress=progress,
     )
     useful = max(1, len(known.listed) // _WORTH_A_PROCESS)
     return known.document(known.followed(process_pool(min(workers, useful)), progress))
@@ -127,7 +138,8 @@ class Known:
         sheet: PatternLike,
         *,
         name: str | None = None,
-        branches: Sequence[str] | None = None,
+        branches: Sequence[str | Branch] | None = None,
+        ways: Sequence[int] | None = None,
         frames: int = FRAMES,
         proving: bool = False,
         progress: Progress | None = None,
@@ -141,7 +153,7 @@ class Known:
         title = name or (
             Path(sheet).stem if isinstance(sheet, str | PathLike) else "crease pattern"
         )
-        listed = listed_ways(opened, branches, frames, proving, progress)
+        listed = listed_ways(opened, branches, ways, frames, proving, progress)
         return cls(opened, title, listed)
 
     def followed(self, pool: Pool, progress: Progress | None) -> list[Way]:

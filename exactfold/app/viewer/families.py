@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import islice, product
 from typing import Final
 
 import numpy as np
@@ -12,14 +11,15 @@ import numpy as np
 from exactfold._support.arrays import FloatArray
 from exactfold._support.clock import Clock
 from exactfold._support.verdict import PROVED
+from exactfold.app.pictures.drawn_ways import first_rates
 from exactfold.branches.values.letters import UPSIDE_DOWN
-from exactfold.panels.result import Decomposition, Part
+from exactfold.motion.panels.listing import PanelWay
+from exactfold.panels.result import Decomposition
 from exactfold.panels.stars import Star, stars
 from exactfold.panels.subspaces import Leaf
 from exactfold.pattern.opening import Opened
 from exactfold.pattern.panel_pattern import Edge
 
-MOST_FAMILIES: Final = 24
 DRAWN: Final = "letters of the file"
 DRAWN_SECONDS: Final = 20.0
 """The time for the question whether the sheet folds with the letters of the file."""
@@ -42,27 +42,32 @@ class Representative:
     why: str
 
 
-def families(ways: Decomposition, letters: Mapping[Edge, str]) -> Iterator[Representative]:
-    """A representative of each family of several dimensions that is proved to fold truly.
+def representative(
+    way: PanelWay, ways: Decomposition, letters: Mapping[Edge, str]
+) -> Representative | None:
+    """A direction in which a way folds that bends in spaces of motions; None if none is found.
 
-    Parts of the sheet that move independently of each other are combined. Among the directions of
-    a family one is chosen that has many of the `letters` of the file.
+    Among the directions of a family one is chosen that has many of the `letters` of the file.
     """
-    choices = [found for part in ways.parts if (found := list(_of_part(part, ways, letters)))]
-    if not choices:
-        return
-    free = {fold: -1.0 if letters.get(fold) == "M" else 1.0 for fold in ways.free}
-    for number, chosen in enumerate(product(*choices), 1):
-        dimension = len(free) + sum(size for _, size in chosen)
-        densities = dict(free)
-        for some, _ in chosen:
-            densities |= some
-        yield Representative(
-            f"family {number}",
-            densities,
-            dimension,
-            "it truly folds: true motions start in this direction",
-        )
+    densities = {fold: -1.0 if letters.get(fold) == "M" else 1.0 for fold in way.free}
+    for mode in way.modes:
+        densities |= first_rates(mode)
+    moving = stars(ways.pattern, ways.held)
+    motions = {id(one.leaf): one.motion for part in ways.parts for one in part.found}
+    for leaf in way.spaces:
+        if id(leaf) in motions:
+            densities |= {edge: float(x.mid()) for edge, x in motions[id(leaf)].items()}
+            continue
+        point = _point_of(leaf, moving, letters)
+        if point is None:
+            return None
+        densities |= point
+    return Representative(
+        f"way {way.number}",
+        densities,
+        way.dimension,
+        "it truly folds: true motions start in this direction",
+    )
 
 
 def drawn_motion(opened: Opened, clock: Clock) -> Representative | None:
@@ -92,27 +97,6 @@ def side_with(letters: str, drawn: str) -> int:
         if all(seen[k] == letter for k, letter in wanted):
             return side
     return 0
-
-
-def first_of(some: Iterable[Representative]) -> tuple[list[Representative], bool]:
-    """The first representatives, and whether there are more."""
-    taken = list(islice(some, MOST_FAMILIES + 1))
-    return taken[:MOST_FAMILIES], len(taken) > MOST_FAMILIES
-
-
-def _of_part(
-    part: Part, ways: Decomposition, letters: Mapping[Edge, str]
-) -> Iterator[tuple[Mapping[Edge, float], int]]:
-    """Directions of the families of one part, each with its dimension."""
-    moving = stars(ways.pattern, ways.held)
-    for leaf, folds in zip(part.spaces, part.spaces_fold, strict=True):
-        if folds and (leaf.size > 1 or leaf.vertices):
-            point = _point_of(leaf, moving, letters)
-            if point is not None:
-                yield point, leaf.dimension
-    for one in part.found:
-        if one.folds and one.dimension > 1:
-            yield {edge: float(x.mid()) for edge, x in one.motion.items()}, one.dimension
 
 
 def _point_of(

@@ -17,10 +17,8 @@ from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.app.viewer.families import (
     DRAWN,
     DRAWN_SECONDS,
-    MOST_FAMILIES,
     drawn_motion,
-    families,
-    first_of,
+    representative,
     side_with,
 )
 from exactfold.app.viewer.ways import (
@@ -29,9 +27,8 @@ from exactfold.app.viewer.ways import (
     FollowingPanels,
     Way,
     branch_way,
-    component_way,
     family_way,
-    mode_way,
+    panel_way,
 )
 from exactfold.branches.counting.find import branch_finder
 from exactfold.branches.counting.ways import count_opened, decompose_opened
@@ -43,13 +40,15 @@ from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.opening import Opened, has_branches
 
 if TYPE_CHECKING:
+    from exactfold.app.viewer.families import Representative
     from exactfold.branches.values.branch import Branch
     from exactfold.branches.values.result import BranchCount
+    from exactfold.motion.panels.listing import PanelWay
 
 MOST_LISTED: Final = 10
 """With up to this many foldable vertices, all branches are listed."""
 MOST_NEIGHBOURS: Final = 24
-MOST_COMPONENTS: Final = 200
+MOST_WAYS: Final = 200
 MOST_GRAPHS: Final = 6
 """With up to this many foldable vertices, all graphs over the boundary heights are listed."""
 MOST_TRIED: Final = 16
@@ -101,7 +100,8 @@ class Listed(NamedTuple):
 
 def listed_ways(
     opened: Opened,
-    branches: Sequence[str] | None,
+    branches: Sequence[str | Branch] | None,
+    only: Sequence[int] | None,
     frames: int,
     proving: bool,
     progress: Progress | None,
@@ -123,9 +123,14 @@ def listed_ways(
             known = _branches(opened, pattern, branches, progress)
             if known is not None:
                 follower = Following(frames, proving, known.dimension)
-                ways = [(branch_way(branch), branch) for branch in known.branches]
-                return Listed(*_with_drawn_branch(opened, ways), _branch_facts(known), follower)
-        return _panels(opened, frames, proving, progress)
+                numbered = known.count is not None and bool(known.count.known)
+                ways = [
+                    (branch_way(branch, k if numbered else None), branch)
+                    for k, branch in enumerate(known.branches, 1)
+                ]
+                shown = _with_drawn_branch(opened, ways, add=branches is None)
+                return Listed(*shown, _branch_facts(known), follower)
+        return _panels(opened, only, frames, proving, progress)
     except (InputError, UsageError, WorkerDiedError):
         raise
     except ExactfoldError as error:
@@ -157,7 +162,7 @@ class _Branches:
 def _branches(
     opened: Opened,
     pattern: CreasePattern,
-    chosen: Sequence[str] | None,
+    chosen: Sequence[str | Branch] | None,
     progress: Progress | None,
 ) -> _Branches | None:
     """Branches to show; None if there are none, so that the motions of the panels are shown."""
@@ -174,8 +179,12 @@ def _branches(
             return None
     finder = branch_finder(pattern)
     if chosen is not None:
-        vectors = [finder.signs(signs, None) for signs in dict.fromkeys(chosen)]
-    elif len(foldable) <= MOST_GRAPHS:
+        given = [
+            finder.find(finder.signs(one, None), progress=progress) if isinstance(one, str) else one
+            for one in chosen
+        ]
+        return _Branches(pattern, tuple(given), None)
+    if len(foldable) <= MOST_GRAPHS:
         vectors = [
             finder.signs(dict(zip(foldable, (1, *rest), strict=True)), None)
             for rest in itertools.product((1, -1), repeat=len(foldable) - 1)
@@ -219,51 +228,52 @@ def _branch_facts(known_branches: _Branches) -> Facts:
     }
 
 
-def _panels(opened: Opened, frames: int, proving: bool, progress: Progress | None) -> Listed:
+def _panels(
+    opened: Opened,
+    only: Sequence[int] | None,
+    frames: int,
+    proving: bool,
+    progress: Progress | None,
+) -> Listed:
     from exactfold.app.report.panels import panels_answer
-    from exactfold.motion.panels.followable import (
-        open_reason,
-        panel_components,
-        panel_modes,
-        why_nothing_follows,
-    )
+    from exactfold.motion.panels.followable import panel_modes, why_nothing_follows
+    from exactfold.motion.panels.listing import left_out, panel_ways
 
     answer = decompose_opened(opened, progress=progress, clock=Clock(LIMIT))
     ways = answer.known
     modes = panel_modes(ways)
-    by_number = {mode.number: mode for mode in modes}
-    components = panel_components(ways, modes)
-    shown = components[:MOST_COMPONENTS]
-    listed: list[tuple[Way, Any]] = [
-        (component_way(ways, component, by_number), k) for k, component in enumerate(shown, 1)
-    ]
-    some, more = first_of(families(ways, opened.letters))
-    listed += [(family_way(ways, family), family) for family in some]
-    listed, drawn = _with_drawn_motion(opened, ways, listed)
-    open_modes = [mode for mode in modes if mode.extends.verdict is not PROVED]
-    listed += [(mode_way(mode, open_reason(mode)), None) for mode in open_modes[:MOST_COMPONENTS]]
+    known = panel_ways(ways, modes)
+    shown = [way for way in known if only is None or way.number in only][:MOST_WAYS]
+    listed = [(panel_way(ways, way), _job(way, ways, opened)) for way in shown]
+    drawn = _drawn_in(opened, listed)
+    if only is None:
+        listed, drawn = _with_drawn_motion(opened, ways, listed)
     notes = [] if ways.warning is None else [f"warning: {ways.warning}"]
-    left = len(components) - len(shown)
-    if left:
-        notes.append(f"{counted(left, 'more component')} left out")
-    if more:
-        notes.append(f"only the first {MOST_FAMILIES} families are shown")
+    if len(known) > len(shown):
+        notes.append(f"{counted(len(known) - len(shown), 'more way')} not shown here")
+    if unlisted := left_out(ways, known):
+        notes.append(unlisted)
     if not listed and ways.rigid is not PROVED:
         notes.append(f"no motion can be followed: {why_nothing_follows(ways, modes)}")
-    dimensions = [component.dimension for component in shown]
-    dimensions += [family.dimension or 0 for family in some]
     facts: Facts = {
         "kind": "panels",
         "answer": _SECONDS.sub("", panels_answer(answer).plain),
         "status": str(answer.status),
         "complete": answer.true is not None
-        and Counter(dimensions)
+        and Counter(way.dimension for way in shown if way.verdict is PROVED)
         == {dimension: number for dimension, number in answer.true.items() if dimension},
         "reason": answer.reason,
         "notes": notes,
     }
     follower = FollowingPanels(ways, frames, proving)
     return Listed(tuple(listed), drawn, facts, follower)
+
+
+def _job(way: PanelWay, ways: Decomposition, opened: Opened) -> int | Representative | None:
+    """What follows a way: its number, a direction in a family, or None."""
+    if way.verdict is not PROVED:
+        return None
+    return representative(way, ways, opened.letters) if way.spaces else way.number
 
 
 def _with_drawn_motion(
@@ -279,12 +289,15 @@ def _with_drawn_motion(
 
 
 def _with_drawn_branch(
-    opened: Opened, listed: list[tuple[Way, Any]]
+    opened: Opened, listed: list[tuple[Way, Any]], *, add: bool
 ) -> tuple[tuple[tuple[Way, Any], ...], Drawn | None]:
-    """The list, first the branch with the letters of the file unless a branch in it has them."""
+    """The list, first the branch with the letters of the file unless a branch in it has them.
+
+    No branch is added unless `add` is true.
+    """
     drawn, pattern = _drawn_in(opened, listed), opened.sheet
     lettered = {"M", "V"}.intersection(opened.letters.values())
-    if drawn is not None or not lettered or not isinstance(pattern, CreasePattern):
+    if not add or drawn is not None or not lettered or not isinstance(pattern, CreasePattern):
         return tuple(listed), drawn
     branch: Branch | None = None
     side = 1

@@ -12,13 +12,16 @@ from collections.abc import Mapping, Sequence
 from functools import cache
 from os import PathLike
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from exactfold._support.progress import Progress
 from exactfold.app.pictures import crease_style
 from exactfold.app.viewer.document import FRAMES, ViewDocument, view_document
 from exactfold.pattern.fold_writing import checked_target, write_text
 from exactfold.pattern.loading import PatternLike
+
+if TYPE_CHECKING:
+    from exactfold.branches.values.branch import Branch
 
 _ENDINGS: Final = (".html", ".htm")
 _ROOM: Final = Path(__file__).parent
@@ -62,7 +65,8 @@ def write_view(
     path: str | PathLike[str],
     *,
     name: str | None = None,
-    branches: Sequence[str] | None = None,
+    branches: Sequence[str | Branch] | None = None,
+    ways: Sequence[int] | None = None,
     frames: int = FRAMES,
     proving: bool = False,
     workers: int = 1,
@@ -82,6 +86,7 @@ def write_view(
         sheet,
         name=name,
         branches=branches,
+        ways=ways,
         frames=frames,
         proving=proving,
         workers=workers,

@@ -16,6 +16,7 @@ from exactfold.app.viewer.document import FRAMES, Known
 from exactfold.app.viewer.page import view_page
 from exactfold.app.viewer.ways import Following, Way, branch_way
 from exactfold.branches.counting.find import BranchFinder, branch_finder
+from exactfold.branches.values.branch import Branch
 from exactfold.errors import ExactfoldError, NumberError, UsageError
 from exactfold.exact.numbers import parse_whole
 from exactfold.pattern.crease_pattern import CreasePattern
@@ -31,7 +32,8 @@ def view_server(
     sheet: PatternLike,
     *,
     name: str | None = None,
-    branches: Sequence[str] | None = None,
+    branches: Sequence[str | Branch] | None = None,
+    ways: Sequence[int] | None = None,
     frames: int = FRAMES,
     proving: bool = False,
     port: int = 0,
@@ -51,7 +53,13 @@ def view_server(
     if not 0 <= port <= _MOST_PORT:
         raise UsageError(f"port {port}: give a number from 0 to {_MOST_PORT}")
     known = Known.of(
-        sheet, name=name, branches=branches, frames=frames, proving=proving, progress=progress
+        sheet,
+        name=name,
+        branches=branches,
+        ways=ways,
+        frames=frames,
+        proving=proving,
+        progress=progress,
     )
     return ViewServer(known, port)
 

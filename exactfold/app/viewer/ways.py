@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from exactfold.motion.curves.in_motion import SheetInMotion
     from exactfold.motion.curves.motion import Motion
     from exactfold.motion.panels.families import FamilyMotion
-    from exactfold.motion.panels.followable import PanelComponent, PanelMode
+    from exactfold.motion.panels.listing import PanelWay
     from exactfold.motion.panels.motion import PanelMotion
     from exactfold.panels.result import Decomposition
     from exactfold.pattern.crease_pattern import Edge
@@ -83,6 +83,8 @@ class Way(TypedDict):
     """A way in which the sheet folds."""
 
     name: str
+    number: Positive | None
+    """The number of the way in the list of `count`; null if it is not in that list."""
     signs: Annotated[str, Keywords(pattern="^[-+0?]*$")]
     letters: Letters
     """One for each fold of the sheet, in the order of `folds`."""
@@ -130,7 +132,7 @@ class Following:
 
 @dataclass(frozen=True)
 class FollowingPanels:
-    """Follows the components of the motions of rigid panels, given by their numbers, from 1 on.
+    """Follows the ways of rigid panels, given by their numbers, from 1 on, or by a direction.
 
     With `proving`, the first contact of a motion that is proved to exist is proved, too.
     """
@@ -139,19 +141,19 @@ class FollowingPanels:
     frames: int
     proving: bool = False
 
-    def __call__(self, component: int | Representative) -> Followed:
-        """The motion along a component or a family, or the reason why there is none."""
+    def __call__(self, way: int | Representative) -> Followed:
+        """The motion along a way or in a direction, or the reason why there is none."""
         from exactfold.motion.panels.families import follow_family
         from exactfold.motion.panels.following import follow_panels
 
         motion: PanelMotion | FamilyMotion
         try:
-            if isinstance(component, Representative):
-                motion = follow_family(self.ways.pattern, component.densities, frames=self.frames)
+            if isinstance(way, Representative):
+                motion = follow_family(self.ways.pattern, way.densities, frames=self.frames)
                 drawn = _drawn(motion, _in_floats(motion))
-                dimension = component.dimension or motion.dimension
+                dimension = way.dimension or motion.dimension
             else:
-                motion = follow_panels(self.ways, component=component, frames=self.frames)
+                motion = follow_panels(self.ways, way=way, frames=self.frames)
                 drawn = _drawn(motion, _proof_of_panels(motion, self.proving))
                 dimension = len(motion.curves) + len(self.ways.free)
         except WorkerDiedError:
@@ -279,14 +281,15 @@ def not_followed(why: str) -> Followed:
     return {"motion": None, "why": why}
 
 
-def branch_way(branch: Branch) -> Way:
-    """A branch without its motion."""
+def branch_way(branch: Branch, number: int | None = None) -> Way:
+    """A branch without its motion; `number` is its place in the list of `count`."""
     try:
         leading = branch.fold_angles.degrees(AMOUNT)
     except ExactfoldError:
         leading = {}
     return {
         "name": f"branch {branch.sign_text}",
+        "number": number,
         "signs": branch.sign_text,
         "letters": letters_of(branch.pattern, branch.assignment),
         "saddle": branch.saddle,
@@ -303,31 +306,36 @@ def branch_way(branch: Branch) -> Way:
 def family_way(ways: Decomposition, family: Representative) -> Way:
     """A family, or the letters of the file, without the motion."""
     letters = {e: "V" if x > 0 else "M" for e, x in family.densities.items() if x}
-    return _panel_way(ways.pattern, family.name, letters, str(PROVED), family.why)
+    return _panel_way(ways.pattern, family.name, None, letters, str(PROVED), family.why)
 
 
-def component_way(
-    ways: Decomposition, component: PanelComponent, modes: Mapping[int, PanelMode]
-) -> Way:
-    """A component of the true motions of rigid panels, without its motion."""
-    folding = [modes[number] for number in component.modes]
-    letters: dict[Edge, str] = {}
-    for mode in folding:
-        letters.update(mode.letters)
-    if not folding:
-        letters.update(dict.fromkeys(component.free, "V"))
-    numbers = ", ".join(map(str, component.modes))
-    name = f"mode{'s' if len(folding) > 1 else ''} {numbers}" if folding else "free folds"
-    shown = sorted({_shown_by(mode.extends.by) for mode in folding})
-    why = " and ".join(shown) or "folds from boundary to boundary are free"
-    if component.dimension > 1:
-        what = "modes" if folding else "folds"
-        still = ", free folds flat" if folding and component.free else ""
+def panel_way(ways: Decomposition, way: PanelWay) -> Way:
+    """A way of rigid panels without its motion."""
+    name = f"way {way.number}"
+    if way.dimension > 1:
+        name = f"{name}, a family of dimension {way.dimension}"
+    verdict = str(way.verdict)
+    if way.verdict is not PROVED:
+        doubt = "it is undecided whether it truly folds"
+        said = doubt if way.verdict is UNDECIDED else "it does not truly fold"
+        shown = _panel_way(
+            ways.pattern, name, way.number, way.letters, verdict, f"{said}: {way.by}"
+        )
+        return {**shown, **not_followed(way.why_not_followed)}
+    why = " and ".join(sorted({_shown_by(mode.extends.by) for mode in way.modes}))
+    if way.spaces:
+        why = " and ".join(filter(None, (why, "true motions start in its directions")))
+    why = why or "folds from boundary to boundary are free"
+    if way.dimension > 1 and not way.spaces:
+        what = "modes" if way.modes else "folds"
+        still = ", free folds flat" if way.modes and way.free else ""
         why += (
-            f"; one motion of a family of dimension {component.dimension}: all {what} at the same "
+            f"; one motion of a family of dimension {way.dimension}: all {what} at the same "
             f"rate{still}"
         )
-    return _panel_way(ways.pattern, name, letters, str(PROVED), f"it truly folds, as {why}")
+    return _panel_way(
+        ways.pattern, name, way.number, way.letters, verdict, f"it truly folds, as {why}"
+    )
 
 
 def _shown_by(by: str) -> str:
@@ -339,34 +347,22 @@ def _shown_by(by: str) -> str:
     return f"its loops of vertices close ({by})"
 
 
-def mode_way(mode: PanelMode, why: str) -> Way:
-    """A mode that belongs to no component that can be followed, with the reason."""
-    verdict = mode.extends.verdict
-    said = (
-        "it is undecided whether it truly folds"
-        if verdict is UNDECIDED
-        else "it does not truly fold"
-    )
-    way = _panel_way(
-        mode.pattern,
-        f"mode {mode.number}",
-        mode.letters,
-        str(verdict),
-        f"{said}: {mode.extends.by}",
-    )
-    return {**way, **not_followed(why)}
-
-
 def letters_of(pattern: CreasePattern | PanelPattern, assignment: Mapping[Edge, str]) -> str:
     """A letter for each fold in the order of `pattern.folds`; F if none is given."""
     return "".join(assignment.get(fold, "F") for fold in pattern.folds)
 
 
 def _panel_way(
-    pattern: PanelPattern, name: str, letters: Mapping[Edge, str], status: str, reason: str
+    pattern: PanelPattern,
+    name: str,
+    number: int | None,
+    letters: Mapping[Edge, str],
+    status: str,
+    reason: str,
 ) -> Way:
     return {
         "name": name,
+        "number": number,
         "signs": "",
         "letters": letters_of(pattern, letters),
         "saddle": 0,

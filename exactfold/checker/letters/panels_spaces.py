@@ -9,7 +9,7 @@ relation without negative weights, and so they are not all positive at any motio
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from ..core.towers import Number
 from ..panels.reduction import reduced
@@ -80,25 +80,32 @@ class Exclusion:
         return found
 
     def related(self, space: Space, folds: Sequence[Edge]) -> list[Edge]:
-        """The folds with positive weights in a relation without negative weights; empty if none is
-        found.
-
-        Each row has a place of its own for its weight. A row in which only weights are left is a
-        relation.
-        """
-        one = self.spaces.sheet.tower.number(1)
-        rows = [{**self._row(space, fold), (1, n): one} for n, fold in enumerate(folds)]
-        self.spaces.work.count(len(rows) * len(space), one)
-        for (kind, _), row in reduced(rows):
-            if kind == 1 and all(weight.sign() > 0 for weight in row.values()):
-                return [folds[n] for _, n in row]
+        """The folds of a relation whose weights are positive once they are turned to the sides of
+        the letters; empty if none is found."""
+        for relation in relations(self.spaces, space, folds):
+            if len({weight.sign() * self.sides[fold] for fold, weight in relation.items()}) == 1:
+                return list(relation)
         return []
 
     def rank(self, space: Space, folds: Iterable[Edge]) -> int:
         """The rank of the densities of some folds as linear functions on the space."""
-        return len(reduced(self._row(space, fold) for fold in folds))
+        return len(reduced(_row(space, fold) for fold in folds))
 
-    def _row(self, space: Space, fold: Edge) -> dict[Edge, Number]:
-        """The densities of a fold on the basis of a space, turned to the side of its letter."""
-        side = self.spaces.sheet.tower.number(self.sides[fold])
-        return {(0, k): side * motion[fold] for k, motion in enumerate(space) if fold in motion}
+
+def relations(spaces: Spaces, space: Space, folds: Sequence[Edge]) -> Iterator[dict[Edge, Number]]:
+    """Yield independent linear relations between the densities of some folds on a space.
+
+    A relation has the weights that are not 0. Each row has a place of its own for its weight. A row
+    in which only weights are left is a relation.
+    """
+    one = spaces.sheet.tower.number(1)
+    rows = [{**_row(space, fold), (1, n): one} for n, fold in enumerate(folds)]
+    spaces.work.count(len(rows) * len(space), one)
+    for (kind, _), row in reduced(rows):
+        if kind == 1:
+            yield {folds[n]: weight for (_, n), weight in row.items()}
+
+
+def _row(space: Space, fold: Edge) -> dict[Edge, Number]:
+    """The densities of a fold on the basis of a space."""
+    return {(0, k): motion[fold] for k, motion in enumerate(space) if fold in motion}

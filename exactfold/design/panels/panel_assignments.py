@@ -6,7 +6,7 @@ import time
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import prod
-from typing import Annotated, Final, Literal, TypedDict
+from typing import Annotated, ClassVar, Final, Literal, TypedDict
 
 from exactfold._support.clock import UNLIMITED, Clock
 from exactfold._support.documents import (
@@ -18,6 +18,7 @@ from exactfold._support.documents import (
 )
 from exactfold._support.plurals import counted
 from exactfold._support.progress import Progress
+from exactfold._support.results import Certified
 from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.branches.counting.collect import count_branches
 from exactfold.design.panels.block_letters import UPSIDE_DOWN, BlockLetters
@@ -88,7 +89,7 @@ class PartLetters:
 
 
 @dataclass(frozen=True, repr=False)
-class PanelAssignments:
+class PanelAssignments(Certified):
     """All assignments of M and V to the folds of a sheet of rigid panels that motions have.
 
     The motions are those to second order in which all folds bend that can bend in any motion; an
@@ -103,6 +104,8 @@ class PanelAssignments:
     flat: tuple[Edge, ...]
     doubt: str = ""
     seconds: float = field(default=0.0, compare=False)
+
+    WRITER: ClassVar = "exactfold.design.panels.listed_certificate:panel_assignments_certificate"
 
     @property
     def status(self) -> Verdict:

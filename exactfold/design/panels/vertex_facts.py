@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import combinations
-from math import degrees, hypot, pi
+from math import degrees, pi
 from typing import Final, NamedTuple
 
 from flint import arb
@@ -14,14 +14,14 @@ from flint import arb
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.design.refutations.refutation import Letters
 from exactfold.exact.surds import Number, ball
+from exactfold.panels.nearby.box import Box
+from exactfold.panels.nearby.letters import NearbyFan
 from exactfold.panels.stars import Star, bracket, dot, star_at
 from exactfold.panels.vertex_motions import Fan
 from exactfold.pattern.panel_pattern import Edge, PanelPattern, Point
 
 NEAR: Final = 1e-3
 """Two folds are nearly straight if they miss a straight line by less than this angle."""
-_BENT: Final = 0.1
-"""No noise makes folds nearly straight that miss a straight line by more than this angle."""
 _CLOSE: Final = 0.1
 """Kawasaki's condition nearly holds if it is off by less than so many degrees."""
 _MEANT: Final = 1e-3
@@ -100,16 +100,14 @@ class VertexFacts:
 
 
 def vertex_facts(
-    sheet: PanelPattern, letters: Letters, *, exactly: bool = False, tolerance: float = 0.0
+    sheet: PanelPattern, letters: Letters, *, exactly: bool = False, box: Box | None = None
 ) -> tuple[VertexFacts, ...]:
     """The facts about every interior vertex of a sheet with the letters M, V, F and U of its folds.
 
     All verdicts are exact. Where two folds nearly form a straight crease and the answer depends on
     whether they do, the verdict is UNDECIDED, unless `exactly` says that the coordinates are meant
-    as they are. Folds are nearly straight, too, if the angle by which they miss a straight line,
-    times the length of the shorter fold, is at most `tolerance` times the size of the sheet: in a
-    drawing whose noise is known, but not the sheet that was meant. If one vertex is refuted, no
-    finite folding of the sheet near the flat state has the letters.
+    as they are. With a `box`, it is UNDECIDED unless it is proved for every sheet in the box. If
+    one vertex is refuted, no finite folding of the sheet near the flat state has the letters.
 
     >>> from exactfold.pattern.opening import open_pattern
     >>> from exactfold.pattern.data import example_path
@@ -117,21 +115,18 @@ def vertex_facts(
     >>> [(v.vertex, str(v.starts)) for v in vertex_facts(opened.sheet, opened.letters)][:2]
     [(9, 'refuted'), (10, 'refuted')]
     """
-    sides = zip(*sheet.scaled_vertices, strict=True) if tolerance else ()
-    reach = tolerance * max((float(max(side) - min(side)) for side in sides), default=0.0)
-    stars = (star_at(sheet, v) for v in sheet.interior)
-    return tuple(_facts(sheet, star, letters, exactly, reach) for star in stars)
+    return tuple(_facts(sheet, star_at(sheet, v), letters, exactly, box) for v in sheet.interior)
 
 
 def _facts(
-    sheet: PanelPattern, star: Star, letters: Letters, exactly: bool, reach: float
+    sheet: PanelPattern, star: Star, letters: Letters, exactly: bool, box: Box | None
 ) -> VertexFacts:
     given = "".join(letters.get(fold, "U") for fold in star.folds)
     fan = Fan(star)
     starts, able = _answers(fan, given)
     reason = _why(star, given, fan) if not starts or not able else ""
     verdict, possible = PROVED if starts else REFUTED, able
-    for straight, pairs in () if exactly else _straightened(star, reach):
+    for straight, pairs in () if exactly else _straightened(star):
         straight_starts, straight_able = _answers(Fan(straight), given)
         if straight_starts != starts:
             verdict, reason = UNDECIDED, _open_text(star, pairs, starts)
@@ -140,6 +135,11 @@ def _facts(
             verdict, reason = UNDECIDED, _open_text(star, pairs, able)
             break
         possible = possible or straight_able
+    if box is not None:
+        nearby = NearbyFan(box, star.vertex)
+        possible = possible or nearby.may_fold(["F" if x == "F" else "U" for x in given])
+        if verdict is not UNDECIDED and not _holds_nearby(nearby, given, verdict, possible):
+            verdict, reason = UNDECIDED, _nearby_text(box, starts and able, reason)
     flat = star.only(f for f, x in zip(star.folds, given, strict=True) if x != "F")
     kawasaki, off = _alternating(flat)
     kept = given.replace("F", "")
@@ -163,6 +163,13 @@ def _answers(fan: Fan, letters: str) -> tuple[bool, bool]:
     """Whether the vertex has its letters, and whether it moves with any letters."""
     able = fan.folds(["F" if x == "F" else "U" for x in letters])
     return fan.folds(letters) or {"M", "V"}.isdisjoint(letters), able
+
+
+def _holds_nearby(nearby: NearbyFan, given: str, verdict: Verdict, possible: bool) -> bool:
+    """Whether a verdict for the sheet as written is proved for every sheet of a box."""
+    if {"M", "V"}.isdisjoint(given):
+        return not possible or nearby.must_fold(["F" if x == "F" else "U" for x in given])
+    return nearby.must_fold(given) if verdict is PROVED else not nearby.may_fold(given)
 
 
 def _flips(star: Star, given: str, fan: Fan) -> tuple[tuple[Edge, ...], ...]:
@@ -194,17 +201,12 @@ def _forced(star: Star, given: str, fan: Fan) -> dict[Edge, str]:
     return forced
 
 
-def _straightened(star: Star, reach: float) -> Iterator[tuple[Star, tuple[_Pair, ...]]]:
-    """The star with nearly straight pairs made straight: one, several, or all of them.
-
-    Pairs that miss a straight line by up to `reach` at the end of the shorter fold count, too.
-    """
-    lengths = [hypot(float(x), float(y)) for x, y in star.directions] if reach else []
+def _straightened(star: Star) -> Iterator[tuple[Star, tuple[_Pair, ...]]]:
+    """The star with nearly straight pairs made straight: one, several, or all of them."""
     pairs = tuple(
         _Pair(i, j, off)
         for i, j in combinations(range(len(star.folds)), 2)
         if 0 < (off := _bend(star.directions[i], star.directions[j])) < NEAR
-        or (reach and 0 < off < _BENT and off * min(lengths[i], lengths[j]) <= reach)
     )
     for size in range(1, len(pairs) + 1):
         if 1 < size < len(pairs) > _MOST_PAIRS:
@@ -379,6 +381,11 @@ def _open_text(star: Star, pairs: tuple[_Pair, ...], starts: bool) -> str:
         f"folds {folds} miss a straight line by {degrees(pair.off):.1g} degrees: the vertex "
         f"{written} to fold as it is written, and with a straight line it {straight}"
     )
+
+
+def _nearby_text(box: Box, starts: bool, reason: str) -> str:
+    written = "it starts to fold" if starts else f"it does not start to fold: {reason}"
+    return f"as written {written}; this is not proved for every {box.text}"
 
 
 def _named(folds: Iterable[Edge], separator: str = ", ") -> str:

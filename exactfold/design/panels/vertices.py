@@ -24,6 +24,7 @@ from exactfold.design.panels.vertex_facts import VertexFacts, vertex_facts
 from exactfold.design.panels.vertex_repair import Repair, repaired
 from exactfold.design.refutations.asked import by_fold
 from exactfold.design.refutations.refutation import Letters
+from exactfold.panels.nearby.box import box_of
 from exactfold.panels.stars import Star, star_at
 from exactfold.panels.vertex_motions import Fan
 from exactfold.pattern.crease_pattern import CreasePattern
@@ -346,9 +347,10 @@ def vertices(pattern: PatternLike, letters: Mapping[Edge, str] | str | None = No
     `letters` is a mapping from folds (i, j), i < j, or a text in the order of the folds, with M, V,
     F (stays flat) or U (free); None takes the letters of the file. Each vertex is decided both ways
     by the theorem of Abel et al. (docs/vertices.md, Theorem 1). A verdict is UNDECIDED only where
-    two folds nearly form a straight crease, for the noise of the drawing if this is known, and the
-    answer depends on whether they do; with the snap "exact" the coordinates are taken as they are.
-    Raises `UsageError` for letters that do not fit, and the errors of `open_pattern`.
+    two folds nearly form a straight crease and the answer depends on whether they do, or where it
+    is not the same for all sheets near a drawing that is too inexact to infer the one that was
+    meant; with the snap "exact" the coordinates are taken as they are. Raises `UsageError` for
+    letters that do not fit, and the errors of `open_pattern`.
 
     >>> vertices("bird-base")
     <Vertices: 5 vertices, starts proved>
@@ -361,9 +363,8 @@ def vertices(pattern: PatternLike, letters: Mapping[Edge, str] | str | None = No
     sheet = panels(opened.sheet) if isinstance(opened.sheet, CreasePattern) else opened.sheet
     given = opened.letters if letters is None else letters
     asked = by_fold(sheet.folds, given)
-    exactly, meant = opened.reading.snap == "exact", opened.meant
-    tolerance = 0.0 if meant is None else meant.tolerance
-    facts = vertex_facts(sheet, asked, exactly=exactly, tolerance=tolerance)
+    exactly = opened.reading.snap == "exact"
+    facts = vertex_facts(sheet, asked, exactly=exactly, box=box_of(opened))
     return Vertices(sheet, asked, facts, opened.meant, time.perf_counter() - start)
 
 

@@ -118,13 +118,13 @@ class FamilyMotion(SheetInMotion):
     def facts(self) -> dict[str, Any]:
         """The facts about the motion that files contain, as JSON."""
         drivers = [f"{i}-{j}" for i, j in self.drivers]
-        return {"modes": [], "component": None, "free_folds": drivers, **self.facts_of_frames()}
+        return {"modes": [], "way": None, "free_folds": drivers, **self.facts_of_frames()}
 
     def to_dict(self, name: str | None = None, written: Sequence[str] = ()) -> PanelMotionDocument:
         """The object printed by `exactfold fold --json`: `schema("motion")`."""
         return {
             "format": "exactfold motion result",
-            "version": 2,
+            "version": 3,
             "pattern": described_panels(self.pattern, name),
             "theory": "modes",
             "vertex_signs": None,
@@ -133,7 +133,7 @@ class FamilyMotion(SheetInMotion):
             "rim": None,
             "drive": None,
             "modes": [],
-            "component": None,
+            "way": None,
             **self.frames_reported(written),
             "warnings": [],
             "seconds": round(self.seconds, 3),

@@ -1,4 +1,4 @@
-"""Says which creases of a drawing are missing in a sheet that was made of it."""
+"""Says in short how a sheet was made of a drawing, and which creases are missing in it."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections import Counter
 from math import hypot
 
 from exactfold._support.plurals import agreeing, counted
-from exactfold.pattern.drawing.drawing import Drawing
+from exactfold.pattern.drawing.drawing import Drawing, Loud
 from exactfold.pattern.drawing.mending import Lost, floats, used
 from exactfold.pattern.drawing.repair import Sheets
 from exactfold.pattern.drawing.segments import KINDS
@@ -44,6 +44,25 @@ def missing(drawing: Drawing, sheets: Sheets, k: int, *, folds: bool) -> str | N
         if any(line.letter in creases for line in gone):
             said.append(_sentence(gone, creases, why))
     return "; ".join(said) or None
+
+
+def brief(drawing: Drawing, sheets: Sheets) -> tuple[str, ...]:
+    """What was read, in a few words each: lines, coordinates, and how much was mended."""
+    number = Counter[str]()
+    for repair in sheets.repairs:
+        if not repair.loud:
+            number[repair.step if repair.step in ("join", "split") else "mended"] += repair.count
+    words = [counted(len(drawing.lines), "line"), sheets.coordinates.brief]
+    words += [f"cut at {counted(number['split'], 'point')}"] if number["split"] else []
+    words += [f"{counted(number['join'], 'flat line')} left out"] if number["join"] else []
+    words += [f"{number['mended']} mended"] if number["mended"] else []
+    return tuple(words)
+
+
+def loud(drawing: Drawing, sheets: Sheets) -> tuple[str, ...]:
+    """What nobody should miss of how a drawing was read, one sentence each."""
+    remarks = [remark for remark in drawing.remarks if isinstance(remark, Loud)]
+    return (*remarks, *(repair.sentence for repair in sheets.repairs if repair.loud))
 
 
 def _sentence(gone: list[Lost], creases: set[str], why: str) -> str:

@@ -112,7 +112,8 @@ def sheets(drawing: Drawing) -> tuple[tuple[Drawing, ...], list[Repair]]:
     )
     points = drawing.points
     reports = repair("border", len(alone), alone, points, empty_ones)
-    return tuple(made), reports + repair("border", len(slits), slits, points, opened)
+    reports += repair("border", len(slits), slits, points, opened)
+    return tuple(made), [replace(each, loud=True) for each in reports]
 
 
 def _parts(drawing: Drawing) -> list[_Part]:

@@ -214,7 +214,9 @@ def test_files_that_were_counted_are_skipped_and_failed_ones_tried_again(
     assert sorted(d["name"] for d in lines(out)) == sorted(map(str, [*paths, bad, bad]))
     monkeypatch.setenv("COLUMNS", "300")
     again = run("count", *paths, bad, "--jsonl", out, "--jobs", 1).stdout
-    assert f"{bad.name} ? FAILED a FOLD file contains one JSON object" in " ".join(again.split())
+    assert f"? FAILED {bad.name} {bad.name}: a FOLD file contains one JSON object" in " ".join(
+        again.split()
+    )
     assert "1 failed; 4 counted in an earlier run" in " ".join(again.split())
     write_fold(random_square(3, seed=9), paths[0])  # another pattern under the same name
     assert (

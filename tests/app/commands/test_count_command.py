@@ -44,7 +44,7 @@ def test_count_prints_a_table_and_exits_0(two_vertex):
     text = " ".join(result.stdout.split())
     assert re.match(
         r"4 ways to start folding - PROVED \(\d+\.\d\d s\); all real, each counted once, every one "
-        "continues to a true motion way 4 5 folds 1 down down VVVVVVM 2 down up VVMMVVM",
+        "continues to a true motion way vertex 4 5 folds 1 down down VVVVVVM 2 down up VVMMVVM",
         text,
     )
     for word in ("Bezout", "nappe", "chart", "sha256", "distinct", "sign vector"):
@@ -262,9 +262,8 @@ def test_what_is_proved_of_a_large_drawing_is_printed_in_time(tmp_path):
     assert result.exit_code == UNDECIDED
     text = " ".join(result.stdout.split())
     assert "the time limit of 1e-06 seconds (--limit) was reached" in text
-    assert (
-        "degrees of freedom: between 3 and 12 - PROVED; the first-order motions have dimension 17"
-    ) in text
+    assert "degrees of freedom: between 3 and 12 - PROVED" in text
+    assert text.count("dimension 17") == 1
     assert (
         "it does not start to fold with the drawn mountains and valleys - PROVED: the folds of "
         "vertex "

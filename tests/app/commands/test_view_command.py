@@ -20,17 +20,18 @@ def test_the_page_is_written_beside_the_reader(tmp_path, monkeypatch):
     assert result.stdout.splitlines() == [
         "2 ways to start folding - PROVED; all real, each counted once, every one",
         "continues to a true motion",
-        "written: single-vertex-4.view.html, with 2 branches",
+        "wrote single-vertex-4.view.html: 2 branches",
     ]
     assert Path("single-vertex-4.view.html").read_text("utf-8").startswith("<!doctype html>")
 
 
-def test_branches_may_begin_with_a_minus(tmp_path):
+@pytest.mark.parametrize("named", [["--signs", "--"], ["--up", ""], ["--way", "1"]])
+def test_one_way_alone(named, tmp_path):
     target = tmp_path / "some.html"
     few = ("--frames", "2", "--workers", "1")
-    result = run("view", "two-vertex", "-o", target, "--branches", "--,+-", *few)
+    result = run("view", "two-vertex", "-o", target, *named, *few)
     assert result.exit_code == OK
-    assert result.stdout.endswith(f"written: {target}, with 2 branches\n")
+    assert result.stdout.endswith(f"wrote {target}: 1 branch\n")
 
 
 def test_a_drawing_with_panels_is_shown_by_its_modes(tmp_path):
@@ -38,17 +39,17 @@ def test_a_drawing_with_panels_is_shown_by_its_modes(tmp_path):
     result = run("view", "zigzags", "-o", target, "--frames", "2")
     assert result.exit_code == OK
     assert result.stdout.startswith("3 families of ways to fold")
-    assert result.stdout.endswith(
-        f"written: {target}, with 3 ways to fold, and 1 mode not followed\n"
-    )
-    assert "read zigzags: SVG" in result.stderr
+    assert result.stdout.endswith(f"wrote {target}: 3 ways to fold, and 1 mode not followed\n")
+    assert "read zigzags: 12 lines, exact in Q" in result.stderr
 
 
 @pytest.mark.parametrize(
     ("arguments", "code", "message"),
     [
-        (["two-vertex", "--branches", "+x"], USAGE, "'+x' is not a list of vertex signs"),
-        (["two-vertex", "--branches", "+-+"], USAGE, "3 signs for 2 vertices"),
+        (["two-vertex", "--branches", "++,+-"], USAGE, "--branches is now --way N"),
+        (["two-vertex", "--signs", "+x"], USAGE, "'x' is not a vertex sign"),
+        (["two-vertex", "--signs", "+-+"], USAGE, "3 signs for 2 vertices"),
+        (["zigzags", "--way", "9"], USAGE, "there is no way 9: `count` lists 1 to 4"),
         (["two-vertex", "--serve", "-o", "a.html"], USAGE, "--serve writes no file"),
         (["two-vertex", "--port", "8000"], USAGE, "--port goes with --serve"),
         (["missing.fold"], BAD_INPUT, "missing.fold"),

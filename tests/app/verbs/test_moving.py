@@ -51,17 +51,24 @@ def test_without_a_name_all_vertices_pop_up_or_most_folds_fold():
     assert exactfold.follow("two-vertex", **SHORT).branch.sign_text == "++"
     wanted = follow_panels(exactfold.decompose("zigzags"), **SHORT)
     assert exactfold.follow("zigzags", **SHORT) == wanted
-    assert wanted.modes == (2,)
+    assert (wanted.way, wanted.modes) == (1, (2,))
 
 
-def test_modes_are_followed_by_number_by_letters_and_together():
+def test_ways_of_panels_are_followed_by_number_and_by_letters():
     ways = exactfold.decompose("zigzags")
     wanted = follow_panels(ways, modes=[3], **SHORT)
-    assert exactfold.follow("zigzags", 3, **SHORT) == wanted
-    assert exactfold.follow(ways, 3, **SHORT) == wanted
+    assert exactfold.follow("zigzags", 2, **SHORT) == wanted
+    assert exactfold.follow(ways, 2, **SHORT) == wanted
     assert exactfold.follow("zigzags", letters=mode_letters(3), **SHORT) == wanted
-    both = exactfold.follow("zigzags", [1, 5], **SHORT)
+    both = exactfold.follow("zigzags", 3, **SHORT)
     assert both.modes == (1, 5)
+    alone = exactfold.follow("zigzags", letters=mode_letters(5), **SHORT)
+    assert (alone.way, alone.modes) == (3, (5,))
+
+
+def test_without_a_name_the_letters_of_the_drawing_are_followed():
+    motion = exactfold.follow("miura", **SHORT)
+    assert dict(motion.assignment) == exactfold.read("miura").letters
 
 
 def test_letters_turned_over_are_followed_on_the_other_side():
@@ -69,15 +76,17 @@ def test_letters_turned_over_are_followed_on_the_other_side():
     motion = exactfold.follow("zigzags", letters=turned, **SHORT)
     assert motion.rates == (-1.0,)
     assert dict(motion.assignment) == turned
-    assert exactfold.follow("zigzags", 3, side=-1, **SHORT) == motion
+    assert exactfold.follow("zigzags", 2, side=-1, **SHORT) == motion
 
 
 def test_letters_that_no_mode_or_several_modes_have():
-    with pytest.raises(NotCountedError, match="no known mode has these letters"):
+    with pytest.raises(NotCountedError, match="no known way has these letters"):
         exactfold.follow("zigzags", letters="MMMMMMMMMMMM")
-    with pytest.raises(UsageError, match=r"5 modes have these letters: name one by way=1, 2, 3, 4"):
+    with pytest.raises(UsageError, match="3 ways have these letters: name one by way, 1, 2, 3"):
+        exactfold.follow("zigzags", letters={(4, 9): "V"})
+    with pytest.raises(UsageError, match="no fold has the letter M or V"):
         exactfold.follow("zigzags", letters={})
-    with pytest.raises(UsageError, match="not by both"):
+    with pytest.raises(UsageError, match="not way and letters"):
         exactfold.follow("zigzags", 1, letters={})
 
 
@@ -118,11 +127,10 @@ def test_with_more_corners_a_branch_is_named_and_else_the_panels_move():
 @pytest.mark.parametrize(
     ("sheet", "named", "said"),
     [
-        ("zigzags", {"signs": "+"}, "signs is for branches, .* choose one by way or letters"),
+        ("zigzags", {"signs": "+"}, "signs is for branches .* name one by way or letters"),
         ("zigzags", {"drive": {(0, 1): 3}}, "drive is for branches"),
         ("zigzags", {"through_branch_points": True}, "through_branch_points is for"),
-        ("zigzags", {"way": 9}, "there is no mode 9: give numbers from 1 to 5"),
-        ("two-vertex", {"way": [1, 2]}, "two branches cannot be followed together"),
+        ("zigzags", {"way": 9}, "there is no way 9: `count` lists 1 to 4"),
         ("two-vertex", {"way": 9}, "there is no way 9: `count` lists 1 to 4"),
     ],
 )

@@ -20,7 +20,7 @@ from exactfold.app.viewer.coding import coded_frames, decoded_frames, levelled
 from exactfold.branches import count_branches, count_ways, find_branch
 from exactfold.design import match_panels
 from exactfold.errors import UsageError
-from exactfold.motion import follow, follow_panels, panel_components, prove, prove_contacts
+from exactfold.motion import follow, follow_panels, panel_ways, prove, prove_contacts
 from exactfold.pattern.families import single_vertex
 from exactfold.pattern.loading import open_sheet
 from exactfold.solve.certify import algebraic
@@ -151,11 +151,11 @@ def test_a_branch_with_a_flat_vertex_has_the_reason_in_place_of_a_motion():
 def test_panels_list_what_is_followed_and_what_is_not():
     ways = count_ways("zigzags")
     document = document_of("zigzags")
-    components = panel_components(ways)
+    listed = [way for way in panel_ways(ways) if not way.why_not_followed]
     followed = [way for way in document["ways"] if way["motion"]]
-    assert (document["kind"], len(followed)) == ("panels", len(components))
+    assert (document["kind"], len(followed)) == ("panels", len(listed))
     [left] = [way for way in document["ways"] if way["motion"] is None]
-    assert (left["status"], left["name"]) == ("refuted", "mode 4")
+    assert (left["status"], left["name"]) == ("refuted", "way 4")
     assert "does not close" in left["why"]
     assert set(left["letters"]) == {"M", "V"}
     assert [way["motion"]["proved"] for way in followed].count(True) == 1
@@ -183,7 +183,7 @@ def test_it_says_what_is_proved_of_a_motion_of_panels():
     assert "; the drawing is computed in floats; faces stay rigid" in ways[0]["motion"]["said"]
     assert (ways[0]["motion"]["proved"], ways[0]["motion"]["exists"]) == (False, True)
     way = ways[2]
-    event = prove_contacts(follow_panels(count_ways("zigzags"), component=3)).event
+    event = prove_contacts(follow_panels(count_ways("zigzags"), way=3)).event
     low, high = event.time
     times = f"its first contact is proved to be between the times {low:.12g} and {high:.12g}"
     assert way["motion"]["said"] == exact + times
@@ -209,7 +209,9 @@ def test_families_of_panels_have_a_representative_each_and_the_letters_of_the_fi
     first, *others = document["ways"]
     assert document["drawn"] == {"way": 0, "mirrored": False}
     assert first["letters"] == "".join(matched.letters[f] for f in matched.pattern.folds)
-    assert [way["name"] for way in others] == [f"family {k}" for k in range(1, 17)]
+    assert [way["name"] for way in others] == [
+        f"way {k}, a family of dimension 5" for k in range(1, 17)
+    ]
     assert len({way["letters"] for way in others}) == 16
     for way in document["ways"]:
         assert (way["family"]["dimension"], len(way["family"]["drivers"])) == (5, 5)
