@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal, TypedDict
 import typer
 
 from exactfold._support.documents import Several
+from exactfold._support.plurals import counted
 from exactfold._support.processes import one_thread
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.app.options.branches import (
@@ -38,24 +39,30 @@ from exactfold.app.shell.shell import (
     reported,
     standard_input,
     standard_streams,
+    wrote,
 )
 from exactfold.app.shell.usage import Command, Group, taking
 
 # Each command imports what it needs, because loading everything takes longer than most commands.
 
+TAGLINE = (
+    "In how many ways does a crease pattern start to fold, what distinguishes them, and which go "
+    "on? exactfold answers with a proof."
+)
 app = typer.Typer(
-    help="Proven branch counts of triangulated origami near the unfolded state.",
+    help=TAGLINE,
     epilog="Exit codes: 0 proved or valid; 1 refuted, or certificate invalid; 2 wrong usage; "
     "3 bad input; 4 undecided, or the sheet is of a kind that cannot be counted; 70 a process "
     "died, or exactfold has a bug; 71 not enough memory; 74 standard output cannot be written; 130 "
     "interrupted.",
     no_args_is_help=True,
+    context_settings={"help_option_names": ["-h", "--help"]},
     pretty_exceptions_enable=False,
     cls=Group,
 )
 
 
-@app.command(cls=Command)
+@app.command(cls=Command, rich_help_panel="Ask")
 @taking(CountOptions)
 def count(**options: Any) -> int:
     """Count the ways in which a pattern starts to fold (its branches), with proof.
@@ -73,7 +80,7 @@ def count(**options: Any) -> int:
     return Asked(**options).run()
 
 
-@app.command(cls=Command)
+@app.command(cls=Command, rich_help_panel="Prove")
 @reported
 def check(
     certificate: Annotated[
@@ -110,7 +117,7 @@ def check(
     raise typer.Exit(0 if done else 1)
 
 
-@app.command(cls=Command)
+@app.command(cls=Command, rich_help_panel="See")
 @taking(DrawOptions)
 def draw(**options: Any) -> int:
     """Draw a crease pattern, one way to fold it, or all ways, as SVG, PNG or PDF.
@@ -125,7 +132,7 @@ def draw(**options: Any) -> int:
     return Wanted(**options).answer()
 
 
-@app.command(cls=Command)
+@app.command(cls=Command, rich_help_panel="See")
 @taking(ViewOptions)
 def view(**options: Any) -> int:
     """Show a sheet and its ways to fold in the browser: one HTML file that needs no network.
@@ -140,7 +147,7 @@ def view(**options: Any) -> int:
     return 0
 
 
-@app.command(cls=Command)
+@app.command(cls=Command, rich_help_panel="Ask")
 @taking(BranchOptions)
 def branch(**options: Any) -> int:
     """Find and prove one branch of a triangulated sheet, without finding the others.
@@ -157,7 +164,7 @@ def branch(**options: Any) -> int:
     return EXIT[PROVED if Asked(**options).answer() else UNDECIDED]
 
 
-@app.command(cls=Command)
+@app.command(cls=Command, rich_help_panel="Ask")
 @taking(MatchOptions)
 def match(**options: Any) -> int:
     """Find the ways to start folding that have the mountains and valleys of a file, with proof.
@@ -171,7 +178,7 @@ def match(**options: Any) -> int:
     return Asked(**options).answer()
 
 
-@app.command(cls=Command)
+@app.command(cls=Command, rich_help_panel="Ask")
 @taking(VerticesOptions)
 def vertices(**options: Any) -> int:
     """Say which vertices start to fold with their letters, with proof, and what to change.
@@ -186,7 +193,7 @@ def vertices(**options: Any) -> int:
     return Asked(**options).answer()
 
 
-@app.command(cls=Command)
+@app.command(cls=Command, rich_help_panel="Files")
 @taking(ExportOptions)
 def export(**options: Any) -> int:
     """Write one branch as a FOLD file, a sheet for Coq, or equations for other programs.
@@ -205,7 +212,7 @@ def export(**options: Any) -> int:
     return write_coq(asked) if asked.coq else asked.answer()
 
 
-@app.command(cls=Command)
+@app.command(cls=Command, rich_help_panel="Prove")
 @taking(CertifyOptions)
 def certify(**options: Any) -> int:
     """Prove solutions that another program found: one zero in a small box around each.
@@ -218,7 +225,7 @@ def certify(**options: Any) -> int:
     return Asked(**options).answer()
 
 
-@app.command(cls=Command)
+@app.command(cls=Command, rich_help_panel="Ask")
 @taking(AssignmentsOptions)
 def assignments(**options: Any) -> int:
     """List every mountain-valley assignment with which a sheet starts to fold, with proof.
@@ -232,7 +239,7 @@ def assignments(**options: Any) -> int:
     return Listed(**options).answer()
 
 
-@app.command(cls=Command)
+@app.command(cls=Command, rich_help_panel="Fold")
 @taking(FoldOptions)
 def fold(**options: Any) -> int:
     """Fold a sheet with rigid faces in space, until faces touch or another event.
@@ -250,7 +257,7 @@ def fold(**options: Any) -> int:
     return Wanted(**options).answer()
 
 
-@app.command(cls=Command)
+@app.command(cls=Command, rich_help_panel="Fold")
 @taking(MotionsOptions)
 def motions(**options: Any) -> int:
     """Follow every branch, with proof, until the sheet is flat again.
@@ -264,7 +271,7 @@ def motions(**options: Any) -> int:
     return Wanted(**options).answer()
 
 
-@app.command(cls=Command)
+@app.command(cls=Command, rich_help_panel="Fold")
 @taking(ActuateOptions)
 def actuate(**options: Any) -> int:
     """Find torques on the creases that drive the sheet along one branch and not along the others.
@@ -278,7 +285,7 @@ def actuate(**options: Any) -> int:
     return Driven(**options).answer()
 
 
-@app.command(cls=Command)
+@app.command(cls=Command, rich_help_panel="Studies")
 @taking(StudyOptions)
 def study(**options: Any) -> int:
     """Run a study: a table or figure of the paper, each number in it proved.
@@ -292,7 +299,7 @@ def study(**options: Any) -> int:
     return Wanted(**options).answer()
 
 
-@app.command("random", cls=Command)
+@app.command("random", cls=Command, rich_help_panel="Files")
 @reported
 def random_(
     interior: Annotated[int, number("Number of interior vertices.")],
@@ -326,9 +333,15 @@ def random_(
         sys.stdout.write(text)
     else:
         write_text(output, text)
+        pattern = sample.pattern
+        wrote(
+            output,
+            f"{counted(len(pattern.vertices), 'vertex')}, {counted(len(pattern.folds), 'fold')}, "
+            f"{counted(len(pattern.triangles), 'panel')}",
+        )
 
 
-@app.command(cls=Command)
+@app.command(cls=Command, rich_help_panel="Ask")
 @taking(InfoOptions)
 def info(**options: Any) -> int:
     """Report exact facts about a pattern that are known without solving for its ways to fold."""
@@ -338,7 +351,7 @@ def info(**options: Any) -> int:
     return 0
 
 
-@app.command(cls=Command)
+@app.command(cls=Command, rich_help_panel="Files")
 @taking(ConvertOptions)
 def convert(**options: Any) -> int:
     """Write a drawing of any format as a FOLD file with exact coordinates.
@@ -368,7 +381,7 @@ class ExamplesDocument(TypedDict):
     examples: Several[Example]
 
 
-@app.command(cls=Command)
+@app.command(cls=Command, rich_help_panel="Files")
 @reported
 def examples(as_json: Json = False) -> None:
     """List the patterns that come with exactfold; every command takes their names as files."""
@@ -404,7 +417,7 @@ def _options(
         bool, flag("--version", text="Show the version.", callback=_version, is_eager=True)
     ] = False,
 ) -> None:
-    """Proven branch counts of triangulated origami near the unfolded state."""
+    pass
 
 
 def main() -> None:

@@ -72,12 +72,12 @@ def follow(
     followed in floats: first by the Taylor series at the flat sheet, then by arclength continuation
     in the length equations. `until` says where to stop. "contact" is the first contact of two
     faces, or the first fold that closes. "return" is the next flat sheet. "90deg" is the first fold
-    angle of that size. A number is a time. Where another curve crosses (an event "node") the motion
-    stops, unless `through_branch_points` is true. `frames` is the number of frames, at equal steps
-    of time, or of the angle of the fold `by`. `side` is 1 for the ray that `branch` shows, and -1
-    for its mirror image. `pinned` is the triangle that is held, given by vertices of the sheet
-    without the parts that stay flat (`Problem.sheet`); by default it is the largest one. Times
-    depend on it.
+    angle of that size. A number, or "time=1.5", is a time. Where another curve crosses (an event
+    "node") the motion stops, unless `through_branch_points` is true. `frames` is the number of
+    frames, at equal steps of time, or of the angle of the fold `by`. `side` is 1 for the ray that
+    `branch` shows, and -1 for its mirror image. `pinned` is the triangle that is held, given by
+    vertices of the sheet without the parts that stay flat (`Problem.sheet`); by default it is the
+    largest one. Times depend on it.
 
     With more than four corners the branch has boundary heights. On the motion the heights of the
     boundary above the held face keep the ratio of these boundary heights, up to an affine function
@@ -166,16 +166,21 @@ class Goal:
         if until == RETURN:
             return cls(frozenset(always | {RETURN}))
         text = str(until)
+        degrees, given = text.endswith("deg"), text.removesuffix("deg").removeprefix("time=")
         try:
-            number = approx_number(text.removesuffix("deg"))
+            number = approx_number(given)
         except NumberError:
             number = -1.0
-        if not (isfinite(number) and number > 0) or (text.endswith("deg") and number > 180):
+        if not (isfinite(number) and number > 0) or (degrees and number > 180):
             raise UsageError(
                 f"until {text!r}: give contact, return, an angle such as 90deg (up to 180deg), or "
-                "a positive length"
+                "a time such as time=1.5"
             )
-        if not text.endswith("deg"):
+        if until == given:
+            raise UsageError(
+                f"until {text!r}: write {text}deg for a fold angle, or time={text} for a time"
+            )
+        if not degrees:
             return cls(frozenset(always | {LENGTH}), time=number)
         kind = FLAT_FOLD if number == 180 else ANGLE
         return cls(frozenset(always | {kind}), angle=radians(number))

@@ -294,8 +294,16 @@ class Part:
 
     @property
     def freest(self) -> int | None:
-        """An upper bound for the dimension of true motions; None if nothing bounds it."""
-        return self.most if self.true is None else max(self.true)
+        """An upper bound for the dimension of true motions; None if nothing bounds it.
+
+        The tangent cone of the true motions has their dimension, and lies in the motions to second
+        order.
+        """
+        if self.true is not None:
+            return max(self.true)
+        if self.second_order is not None:
+            return max(self.second_order)
+        return self.most
 
     @property
     def least(self) -> int:

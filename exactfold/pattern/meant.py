@@ -172,7 +172,8 @@ class Meant:
         """What was inferred, in a few words."""
         inexact = "" if self.noise is None else f"inexact by {self.noise:.0e} of its size, "
         relations = counted(len(self.relations), "relation")
-        return f"{inexact}{relations} inferred, moved by up to {self._within}"
+        enclosed = ", positions enclosed" if self.existence == "box" else ""
+        return f"{inexact}{relations} inferred, moved by up to {self._within}{enclosed}"
 
     @property
     def listed(self) -> tuple[str, ...]:

@@ -209,7 +209,7 @@ def test_one_vertex_of_degree_four_is_a_spherical_four_bar(seed, sign):
 def test_a_motion_ends_where_it_is_asked_to():
     branch = find_branch("two-vertex", "+-")
     assert follow(branch, until=0.25, frames=4).times == pytest.approx([0, 0.25 / 3, 0.5 / 3, 0.25])
-    assert follow(branch, until="0.25").end == "length"
+    assert follow(branch, until="time=0.25").end == "length"
     degrees = follow(branch, until="30deg")
     assert np.degrees(np.max(np.abs(degrees.angles[-1]))) == pytest.approx(30)
     assert (degrees.end, degrees.events[-1].kind) == ("angle", "angle")

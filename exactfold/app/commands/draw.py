@@ -18,7 +18,7 @@ from exactfold.app.pictures.picture_files import checked_picture, write_picture
 from exactfold.app.pictures.way_sheets import number_listed, sheet_of_ways, why_no_way
 from exactfold.app.shell.given import Given
 from exactfold.app.shell.patterns import located, read_any, verdict
-from exactfold.app.shell.shell import EXIT, STDIN, Bar, apart, name_of, say, tell
+from exactfold.app.shell.shell import EXIT, STDIN, Bar, apart, say, wrote
 from exactfold.app.verbs.choosing import ChosenBranch, ChosenPanels, choose
 from exactfold.app.verbs.moving import along, along_panels
 from exactfold.app.verbs.showing import drawn_panels
@@ -79,7 +79,7 @@ class Wanted(DrawOptions):
         if target is None:
             sys.stdout.write(text)
         else:
-            tell(f"written: {name_of(target)}")
+            wrote(target)
         return EXIT[status]
 
     def _target(self) -> Path | None:

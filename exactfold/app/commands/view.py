@@ -15,7 +15,7 @@ from exactfold.app.commands.ways import choice_of
 from exactfold.app.options.pictures import ViewOptions
 from exactfold.app.report.terminal import show
 from exactfold.app.shell.patterns import read_any
-from exactfold.app.shell.shell import Bar, apart, interruptible, name_of, say, tell
+from exactfold.app.shell.shell import Bar, apart, interruptible, say, tell, wrote
 from exactfold.app.verbs.choosing import choose
 from exactfold.app.verbs.showing import shown
 from exactfold.app.viewer.page import checked_page, write_view
@@ -54,7 +54,7 @@ class Wanted(ViewOptions):
             self._serve(opened, name)
             return
         show(Text(document["answer"]))
-        tell(f"written: {name_of(output)}, with {_contents(document)}")
+        wrote(output, _contents(document))
 
     def _only(self, opened: Opened, bar: Bar) -> dict[str, Any]:
         """The way that is shown, as arguments of `write_view`; empty if none was named."""

@@ -48,7 +48,7 @@ class FoldOptions(WayOptions):
             metavar="WHERE",
             help="Where to stop: at `contact`, when faces meet or a fold closes, or at a fold "
             "angle such as 90deg. Along a branch also at `return`, when the sheet is flat again, "
-            "or at a time, given as a number.",
+            "or at a time such as time=1.5.",
         ),
     ] = "contact"
     frames: Annotated[int, number("Number of frames.", least=2)] = 60

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import typer
 
@@ -24,6 +24,8 @@ from exactfold.pattern.reading import Reading
 @dataclass(frozen=True, eq=False, repr=False, match_args=False, kw_only=True)
 class ReadingOptions:
     """How a drawing is read; these options follow the others in the help of a command."""
+
+    panel: ClassVar[str] = "How a drawing is read"
 
     snap: Snap = None
     sheet: Sheet = None

@@ -122,7 +122,7 @@ def export_report(output: str, branch: Branch, export: BranchExport) -> Table:
     sizes = [abs(angle) for angle in export.angles.values()]
     return facts_table(
         [
-            ("written", output),
+            ("wrote", output),
             ("status", status_text(export.status)),
             ("vertex signs", cut(branch.sign_text)),
             ("mountain-valley", letters_text(cut(branch.assignment_text))),

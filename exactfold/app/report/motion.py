@@ -65,7 +65,7 @@ def motion_report(
     ]
     if len(written) > 4:
         written = [written[0], "...", written[-1]]
-    rows += [("written" if not k else "", name) for k, name in enumerate(written)]
+    rows += [("wrote" if not k else "", name) for k, name in enumerate(written)]
     return Group(facts_table(rows), *_events(motion))
 
 
@@ -152,7 +152,7 @@ def ending_text(motion: SheetInMotion) -> str:
     """Why a motion ends, in plain words."""
     last = [event for event in motion.events if event.kind == motion.end]
     if motion.end == LENGTH or not last:
-        return "the length that was asked for"
+        return "the time that was asked for"
     text = event_text(last[-1])
     if motion.end == NODE:
         text += "; --through-nodes goes on"

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 NAMED = 12
 """At most this many folds are named in a line."""
 
+
 _SIDES = "Each way is shown on one side; on the other all is reversed."
 _FAMILIES = "A family has infinitely many ways; one is shown."
 _EITHER = "U is a fold that is a mountain in some and a valley in others."
@@ -246,7 +247,7 @@ def _table(result: Decomposition, ways: Sequence[PanelWay], everything: bool) ->
     table.add_column("truly folds")
     for way in ways[: listed(len(ways), everything=everything)]:
         letters = "".join(way.letters.get(fold, "F") for fold in result.pattern.folds)
-        shown = letters_text(letters) if spelled else Text(in_numbers(letters))
+        shown = letters_text(letters) if spelled else Text(in_numbers(letters, "of either letter"))
         verdict = way.verdict
         said = {str(PROVED): "yes", str(UNDECIDED): "undecided"}.get(str(verdict), "no")
         cells = [str(way.dimension)] if families else []

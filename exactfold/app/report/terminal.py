@@ -45,15 +45,15 @@ COUNTED = (
 )
 
 
-def in_numbers(letters: str) -> str:
-    """How many folds have each letter, in words.
+def in_numbers(letters: str, either: str = "undecided") -> str:
+    """How many folds have each letter, in words; `either` says what U means.
 
     >>> in_numbers("VVFMFF")
     '1 mountain, 2 valleys, 3 flat'
     """
     known = {"M": "mountain", "V": "valley"}
     bent = [counted(letters.count(one), word) for one, word in known.items() if one in letters]
-    others = {"F": "flat", "U": "undecided"}
+    others = {"F": "flat", "U": either}
     rest = [f"{letters.count(one)} {word}" for one, word in others.items() if one in letters]
     return ", ".join(bent + rest)
 

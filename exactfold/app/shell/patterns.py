@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from difflib import get_close_matches
 from pathlib import Path
 
+from exactfold._support.plurals import either
 from exactfold._support.verdict import UNDECIDED, Verdict
 from exactfold.app.shell.shell import STDIN, said, say, tell
 from exactfold.errors import UnreadableFileError
@@ -14,6 +16,9 @@ from exactfold.pattern.data import EXAMPLES, example_path
 from exactfold.pattern.near_degeneracy import near_degenerate
 from exactfold.pattern.opening import Opened, open_pattern, triangles
 from exactfold.pattern.reading import PLAIN, Reading
+
+_NEAR = 0.6
+"""How similar a name must be to that of a shipped pattern that is meant, from 0 to 1."""
 
 
 @dataclass(frozen=True)
@@ -34,9 +39,10 @@ def located(path: Path) -> Path:
         return example_path(name)
     if path == STDIN or path.exists() or path.suffix or len(path.parts) != 1:
         return path  # reading raises an error that says what is wrong
+    near = get_close_matches(name.lower(), EXAMPLES, cutoff=_NEAR)
+    known = f"did you mean {either(near)}?" if near else f"shipped are {', '.join(EXAMPLES)}"
     raise UnreadableFileError(
-        f"{name} is neither a file nor a shipped pattern; the shipped patterns are: "
-        f"{', '.join(EXAMPLES)}"
+        f"{name} is neither a file nor a shipped pattern: {known} (see `exactfold examples`)"
     )
 
 

@@ -11,6 +11,7 @@ from exactfold._support.clock import LIMIT, Clock
 from exactfold._support.progress import Progress
 from exactfold.app.verbs.choosing import Choice, the_branch
 from exactfold.branches.counting.batch import count_many
+from exactfold.branches.counting.doubted import doubted_branch
 from exactfold.branches.counting.find import BoundaryHeights, Deficits, Signs
 from exactfold.branches.counting.registry import choose
 from exactfold.branches.counting.ways import count_opened, decompose_opened
@@ -252,6 +253,8 @@ def branch(
     with more than four corners, and `curvature` angle deficits of interior vertices, both as in
     `exactfold.branches.find_branch`.
 
+    If the digits of a drawing are in doubt, the branch is UNDECIDED, and `reason` says why.
+
     Raises `NotCountedError` for a sheet of panels, which has modes, and if no branch has the
     letters; `UsageError` if none or several of the arguments name the branch, if several branches
     have the letters, and for a number that is not in the list; and the errors of `find_branch`.
@@ -265,7 +268,8 @@ def branch(
     '+-'
     """
     choice = Choice(way, signs, up, letters, boundary_heights, curvature)
-    return the_branch(open_sheet(sheet), choice, progress).branch
+    opened = open_sheet(sheet)
+    return doubted_branch(the_branch(opened, choice, progress).branch, opened)
 
 
 def _is_one(sheet: object) -> TypeGuard[PatternLike]:

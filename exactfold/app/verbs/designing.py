@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from exactfold._support.clock import LIMIT, Clock
 from exactfold._support.progress import Progress
-from exactfold._support.verdict import PROVED
+from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.app.verbs.choosing import Choice, Letters, asked_letters, the_branch
 from exactfold.branches.counting.find import Signs
 from exactfold.design.actuation.actuate import actuate as actuate_branch
@@ -108,7 +108,8 @@ def actuate(
     """Find torques on the folds that drive a triangulated sheet along one branch and no other.
 
     The branch is named as in `branch`. If `creases` is given, at most so many folds have torques.
-    If `torques`, exact numbers by fold, are given, they are judged instead (docs/actuation.md).
+    If `torques`, exact numbers by fold, are given, they are judged instead (docs/actuation.md). If
+    the digits of a drawing are in doubt, the answer is UNDECIDED, and `reason` says why.
 
     Raises `NotCountedError` for larger panels and for more than 12 vertices that fold, and the
     errors of `branch` and of `exactfold.design.actuate`.
@@ -124,9 +125,13 @@ def actuate(
         chosen = the_branch(opened, Choice(way, signs, up, letters), progress, needs="actuate")
         signed = chosen.branch.vertex_signs.items()
         wanted, up = {v: chosen.side * sign for v, sign in signed}, None
-    return actuate_branch(
+    found = actuate_branch(
         pattern, wanted, up=up, creases=creases, torques=torques, progress=progress
     )
+    if not opened.doubt:
+        return found
+    reason = f"{opened.doubt}; the digits as written: {found.status}, {found.reason}"
+    return replace(found, status=UNDECIDED, reason=reason)
 
 
 def _at_most(most: int | None) -> dict[str, int]:

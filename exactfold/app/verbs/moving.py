@@ -68,9 +68,9 @@ def follow(
 
     `until` says where the motion ends: "contact" at the first contact of two faces or the first
     fold that closes, "90deg" at the first fold angle of that size; along a branch also "return"
-    when the sheet is flat again, and a number at that time. The motion has `frames` frames, at
-    equal steps of time, or of the angle of the fold `by`. `side` is -1 for the mirror image. `held`
-    has the corners of the face that does not move.
+    when the sheet is flat again, and a number, or "time=1.5", at that time. The motion has `frames`
+    frames, at equal steps of time, or of the angle of the fold `by`. `side` is -1 for the mirror
+    image. `held` has the corners of the face that does not move.
 
     These arguments are for branches only: `boundary_heights` are for a sheet with more than four
     corners. `drive` gives angles in degrees to which folds are driven

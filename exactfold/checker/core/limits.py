@@ -79,3 +79,5 @@ SPACE_STEPS = 1 << 22  # products of densities in one search
 SPACE_LEAVES = 1 << 12  # spaces of motions of one part
 MOST_LISTED = 1 << 12  # modes of one support that are checked one by one
 MOST_SUPPORTS = 1 << 15  # supports of a sheet
+TREE_JOINTS = 10  # folds to other vertices at one vertex of a tree
+TREE_CASES = 1 << 16  # cases of one vertex of a tree

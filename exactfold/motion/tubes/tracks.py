@@ -29,7 +29,7 @@ from exactfold.motion.tubes.tube_start import StartTube, prove_start
 from exactfold.pattern.crease_pattern import CreasePattern, Triangle
 
 MOST_TUBES = 1000
-_FAR_ENOUGH = "the length that was asked for"
+_FAR_ENOUGH = "the time that was asked for"
 
 
 @dataclass(frozen=True, repr=False)

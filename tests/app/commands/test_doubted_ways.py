@@ -56,3 +56,12 @@ def test_an_answer_about_digits_says_so_first(
         Draft202012Validator(exactfold.schema(command)).validate(data)
         assert "relations nearly hold" in data["reason"]
         assert "; the digits as written: proved, " in data["reason"]
+
+
+def test_so_do_the_values_of_python(drawing: Path) -> None:
+    exact = exactfold.read(drawing, snap="exact")
+    for find in (exactfold.branch, exactfold.actuate):
+        found, sure = find(drawing, up=[4]), find(exact, up=[4])
+        assert (found.status, sure.status) == (exactfold.UNDECIDED, exactfold.PROVED)
+        assert found.reason.endswith(f"; the digits as written: proved, {sure.reason}")
+        assert "relations nearly hold" in found.reason

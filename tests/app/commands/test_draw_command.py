@@ -145,7 +145,7 @@ def test_names_of_files_are_made_safe(tmp_path):
 
 def test_files_are_written_by_their_ending(tmp_path):
     result = run("draw", "two-vertex", "-o", tmp_path / "p.svg")
-    assert (result.exit_code, result.stdout) == (PROVED, f"written: {tmp_path / 'p.svg'}\n")
+    assert (result.exit_code, result.stdout) == (PROVED, f"wrote {tmp_path / 'p.svg'}\n")
     assert (tmp_path / "p.svg").read_text("utf-8") == drawn("two-vertex")
     assert drawn("two-vertex", "-o", "-") == drawn("two-vertex")
     wrong = run("draw", "two-vertex", "-o", tmp_path / "p.gif")
@@ -161,7 +161,7 @@ def test_on_a_terminal_a_file_is_written(asked, name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(draw, "on_a_terminal", lambda: True)
     result = run("draw", "two-vertex", *asked)
-    assert result.stdout == f"written: {name}\n"
+    assert result.stdout == f"wrote {name}\n"
     assert (tmp_path / name).read_text("utf-8").startswith("<svg")
 
 

@@ -231,6 +231,7 @@ def test_the_picture_of_a_branch(tmp_path):
         (["--signs", "++", "--side", "x"], "'x' is neither + nor -"),
         (["--signs", "++", "--until", "never"], "until 'never'"),
         (["--signs", "++", "--until", "-3"], "until '-3'"),
+        (["--signs", "++", "--until", "90"], "write 90deg for a fold angle, or time=90 for a time"),
         (["--signs", "++", "--until", "9_0deg"], "until '9_0deg'"),
         (["--signs", "++", "--frames", "1"], "1 is less than 2"),
         (["--signs", "++", "--by", "4"], "'4' is not a fold such as 4-7"),
@@ -392,7 +393,7 @@ def test_the_certificate_of_a_return_is_a_loop(tmp_path):
     assert all(0 <= frame["frame_exactfold:radius"] < 1e-15 for frame in frames)
 
 
-@pytest.mark.parametrize("until", ["60deg", "0.8"])
+@pytest.mark.parametrize("until", ["60deg", "time=0.8"])
 def test_motions_to_an_angle_or_a_length_are_proved(until, tmp_path):
     path = tmp_path / "proof.json"
     how = ("--signs", "+-", "--until", until, "--frames", 3, "--certificate", str(path))

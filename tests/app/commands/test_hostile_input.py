@@ -100,7 +100,7 @@ def test_names_do_not_steer_the_terminal(tmp_path, monkeypatch, two_vertex):
     for arguments, said in (
         (["info", NAME + "x"], SHOWN + "x"),
         (["convert", NAME, "2" + NAME], "wrote 2" + SHOWN),
-        (["draw", NAME, "-o", "\x1b[31m.svg"], r"written: \x1b[31m.svg"),
+        (["draw", NAME, "-o", "\x1b[31m.svg"], r"wrote \x1b[31m.svg"),
         (["count", NAME, "two-vertex"], r"a\x1b[2J\x1b]"),
         (["match", NAME], SHOWN),
     ):

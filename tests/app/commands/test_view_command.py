@@ -20,7 +20,7 @@ def test_the_page_is_written_beside_the_reader(tmp_path, monkeypatch):
     assert result.stdout.splitlines() == [
         "2 ways to start folding - PROVED; all real, each counted once, every one",
         "continues to a true motion",
-        "written: single-vertex-4.view.html, with 2 branches",
+        "wrote single-vertex-4.view.html: 2 branches",
     ]
     assert Path("single-vertex-4.view.html").read_text("utf-8").startswith("<!doctype html>")
 
@@ -31,7 +31,7 @@ def test_one_way_alone(named, tmp_path):
     few = ("--frames", "2", "--workers", "1")
     result = run("view", "two-vertex", "-o", target, *named, *few)
     assert result.exit_code == OK
-    assert result.stdout.endswith(f"written: {target}, with 1 branch\n")
+    assert result.stdout.endswith(f"wrote {target}: 1 branch\n")
 
 
 def test_a_drawing_with_panels_is_shown_by_its_modes(tmp_path):
@@ -39,9 +39,7 @@ def test_a_drawing_with_panels_is_shown_by_its_modes(tmp_path):
     result = run("view", "zigzags", "-o", target, "--frames", "2")
     assert result.exit_code == OK
     assert result.stdout.startswith("3 families of ways to fold")
-    assert result.stdout.endswith(
-        f"written: {target}, with 3 ways to fold, and 1 mode not followed\n"
-    )
+    assert result.stdout.endswith(f"wrote {target}: 3 ways to fold, and 1 mode not followed\n")
     assert "read zigzags: 12 lines, exact in Q" in result.stderr
 
 

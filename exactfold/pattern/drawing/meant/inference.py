@@ -114,7 +114,10 @@ def infer(
         kept = [relation for relation in accepted.relations if relation.name not in gone]
         accepted = Accepted(drawn, level.tolerance, floor)
         accepted.add(kept)
-        accepted.add(stated(drawn, text, grid) for text in also)
+        for text in also:
+            relation = stated(drawn, text, grid)
+            if not accepted.has(relation):
+                accepted.add([relation])
         if accepted.contradicting:
             raise UsageError(_conflict(accepted, accepted.contradicting[0]))
     implied = [r for r in deleted if accepted.is_implied(r.terms, r.parts)]
