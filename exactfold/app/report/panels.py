@@ -148,7 +148,8 @@ def known_lines(result: Decomposition) -> list[str]:
         more = "" if said else f"; the first-order motions have dimension {first}"
         lines.append(f"{_where(freedom.within)}{freedom.text} - PROVED{more}")
     if result.drawn is not None:
-        lines.append(f"{_where(result.drawn.within)}{_drawn(result.drawn)}")
+        where = "on all of these sheets: " if lines else _where(result.drawn.within)
+        lines.append(f"{where if result.drawn.within else ''}{_drawn(result.drawn)}")
         if result.drawn.together:
             number = len(result.drawn.together)
             lines.append(
