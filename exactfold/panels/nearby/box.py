@@ -95,7 +95,8 @@ def box_of(opened: Opened) -> Box | None:
 
     They lie within three times the amount by which the drawing misses relations, rounded up to one
     digit. This amount is the noise level that was not believed, or, if a sheet was inferred, the
-    largest defect of a relation that it nearly has. None if the digits are exact, or if the sheet that was meant is known.
+    largest defect of a relation that it nearly has. None if the digits are exact, or if the sheet
+    that was meant is known.
     """
     meant = opened.meant
     if not opened.doubt or meant is None or not meant.left:
