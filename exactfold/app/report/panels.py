@@ -148,13 +148,16 @@ def known_lines(result: Decomposition) -> list[str]:
         more = "" if said else f"; the first-order motions have dimension {first}"
         lines.append(f"{_where(freedom.within)}{freedom.text} - PROVED{more}")
     if result.drawn is not None:
-        where = "on all of these sheets: " if lines else _where(result.drawn.within)
-        lines.append(f"{where if result.drawn.within else ''}{_drawn(result.drawn)}")
+        where = _where(result.drawn.within)
+        if lines and lines[-1].startswith(where):
+            where = "on the same sheets: " if where else ""
+        lines.append(f"{where}{_drawn(result.drawn)}")
         if result.drawn.together:
             number = len(result.drawn.together)
+            fold = "folds" if number == 1 else "fold together"
             lines.append(
-                f"{counted(number, 'crease')} {'folds' if number == 1 else 'fold'} together as "
-                "drawn, while all others stay flat - PROVED; there may be larger sets"
+                f"{counted(number, 'crease')} {fold} as drawn, while all others stay flat - "
+                "PROVED; there may be larger sets"
             )
     solved = [part for part in result.parts if part.true is not None]
     known = product((part.true for part in solved), 0)
@@ -181,7 +184,10 @@ def _drawn(drawn: Drawn) -> str:
     if drawn.starts is PROVED:
         return f"it starts to fold with the drawn mountains and valleys - PROVED; {reasons}"
     if drawn.starts is REFUTED:
-        return f"it does not start to fold with the drawn mountains and valleys - PROVED: {reasons}"
+        return (
+            "it does not start to fold with the drawn mountains and valleys, with rigid panels "
+            f"that all move together - PROVED: {reasons}"
+        )
     return f"whether it starts to fold with the drawn mountains and valleys is UNDECIDED: {reasons}"
 
 
