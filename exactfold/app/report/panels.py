@@ -46,7 +46,7 @@ def panels_report(
 
     ways = panel_ways(result)
     parts: list[Any] = [panels_answer(result)]
-    notes = [*_known(result), *_notes(result, everything)]
+    notes = [*known_lines(result), *_notes(result, everything)]
     if unlisted := left_out(result, ways):
         notes.append(unlisted)
     if still := [way.number for way in ways if way.verdict is PROVED and way.why_not_followed]:
@@ -137,7 +137,7 @@ def _each(result: Decomposition) -> str:
     return "; the dimension is the number of folds that can be folded independently"
 
 
-def _known(result: Decomposition) -> list[str]:
+def known_lines(result: Decomposition) -> list[str]:
     """What is proved where not all motions are known: degrees of freedom, and the drawn letters."""
     from exactfold.panels.result import product
 

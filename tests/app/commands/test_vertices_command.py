@@ -108,6 +108,31 @@ def test_nearly_straight_lines_leave_it_open(off: str, code: int, tmp_path: Path
         assert run("vertices", path, "--letters", "VMMM", "--snap", "exact").exit_code == PROVED
 
 
+@pytest.mark.parametrize("corners", [4, 5], ids=["four corners", "five corners"])
+def test_match_leaves_open_what_a_nearly_straight_line_decides(
+    corners: int, tmp_path: Path
+) -> None:
+    """A bend by 3e-4 lets the vertex fold; `vertices` calls it open, and `match` has to agree."""
+    points = [("0", "0"), ("1", "0"), ("0", "1"), ("-1", "0"), ("0.0003", "-1"), ("0.8", "0.8")]
+    rim = (
+        [(1, 2), (2, 3), (3, 4), (4, 1)]
+        if corners == 4
+        else [(1, 5), (5, 2), (2, 3), (3, 4), (4, 1)]
+    )
+    sheet = PanelPattern(
+        [(Fraction(x), Fraction(y)) for x, y in points[: corners + 1]],
+        [*rim, *((0, k) for k in range(1, 5))],
+    )
+    path = tmp_path / "crossed.fold"
+    path.write_text(document_text(converted(Opened(sheet)).document(None)))
+    result = run("match", path, "--letters", "VMMM")
+    assert result.exit_code == UNDECIDED
+    assert "and with a straight line it does not" in words(result.stderr + result.stdout)
+    assert exactfold.match(path, "VMMM").status is exactfold.UNDECIDED
+    assert run("match", path, "--letters", "VMMM", "--snap", "exact").exit_code == PROVED
+    assert run("match", path, "--letters", "MVMV").exit_code == INVALID  # with or without the line
+
+
 def test_vertices_with_the_same_reason_share_a_line(tmp_path: Path) -> None:
     """Two vertical lines and a horizontal one, as in a map."""
     points = [(Fraction(x), Fraction(y)) for y in range(3) for x in range(4)]
