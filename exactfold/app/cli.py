@@ -24,7 +24,7 @@ from exactfold.app.options.branches import (
 )
 from exactfold.app.options.motions import ActuateOptions, FoldOptions, MotionsOptions
 from exactfold.app.options.patterns import ConvertOptions, CountOptions, InfoOptions
-from exactfold.app.options.pictures import DrawOptions, ViewOptions
+from exactfold.app.options.pictures import DrawOptions, ServeOptions, ViewOptions
 from exactfold.app.options.studies import StudyOptions
 from exactfold.app.shell.parameters import (
     Json,
@@ -144,6 +144,21 @@ def view(**options: Any) -> int:
     from exactfold.app.commands.view import Wanted
 
     Wanted(**options).run()
+    return 0
+
+
+@app.command(cls=Command, rich_help_panel="See")
+@taking(ServeOptions)
+def serve(**options: Any) -> int:
+    """Serve the page of `view` on this machine, with the engine behind it.
+
+    Drawings are dropped into the page: each is read and counted, and its ways are
+    listed as they are found. Vertices can be moved with the mouse. Only this
+    machine can reach the page; Ctrl-C ends it.
+    """
+    from exactfold.app.commands.view import Served
+
+    Served(**options).run()
     return 0
 
 

@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from exactfold.app.options.reading import ReadingOptions
 from exactfold.app.options.ways import ONE_OF, WayOptions
 from exactfold.app.shell.parameters import (
     BoundaryHeights,
@@ -93,26 +94,26 @@ class ViewOptions(WayOptions):
         int | None,
         number("Number of processes that follow motions. Default: all cores."),
     ] = None
-    serve: Annotated[
-        bool,
-        flag(
-            "--serve",
-            text="Write no file, but serve the page on this machine, and follow each branch when "
-            "it is looked at.",
+
+
+@dataclass(frozen=True, eq=False, repr=False, match_args=False)
+class ServeOptions(ReadingOptions):
+    """The options of `exactfold serve`."""
+
+    file: Annotated[
+        Path | None,
+        typer.Argument(
+            metavar="PATTERN",
+            help="A drawing to begin with: a file, or the name of a shipped pattern. Others are "
+            "dropped into the page.",
         ),
-    ] = False
+    ] = None
     port: Annotated[
         int | None,
-        number("The port for --serve. Default: any free port.", "P"),
+        number("The port. Default: any free port.", "P"),
     ] = None
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if self.serve:
-            if self.output is not None or self.workers is not None:
-                raise UsageError(
-                    "--serve writes no file and follows one branch at a time: leave out -o and "
-                    "--workers"
-                )
-        elif self.port is not None:
-            raise UsageError("--port goes with --serve")
+    limit: Annotated[
+        int,
+        number("Seconds after which the work on one sheet ends.", "SECONDS"),
+    ] = 60
+    frames: Annotated[int, number("Number of frames of each motion.", least=2)] = 32

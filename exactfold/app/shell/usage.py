@@ -151,6 +151,7 @@ _RENAMED = {
     "--modes": "--way N, the number in the list of `count`, or --letters",
     "--branches": "--way N, --signs, --up or --letters, for one way",
     "--rim": "--boundary-heights",
+    "--serve": "`exactfold serve PATTERN`",
 }
 """Options of earlier versions, and what does the same now."""
 

@@ -172,7 +172,7 @@ class Known:
             "format": "exactfold view result",
             "version": 1,
             "name": self.name,
-            "sheet": _sheet_json(self.opened),
+            "sheet": sheet_json(self.opened),
             "read": list(self.opened.lines),
             **self.known.facts,
             "ways": [*ways],
@@ -206,7 +206,7 @@ def _numbered(
             yield k, outcome
 
 
-def _sheet_json(opened: Opened) -> FlatSheet:
+def sheet_json(opened: Opened) -> FlatSheet:
     """The flat sheet: a FOLD object without letters, and everything else the page needs.
 
     `letters` are those of the file, by fold; they are shown if there is no way to fold.

@@ -73,6 +73,8 @@ class Facts(TypedDict):
     complete: bool
     """Whether `ways` are proved to be all."""
     reason: str
+    freedom: str
+    """The degrees of freedom in words; empty if nothing is known of them."""
     notes: list[str]
 
 
@@ -105,8 +107,14 @@ def listed_ways(
     frames: int,
     proving: bool,
     progress: Progress | None,
+    *,
+    limit: float = LIMIT,
 ) -> Listed:
-    """The ways of an open sheet; see `view_document` for the arguments and which ways these are."""
+    """The ways of an open sheet; see `view_document` for the arguments and which ways these are.
+
+    The search for motions of panels, and that for the letters of the file, end after `limit`
+    seconds each.
+    """
     pattern = opened.sheet
     popping = (
         isinstance(pattern, CreasePattern)
@@ -120,7 +128,7 @@ def listed_ways(
         )
     try:
         if popping and isinstance(pattern, CreasePattern):
-            known = _branches(opened, pattern, branches, progress)
+            known = _branches(opened, pattern, branches, progress, Clock(limit))
             if known is not None:
                 follower = Following(frames, proving, known.dimension)
                 numbered = known.count is not None and bool(known.count.known)
@@ -130,7 +138,7 @@ def listed_ways(
                 ]
                 shown = _with_drawn_branch(opened, ways, add=branches is None)
                 return Listed(*shown, _branch_facts(known), follower)
-        return _panels(opened, only, frames, proving, progress)
+        return _panels(opened, only, frames, proving, progress, limit)
     except (InputError, UsageError, WorkerDiedError):
         raise
     except ExactfoldError as error:
@@ -140,6 +148,7 @@ def listed_ways(
             "status": "undecided",
             "complete": False,
             "reason": str(error),
+            "freedom": "",
             "notes": [],
         }
         return Listed((), None, nothing, Following(frames))
@@ -164,12 +173,13 @@ def _branches(
     pattern: CreasePattern,
     chosen: Sequence[str | Branch] | None,
     progress: Progress | None,
+    clock: Clock,
 ) -> _Branches | None:
     """Branches to show; None if there are none, so that the motions of the panels are shown."""
     foldable = pattern.foldable_vertices
     count: BranchCount | None = None
     if chosen is None and len(foldable) <= MOST_LISTED:
-        counted_ways = count_opened(opened, progress=progress, clock=Clock(LIMIT))
+        counted_ways = count_opened(opened, progress=progress, clock=clock)
         if isinstance(counted_ways, Decomposition):
             return None
         count = counted_ways
@@ -212,6 +222,7 @@ def _branch_facts(known_branches: _Branches) -> Facts:
             "status": str(count.status),
             "complete": whole,
             "reason": count.reason,
+            "freedom": f"degrees of freedom: {known_branches.pattern.degrees_of_freedom}",
             "notes": [] if count.warning is None else [f"warning: {count.warning}"],
         }
     vertices = counted(len(known_branches.pattern.foldable_vertices), "foldable vertex")
@@ -224,6 +235,7 @@ def _branch_facts(known_branches: _Branches) -> Facts:
         "reason": "each branch was found by its vertex signs, and "
         f"{'all are' if proved else 'not all are'} proved; the branches of the sheet were not "
         "counted",
+        "freedom": f"degrees of freedom: {known_branches.pattern.degrees_of_freedom}",
         "notes": [],
     }
 
@@ -234,12 +246,13 @@ def _panels(
     frames: int,
     proving: bool,
     progress: Progress | None,
+    limit: float,
 ) -> Listed:
     from exactfold.app.report.panels import panels_answer
     from exactfold.motion.panels.followable import panel_modes, why_nothing_follows
     from exactfold.motion.panels.listing import left_out, panel_ways
 
-    answer = decompose_opened(opened, progress=progress, clock=Clock(LIMIT))
+    answer = decompose_opened(opened, progress=progress, clock=Clock(limit))
     ways = answer.known
     modes = panel_modes(ways)
     known = panel_ways(ways, modes)
@@ -247,7 +260,7 @@ def _panels(
     listed = [(panel_way(ways, way), _job(way, ways, opened)) for way in shown]
     drawn = _drawn_in(opened, listed)
     if only is None:
-        listed, drawn = _with_drawn_motion(opened, ways, listed)
+        listed, drawn = _with_drawn_motion(opened, ways, listed, min(limit, DRAWN_SECONDS))
     notes = [] if ways.warning is None else [f"warning: {ways.warning}"]
     if len(known) > len(shown):
         notes.append(f"{counted(len(known) - len(shown), 'more way')} not shown here")
@@ -263,6 +276,7 @@ def _panels(
         and Counter(way.dimension for way in shown if way.verdict is PROVED)
         == {dimension: number for dimension, number in answer.true.items() if dimension},
         "reason": answer.reason,
+        "freedom": "" if answer.freedom is None else answer.freedom.text,
         "notes": notes,
     }
     follower = FollowingPanels(ways, frames, proving)
@@ -277,12 +291,12 @@ def _job(way: PanelWay, ways: Decomposition, opened: Opened) -> int | Representa
 
 
 def _with_drawn_motion(
-    opened: Opened, ways: Decomposition, listed: list[tuple[Way, Any]]
+    opened: Opened, ways: Decomposition, listed: list[tuple[Way, Any]], seconds: float
 ) -> tuple[list[tuple[Way, Any]], Drawn | None]:
     """The list, first the motion with the letters of the file unless a way in it has them."""
     drawn = _drawn_in(opened, listed)
     if drawn is None and ways.rigid is not PROVED:
-        motion = drawn_motion(opened, Clock(DRAWN_SECONDS))
+        motion = drawn_motion(opened, Clock(seconds))
         if motion is not None:
             return [(family_way(ways, motion), motion), *listed], {"way": 0, "mirrored": False}
     return listed, drawn

@@ -115,19 +115,23 @@ class Following:
 
     def __call__(self, branch: Branch) -> Followed:
         """The motion along a branch up to the first contact, or the reason why there is none."""
+        angles = _angles(branch.pattern, _leading(branch))
         try:
-            if self.dimension > 1 and not self.proving:
-                return _family_of(branch, self.dimension, self.frames)
-            motion = follow(branch, frames=self.frames)
-            proof = _proof(motion) if self.proving else _in_floats(motion)
-            found: Followed = {"motion": _drawn(motion, proof), "why": ""}
-            if self.dimension > 1:
-                found["family"] = _family(motion, self.dimension)
-            return found
+            return {**self._motion(branch), "angles": angles}
         except WorkerDiedError:
             raise
         except ExactfoldError as error:
-            return not_followed(str(error))
+            return {**not_followed(str(error)), "angles": angles}
+
+    def _motion(self, branch: Branch) -> Followed:
+        if self.dimension > 1 and not self.proving:
+            return _family_of(branch, self.dimension, self.frames)
+        motion = follow(branch, frames=self.frames)
+        proof = _proof(motion) if self.proving else _in_floats(motion)
+        found: Followed = {"motion": _drawn(motion, proof), "why": ""}
+        if self.dimension > 1:
+            found["family"] = _family(motion, self.dimension)
+        return found
 
 
 @dataclass(frozen=True)
@@ -282,11 +286,7 @@ def not_followed(why: str) -> Followed:
 
 
 def branch_way(branch: Branch, number: int | None = None) -> Way:
-    """A branch without its motion; `number` is its place in the list of `count`."""
-    try:
-        leading = branch.fold_angles.degrees(AMOUNT)
-    except ExactfoldError:
-        leading = {}
+    """A branch without its motion and its angles; `number` is its place in the list of `count`."""
     return {
         "name": f"branch {branch.sign_text}",
         "number": number,
@@ -296,7 +296,7 @@ def branch_way(branch: Branch, number: int | None = None) -> Way:
         "multiplicity": branch.multiplicity,
         "status": str(branch.status),
         "reason": branch.reason or "a branch with these vertex signs and letters exists",
-        "angles": _angles(branch.pattern, leading),
+        "angles": [],
         "motion": None,
         "why": "",
         "family": None,
@@ -307,6 +307,14 @@ def family_way(ways: Decomposition, family: Representative) -> Way:
     """A family, or the letters of the file, without the motion."""
     letters = {e: "V" if x > 0 else "M" for e, x in family.densities.items() if x}
     return _panel_way(ways.pattern, family.name, None, letters, str(PROVED), family.why)
+
+
+def _leading(branch: Branch) -> Mapping[Edge, float]:
+    """The angles in degrees with which a branch starts; empty if they are not known."""
+    try:
+        return branch.fold_angles.degrees(AMOUNT)
+    except ExactfoldError:
+        return {}
 
 
 def panel_way(ways: Decomposition, way: PanelWay) -> Way:

@@ -50,8 +50,7 @@ def test_a_drawing_with_panels_is_shown_by_its_modes(tmp_path):
         (["two-vertex", "--signs", "+x"], USAGE, "'x' is not a vertex sign"),
         (["two-vertex", "--signs", "+-+"], USAGE, "3 signs for 2 vertices"),
         (["zigzags", "--way", "9"], USAGE, "there is no way 9: `count` lists 1 to 4"),
-        (["two-vertex", "--serve", "-o", "a.html"], USAGE, "--serve writes no file"),
-        (["two-vertex", "--port", "8000"], USAGE, "--port goes with --serve"),
+        (["two-vertex", "--serve"], USAGE, "--serve is now `exactfold serve PATTERN`"),
         (["missing.fold"], BAD_INPUT, "missing.fold"),
         (["two-vertex", "-o", "page.txt"], USAGE, "a page is written as .html, .htm"),
         (["two-vertex", "-o", "no/a.html"], BAD_INPUT, "no/a.html: there is no folder"),
@@ -60,7 +59,6 @@ def test_a_drawing_with_panels_is_shown_by_its_modes(tmp_path):
             USAGE,
             "a motion in a page needs at least 2 and at most 1000",
         ),
-        (["two-vertex", "--serve", "--port", "99999"], USAGE, "give a number from 0 to 65535"),
         (["two-vertex", "-o", "-"], USAGE, "give the output file a name"),
     ],
 )
@@ -74,14 +72,14 @@ def test_what_is_refused(arguments, code, message, tmp_path, monkeypatch):
 
 @pytest.mark.slow
 def test_ctrl_c_ends_the_server():
-    command = [sys.executable, "-m", "exactfold", "view", "two-vertex", "--serve", "--frames", "2"]
+    command = [sys.executable, "-m", "exactfold", "serve", "two-vertex", "--frames", "2"]
     with subprocess.Popen(
         command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     ) as served:
         line = served.stdout.readline()
-        port = int(re.search(r"http://127\.0\.0\.1:(\d+)/", line)[1])
-        connection = HTTPConnection("127.0.0.1", port, timeout=60)
-        connection.request("GET", "/")
+        port, path = re.search(r"http://127\.0\.0\.1:(\d+)(/[\w-]+/)", line).groups()
+        connection = HTTPConnection("127.0.0.1", int(port), timeout=60)
+        connection.request("GET", path)
         assert connection.getresponse().status == 200
         connection.close()
         served.send_signal(signal.SIGINT)

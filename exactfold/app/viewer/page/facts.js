@@ -9,13 +9,14 @@ const ICONS = {
 };
 
 export function showFacts(page, way) {
-  const facts = [countFact(page), ...(way ? wayFacts(page, way) : []), ...page.notes.map((text) => ["open", "To know", text])];
+  const facts = [countFact(page), ...(page.freedom ? [["note", sentence(page.freedom), ""]] : []), ...(way ? wayFacts(page, way) : []), ...page.notes.map((text) => ["open", "To know", text])];
   const items = facts.map(item);
   if (page.read.length) items.push(reading(page.read));
   document.getElementById("facts").replaceChildren(...items);
 }
 
 function countFact(page) {
+  if (page.busy) return ["note", "Looking for ways", ""];
   if (!page.ways.length) {
     const known = page.status === "proved";
     return [known ? "good" : "open", known ? "The answer: proved" : "The answer: undecided", own(page)];

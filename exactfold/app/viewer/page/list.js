@@ -25,7 +25,7 @@ export function createList(page, store) {
     clear.hidden = !narrowed;
     box.replaceChildren(...found.map(({ way, mirrored }) => row(ways[way], way, mirrored, page.drawn)));
     search.hidden = !ways.length;
-    if (!found.length) box.append(paragraph(ways.length ? nothing() : `No way to list: ${page.answer.split(" - ")[0]}.`));
+    if (!found.length) box.append(paragraph(page.busy && !ways.length ? "Looking for ways to fold …" : ways.length ? nothing() : `No way to list: ${page.answer.split(" - ")[0]}.`));
     settle();
     mark();
   }
@@ -102,7 +102,7 @@ function row(way, k, mirrored, drawn) {
   node.id = `way-${k}`;
   node.setAttribute("role", "option");
   node.setAttribute("aria-selected", "false");
-  const number = span("number", String(k + 1));
+  const number = span("number", way.number ? String(way.number) : "–");
   const signs = span(side.signs ? "signs" : "signs plain", side.signs ? side.signs.replaceAll("-", "−") : way.name);
   const notes = [];
   if (mirrored) notes.push("mirror image");

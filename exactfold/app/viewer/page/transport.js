@@ -17,9 +17,9 @@ export function createTransport(store) {
   let last = 0, forward = true;
 
   function step(now) {
-    const { playing, time } = store.get();
+    const { playing, time, speed } = store.get();
     if (!playing) return;
-    const by = Math.min((now - last) / 1000, 0.1) / SECONDS;
+    const by = (speed * Math.min((now - last) / 1000, 0.1)) / SECONDS;
     last = now;
     let next = time + (forward ? by : -by);
     if (next >= 1 || next <= 0) {
@@ -39,6 +39,7 @@ export function createTransport(store) {
 
   slider.addEventListener("input", () => store.set({ time: slider.value / 1000, playing: false }));
   play.addEventListener("click", toggle);
+  document.getElementById("speed").addEventListener("change", ({ target }) => store.set({ speed: Number(target.value) }));
   store.on(["playing"], ({ playing }) => {
     paint(playing);
     if (!playing) return;
