@@ -26,6 +26,7 @@ from exactfold.pattern.fold_writing import require_folder
 from exactfold.pattern.opening import Opened, has_branches
 
 if TYPE_CHECKING:  # following branches does not need it
+    from exactfold.motion.panels.families import FamilyMotion
     from exactfold.motion.panels.motion import PanelMotion
     from exactfold.motion.panels.proving import PanelProof
     from exactfold.motion.proving import MotionProof
@@ -56,7 +57,7 @@ class Wanted(FoldOptions):
             chosen = self._chosen(opened, bar)
             if chosen.why:
                 say(chosen.why)
-            motion: Motion | PanelMotion
+            motion: Motion | PanelMotion | FamilyMotion
             if isinstance(chosen, ChosenBranch):
                 try:
                     motion = self._along(chosen, bar)
@@ -126,7 +127,7 @@ class Wanted(FoldOptions):
             progress=bar,
         )
 
-    def _panels(self, chosen: ChosenPanels, bar: Bar) -> PanelMotion:
+    def _panels(self, chosen: ChosenPanels, bar: Bar) -> PanelMotion | FamilyMotion:
         self._refuse_branches()
         warning = chosen.answer.known.warning
         if warning is not None:
@@ -153,7 +154,10 @@ class Wanted(FoldOptions):
     # --- proof -----------------------------------------------------------------------------------
 
     def _proof(
-        self, motion: Motion | PanelMotion, chosen: ChosenBranch | ChosenPanels, bar: Bar
+        self,
+        motion: Motion | PanelMotion | FamilyMotion,
+        chosen: ChosenBranch | ChosenPanels,
+        bar: Bar,
     ) -> MotionProof | PanelProof | None:
         if self.certificate is None:
             return None
@@ -168,7 +172,7 @@ class Wanted(FoldOptions):
     # --- files -----------------------------------------------------------------------------------
 
     def _written(
-        self, motion: Motion | PanelMotion, proof: MotionProof | PanelProof | None
+        self, motion: Motion | PanelMotion | FamilyMotion, proof: MotionProof | PanelProof | None
     ) -> list[str]:
         from exactfold.app import report
 
