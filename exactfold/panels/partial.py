@@ -61,6 +61,8 @@ class Freedom:
         """
         if self.least == self.most:
             return f"degrees of freedom: {self.least}"
+        if not self.least:
+            return f"degrees of freedom: at most {self.most}"
         return f"degrees of freedom: between {self.least} and {self.most}"
 
     def to_dict(self) -> FreedomDocument:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 from exactfold._support.plurals import counted
 from exactfold.errors import FoldError, PatternError, TooLargeError, UsageError
+from exactfold.exact.surds import rational
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.drawing.drawing import Drawing, Line
 from exactfold.pattern.drawing.meant.left import left_relations, off_by
@@ -17,6 +19,10 @@ if TYPE_CHECKING:  # sheets with exact digits do without it
     from exactfold.pattern.panel_pattern import PanelPattern
 
 
+_MOST_EDGES: Final = 1200
+"""Sheets with more edges get no proposals."""
+_TIMES_MISSED: Final = 10
+"""No proposal is further from the drawing than so many times what the drawing misses."""
 _TIMES_NOISE: Final = 100
 """Recognising coordinates must not move one by more than this many times the largest defect."""
 _NONE_NEAR: Final = "no relation between creases holds nearly but not exactly"
@@ -127,6 +133,51 @@ def recognised(found: Opened) -> Opened | None:
             field_name=sheet.field_name,
         )
     )
+
+
+def proposals(found: Opened, seconds: float) -> list[tuple[float, Opened]]:
+    """Exact sheets near a drawing without a clear noise level, each with a level that gives it.
+
+    The levels are those at the widest gaps between the relations that the drawing misses, the
+    widest first. A sheet that still nearly has relations is left out, and so is one that is far
+    from the drawing for what this misses. After `seconds` no other level is tried. The list is
+    empty if the sheet that was meant is known, or if something was said about it.
+    """
+    reading = found.reading
+    if not found.doubt or found.again is None or reading.overrules or reading.snap == "exact":
+        return []
+    if isinstance(reading.snap, int) or len(found.sheet.edges) > _MOST_EDGES:
+        return []
+    end = time.monotonic() + seconds
+    try:
+        raw = found.again(reading.as_written)
+    except (FoldError, PatternError):
+        return []
+    made: list[tuple[float, Opened]] = []
+    for level in _levels(panels(raw.sheet) if isinstance(raw.sheet, CreasePattern) else raw.sheet):
+        if time.monotonic() > end:
+            break
+        opened = found.again(replace(reading, noise=level))
+        meant = opened.meant
+        if meant is None or not meant.inferred or opened.doubt:
+            continue
+        missed = max(relation.defect for relation in meant.relations)
+        if opened.largest_move <= _TIMES_MISSED * missed:
+            made.append((level, opened))
+    return made
+
+
+def _levels(sheet: PanelPattern) -> list[float]:
+    from exactfold.pattern.drawing.meant.drawn import NEAR, Drawn
+    from exactfold.pattern.drawing.meant.levels import proposed_levels
+    from exactfold.pattern.drawing.meant.local import local_relations
+
+    if sheet.field.radicands:
+        return []
+    points = [(rational(x), rational(y)) for x, y in sheet.vertices]
+    drawn = Drawn(points, sheet.edges, frozenset(sheet.boundary_edges))
+    defects = [relation.defect for relation, _ in local_relations(drawn)[0]]
+    return proposed_levels(defects, NEAR * min(drawn.lengths.values()))
 
 
 def _with_coordinates(found: Opened, coordinates: str) -> tuple[str, ...]:

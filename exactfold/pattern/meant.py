@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final, TypedDict
 
 from exactfold._support.documents import Natural, NotNegative
@@ -170,7 +171,7 @@ class Meant:
     @property
     def brief(self) -> str:
         """What was inferred, in a few words."""
-        inexact = "" if self.noise is None else f"inexact by {self.noise:.0e} of its size, "
+        inexact = "" if self.noise is None else f"inexact by {self.noise:.0e}, "
         relations = counted(len(self.relations), "relation")
         enclosed = ", positions enclosed" if self.existence == "box" else ""
         return f"{inexact}{relations} inferred, moved by up to {self._within}{enclosed}"
@@ -237,10 +238,13 @@ def inferred(written: PanelPattern, reading: Reading) -> Meant:
     `_DISTANT`; this is done for sheets of up to 1,000 edges. Raises the errors of `infer` for
     relations that do not exist or contradict each other.
     """
-    from exactfold.pattern.meant_sheet import enclose, realize
+    from exactfold.pattern.meant_sheet import enclose, realize, recognise
 
     all_found = _found(written, reading, ())
     first = meant = _realized(written, all_found, realize)
+    if all_found.angles is not None and not meant.inferred:
+        known = partial(recognise, relations=all_found.relations)
+        meant = _realized(written, all_found, known)
     attempts = len(_DISTANT) if len(written.edges) <= _MOST_EDGES else 0
     for number in range(1, attempts + 1):
         if all_found.angles is None or meant.inferred:

@@ -31,9 +31,11 @@ from exactfold.pattern.drawing.meant.directions import (
     with_a_one,
 )
 from exactfold.pattern.drawing.meant.enclosing import Enclosed, enclosed, keeps_faces
+from exactfold.pattern.drawing.meant.integral import with_integers
 from exactfold.pattern.drawing.meant.peeling import Lines
-from exactfold.pattern.drawing.meant.positions import Point, bound_edges, placed_together
+from exactfold.pattern.drawing.meant.positions import NO_PLACES, Point, bound_edges, placed_together
 from exactfold.pattern.drawing.meant.refining import Refined, refined
+from exactfold.pattern.drawing.meant.solving import holds, recognised_positions
 from exactfold.pattern.drawing.meant.values import Angles, Edge, Existence, Relation
 from exactfold.pattern.panel_entries import panels_document
 from exactfold.pattern.panel_pattern import EnclosedPattern, PanelPattern
@@ -91,6 +93,8 @@ def realize(drawn: PanelPattern, angles: Angles, noise: float) -> Realized:
     ('exact', True, True)
     """
     written = tuple(_written(point) for point in drawn.vertices)
+    if not in_a_tower(parts_of(angles)):
+        angles = with_integers(angles)
     if not in_a_tower(parts := parts_of(angles)):
         return _none(drawn, _no_tower(parts))
     points = _exact_points(written, angles, noise)
@@ -119,6 +123,28 @@ def _exact_points(written: Written, angles: Angles, noise: float) -> list[Point]
     return constructed(written, near.places, directions, lines, bound, noise)
 
 
+def recognise(
+    drawn: PanelPattern, angles: Angles, noise: float, relations: Iterable[Relation]
+) -> Realized:
+    """The exact sheet near a drawing that has all relations, if its coordinates are short.
+
+    The coordinates are recognised from many digits, which Newton's method finds. The relations are
+    then checked exactly. Raises `UsageError` if the coordinates of the drawing are irrational.
+    """
+    written = tuple(_written(point) for point in drawn.vertices)
+    if not in_a_tower(parts_of(angles)):
+        angles = with_integers(angles)
+    bound = bound_edges(angles)
+    near = refined(np.array([(float(x), float(y)) for x, y in written]), angles, bound, noise)
+    points = recognised_positions(written, near, angles, bound, noise) if near.exists else None
+    if points is None:
+        return _none(drawn, "its coordinates are no short numbers in a field of one square root")
+    if missed := [relation.name for relation in relations if not holds(relation, points)]:
+        return _none(drawn, f"the positions that were recognised miss {missed[0]}")
+    made = _compared(drawn, written, points)
+    return made if made.distance < _FAR * noise else _none(drawn, NO_PLACES)
+
+
 def enclose(drawn: PanelPattern, angles: Angles, noise: float) -> Realized:
     """The sheet near a drawing whose edges have the given angles, with its positions enclosed.
 
@@ -128,6 +154,8 @@ def enclose(drawn: PanelPattern, angles: Angles, noise: float) -> Realized:
     the drawing are irrational.
     """
     written = tuple(_written(point) for point in drawn.vertices)
+    if not in_a_tower(parts_of(angles)):
+        angles = with_integers(angles)
     if not in_a_tower(parts := parts_of(angles)):
         return _none(drawn, _no_tower(parts))
     edges = sorted({*bound_edges(angles), *drawn.folds})

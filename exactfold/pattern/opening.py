@@ -90,12 +90,15 @@ def opened(raw: bytes, name: str, reading: Reading = PLAIN) -> Opened:
             strict = error
         else:
             again = partial(opened, raw, name)
-            lines = _joined(file, name)
+            joined = _joined(file)
+            number = counted(len(file.pattern.edges), "line")
+            read = f"read {Path(name).name}: FOLD, triangulated, as it stands: {joined}"
             found = Opened(
                 file.pattern,
                 file.assignment,
-                lines,
-                seen=lines,
+                (read,) if joined else (),
+                (number, "triangulated, as it stands") if joined else (),
+                (joined,) if joined else (),
                 snapped=file.snapped,
                 reading=reading,
                 again=again,
@@ -121,8 +124,9 @@ def opened(raw: bytes, name: str, reading: Reading = PLAIN) -> Opened:
         raise
 
 
-def _joined(file: FoldFile, name: str) -> tuple[str, ...]:
-    """The remark on letters F and J in a sheet of triangles that may mean panels of triangles.
+def _joined(file: FoldFile) -> str:
+    """The remark on letters F and J in a sheet of triangles that may mean panels of triangles;
+    empty if there is none.
 
     J has this meaning by itself. F has it only beside M and V: if no fold has a direction, F says
     no more than U.
@@ -130,11 +134,10 @@ def _joined(file: FoldFile, name: str) -> tuple[str, ...]:
     letters = [file.assignment.get(fold, "U") for fold in file.pattern.folds]
     flat = sum(letter in "FJ" for letter in letters)
     if not flat or not {"M", "V", "J"} & set(letters):
-        return ()
+        return ""
     return (
-        f"read {Path(name).name}: FOLD, triangulated, as it stands: {counted(flat, 'fold')} with "
-        f"the letter F or J may bend like any other (`exactfold convert --repair` joins the panels "
-        "across them)",
+        f"{counted(flat, 'fold')} with the letter F or J may bend like any other (`exactfold "
+        "convert --repair` joins the panels across them)"
     )
 
 

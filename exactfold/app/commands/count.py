@@ -79,6 +79,10 @@ class Asked(CountOptions):
             from exactfold.design.panels.vertices import vertices
 
             report.show(report.vertices_line(vertices(opened)))
+        if not isinstance(result, BranchCount) and result.proposal and not self.as_json:
+            report.show("")
+            for line in report.proposal_lines(result.proposal):
+                report.show(line)
         return EXIT[result.status]
 
     def _of_digits(self, result: BranchCount | Decomposition) -> None:

@@ -22,6 +22,7 @@ from exactfold.design.assignments.nearest import nearest_branches
 from exactfold.design.assignments.result import Match
 from exactfold.design.assignments.search import match
 from exactfold.design.panels.match import PanelMatch, match_panels
+from exactfold.design.panels.vertices import open_vertices
 from exactfold.errors import (
     NotApplicableError,
     NotCountedError,
@@ -57,7 +58,7 @@ class Asked(MatchOptions):
             letters = self._letters(opened.sheet, opened)
             if isinstance(opened.sheet, PanelPattern) or opened.sheet.Ve > 4:
                 popping = isinstance(opened.sheet, CreasePattern) and can_pop(opened.sheet)
-                if popping and not opened.doubt:
+                if popping and not opened.doubt and not open_vertices(opened, letters):
                     over = match_boundary(
                         opened.sheet, letters, most=self.most or _RIMS, progress=bar
                     )
@@ -74,8 +75,10 @@ class Asked(MatchOptions):
             _in_reach(pattern)
             bar("signs")
             matched = match(pattern, letters, most=self.most or _HALVES, progress=bar)
-            matched = matched.about(opened.meant)
-            if not matched.matches and not opened.doubt:
+            if nearly := open_vertices(opened, letters):
+                say(f"warning: {nearly}")
+            matched = matched.about(opened.meant, nearly)
+            if not matched.matches and not opened.doubt and not nearly:
                 bar("nearest branches")
                 nearest = nearest_branches(matched, tries=self.tries, progress=bar)
             self._write(matched, bar)

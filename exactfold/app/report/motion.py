@@ -16,6 +16,7 @@ from exactfold.app.report.branch import boundary_heights_text
 from exactfold.app.report.terminal import cut, facts_table, letters_text, status_text
 from exactfold.motion.curves.events import (
     ANGLE,
+    CHANGE,
     CONTACT,
     DEAD_POINT,
     DRIVEN,
@@ -174,6 +175,7 @@ def event_text(event: Event) -> str:
         if several
         else f"{folds} closes: its two faces meet",
         TURNING: f"{folds} {'turn' if several else 'turns'} back{detail}",
+        CHANGE: f"{folds} {'change' if several else 'changes'} {event.detail}",
         ANGLE: f"{folds} {'have' if several else 'has'} the angle that was asked for",
         DRIVEN: f"{folds} {'have' if several else 'has'} the angles of the drive",
         DEAD_POINT: f"{folds} {'turn' if several else 'turns'} back: they cannot be driven further",

@@ -46,7 +46,7 @@ def panels_report(
 
     ways = panel_ways(result)
     parts: list[Any] = [panels_answer(result)]
-    notes = [*_known(result), *_notes(result, everything)]
+    notes = [*known_lines(result), *_notes(result, everything)]
     if unlisted := left_out(result, ways):
         notes.append(unlisted)
     if still := [way.number for way in ways if way.verdict is PROVED and way.why_not_followed]:
@@ -137,7 +137,7 @@ def _each(result: Decomposition) -> str:
     return "; the dimension is the number of folds that can be folded independently"
 
 
-def _known(result: Decomposition) -> list[str]:
+def known_lines(result: Decomposition) -> list[str]:
     """What is proved where not all motions are known: degrees of freedom, and the drawn letters."""
     from exactfold.panels.result import product
 
@@ -148,12 +148,16 @@ def _known(result: Decomposition) -> list[str]:
         more = "" if said else f"; the first-order motions have dimension {first}"
         lines.append(f"{_where(freedom.within)}{freedom.text} - PROVED{more}")
     if result.drawn is not None:
-        lines.append(f"{_where(result.drawn.within)}{_drawn(result.drawn)}")
+        where = _where(result.drawn.within)
+        if lines and lines[-1].startswith(where):
+            where = "on the same sheets: " if where else ""
+        lines.append(f"{where}{_drawn(result.drawn)}")
         if result.drawn.together:
             number = len(result.drawn.together)
+            fold = "folds" if number == 1 else "fold together"
             lines.append(
-                f"{counted(number, 'crease')} {'folds' if number == 1 else 'fold'} together as "
-                "drawn, while all others stay flat - PROVED; there may be larger sets"
+                f"{counted(number, 'crease')} {fold} as drawn, while all others stay flat - "
+                "PROVED; there may be larger sets"
             )
     solved = [part for part in result.parts if part.true is not None]
     known = product((part.true for part in solved), 0)
@@ -180,7 +184,10 @@ def _drawn(drawn: Drawn) -> str:
     if drawn.starts is PROVED:
         return f"it starts to fold with the drawn mountains and valleys - PROVED; {reasons}"
     if drawn.starts is REFUTED:
-        return f"it does not start to fold with the drawn mountains and valleys - PROVED: {reasons}"
+        return (
+            "it does not start to fold with the drawn mountains and valleys, with rigid panels "
+            f"that all move together - PROVED: {reasons}"
+        )
     return f"whether it starts to fold with the drawn mountains and valleys is UNDECIDED: {reasons}"
 
 

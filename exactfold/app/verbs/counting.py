@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from fractions import Fraction
 from os import PathLike
-from typing import TYPE_CHECKING, TypeGuard, cast, overload
+from typing import TYPE_CHECKING, Final, TypeGuard, cast, overload
 
 from exactfold._support.clock import LIMIT, Clock
 from exactfold._support.progress import Progress
@@ -23,6 +24,8 @@ from exactfold.pattern.fold import FoldFile
 from exactfold.pattern.loading import PatternLike, open_sheet
 from exactfold.pattern.opening import Opened
 from exactfold.pattern.reading import Reading
+
+_PROPOSING: Final = 5.0
 
 if TYPE_CHECKING:
     from typing import TypeAlias
@@ -207,7 +210,28 @@ def counted_with_letters(
         return result
     from exactfold.design.panels.drawn import with_drawn
 
-    return with_drawn(result, opened, progress=progress, clock=clock)
+    known = with_drawn(result, opened, progress=progress, clock=clock)
+    return _with_proposal(known, opened, clock) if opened.doubt else known
+
+
+def _with_proposal(result: Decomposition, opened: Opened, clock: Clock) -> Decomposition:
+    """The answer, with an exact sheet that may have been meant, and what is known of it.
+
+    Sheets are looked for during five seconds, and their answer takes five more at most.
+    """
+    from exactfold.panels.result import Proposal
+    from exactfold.pattern.meaning import proposals
+
+    made = proposals(opened, _PROPOSING)
+    if not made or clock.passed:
+        return result
+    (noise, sheet), *rest = made
+    answer = counted_with_letters(sheet, "auto", 0, clock.at_most(_PROPOSING))
+    relations = () if sheet.meant is None else sheet.meant.relations
+    missed = max((relation.defect for relation in relations), default=0.0)
+    others = tuple(level for level, _ in rest)
+    proposal = Proposal(noise, missed, len(relations), sheet.largest_move, answer, others)
+    return replace(result, proposal=proposal)
 
 
 def decompose(

@@ -15,6 +15,7 @@ from exactfold.design.actuation.actuate import actuate as actuate_branch
 from exactfold.design.assignments.boundary_match import can_pop, match_boundary
 from exactfold.design.assignments.search import match as match_branches
 from exactfold.design.panels.match import match_panels
+from exactfold.design.panels.vertices import open_vertices
 from exactfold.design.panels.vertices import vertices as vertices_of
 from exactfold.design.refutations.asked import by_fold
 from exactfold.errors import NotCountedError
@@ -63,7 +64,8 @@ def match(
     pattern = opened.sheet
     wanted = by_fold(pattern.folds, asked_letters(opened, letters))
     popping = isinstance(pattern, CreasePattern) and pattern.Ve > 4 and can_pop(pattern)
-    if popping and not opened.doubt:
+    nearly = open_vertices(opened, wanted)
+    if popping and not opened.doubt and not nearly:
         over = match_boundary(pattern, wanted, progress=progress, **_at_most(most))
         if over.status is PROVED:
             return replace(over, meant=opened.meant)
@@ -72,7 +74,7 @@ def match(
     if pattern.interior and pattern.Ve == 3:
         raise NotCountedError("this sheet is rigid: it has three vertices on its boundary")
     found = match_branches(pattern, wanted, progress=progress, **_at_most(most))
-    return found.about(opened.meant)
+    return found.about(opened.meant, nearly)
 
 
 def vertices(sheet: PatternLike, letters: Letters | None = None) -> Vertices:

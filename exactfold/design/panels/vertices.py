@@ -31,7 +31,7 @@ from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import PanelsDocument, described_panels
 from exactfold.pattern.loading import PatternLike, open_sheet
 from exactfold.pattern.meant import Meant, MeantDocument
-from exactfold.pattern.opening import panels
+from exactfold.pattern.opening import Opened, panels
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
 _OTHER: Final = {"M": "V", "V": "M"}
@@ -231,7 +231,10 @@ class Vertices:
         """What follows for the sheet, what is asked for, and what is known of folding flat."""
         notes = []
         if self.refuted:
-            notes.append("so the sheet as a whole cannot start to fold with these letters")
+            notes.append(
+                "so the sheet as a whole cannot start to fold with these letters if its panels are "
+                "rigid and all move together; a model that is folded step by step can be right"
+            )
         if self.facts:
             notes.append(self.flat_line)
         return tuple(notes)
@@ -366,6 +369,14 @@ def vertices(pattern: PatternLike, letters: Mapping[Edge, str] | str | None = No
     exactly = opened.reading.snap == "exact"
     facts = vertex_facts(sheet, asked, exactly=exactly, box=box_of(opened))
     return Vertices(sheet, asked, facts, opened.meant, time.perf_counter() - start)
+
+
+def open_vertices(opened: Opened, letters: Letters) -> str:
+    """Why letters that are refuted at no vertex by itself are open at one; else empty."""
+    if opened.reading.snap == "exact" or opened.doubt:
+        return ""
+    found = vertices(opened, letters)
+    return found.reason if found.starts is UNDECIDED else ""
 
 
 def _which(some: Sequence[VertexFacts], count: int) -> str:

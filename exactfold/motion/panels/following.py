@@ -156,7 +156,7 @@ def _chosen(
     if result.rigid is PROVED:
         sheet = "the sheet is rigid - PROVED"
         if doubt:
-            sheet = f"the digits as written are rigid, but {doubt}"
+            sheet = "the digits as written are rigid, but they are inexact (`count` says how)"
         raise NotFollowedError(f"{sheet}; there is no motion to follow")
     ways = panel_ways(result, known)
     if way is None and (not ways or ways[0].why_not_followed):

@@ -31,7 +31,7 @@ COUNT_KEYS = {
 }
 PANEL_KEYS = {
     *("theory", "rigid", "components", "modes_count", "modes", "flat_folds", "free_folds"),
-    *("near_misses", "meant", "as_written", "read", "still_folds", "pieces", "letters"),
+    *("near_misses", "meant", "as_written", "proposal", "read", "still_folds", "pieces", "letters"),
     *("exceptional_vertices", "freedom", "drawn"),
 }
 EXTRA_KEYS = {"reason", "why", "open_questions", "settings", "dimension", "degree", "true_bounds"}
@@ -265,7 +265,8 @@ def test_what_is_proved_of_a_large_drawing_is_printed_in_time(tmp_path):
     assert "degrees of freedom: between 3 and 12 - PROVED" in text
     assert text.count("dimension 17") == 1
     assert (
-        "it does not start to fold with the drawn mountains and valleys - PROVED: the folds of "
+        "it does not start to fold with the drawn mountains and valleys, with rigid panels that "
+        "all move together - PROVED: the folds of "
         "vertex "
     ) in text
     assert "see `exactfold match`" not in text

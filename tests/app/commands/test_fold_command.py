@@ -402,3 +402,8 @@ def test_motions_to_an_angle_or_a_length_are_proved(until, tmp_path):
     assert (data["status"], data["proof"]["status"]) == ("proved", "proved")
     assert len(data["frames"]["radii"]) == len(data["frames"]["time_bounds"]) == 3
     assert "no two faces touch before" in run("check", str(path)).stdout
+
+
+def test_a_fold_that_changes_its_letter_is_said():
+    result = run("fold", "flat-octahedron", "--way", 7)
+    assert "change     fold 3-4 changes from mountain to valley" in result.stdout

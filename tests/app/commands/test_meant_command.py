@@ -55,7 +55,7 @@ def test_the_headline_is_about_the_sheet_that_was_meant(miura: Path) -> None:
     assert said.endswith("(--snap exact)")
     (line,) = result.stderr.splitlines()
     assert re.fullmatch(
-        r"exactfold: read noisy.fold: 40 lines, inexact by .e-09 of its size, "
+        r"exactfold: read noisy.fold: 40 lines, inexact by .e-09, "
         r"46 relations inferred, moved by up to \d\.\de-9; -v for more",
         line,
     )

@@ -111,3 +111,31 @@ def test_the_box_is_advised_only_where_it_helps() -> None:
         from_drawing(
             parse_drawing("1 0 0 1 0\n1 1 0 0 1\n1 0 1 0 0\n4 0 0 1 1\n", "a.cp"), Reading()
         )
+
+
+def test_a_drawing_is_summed_up_in_a_few_words() -> None:
+    assert sheet(SQUARE).brief == ("6 lines", "exact in Q")
+    assert sheet(SQUARE).seen == ()
+    flat = (("0.5", "0.1"), ("1", "0"), "F")
+    across = [(("0", "0.25"), ("1", "0.25"), "M"), (("0.5", "0"), ("0.5", "1"), "V")]
+    again = SQUARE[4]
+    found = sheet([*SQUARE, flat, *across, again])
+    assert found.brief == (
+        "10 lines",
+        "exact in Q",
+        "cut at 7 points",
+        "1 flat line left out",
+        "1 mended",
+    )
+
+
+def test_what_nobody_should_miss_is_seen() -> None:
+    lost = sheet([*SQUARE, LOOSE], force=True)
+    assert [line.partition(":")[0] for line in lost.seen] == ["warning"]
+    slit = (("0.25", "1"), ("0.25", "0.5"), "C")
+    cut = sheet([*SQUARE[:4], (("0", "0.5"), ("1", "0.5"), "M"), slit])
+    (opened,) = cut.seen
+    assert opened.startswith("cuts (1 line) are opened: creases end ")
+    assert opened.endswith("and contacts are those of the open sheet")
+    assert "(0.25, 1)" not in opened  # its places are in `lines`
+    assert any(line.startswith(opened) and "(0.25, 1)" in line for line in cut.lines)

@@ -208,8 +208,11 @@ def _one_colour(strokes: Sequence[Stroke], guessed: bool) -> list[str]:
     if guessed:
         how = f"valleys where dashed, mountains where dash-dotted, else {how}"
     return [
-        f"no colour says which lines are mountains or valleys ({kinds}): all are read as {how}, "
-        "except the outermost, which are the boundary (`--colours` and `--dashes` give letters)"
+        Loud(
+            f"no colour says which lines are mountains or valleys ({kinds}): all are read as "
+            f"{how}, except the outermost, which are the boundary (`--colours` and `--dashes` give "
+            "letters)"
+        )
     ]
 
 

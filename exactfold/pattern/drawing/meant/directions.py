@@ -99,7 +99,7 @@ class Directions:
         The angle must stand in the direction of the edge in the power 1 or -1.
         """
         x, y = self._without(edge, k)
-        quotient = _product(vector, (x, -y))
+        quotient = product(vector, (x, -y))
         if self.power(edge, k) < 0:
             quotient = quotient[0], -quotient[1]
         self._fixed[k] = with_a_one(quotient)
@@ -118,7 +118,7 @@ class Directions:
                 continue
             x, y = known
             for _ in range(abs(power)):
-                total = _product(total, (x, y if power > 0 else -y))
+                total = product(total, (x, y if power > 0 else -y))
         return _turned(total, whole)
 
     def _noise(self, k: int) -> float:
@@ -228,7 +228,7 @@ class _Grid:
             # modulo 1, the constant is the sum of share / q over all prime powers q of the grid
             share = steps * pow(self.parts // q, -1, q) % q
             for _ in range(share):
-                total = _product(total, factor)
+                total = product(total, factor)
         return with_a_one(total)
 
 
@@ -238,7 +238,8 @@ def _with_root(field: SurdField, square: Number) -> tuple[SurdField, Surd]:
     return field, field.root
 
 
-def _product(a: Vector, b: Vector) -> Vector:
+def product(a: Vector, b: Vector) -> Vector:
+    """The product of two vectors as complex numbers."""
     return a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]
 
 
