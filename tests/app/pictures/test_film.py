@@ -58,7 +58,7 @@ def test_an_mp4_is_written_where_its_package_is(motion, tmp_path):
 
 
 def test_where_a_film_cannot_be_written(motion, tmp_path):
-    with pytest.raises(UsageError, match="an animation is written as .gif, .mp4, .png"):
+    with pytest.raises(UsageError, match=r"an animation is written as \.gif, \.mp4, \.png"):
         write_film(motion, tmp_path / "two.avi")
     with pytest.raises(UnwritableFileError, match="there is no folder"):
         write_film(motion, tmp_path / "no" / "two.gif")
