@@ -21,9 +21,9 @@ from exactfold.app.verbs.moving import along, along_panels, prove
 from exactfold.errors import UndecidedBranchError, UsageError
 from exactfold.motion.curves.motion import Motion
 from exactfold.motion.following import Goal
-from exactfold.motion.writing import checked_ending, write_motion
+from exactfold.motion.writing import ENDINGS, write_motion
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.fold_writing import require_folder
+from exactfold.pattern.fold_writing import checked_target, require_folder
 from exactfold.pattern.opening import Opened, has_branches
 
 if TYPE_CHECKING:  # following branches does not need it
@@ -92,7 +92,7 @@ class Wanted(FoldOptions):
         """Raise `UsageError` for a wrong ending, `UnwritableFileError` for a missing folder."""
         if self.output is not None:
             if not self._is_film:
-                checked_ending(self.output)
+                checked_target(self.output, (*ENDINGS, *FILMS), "a motion")
             else:
                 pillow()
         for drawn in (self.plot, self.picture):
