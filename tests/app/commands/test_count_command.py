@@ -31,7 +31,7 @@ COUNT_KEYS = {
 }
 PANEL_KEYS = {
     *("theory", "rigid", "components", "modes_count", "modes", "flat_folds", "free_folds"),
-    *("near_misses", "meant", "as_written", "read", "still_folds", "pieces", "letters"),
+    *("near_misses", "meant", "as_written", "proposal", "read", "still_folds", "pieces", "letters"),
     *("exceptional_vertices", "freedom", "drawn"),
 }
 EXTRA_KEYS = {"reason", "why", "open_questions", "settings", "dimension", "degree", "true_bounds"}
