@@ -21,12 +21,13 @@ from exactfold.app.verbs.moving import along, along_panels, prove
 from exactfold.errors import UndecidedBranchError, UsageError
 from exactfold.motion.curves.motion import Motion
 from exactfold.motion.following import Goal
-from exactfold.motion.writing import checked_ending, write_motion
+from exactfold.motion.writing import ENDINGS, write_motion
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.fold_writing import require_folder
+from exactfold.pattern.fold_writing import checked_target, require_folder
 from exactfold.pattern.opening import Opened, has_branches
 
 if TYPE_CHECKING:  # following branches does not need it
+    from exactfold.motion.panels.families import FamilyMotion
     from exactfold.motion.panels.motion import PanelMotion
     from exactfold.motion.panels.proving import PanelProof
     from exactfold.motion.proving import MotionProof
@@ -57,7 +58,7 @@ class Wanted(FoldOptions):
             chosen = self._chosen(opened, bar)
             if chosen.why:
                 say(chosen.why)
-            motion: Motion | PanelMotion
+            motion: Motion | PanelMotion | FamilyMotion
             if isinstance(chosen, ChosenBranch):
                 try:
                     motion = self._along(chosen, bar)
@@ -91,7 +92,7 @@ class Wanted(FoldOptions):
         """Raise `UsageError` for a wrong ending, `UnwritableFileError` for a missing folder."""
         if self.output is not None:
             if not self._is_film:
-                checked_ending(self.output)
+                checked_target(self.output, (*ENDINGS, *FILMS), "a motion")
             else:
                 pillow()
         for drawn in (self.plot, self.picture):
@@ -136,7 +137,7 @@ class Wanted(FoldOptions):
             progress=bar,
         )
 
-    def _panels(self, chosen: ChosenPanels, bar: Bar) -> PanelMotion:
+    def _panels(self, chosen: ChosenPanels, bar: Bar) -> PanelMotion | FamilyMotion:
         self._refuse_branches()
         warning = chosen.answer.known.warning
         if warning is not None:
@@ -163,7 +164,10 @@ class Wanted(FoldOptions):
     # --- proof -----------------------------------------------------------------------------------
 
     def _proof(
-        self, motion: Motion | PanelMotion, chosen: ChosenBranch | ChosenPanels, bar: Bar
+        self,
+        motion: Motion | PanelMotion | FamilyMotion,
+        chosen: ChosenBranch | ChosenPanels,
+        bar: Bar,
     ) -> MotionProof | PanelProof | None:
         if self.certificate is None:
             return None
@@ -178,7 +182,7 @@ class Wanted(FoldOptions):
     # --- files -----------------------------------------------------------------------------------
 
     def _written(
-        self, motion: Motion | PanelMotion, proof: MotionProof | PanelProof | None
+        self, motion: Motion | PanelMotion | FamilyMotion, proof: MotionProof | PanelProof | None
     ) -> list[str]:
         from exactfold.app import report
 
