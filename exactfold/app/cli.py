@@ -336,9 +336,11 @@ def random_(
     ] = None,
 ) -> None:
     """Sample the paper's random squares: a Delaunay triangulation of random points."""
-    from exactfold.pattern.fold_writing import fold_text, write_text
+    from exactfold.pattern.fold_writing import checked_target, fold_text, write_text
     from exactfold.pattern.random_squares import sample_random_square
 
+    if output is not None and str(output) != "-":
+        checked_target(output, (".fold", ".json"), "a sheet")
     title = f"random square, {interior} interior vertices, seed {seed}, denominator {denominator}"
     title += ", points redrawn" if redraw else ""
     with Bar("drawing"):

@@ -31,11 +31,11 @@ from exactfold.app.shell.shell import EXIT, Bar, name_of, say, tell
 from exactfold.app.verbs.choosing import the_branch
 from exactfold.branches.counting.find import find_branches
 from exactfold.branches.values.branch import Branch, GaugeText
-from exactfold.branches.values.export import AMOUNT, BranchExport, exported
+from exactfold.branches.values.export import AMOUNT, ENDINGS, BranchExport, exported
 from exactfold.errors import NotApplicableError, UndecidedBranchError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import PatternDocument, described
-from exactfold.pattern.fold_writing import write_text
+from exactfold.pattern.fold_writing import checked_target, write_text
 from exactfold.pattern.near_degeneracy import WarningDocument, warnings
 from exactfold.pattern.opening import Opened
 
@@ -57,6 +57,8 @@ class Wanted(ExportOptions):
         """
         self.check_heights()
         output = self.written
+        if output is not None:
+            checked_target(output, ENDINGS, "a branch")  # before the work
         if output is None and self.as_json:
             raise UsageError("--json describes the file that is written: name it with -o")
         with Bar("reading") as bar:

@@ -141,7 +141,12 @@ class ConvertOptions(ReadingOptions):
 
     file: Pattern
     output: Annotated[
-        Path, typer.Argument(metavar="OUT.fold", help="The FOLD file to write; - for stdout.")
+        Path,
+        typer.Argument(
+            metavar="OUT.fold",
+            help="The FOLD file to write, or - for stdout; .dxf is the crease pattern in layers "
+            "by letter, .obj and .stl a flat mesh.",
+        ),
     ]
     merge: Annotated[
         Fraction | None,

@@ -29,6 +29,7 @@ from exactfold.motion.curves.events import (
     Event,
 )
 from exactfold.motion.curves.motion import Motion
+from exactfold.motion.panels.families import FamilyMotion
 
 if TYPE_CHECKING:
     from exactfold.motion.curves.in_motion import SheetInMotion
@@ -44,7 +45,7 @@ _CORNERS: Final = 8
 
 
 def motion_report(
-    motion: Motion | PanelMotion,
+    motion: Motion | PanelMotion | FamilyMotion,
     written: Sequence[str] = (),
     proof: MotionProof | PanelProof | None = None,
 ) -> Group:
@@ -92,7 +93,7 @@ def _branch_rows(motion: Motion) -> list[tuple[str, RenderableType]]:
     return rows
 
 
-def _mode_rows(motion: PanelMotion) -> list[tuple[str, RenderableType]]:
+def _mode_rows(motion: PanelMotion | FamilyMotion) -> list[tuple[str, RenderableType]]:
     return [("way", cut(motion.name.removeprefix("way ")))]
 
 
@@ -135,9 +136,11 @@ def _enclosed(event: Event, *, passed: bool) -> str:
     return f"the first contact is between the times {low:.{digits}g} and {high:.{digits}g}{after}"
 
 
-def _proved(motion: Motion | PanelMotion) -> RenderableType:
+def _proved(motion: Motion | PanelMotion | FamilyMotion) -> RenderableType:
     if isinstance(motion, Motion):
         return "followed in floats: not proved (--certificate proves it)"
+    if isinstance(motion, FamilyMotion):
+        return motion.reason
     if motion.exists is not PROVED:
         return "followed in floats: not proved"
     if motion.closes is not PROVED:

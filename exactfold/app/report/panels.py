@@ -49,12 +49,6 @@ def panels_report(
     notes = [*known_lines(result), *_notes(result, everything)]
     if unlisted := left_out(result, ways):
         notes.append(unlisted)
-    if still := [way.number for way in ways if way.verdict is PROVED and way.why_not_followed]:
-        numbers = f"way {still[0]}" if len(still) == 1 else f"ways {still[0]} to {still[-1]}"
-        notes.append(
-            f"{numbers} {agreeing(len(still), 'is')} proved, and `fold` does not follow "
-            f"{'it' if len(still) == 1 else 'them'} in space"
-        )
     if notes:
         parts += ["", *(Text(note) for note in notes)]
     if certificate is not None:

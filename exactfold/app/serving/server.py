@@ -24,7 +24,7 @@ from math import isfinite
 from typing import Any, Final
 from urllib.parse import urlsplit
 
-from exactfold.app.serving.film import ENDINGS, MOST_PICTURES
+from exactfold.app.pictures.film import ENDINGS, MOST_PICTURES
 from exactfold.app.serving.tasks import FREE, Answer, Film, Follow, Move, Open, Task
 from exactfold.app.serving.worker import Worker
 from exactfold.app.viewer.document import FRAMES, MOST_FRAMES

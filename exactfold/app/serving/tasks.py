@@ -12,7 +12,7 @@ from typing import Any, Final, TypeAlias
 
 from exactfold._support.clock import Clock
 from exactfold._support.plurals import counted, visible
-from exactfold.app.serving.film import filmed
+from exactfold.app.pictures.film import filmed
 from exactfold.app.viewer.document import FRAMES, Known, sheet_json
 from exactfold.app.viewer.listing import Listed, listed_ways
 from exactfold.app.viewer.ways import Following, branch_way, not_followed

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeAlias
 
+from exactfold._support.clock import Clock
 from exactfold._support.plurals import counted
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED
@@ -22,6 +23,7 @@ from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.opening import Opened, has_branches, triangles
 
 if TYPE_CHECKING:
+    from exactfold.app.viewer.families import Representative
     from exactfold.branches.values.result import BranchCount
     from exactfold.motion.curves.drive import PrescribedAngles
     from exactfold.motion.panels.listing import PanelWay, Rates
@@ -30,6 +32,8 @@ if TYPE_CHECKING:
 DRAWN = "drawn"
 """Given instead of letters: take the letters of the file."""
 _NAMED = 4
+_SECONDS = 20.0
+"""The time to find a motion of rigid panels that begins with given letters."""
 _FEW = 64
 """If no way is named, at most so many sign vectors are compared with the letters of the file."""
 
@@ -111,13 +115,15 @@ class ChosenPanels:
     """A way of rigid panels, and the rates with which its modes and free folds turn.
 
     `answer` is the decomposition of the sheet. `way` is None if the motion lies in no listed way.
-    `why` says why this way was chosen, if none was named.
+    If the way bends in a space of motions, `direction` is one in which it starts, and `rates` is
+    empty. `why` says why this way was chosen, if none was named.
     """
 
     answer: Decomposition
     way: PanelWay | None
     rates: Rates
     why: str = ""
+    direction: Representative | None = None
 
 
 Chosen: TypeAlias = "ChosenBranch | ChosenPanels"
@@ -295,6 +301,10 @@ def _panels(opened: Opened, choice: Choice, progress: Progress | None) -> Chosen
 
     answer = decompose_opened(opened, progress=progress)
     letters = None if choice.letters is None else asked_letters(opened, choice.letters)
+    if choice.way is None:
+        begun = _begun(opened, answer, letters)
+        if begun is not None:
+            return on_side(begun, choice.side or 1)
     chosen = panels_way(answer, choice.way, letters, drawn=opened.letters)
     sheet = opened.sheet
     if chosen.way is None and not chosen.rates and isinstance(sheet, CreasePattern):
@@ -302,8 +312,41 @@ def _panels(opened: Opened, choice: Choice, progress: Progress | None) -> Chosen
 
         if sheet.Ve > 4 and sheet.is_convex and can_pop(sheet):
             return _by_default(opened, sheet, replace(choice, letters=None), progress)
-    sided = {key: rate * (choice.side or 1) for key, rate in chosen.rates.items()}
-    return replace(chosen, rates=sided)
+    return on_side(chosen, choice.side or 1)
+
+
+def _begun(opened: Opened, answer: Decomposition, letters: Letters | None) -> ChosenPanels | None:
+    """The motion that begins with the letters, where no mode has them but `match` proves it.
+
+    Without `letters`, those of the drawing are taken. None if there is no such motion.
+    """
+    from exactfold.app.viewer.families import drawn_motion
+    from exactfold.design.refutations.asked import by_fold
+    from exactfold.motion.panels.listing import with_letters
+
+    folds = answer.known.pattern.folds
+    asked = by_fold(folds, letters) if letters is not None else opened.letters
+    if not {"M", "V"} & set(asked.values()) or with_letters(answer.known, asked):
+        return None
+    direction = drawn_motion(opened, Clock(_SECONDS), asked)
+    if direction is None:
+        return None
+    why = ""
+    if letters is None:
+        why = (
+            "a motion that begins with the mountains and valleys of the drawing, as `match` proves"
+        )
+    return ChosenPanels(answer, None, {}, why, direction)
+
+
+def on_side(chosen: ChosenPanels, side: int) -> ChosenPanels:
+    """The way itself for side 1, its mirror image for side -1."""
+    rates = {key: side * rate for key, rate in chosen.rates.items()}
+    direction = chosen.direction
+    if direction is not None:
+        turned = {fold: side * density for fold, density in direction.densities.items()}
+        direction = replace(direction, densities=turned)
+    return replace(chosen, rates=rates, direction=direction)
 
 
 def panels_way(
@@ -327,8 +370,7 @@ def panels_way(
     ways = panel_ways(result)
     if number is not None:
         require_listed(ways, number)
-        one = ways[number - 1]
-        return ChosenPanels(answer, one, {} if one.why_not_followed else one.rates)
+        return _along(answer, ways[number - 1], drawn)
     asked = by_fold(result.pattern.folds, letters) if letters is not None else drawn
     if letters is not None and not {"M", "V"} & set((asked or {}).values()):
         raise UsageError("no fold has the letter M or V: give one at least")
@@ -345,10 +387,19 @@ def panels_way(
         way = way_of(ways, found[0])
         why = "" if letters is not None else _as_drawn(way, found)
         return ChosenPanels(answer, way, found[0], why)
-    first = ways[0] if ways and not ways[0].why_not_followed else None
-    if first is None:
+    if not ways or ways[0].verdict is not PROVED:
         return ChosenPanels(answer, None, {})
-    return ChosenPanels(answer, first, first.rates, _first(ways, bool(drawn)))
+    return replace(_along(answer, ways[0], drawn), why=_first(ways, bool(drawn)))
+
+
+def _along(answer: Decomposition, way: PanelWay, drawn: Mapping[Edge, str] | None) -> ChosenPanels:
+    """A way of the list, with the rates or the direction with which it is followed."""
+    if way.verdict is PROVED and way.spaces:
+        from exactfold.app.viewer.families import representative
+
+        direction = representative(way, answer.known, drawn or {})
+        return ChosenPanels(answer, way, {}, direction=direction)
+    return ChosenPanels(answer, way, way.rates if way.verdict is PROVED else {})
 
 
 def _as_drawn(way: PanelWay | None, found: Sequence[Rates]) -> str:

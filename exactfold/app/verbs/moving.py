@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from exactfold._support.progress import Progress
@@ -15,16 +14,18 @@ from exactfold.app.verbs.choosing import (
     Letters,
     choose,
     listed,
+    on_side,
     panels_way,
 )
 from exactfold.branches.counting.find import BoundaryHeights, Signs
 from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.result import BranchCount
 from exactfold.design.assignments.result import MatchedRay
-from exactfold.errors import UsageError
+from exactfold.errors import NotFollowedError, UsageError
 from exactfold.motion.curves.motion import Motion
 from exactfold.motion.following import follow as follow_branch
 from exactfold.motion.loops.matching import Loops, find_loops
+from exactfold.motion.panels.families import FamilyMotion, follow_family
 from exactfold.motion.panels.following import follow_panels
 from exactfold.motion.panels.motion import PanelMotion
 from exactfold.motion.panels.proving import PanelProof, prove_panels
@@ -57,7 +58,7 @@ def follow(
     held: Sequence[int] | None = None,
     through_branch_points: bool = False,
     progress: Progress | None = None,
-) -> Motion | PanelMotion:
+) -> Motion | PanelMotion | FamilyMotion:
     """Follow the motion of a sheet along one way, from the flat state to the event `until`.
 
     `sheet` is a `Branch`, a way of a `Match`, a `BranchCount`, a `Decomposition`, or anything that
@@ -99,7 +100,7 @@ def follow(
     elif isinstance(sheet, Decomposition):
         _refuse_of_panels(choice, through_branch_points)
         chosen = panels_way(sheet, way, letters)
-        chosen = replace(chosen, rates={k: rate * (side or 1) for k, rate in chosen.rates.items()})
+        chosen = on_side(chosen, side or 1)
     else:
         chosen = choose(open_sheet(sheet), choice, progress)
     if isinstance(chosen, ChosenBranch):
@@ -152,14 +153,25 @@ def along_panels(
     frames: int = 60,
     by: Edge | None = None,
     held: Sequence[int] | None = None,
-) -> PanelMotion:
+) -> PanelMotion | FamilyMotion:
     """The motion of rigid panels along a way that was chosen; the arguments are those of `follow`.
 
     Raises `NotFollowedError` for a way that cannot be followed.
     """
     way = chosen.way
+    if chosen.direction is not None:
+        if by is not None:
+            raise UsageError("by is not for a family, whose fold angles may turn back")
+        return follow_family(
+            chosen.answer.known.pattern,
+            chosen.direction.densities,
+            until=str(until),
+            frames=frames,
+            held=0 if held is None else _face(chosen.answer.known, held),
+            way=None if way is None else way.number,
+        )
     if way is not None:
-        way.require_followed()
+        way.require_folding()
     numbers = [key for key in chosen.rates if isinstance(key, int)]
     known = chosen.answer.known
     return follow_panels(
@@ -175,7 +187,7 @@ def along_panels(
 
 
 def prove(
-    motion: Motion | PanelMotion, *, progress: Progress | None = None
+    motion: Motion | PanelMotion | FamilyMotion, *, progress: Progress | None = None
 ) -> MotionProof | PanelProof:
     """Prove that a motion exists without a gap, and which faces touch first.
 
@@ -192,6 +204,8 @@ def prove(
     """
     if isinstance(motion, PanelMotion):
         return prove_panels(motion)
+    if isinstance(motion, FamilyMotion):
+        raise NotFollowedError(f"no proof of such a motion is known: {motion.reason}")
     if not isinstance(motion, Motion):
         raise UsageError(f"{type(motion).__name__} is not a motion: `follow` makes one")
     return prove_motion(motion, progress=progress)

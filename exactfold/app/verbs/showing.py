@@ -28,14 +28,13 @@ from exactfold.branches.counting.find import Signs
 from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.result import BranchCount
 from exactfold.errors import NotCountedError, UsageError
-from exactfold.motion.curves.motion import Motion
-from exactfold.motion.panels.motion import PanelMotion
+from exactfold.motion.curves.in_motion import SheetInMotion
 from exactfold.panels.result import Decomposition
 from exactfold.pattern.drawing.drawing import Drawing
 from exactfold.pattern.fold_writing import write_text
 from exactfold.pattern.loading import PatternLike, open_sheet
 
-Shown: TypeAlias = "PatternLike | Branch | BranchCount | Decomposition | Motion | PanelMotion"
+Shown: TypeAlias = "PatternLike | Branch | BranchCount | Decomposition | SheetInMotion"
 """What can be drawn."""
 
 
@@ -68,11 +67,11 @@ def draw(
     (3, 4)
     """
     named = [x for x in (way, signs, up, letters) if x is not None]
-    if isinstance(sheet, Branch | Motion | PanelMotion) and named:
+    if isinstance(sheet, Branch | SheetInMotion) and named:
         raise UsageError("way, signs, up and letters choose a way of a sheet: leave them out here")
     if isinstance(sheet, Branch):
         text = branch_way(sheet).picture(title)
-    elif isinstance(sheet, Motion | PanelMotion):
+    elif isinstance(sheet, SheetInMotion):
         text = motion_stills(sheet, title=title)
     elif named:
         text = _way(sheet, way, signs, up, letters, progress).picture(title)

@@ -70,13 +70,19 @@ def representative(
     )
 
 
-def drawn_motion(opened: Opened, clock: Clock) -> Representative | None:
-    """The motion with the letters of the file, if it is proved that true motions have them."""
+def drawn_motion(
+    opened: Opened, clock: Clock, letters: Mapping[Edge, str] | None = None
+) -> Representative | None:
+    """The motion with the letters of the file, or with others, if true motions provably have them.
+
+    None if the sheet is doubted, or if no such motion is found in time.
+    """
     from exactfold.design.panels.match import match_panels
 
-    if opened.doubt or not {"M", "V"}.intersection(opened.letters.values()):
+    asked = opened.letters if letters is None else letters
+    if opened.doubt or not {"M", "V"}.intersection(asked.values()):
         return None
-    matched = match_panels(opened, clock=clock)
+    matched = match_panels(opened, asked, clock=clock)
     if matched.truly is not PROVED or not matched.densities:
         return None
     return Representative(

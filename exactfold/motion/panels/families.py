@@ -15,12 +15,23 @@ import numpy as np
 from exactfold._support.arrays import FloatArray
 from exactfold._support.plurals import counted
 from exactfold._support.verdict import UNDECIDED, Verdict
-from exactfold.errors import NotFollowedError
-from exactfold.motion.curves.events import CONTACT, FLAT_FOLD, LENGTH, SINGULAR, Event
+from exactfold.errors import NotFollowedError, UsageError
+from exactfold.motion.curves.events import (
+    ANGLE,
+    CHANGE,
+    CHANGES,
+    CONTACT,
+    FLAT_FOLD,
+    LENGTH,
+    SINGULAR,
+    Event,
+)
 from exactfold.motion.curves.in_motion import SheetInMotion
 from exactfold.motion.curves.motion_document import PanelMotionDocument
+from exactfold.motion.curves.zeros import zero_of
 from exactfold.motion.panels.closing import Closing
 from exactfold.motion.panels.contacts import PanelContacts
+from exactfold.motion.panels.following import goal_angle
 from exactfold.motion.panels.places import Placing
 from exactfold.pattern.described import described_panels
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
@@ -32,6 +43,9 @@ _LEAST_STEP: Final = 1e-4
 _MOST_STEPS: Final = 600
 _CLOSED: Final = 0.01
 """A fold that cannot be followed further closes if its angle is so close to 180 degrees."""
+_STILL_FLAT: Final = 1e-9
+"""Smaller fold angles may be rounding errors."""
+_AT_GOAL: Final = 1e-9
 _STILL: Final = 1e-3
 """A motion stops where its direction has no larger share than this of the direction asked for."""
 
@@ -59,6 +73,7 @@ class FamilyMotion(SheetInMotion):
     end: str
     gap: float = field(compare=False)
     seconds: float = field(default=0.0, compare=False)
+    way: int | None = field(default=None, compare=False)
 
     @property
     def dimension(self) -> int:
@@ -78,7 +93,9 @@ class FamilyMotion(SheetInMotion):
     @property
     def reason(self) -> str:
         """What is known about the motion, in words."""
-        return "one of infinitely many motions of a family; its angles were followed in floats"
+        if self.dimension > 1:
+            return "one of infinitely many motions of a family; its angles were followed in floats"
+        return "true motions start in its first direction; its angles were followed in floats"
 
     @property
     def pinned(self) -> tuple[int, ...]:
@@ -96,7 +113,10 @@ class FamilyMotion(SheetInMotion):
     @property
     def name(self) -> str:
         """What folds, in words."""
-        return f"a family with {counted(self.dimension, 'free fold angle')}"
+        family = f"a family with {counted(self.dimension, 'free fold angle')}"
+        if self.way is None:
+            return family
+        return f"way {self.way}" if self.dimension == 1 else f"way {self.way}, {family}"
 
     @property
     def time_name(self) -> str:
@@ -118,7 +138,7 @@ class FamilyMotion(SheetInMotion):
     def facts(self) -> dict[str, Any]:
         """The facts about the motion that files contain, as JSON."""
         drivers = [f"{i}-{j}" for i, j in self.drivers]
-        return {"modes": [], "way": None, "free_folds": drivers, **self.facts_of_frames()}
+        return {"modes": [], "way": self.way, "free_folds": drivers, **self.facts_of_frames()}
 
     def to_dict(self, name: str | None = None, written: Sequence[str] = ()) -> PanelMotionDocument:
         """The object printed by `exactfold fold --json`: `schema("motion")`."""
@@ -133,7 +153,7 @@ class FamilyMotion(SheetInMotion):
             "rim": None,
             "drive": None,
             "modes": [],
-            "way": None,
+            "way": self.way,
             **self.frames_reported(written),
             "warnings": [],
             "seconds": round(self.seconds, 3),
@@ -167,16 +187,24 @@ class FamilyMotion(SheetInMotion):
 
 
 def follow_family(
-    pattern: PanelPattern, densities: Mapping[Edge, float], *, frames: int = 60, held: int = 0
+    pattern: PanelPattern,
+    densities: Mapping[Edge, float],
+    *,
+    until: str = CONTACT,
+    frames: int = 60,
+    held: int = 0,
+    way: int | None = None,
 ) -> FamilyMotion:
     """Follow one motion of a sheet of rigid panels from a direction to first order.
 
     `densities` has fold angle / length by fold, up to a positive factor; folds left out stay flat
     at first. The direction should be proved to extend to a finite flex: `match_panels` and
     `decompose` find such directions. The motion ends at the first contact of two panels, when a
-    fold closes, or where it cannot be followed further.
+    fold closes, or where it cannot be followed further; if `until` is an angle such as "90deg", at
+    the first fold angle of that size. `way` is the number of the way that the direction represents.
 
-    Raises `NotFollowedError` if no motion in this direction is found in floats.
+    Raises `UsageError` for an `until` or `frames` that make no sense, and `NotFollowedError` if no
+    motion in this direction is found in floats.
 
     >>> from exactfold.design import match_panels
     >>> matched = match_panels("bird-base")
@@ -184,9 +212,14 @@ def follow_family(
     'contact'
     """
     began = clock.perf_counter()
+    goal = goal_angle(until)
+    if frames < 2:
+        raise UsageError(f"{frames} frames: a motion needs at least 2")
     closing = Closing(pattern)
     first = _first_angles(pattern, closing, densities)
     path, end = _path(closing, first)
+    if goal < pi:
+        path, end = _until(closing, path, goal, end)
     steps = np.linalg.norm(np.diff(path, axis=0), axis=1)
     marks = np.concatenate([[0.0], np.cumsum(steps)])
     placing = Placing(pattern, held)
@@ -198,14 +231,19 @@ def follow_family(
         return placing.positions(angles_at(times))[0]
 
     duration = float(marks[-1])
-    closed = np.abs(path[-1]) > pi - _CLOSED
+    largest = pi - _CLOSED if end != ANGLE else goal - _AT_GOAL
+    closed = np.abs(path[-1]) > largest
     folds = tuple(fold for fold, yes in zip(pattern.folds, closed, strict=True) if yes)
     events = [] if end == LENGTH else [Event(end, (duration, duration), folds=folds)]
     contact = PanelContacts(pattern).first(marks.tolist(), places)
     if contact is not None:
         faces = tuple(pattern.faces[panel] for panel in contact.panels)
-        events = [Event(CONTACT, (contact.low, contact.high), faces=faces, detail=contact.kind)]
-        duration, end = contact.high, CONTACT
+        touching = Event(CONTACT, (contact.low, contact.high), faces=faces, detail=contact.kind)
+        if until == CONTACT:
+            duration, end, events = contact.high, CONTACT, []
+        events.insert(0, touching)
+    changes = [one for one in _changes(pattern, path, marks) if one.time[1] < duration]
+    events = sorted([*changes, *events], key=lambda event: event.time)
     times = np.linspace(0.0, duration, frames)
     angles = _closed(closing, angles_at(times))
     coords, gap = placing.positions(angles)
@@ -222,6 +260,7 @@ def follow_family(
         end,
         gap,
         clock.perf_counter() - began,
+        way,
     )
 
 
@@ -273,6 +312,35 @@ def _path(closing: Closing, first: FloatArray) -> tuple[FloatArray, str]:
         path.append(there)
         step = min(1.5 * step, _STEP)
     return np.array(path), LENGTH
+
+
+def _until(closing: Closing, path: FloatArray, goal: float, end: str) -> tuple[FloatArray, str]:
+    """The path up to the first fold angle of this size, and the kind of event at which it ends."""
+    beyond = np.flatnonzero(np.abs(path).max(axis=1) >= goal)
+    if not len(beyond):
+        return path, end
+    k = int(beyond[0])
+    here, step = path[k - 1], path[k] - path[k - 1]
+    column = int(np.abs(path[k]).argmax())
+
+    def last(share: float) -> FloatArray:
+        row = here + share * step
+        corrected = closing.corrected(row)
+        return row if corrected is None else corrected
+
+    share = zero_of(lambda share: abs(float(last(share)[column])) - goal, 0.0, 1.0)
+    return np.vstack([path[:k], last(share)]), ANGLE
+
+
+def _changes(pattern: PanelPattern, path: FloatArray, marks: FloatArray) -> list[Event]:
+    """The folds that pass through flat, each between two points of the path."""
+    bent = np.abs(path) > _STILL_FLAT
+    events = []
+    for k, e in np.argwhere((path[1:] * path[:-1] < 0) & bent[1:] & bent[:-1]):
+        detail = CHANGES[int(path[k, e] > 0)]
+        times = float(marks[k]), float(marks[k + 1])
+        events.append(Event(CHANGE, times, folds=(pattern.folds[e],), detail=detail))
+    return events
 
 
 def _next(closing: Closing, here: FloatArray, rates: FloatArray, step: float) -> FloatArray | None:

@@ -78,7 +78,7 @@ def follow_panels(
     answer = sheet if isinstance(sheet, Decomposition) else decompose(sheet)
     result = answer.known
     pattern = result.pattern
-    goal = _goal(until)
+    goal = goal_angle(until)
     if frames < 2:
         raise UsageError(f"{frames} frames: a motion needs at least 2")
     number, chosen = _chosen(result, way, modes, answer.doubt)
@@ -131,8 +131,8 @@ def follow_panels(
     )
 
 
-def _goal(until: str) -> float:
-    """The fold angle at which a motion stops, in radians."""
+def goal_angle(until: str) -> float:
+    """The fold angle at which a motion stops, in radians; raises `UsageError`."""
     if until == CONTACT:
         return pi
     try:
@@ -162,13 +162,18 @@ def _chosen(
             sheet = "the digits as written are rigid, but they are inexact (`count` says how)"
         raise NotFollowedError(f"{sheet}; there is no motion to follow")
     ways = panel_ways(result, known)
-    if way is None and (not ways or ways[0].why_not_followed):
+    if way is None and (not ways or ways[0].why_not_followed or ways[0].in_spaces):
         raise NotFollowedError(
             f"there is no motion to follow: {why_nothing_follows(result, known)}"
         )
     at = 1 if way is None else way
     require_listed(ways, at)
-    ways[at - 1].require_followed()
+    ways[at - 1].require_folding()
+    if ways[at - 1].in_spaces:
+        raise NotFollowedError(
+            f"way {at} bends in a space of motions, in which no mode is known: `follow_family` "
+            "follows one of its directions"
+        )
     return at, ways[at - 1].modes
 
 

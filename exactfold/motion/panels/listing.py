@@ -23,7 +23,6 @@ from exactfold.panels.stars import stars
 from exactfold.panels.subspaces import Leaf
 from exactfold.pattern.panel_pattern import Edge
 
-NOT_ONE_FORMULA: Final = "only its first motions are known: exactfold does not follow it in space"
 MOST_WAYS: Final = 4096
 """If a sheet has more ways, its modes are listed one by one."""
 _MOST_STEPS: Final = 20_000
@@ -38,9 +37,9 @@ class PanelWay:
 
     `number` is its place in the list, from 1. `modes` fold independently of each other, and so do
     the folds `free`, which go from boundary to boundary. The other dimensions of a family are those
-    of its `spaces`, along which nothing is followed yet. `letters` has M or V of each fold that
-    bends if all modes fold at the same rate, and U for a fold whose letter varies in the family.
-    `verdict` says whether the way truly folds, and `by` why.
+    of its `spaces` of motions, of which one direction is followed. `letters` has M or V of each
+    fold that bends if all modes fold at the same rate, and U for a fold whose letter varies in the
+    family. `verdict` says whether the way truly folds, and `by` why.
     """
 
     number: int
@@ -74,26 +73,27 @@ class PanelWay:
         return dict.fromkeys(self.free, 1.0)
 
     @property
+    def in_spaces(self) -> bool:
+        """Whether the way bends in spaces of motions only, in which no mode is known."""
+        return bool(self.spaces) and not self.rates
+
+    @property
     def why_not_followed(self) -> str:
-        """Why no motion along this way can be followed; empty if one can."""
+        """Why no motion along this way is followed; empty if it truly folds."""
         if self.verdict is UNDECIDED:
             return f"it is undecided whether way {self.number} truly folds: {self.by}"
         if self.verdict is not PROVED:
             return f"way {self.number} does not truly fold: {self.by}"
-        if self.spaces and not self.rates:
-            return NOT_ONE_FORMULA
         return ""
 
     def __repr__(self) -> str:
         kind = "one motion" if self.dimension == 1 else f"a family of dimension {self.dimension}"
         return f"<PanelWay: {self.number}, {kind}, {self.verdict} by {self.by}>"
 
-    def require_followed(self) -> Rates:
-        """`rates`; raises `NotFollowedError` if no motion along this way can be followed."""
+    def require_folding(self) -> None:
+        """Raise `NotFollowedError` unless the way is proved to truly fold."""
         if why := self.why_not_followed:
-            proved = f"way {self.number} truly folds, but " if self.verdict is PROVED else ""
-            raise NotFollowedError(f"{proved}{why}")
-        return self.rates
+            raise NotFollowedError(why)
 
 
 def panel_ways(
@@ -101,8 +101,8 @@ def panel_ways(
 ) -> tuple[PanelWay, ...]:
     """All ways that are known, numbered as `count`, `fold`, `view` and `draw` list them.
 
-    First come the ways that can be followed; those with most folds are first. Then come the other
-    ways that truly fold, then modes that do not truly fold, or of which this is undecided. A way is
+    First come ways along modes, those with most folds first. Then come the other ways that truly
+    fold, then modes that do not truly fold, or of which this is undecided. A way is
     a largest set of modes and spaces of motions that fold independently, with all folds from
     boundary to boundary. If there are more than 4,096 such sets, each mode is listed alone.
 
@@ -227,7 +227,7 @@ def _letters_on(result: Decomposition, leaf: Leaf) -> Mapping[Edge, str]:
 
 
 def _order(way: PanelWay) -> tuple[bool, bool, int, tuple[int, ...]]:
-    return way.verdict is not PROVED, bool(way.why_not_followed), -way.folds, way.numbers
+    return way.verdict is not PROVED, way.in_spaces, -way.folds, way.numbers
 
 
 def left_out(result: Decomposition, ways: Sequence[PanelWay]) -> str:

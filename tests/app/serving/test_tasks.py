@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import pytest
 
-from exactfold.app.serving.film import filmed
+from exactfold.app.pictures.film import filmed
 from exactfold.app.serving.tasks import Film, Follow, Move, Open, Session, moved
 from exactfold.branches import count_branches
 from exactfold.errors import ExactfoldError, UsageError

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 import exactfold
 from exactfold.branches import find_branch
 from exactfold.checker import summary, verify
 from exactfold.design import match
-from exactfold.errors import NotCountedError, UsageError
-from exactfold.motion import find_driven, follow_panels
+from exactfold.errors import NotCountedError, NotFollowedError, UsageError
+from exactfold.motion import find_driven, follow_panels, panel_ways
 from exactfold.motion import follow as follow_branch
 from exactfold.pattern import families
 
@@ -171,3 +172,29 @@ def test_loops_are_written_and_checked(tmp_path):
     assert exactfold.check(file).claims["loops"] == 2
     with pytest.raises(NotCountedError):
         exactfold.loops("miura")
+
+
+def test_a_way_in_a_space_of_motions_is_followed_in_one_of_its_directions():
+    motion = exactfold.follow("flapping-bird", 7, until="60deg", frames=4)
+    ways = panel_ways(exactfold.decompose("flapping-bird"))
+    assert (motion.way, motion.dimension, motion.end) == (7, 1, "angle")
+    assert np.degrees(np.abs(motion.angles[-1]).max()) == pytest.approx(60)
+    bent = {fold: letter for fold, letter in motion.assignment.items() if letter != "F"}
+    assert bent == dict(ways[6].letters)
+    assert motion.length_error < 1e-9
+    below = exactfold.follow("flapping-bird", 7, side=-1, until="60deg", frames=4)
+    assert below.angles == pytest.approx(-motion.angles)
+    with pytest.raises(UsageError, match="by is not for a family"):
+        exactfold.follow("flapping-bird", 7, by=(5, 6))
+    with pytest.raises(NotFollowedError, match="no proof of such a motion is known"):
+        exactfold.prove(motion)
+
+
+def test_letters_of_a_drawing_in_a_family_are_followed_as_match_proves_them():
+    motion = exactfold.follow("bird-base", until="30deg", frames=3)
+    letters = exactfold.read("bird-base").letters
+    assert {f: x for f, x in motion.assignment.items() if letters[f] != "U"} == {
+        f: x for f, x in letters.items() if x != "U"
+    }
+    last = dict(zip(motion.pattern.folds, motion.angles[-1], strict=True))
+    assert all((last[f] > 0) == (x == "V") for f, x in letters.items() if x in "MV")
