@@ -120,6 +120,7 @@ def test_a_film_has_its_pictures_in_turn_for_so_many_seconds():
         ((*pictures("red"), *pictures("red", size=(3, 3))), 1.0, "one size"),
         (pictures("red", "red"), 1e9, "seconds"),
         (pictures("red", "red", size=(2000, 2000)), 1.0, "too large"),
+        (150 * pictures("red", size=(1400, 1000)), 1.0, "too large together"),
     ],
 )
 def test_what_is_no_film_is_refused(frames, seconds, said):
