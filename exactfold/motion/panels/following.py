@@ -52,7 +52,7 @@ def follow_panels(
     folds that go from boundary to boundary (docs/panels.md, Which modes truly fold). If all
     vertices of a mode are linear in the half-angle tangents, all its folds stay in proportion, and
     this is proved (`PanelMotion.closes`). Other modes are followed in floats by the transmissions
-    of their vertices, until the first fold reaches 180 degrees (docs/panel_motion.md).
+    of their vertices, until the first fold reaches 180 degrees (docs/motion.md, 18 and 19).
 
     `sheet` is a decomposition, or a pattern to decompose. `way` is the number of the way in
     `panel_ways`, as `exactfold count` lists it, beginning with 1; by default it is the first, which
