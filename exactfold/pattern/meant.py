@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import partial
-from typing import TYPE_CHECKING, Any, Final, TypedDict
+from typing import TYPE_CHECKING, Any, Final, TypeAlias, TypedDict
 
 from exactfold._support.documents import Natural, NotNegative
 from exactfold._support.plurals import agreeing, counted
@@ -34,6 +34,7 @@ _DISTANT: Final[tuple[Kind, ...]] = ("sectors", "mirrored", "parallel", "grid")
 """The kinds of relations on which no closing condition depends, as they are left out at need."""
 
 _MOST_EDGES: Final = 1000
+_Make: TypeAlias = "Callable[[PanelPattern, Angles, float], Realized]"
 
 
 class RelationDocument(TypedDict):
@@ -235,32 +236,34 @@ def inferred(written: PanelPattern, reading: Reading) -> Meant:
 
     `written` is the sheet with the digits as written; its coordinates are rational. If no exact
     sheet is found that has all relations, those between distant edges are left out, in the order of
-    `_DISTANT`; this is done for sheets of up to 1,000 edges. Raises the errors of `infer` for
-    relations that do not exist or contradict each other.
+    `_DISTANT`; this is done for sheets of up to 1,000 edges. If that does not help, positions are
+    enclosed, with all relations or without all between distant edges. Raises the errors of `infer`
+    for relations that do not exist or contradict each other.
     """
     from exactfold.pattern.meant_sheet import enclose, realize, recognise
 
     all_found = _found(written, reading, ())
     first = meant = _realized(written, all_found, realize)
-    if all_found.angles is not None and not meant.inferred:
-        known = partial(recognise, relations=all_found.relations)
-        meant = _realized(written, all_found, known)
-    attempts = len(_DISTANT) if len(written.edges) <= _MOST_EDGES else 0
-    for number in range(1, attempts + 1):
-        if all_found.angles is None or meant.inferred:
-            break
-        kinds_found = {relation.kind for relation in all_found.relations}
-        dropped = [kind for kind in _DISTANT[:number] if kind in kinds_found]
-        if not dropped or dropped[-1] != _DISTANT[number - 1]:
-            continue
-        fewer = _realized(written, _found(written, reading, dropped), realize)
-        kept = {relation.name for relation in fewer.relations}
-        out = tuple(one for one in all_found.relations if one.name not in kept)
-        meant = replace(fewer, left_out=out)
     if all_found.angles is None or meant.inferred:
         return meant
-    box = _realized(written, all_found, enclose)
-    return box if box.inferred else replace(meant, reason=first.reason)
+
+    def without(dropped: Sequence[Kind], make: _Make) -> Meant:
+        fewer = _realized(written, _found(written, reading, dropped), make)
+        kept = {relation.name for relation in fewer.relations}
+        out = tuple(one for one in all_found.relations if one.name not in kept)
+        return replace(fewer, left_out=out)
+
+    meant = _realized(written, all_found, partial(recognise, relations=all_found.relations))
+    kinds_found = {relation.kind for relation in all_found.relations}
+    distant = [kind for kind in _DISTANT if kind in kinds_found]
+    attempts = len(distant) if len(written.edges) <= _MOST_EDGES else 0
+    for number in range(1, attempts + 1):
+        if not meant.inferred:
+            meant = without(distant[:number], realize)
+    for dropped in ([], distant) if distant else ([],):
+        if not meant.inferred:
+            meant = without(dropped, enclose)
+    return meant if meant.inferred else replace(meant, reason=first.reason)
 
 
 def _found(written: PanelPattern, reading: Reading, dropped: Sequence[Kind]) -> Inference:
@@ -280,7 +283,7 @@ def _found(written: PanelPattern, reading: Reading, dropped: Sequence[Kind]) -> 
 def _realized(
     written: PanelPattern,
     found: Inference,
-    make: Callable[[PanelPattern, Angles, float], Realized],
+    make: _Make,
 ) -> Meant:
     """What is known of the sheet that was meant, once `make` looked for it."""
     known = Meant(

@@ -108,7 +108,7 @@ def branch_row(name: str, result: Branch) -> Row:
 def branches_report(rows: list[Row]) -> Group:
     """The table for several patterns, or for a branch and its neighbours."""
     table = Table(box=None, pad_edge=False)
-    table.add_column("")
+    table.add_column("branch")
     table.add_column("status")
     table.add_column("vertex signs", overflow="fold")
     table.add_column("mountain-valley", overflow="fold")

@@ -217,7 +217,7 @@ def _events(motion: SheetInMotion) -> list[RenderableType]:
     table = Table(box=None, pad_edge=False)
     table.add_column("time")
     table.add_column("event")
-    table.add_column("", overflow="fold")
+    table.add_column("what happens", overflow="fold")
     for event in shown:
         table.add_row(f"{event.time[1]:.6g}", event.kind, event_text(event))
     parts: list[RenderableType] = [Text(""), table]

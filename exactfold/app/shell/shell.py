@@ -108,8 +108,9 @@ def tell(text: str) -> None:
 
 
 def wrote(path: Path, what: str = "") -> None:
-    """Print which file was written, and what is in it."""
-    tell(f"wrote {name_of(path)}{': ' if what else ''}{what}")
+    """Print which file was written, and what is in it; a closed standard output is no failure."""
+    with suppress(OSError):
+        tell(f"wrote {name_of(path)}{': ' if what else ''}{what}")
 
 
 def exit_code(error: Exception) -> int:

@@ -51,6 +51,6 @@ def drawn_nearby(
     sure = sum(fan.must_fold([letters.get(f, "U") for f in fan.folds]) for fan in fans.values())
     reason = (
         f"by itself, each of {sure} of {counted(len(fans), 'vertex')} starts to fold with its "
-        "letters on all of these sheets - PROVED"
+        "letters - PROVED"
     )
     return Drawn(UNDECIDED, UNDECIDED, (reason,), within=within)

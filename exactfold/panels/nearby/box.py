@@ -94,12 +94,16 @@ def box_of(opened: Opened) -> Box | None:
     """The sheets near a drawing whose digits are too inexact to say which sheet was meant.
 
     They lie within three times the amount by which the drawing misses relations, rounded up to one
-    digit. None if the digits are exact, or if the sheet that was meant is known.
+    digit. This amount is the noise level that was not believed, or, if a sheet was inferred, the
+    largest defect of a relation that it nearly has. None if the digits are exact, or if the sheet
+    that was meant is known.
     """
     meant = opened.meant
     if not opened.doubt or meant is None or not meant.left:
         return None
-    missed = max(meant.noise or 0.0, *(relation.defect for relation in meant.left))
+    missed = max(relation.defect for relation in meant.left)
+    if meant.noise and not meant.inferred:
+        missed = meant.noise
     sheet = panels(opened.sheet) if isinstance(opened.sheet, CreasePattern) else opened.sheet
     return Box(sheet, Fraction(decimal_above(_TIMES * Fraction(repr(missed)), 1)))
 

@@ -189,6 +189,18 @@ def test_letters_that_fit_are_not_proved_for_the_whole_sheet() -> None:
     assert found.drawn.starts is UNDECIDED
 
 
+def test_the_box_is_three_times_the_noise_that_was_not_believed() -> None:
+    opened = doubted("zigzags", 2e-3)
+    box = box_of(opened)
+    assert box is not None
+    assert box.within == Fraction(6, 1000)
+    assert opened.meant is not None
+    known = replace(opened, meant=replace(opened.meant, noise=1.1e-4))
+    box = box_of(known)
+    assert box is not None
+    assert box.within == Fraction(4, 10000)
+
+
 def test_an_exact_sheet_has_no_box() -> None:
     assert box_of(open_sheet("zigzags")) is None
     found = counted(open_sheet("zigzags"))

@@ -11,11 +11,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 from math import lcm, pi
+from typing import Final
 
 import numpy as np
 from flint import fmpq_mat, fmpz_mat
 
 from exactfold.pattern.drawing.meant.values import Angles
+
+_MOST_FREE: Final = 200
+"""Lattices of a higher dimension take long to reduce."""
 
 
 def with_integers(angles: Angles) -> Angles:
@@ -25,7 +29,8 @@ def with_integers(angles: Angles) -> Angles:
     the columns of T are in the dual of the lattice that the rows of N span. A basis of that dual is
     reduced (LLL), so that the coefficients are small. Then integer combinations of edges leave a
     triangle with the diagonal 1 or -1, and no other rows: a shift of u makes the constants of the
-    triangle integers. What is left in the other rows is implied by the relations.
+    triangle integers. What is left in the other rows is implied by the relations. The angles are
+    returned unchanged if more than `_MOST_FREE` are free.
 
     >>> edge, other = (0, 1), (0, 2)
     >>> odd = Angles({edge: Fraction(0), other: Fraction(1, 9)},
@@ -37,7 +42,7 @@ def with_integers(angles: Angles) -> Angles:
     [Fraction(2, 3), Fraction(0, 1)]
     """
     count = len(angles.free)
-    if not count:
+    if not 0 < count <= _MOST_FREE:
         return angles
     edges = list(angles.constants)
     rows = [_row(angles.coefficients.get(edge, ()), count) for edge in edges]

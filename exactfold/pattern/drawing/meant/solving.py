@@ -25,12 +25,12 @@ from exactfold.pattern.drawing.meant.positions import Point, Written, decimals
 from exactfold.pattern.drawing.meant.refining import Refined, equations
 from exactfold.pattern.drawing.meant.values import Angles, Edge, Relation
 
-_BITS: Final = 1024
+_BITS: Final = 512
 _GUARD: Final = 64
 """The last bits of a number are not used to recognise it."""
 _ZERO: Final = 1e-9
-"""Smaller singular values, relative to the largest, belong to equations that follow from others."""
-_MOST_ROWS: Final = 1500
+"""Smaller pivots, relative to the largest, belong to equations that follow from others."""
+_MOST_ROWS: Final = 1000
 _MOST_FREE: Final = 150
 """With more equations or more free coordinates, positions are not recognised."""
 _LEAST_GAIN: Final = 6
@@ -52,7 +52,7 @@ def recognised_positions(
     unit = 2 ** max(int(np.ptp(near.places, axis=0).max()), 1).bit_length()
     solution = _Solution(near, angles, bound, unit)
     free = solution.free_coordinates()
-    if not 0 < len(free) <= _MOST_FREE:
+    if not free:
         return None
     digits = decimals(noise * unit / 8)
     values = {c: round(written[c // 2][c % 2], digits) / unit for c in free}
@@ -93,13 +93,17 @@ class _Solution:
         self.slopes: FloatArray = slopes.toarray()[:, columns]
 
     def free_coordinates(self) -> list[int]:
-        """Coordinates that determine the solution; none if angles stay free without them."""
-        _, heights, right = np.linalg.svd(self.slopes)
-        rank = int(np.count_nonzero(heights > _ZERO * heights[0]))
-        null = right[rank:]
-        if not len(null) <= self.count:
+        """Coordinates that determine the solution, if they are few; none otherwise."""
+        rows, columns = self.slopes.shape
+        if columns - rows > _MOST_FREE:
             return []
-        pivots = qr(null[:, : self.count], mode="r", pivoting=True)[1]
+        basis, upper, _ = qr(self.slopes.T, pivoting=True)
+        heights = abs(np.diag(upper))
+        rank = int(np.count_nonzero(heights > _ZERO * heights[0]))
+        null = basis[: self.count, rank:].T
+        if len(null) > min(_MOST_FREE, self.count):
+            return []
+        pivots = qr(null, mode="r", pivoting=True)[1]
         return sorted(int(c) for c in pivots[: len(null)])
 
     def refine(self, values: dict[int, Fraction]) -> list[arb] | None:
