@@ -140,7 +140,10 @@ def goal_angle(until: str) -> float:
     except (ValueError, AttributeError):
         number = -1.0
     if not (isfinite(number) and 0 < number <= 180):
-        raise UsageError(f"until {until!r}: give contact, or an angle such as 90deg, up to 180deg")
+        angle = f"{until}deg" if str(until).isdecimal() else "90deg"
+        raise UsageError(
+            f"until {until!r}: give contact, or an angle such as {angle}, up to 180deg"
+        )
     return radians(number) if number < 180 else pi
 
 
