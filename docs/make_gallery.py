@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from textwrap import fill
@@ -28,7 +28,7 @@ from exactfold.branches import BranchCount
 from exactfold.errors import NotFollowedError
 from exactfold.motion import Motion, PanelMotion
 from exactfold.panels import Decomposition
-from exactfold.pattern import families
+from exactfold.pattern import CreasePattern, PanelPattern, families
 from exactfold.pattern.data import BY_OTHERS, DRAWINGS, SHEETS, examples
 from exactfold.pattern.degenerate import DEGENERATE
 
@@ -157,7 +157,7 @@ class Card:
             return [count, f"{draw} -o {name}.svg"]
         most = f" --most {MOST}" if number > MOST else ""
         lines = [count, f"{draw} --all{most} -o {name}.svg"]
-        still = f"{draw} --branch {self.way} --folded {AMOUNT} -o {name}-folded.svg"
+        still = f"{draw} --way {self.way} --folded {AMOUNT} -o {name}-folded.svg"
         return [*lines, still] if self.way else lines
 
     @property
@@ -214,19 +214,33 @@ def card(name: str) -> Card:
     """An entry of the gallery: the pattern counted, drawn and folded."""
     found = counted(name)
     if number_listed(found):
-        ways, (way, motion) = sheet_of_ways(found, name, MOST), fullest(found)
+        ways, followed = sheet_of_ways(found, name, MOST), fullest(found)
+        if followed is None:
+            return Card(name, found, ways, small_sheet(name, found))
+        way, motion = followed
         still = folded(motion, Amount.of(AMOUNT), name).text
         time = Amount.of(AMOUNT).time(motion)
         return Card(name, found, ways, motion_still(motion, time, "", name, SMALL), still, way)
-    sheet, letters = found.pattern, {}
-    if name not in BUILT:
-        opened = read(name)
-        sheet, letters = opened.sheet, opened.assignment
-    small = pattern_picture(sheet, letters, size=SMALL, keyed=False, labelled=False)
-    return Card(name, found, pattern_picture(sheet, letters, title=name), small)
+    sheet, letters = drawn(name, found)
+    return Card(name, found, pattern_picture(sheet, letters, title=name), small_sheet(name, found))
 
 
-def fullest(found: BranchCount | Decomposition) -> tuple[int, Motion | PanelMotion]:
+def drawn(
+    name: str, found: BranchCount | Decomposition
+) -> tuple[CreasePattern | PanelPattern, Mapping[tuple[int, int], str]]:
+    """The sheet, and the letters of its file."""
+    if name in BUILT:
+        return found.pattern, {}
+    opened = read(name)
+    return opened.sheet, opened.assignment
+
+
+def small_sheet(name: str, found: BranchCount | Decomposition) -> str:
+    """The crease pattern, small."""
+    return pattern_picture(*drawn(name, found), size=SMALL, keyed=False, labelled=False)
+
+
+def fullest(found: BranchCount | Decomposition) -> tuple[int, Motion | PanelMotion] | None:
     """Of the ways that can be followed, one that folds most creases, in both senses; its number."""
     for way in sorted(ways_of(found), key=folds, reverse=True):
         number = way.number or 1
@@ -234,7 +248,7 @@ def fullest(found: BranchCount | Decomposition) -> tuple[int, Motion | PanelMoti
             return number, follow(found, number)
         except NotFollowedError:
             continue
-    raise NotFollowedError("no way of the list can be followed")
+    return None
 
 
 def folds(way: DrawnWay) -> tuple[int, int]:

@@ -390,7 +390,8 @@ def commands() -> dict[str, Any]:
     from typer.main import get_command
 
     group = get_command(app)
-    return dict(group.commands)  # type: ignore[attr-defined]
+    listed = group.list_commands(None)  # type: ignore[attr-defined]
+    return {name: group.commands[name] for name in listed}  # type: ignore[attr-defined]
 
 
 def _commands() -> str:

@@ -22,7 +22,7 @@ MOTIONS = {
 }
 """The name of the picture; the shipped pattern, and the signs of the branch."""
 PANELS = {"zigzags": ("zigzags", 1), "zigzags-strips": ("zigzags", 3)}
-"""The same of sheets of panels, with the number of the component."""
+"""The same of sheets of panels, with the number of the way."""
 
 
 def pictures() -> dict[str, str]:
@@ -32,9 +32,9 @@ def pictures() -> dict[str, str]:
         for name, (pattern, signs) in MOTIONS.items()
     }
     panels = {}
-    for name, (pattern, component) in PANELS.items():
-        motion = follow_panels(decompose(pattern), component=component)
-        panels[f"{name}.svg"] = motion_stills(motion, 5, f"{pattern}, component {component}")
+    for name, (pattern, way) in PANELS.items():
+        motion = follow_panels(decompose(pattern), way=way)
+        panels[f"{name}.svg"] = motion_stills(motion, 5, f"{pattern}, way {way}")
     others = {"folding.svg": folding(), "rim.svg": rim(), "rim-path.svg": rim_path()}
     return branches | panels | drawings() | others
 
@@ -66,7 +66,7 @@ def rim() -> str:
 
 def folding() -> str:
     """The sheet of the first page, which folds along a motion that is proved."""
-    motion = follow("miura", 8)
+    motion = follow("miura")
     if motion.closes is not PROVED:
         raise RuntimeError("the motion on the first page is not proved")
     return motion_animation(motion, title="miura")

@@ -126,6 +126,10 @@ class BoundaryHeightsError(InputError):
         self.vertices = tuple(vertices)
 
 
+class PointsError(InputError):
+    """A file of points for `exactfold certify` does not fit the system."""
+
+
 class BadDriveError(InputError):
     """Folds or angles cannot be driven; `folds` are the folds to blame."""
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 _OWN = {
     "vertex": "vertices",
     "family": "families",
@@ -42,6 +44,15 @@ def agreeing(number: int, verb: str) -> str:
     ('stays', 'stay')
     """
     return verb if number == 1 else plural(verb)
+
+
+def either(names: Sequence[str]) -> str:
+    """Names as alternatives.
+
+    >>> either(["count"]), either(["--all", "--also", "--snap"])
+    ('count', '--all, --also or --snap')
+    """
+    return " or ".join(filter(None, [", ".join(names[:-1]), names[-1]]))
 
 
 def visible(text: str) -> str:

@@ -11,18 +11,20 @@ from typing import Annotated, Any, Literal, TypedDict
 import typer
 
 from exactfold._support.documents import Several
+from exactfold._support.plurals import counted
 from exactfold._support.processes import one_thread
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.app.options.branches import (
     AssignmentsOptions,
     BranchOptions,
+    CertifyOptions,
     ExportOptions,
     MatchOptions,
     VerticesOptions,
 )
 from exactfold.app.options.motions import ActuateOptions, FoldOptions, MotionsOptions
 from exactfold.app.options.patterns import ConvertOptions, CountOptions, InfoOptions
-from exactfold.app.options.pictures import DrawOptions, ViewOptions
+from exactfold.app.options.pictures import DrawOptions, ServeOptions, ViewOptions
 from exactfold.app.options.studies import StudyOptions
 from exactfold.app.shell.parameters import (
     Json,
@@ -37,24 +39,30 @@ from exactfold.app.shell.shell import (
     reported,
     standard_input,
     standard_streams,
+    wrote,
 )
 from exactfold.app.shell.usage import Command, Group, taking
 
 # Each command imports what it needs, because loading everything takes longer than most commands.
 
+TAGLINE = (
+    "In how many ways does a crease pattern start to fold, what distinguishes them, and which go "
+    "on? exactfold answers with a proof."
+)
 app = typer.Typer(
-    help="Proven branch counts of triangulated origami near the unfolded state.",
+    help=TAGLINE,
     epilog="Exit codes: 0 proved or valid; 1 refuted, or certificate invalid; 2 wrong usage; "
     "3 bad input; 4 undecided, or the sheet is of a kind that cannot be counted; 70 a process "
     "died, or exactfold has a bug; 71 not enough memory; 74 standard output cannot be written; 130 "
     "interrupted.",
     no_args_is_help=True,
+    context_settings={"help_option_names": ["-h", "--help"]},
     pretty_exceptions_enable=False,
     cls=Group,
 )
 
 
-@app.command(cls=Command)
+@app.command(cls=Command, rich_help_panel="Ask")
 @taking(CountOptions)
 def count(**options: Any) -> int:
     """Count the ways in which a pattern starts to fold (its branches), with proof.
@@ -72,7 +80,7 @@ def count(**options: Any) -> int:
     return Asked(**options).run()
 
 
-@app.command(cls=Command)
+@app.command(cls=Command, rich_help_panel="Prove")
 @reported
 def check(
     certificate: Annotated[
@@ -109,7 +117,7 @@ def check(
     raise typer.Exit(0 if done else 1)
 
 
-@app.command(cls=Command)
+@app.command(cls=Command, rich_help_panel="See")
 @taking(DrawOptions)
 def draw(**options: Any) -> int:
     """Draw a crease pattern, one way to fold it, or all ways, as SVG, PNG or PDF.
@@ -124,7 +132,7 @@ def draw(**options: Any) -> int:
     return Wanted(**options).answer()
 
 
-@app.command(cls=Command)
+@app.command(cls=Command, rich_help_panel="See")
 @taking(ViewOptions)
 def view(**options: Any) -> int:
     """Show a sheet and its ways to fold in the browser: one HTML file that needs no network.
@@ -139,23 +147,39 @@ def view(**options: Any) -> int:
     return 0
 
 
-@app.command(cls=Command)
+@app.command(cls=Command, rich_help_panel="See")
+@taking(ServeOptions)
+def serve(**options: Any) -> int:
+    """Serve the page of `view` on this machine, with the engine behind it.
+
+    Drawings are dropped into the page: each is read and counted, and its ways are
+    listed as they are found. Vertices can be moved with the mouse. Only this
+    machine can reach the page; Ctrl-C ends it.
+    """
+    from exactfold.app.commands.view import Served
+
+    Served(**options).run()
+    return 0
+
+
+@app.command(cls=Command, rich_help_panel="Ask")
 @taking(BranchOptions)
 def branch(**options: Any) -> int:
-    """Find and prove the one branch with given vertex signs, without finding the others.
+    """Find and prove one branch of a triangulated sheet, without finding the others.
 
-    The signs belong to the side with boundary saddle +1 (with a reflex corner: the
-    side on which the corner pops up); on the other side all signs are reversed. On
-    a sheet with more corners, the branch is the one with the boundary heights of
-    --rim, or one on which folds start in the ratio of --drive. --json prints one
-    object per line.
+    The branch is named by its number, vertex signs or letters. The signs belong to
+    the side with boundary saddle +1 (with a reflex corner: the side on which the
+    corner pops up); on the other side all signs are reversed. On a sheet with more
+    corners, the branch is the one with the boundary heights of --boundary-heights,
+    or one on which folds start in the ratio of --drive. --json prints one object
+    per line.
     """
     from exactfold.app.commands.branch import Asked
 
     return EXIT[PROVED if Asked(**options).answer() else UNDECIDED]
 
 
-@app.command(cls=Command)
+@app.command(cls=Command, rich_help_panel="Ask")
 @taking(MatchOptions)
 def match(**options: Any) -> int:
     """Find the ways to start folding that have the mountains and valleys of a file, with proof.
@@ -169,7 +193,7 @@ def match(**options: Any) -> int:
     return Asked(**options).answer()
 
 
-@app.command(cls=Command)
+@app.command(cls=Command, rich_help_panel="Ask")
 @taking(VerticesOptions)
 def vertices(**options: Any) -> int:
     """Say which vertices start to fold with their letters, with proof, and what to change.
@@ -184,23 +208,39 @@ def vertices(**options: Any) -> int:
     return Asked(**options).answer()
 
 
-@app.command(cls=Command)
+@app.command(cls=Command, rich_help_panel="Files")
 @taking(ExportOptions)
 def export(**options: Any) -> int:
-    """Write one branch as a FOLD file that simulators can fold, or a sheet for Coq.
+    """Write one branch as a FOLD file, a sheet for Coq, or equations for other programs.
 
     The fold angles in the file are proportional to those of the branch, so that a
     simulator that they drive stays on the branch. A second frame shows the sheet
     in space, to second order. With --coq the file is for Coq instead: it applies
-    what is proved of every sheet to this sheet and to the named branches.
+    what is proved of every sheet to this sheet and to the named branches. With
+    --system it holds the equations of the sheet, of any kind.
     """
-    from exactfold.app.commands.export import Wanted, write_coq
+    from exactfold.app.commands.export import Wanted, write_coq, write_system
 
     asked = Wanted(**options)
+    if asked.system is not None:
+        return write_system(asked)
     return write_coq(asked) if asked.coq else asked.answer()
 
 
-@app.command(cls=Command)
+@app.command(cls=Command, rich_help_panel="Prove")
+@taking(CertifyOptions)
+def certify(**options: Any) -> int:
+    """Prove solutions that another program found: one zero in a small box around each.
+
+    The points are those of the system that `exactfold export --system` writes.
+    Floating point only proposes: Krawczyk's test in integers decides.
+    """
+    from exactfold.app.commands.certify import Asked
+
+    return Asked(**options).answer()
+
+
+@app.command(cls=Command, rich_help_panel="Ask")
 @taking(AssignmentsOptions)
 def assignments(**options: Any) -> int:
     """List every mountain-valley assignment with which a sheet starts to fold, with proof.
@@ -214,25 +254,25 @@ def assignments(**options: Any) -> int:
     return Listed(**options).answer()
 
 
-@app.command(cls=Command)
+@app.command(cls=Command, rich_help_panel="Fold")
 @taking(FoldOptions)
 def fold(**options: Any) -> int:
     """Fold a sheet with rigid faces in space, until faces touch or another event.
 
-    A triangulated sheet with four corners follows the branch that --signs, --up or
-    --branch names; by default the branch on which all vertices pop up. A
-    triangulated sheet with more corners follows a branch if --signs, --up or --rim
-    is given (its boundary then moves in the ratio of the boundary heights), or
-    --drive (the chosen folds then drive it). Any other sheet follows modes of rigid
-    panels, which --component or --modes names. The existence of the branch or mode
-    is proved; the answer says what is proved of the motion.
+    The sheet follows the way that --way, --signs, --up or --letters names; by
+    default the way with the mountains and valleys of the drawing, if one is known,
+    else the branch on which all vertices pop up, or the first way that `count`
+    lists. A line says which. The boundary of a sheet with more than four corners
+    moves in the ratio of --boundary-heights, or --drive names folds that drive it.
+    The existence of the way is proved; the answer says what is proved of the
+    motion.
     """
     from exactfold.app.commands.fold import Wanted
 
     return Wanted(**options).answer()
 
 
-@app.command(cls=Command)
+@app.command(cls=Command, rich_help_panel="Fold")
 @taking(MotionsOptions)
 def motions(**options: Any) -> int:
     """Follow every branch, with proof, until the sheet is flat again.
@@ -246,7 +286,7 @@ def motions(**options: Any) -> int:
     return Wanted(**options).answer()
 
 
-@app.command(cls=Command)
+@app.command(cls=Command, rich_help_panel="Fold")
 @taking(ActuateOptions)
 def actuate(**options: Any) -> int:
     """Find torques on the creases that drive the sheet along one branch and not along the others.
@@ -260,7 +300,7 @@ def actuate(**options: Any) -> int:
     return Driven(**options).answer()
 
 
-@app.command(cls=Command)
+@app.command(cls=Command, rich_help_panel="Studies")
 @taking(StudyOptions)
 def study(**options: Any) -> int:
     """Run a study: a table or figure of the paper, each number in it proved.
@@ -274,7 +314,7 @@ def study(**options: Any) -> int:
     return Wanted(**options).answer()
 
 
-@app.command("random", cls=Command)
+@app.command("random", cls=Command, rich_help_panel="Files")
 @reported
 def random_(
     interior: Annotated[int, number("Number of interior vertices.")],
@@ -296,9 +336,11 @@ def random_(
     ] = None,
 ) -> None:
     """Sample the paper's random squares: a Delaunay triangulation of random points."""
-    from exactfold.pattern.fold_writing import fold_text, write_text
+    from exactfold.pattern.fold_writing import checked_target, fold_text, write_text
     from exactfold.pattern.random_squares import sample_random_square
 
+    if output is not None and str(output) != "-":
+        checked_target(output, (".fold", ".json"), "a sheet")
     title = f"random square, {interior} interior vertices, seed {seed}, denominator {denominator}"
     title += ", points redrawn" if redraw else ""
     with Bar("drawing"):
@@ -308,9 +350,15 @@ def random_(
         sys.stdout.write(text)
     else:
         write_text(output, text)
+        pattern = sample.pattern
+        wrote(
+            output,
+            f"{counted(len(pattern.vertices), 'vertex')}, {counted(len(pattern.folds), 'fold')}, "
+            f"{counted(len(pattern.triangles), 'panel')}",
+        )
 
 
-@app.command(cls=Command)
+@app.command(cls=Command, rich_help_panel="Ask")
 @taking(InfoOptions)
 def info(**options: Any) -> int:
     """Report exact facts about a pattern that are known without solving for its ways to fold."""
@@ -320,7 +368,7 @@ def info(**options: Any) -> int:
     return 0
 
 
-@app.command(cls=Command)
+@app.command(cls=Command, rich_help_panel="Files")
 @taking(ConvertOptions)
 def convert(**options: Any) -> int:
     """Write a drawing of any format as a FOLD file with exact coordinates.
@@ -350,7 +398,7 @@ class ExamplesDocument(TypedDict):
     examples: Several[Example]
 
 
-@app.command(cls=Command)
+@app.command(cls=Command, rich_help_panel="Files")
 @reported
 def examples(as_json: Json = False) -> None:
     """List the patterns that come with exactfold; every command takes their names as files."""
@@ -386,7 +434,7 @@ def _options(
         bool, flag("--version", text="Show the version.", callback=_version, is_eager=True)
     ] = False,
 ) -> None:
-    """Proven branch counts of triangulated origami near the unfolded state."""
+    pass
 
 
 def main() -> None:

@@ -14,10 +14,11 @@ replaces these names; each must consist of letters and digits. For a `Chart` use
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Sequence
 from fractions import Fraction
 from math import prod
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 from exactfold.errors import UsageError
 from exactfold.exact.forms import QuadraticForm
@@ -31,6 +32,23 @@ if TYPE_CHECKING:
     from sage.rings.polynomial.multi_polynomial_ideal import MPolynomialIdeal
 
 Term = tuple[int, tuple[int, ...]]
+
+
+class Polynomials(Protocol):
+    """Named unknowns, and polynomials as terms: a coefficient and the indices of its factors."""
+
+    @property
+    def unknowns(self) -> tuple[str, ...]:
+        """The names of the unknowns."""
+        ...
+
+    @property
+    def polynomials(self) -> tuple[tuple[Term, ...], ...]:
+        """The polynomials, each as its terms."""
+        ...
+
+
+System: TypeAlias = QuadraticSystem | BranchSystem | Polynomials
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9]*\Z", re.ASCII)
 
 
@@ -44,7 +62,7 @@ def chart_names(chart: Chart) -> tuple[str, ...]:
     return tuple(f"h{v}" for v in chart.variables)
 
 
-def to_msolve(system: QuadraticSystem | BranchSystem, names: Sequence[str] | None = None) -> str:
+def to_msolve(system: System, names: Sequence[str] | None = None) -> str:
     """An input file of msolve: variables, characteristic 0, polynomials separated by commas.
 
     No polynomial starts with the sign "+", as msolve cannot read that. Raises `UsageError` for
@@ -56,12 +74,12 @@ def to_msolve(system: QuadraticSystem | BranchSystem, names: Sequence[str] | Non
     x0^2+x1^2-1,
     2*x0*x1
     """
-    variables, polynomials = _polynomials(system, names)
+    variables, polynomials = polynomials_of(system, names)
     lines = ",\n".join(_expression(terms, variables) for terms in polynomials)
     return f"{','.join(variables)}\n0\n{lines}\n"
 
 
-def to_macaulay2(system: QuadraticSystem | BranchSystem, names: Sequence[str] | None = None) -> str:
+def to_macaulay2(system: System, names: Sequence[str] | None = None) -> str:
     """Macaulay2 commands that define the ring R over QQ and the ideal I.
 
     >>> print(to_macaulay2(_EXAMPLE), end="")
@@ -71,12 +89,12 @@ def to_macaulay2(system: QuadraticSystem | BranchSystem, names: Sequence[str] | 
       2*x0*x1
     );
     """
-    variables, polynomials = _polynomials(system, names)
+    variables, polynomials = polynomials_of(system, names)
     lines = ",\n".join(f"  {_expression(terms, variables)}" for terms in polynomials)
     return f"R = QQ[{','.join(variables)}, MonomialOrder => GRevLex];\nI = ideal(\n{lines}\n);\n"
 
 
-def to_singular(system: QuadraticSystem | BranchSystem, names: Sequence[str] | None = None) -> str:
+def to_singular(system: System, names: Sequence[str] | None = None) -> str:
     """Singular commands that define the ring R over Q, order dp, and the ideal I.
 
     >>> print(to_singular(_EXAMPLE), end="")
@@ -85,14 +103,12 @@ def to_singular(system: QuadraticSystem | BranchSystem, names: Sequence[str] | N
       x0^2+x1^2-1,
       2*x0*x1;
     """
-    variables, polynomials = _polynomials(system, names)
+    variables, polynomials = polynomials_of(system, names)
     lines = ",\n".join(f"  {_expression(terms, variables)}" for terms in polynomials)
     return f"ring R = 0, ({','.join(variables)}), dp;\nideal I =\n{lines};\n"
 
 
-def to_homotopy_continuation(
-    system: QuadraticSystem | BranchSystem, names: Sequence[str] | None = None
-) -> str:
+def to_homotopy_continuation(system: System, names: Sequence[str] | None = None) -> str:
     """Julia commands that define the System F of HomotopyContinuation.jl.
 
     Coefficients are written big"...", because a Julia literal of more than 18 digits changes its
@@ -107,7 +123,7 @@ def to_homotopy_continuation(
       big"2"*x0*x1
     ], variables = [x0, x1])
     """
-    variables, polynomials = _polynomials(system, names)
+    variables, polynomials = polynomials_of(system, names)
     lines = ",\n".join(f"  {_expression(terms, variables, julia=True)}" for terms in polynomials)
     return (
         f"using HomotopyContinuation\n@var {' '.join(variables)}\n"
@@ -116,7 +132,7 @@ def to_homotopy_continuation(
 
 
 def to_sympy(
-    system: QuadraticSystem | BranchSystem, names: Sequence[str] | None = None
+    system: System, names: Sequence[str] | None = None
 ) -> tuple[list[sympy.Expr], tuple[sympy.Symbol, ...]]:
     """The polynomials as expanded SymPy expressions, and their symbols in order.
 
@@ -125,7 +141,7 @@ def to_sympy(
     """
     import sympy  # here, as loading it takes longer than most commands
 
-    variables, polynomials = _polynomials(system, names)
+    variables, polynomials = polynomials_of(system, names)
     symbols = tuple(sympy.Symbol(name) for name in variables)
     expressions = [
         sympy.Add(
@@ -136,9 +152,44 @@ def to_sympy(
     return expressions, symbols
 
 
-def to_sage(
-    system: QuadraticSystem | BranchSystem, names: Sequence[str] | None = None
-) -> MPolynomialIdeal:
+def to_sympy_script(system: System, names: Sequence[str] | None = None) -> str:
+    """Python commands that define the symbols and the list `equations` in SymPy.
+
+    >>> print(to_sympy_script(_EXAMPLE), end="")
+    from sympy import symbols
+    x0, x1, = symbols("x0,x1,")
+    equations = [
+      x0**2+x1**2-1,
+      2*x0*x1,
+    ]
+    """
+    variables, polynomials = polynomials_of(system, names)
+    lines = "".join(
+        f"  {_expression(terms, variables).replace('^', '**')},\n" for terms in polynomials
+    )
+    return (
+        f'from sympy import symbols\n{", ".join(variables)}, = symbols("{",".join(variables)},")\n'
+        f"equations = [\n{lines}]\n"
+    )
+
+
+def to_sage_script(system: System, names: Sequence[str] | None = None) -> str:
+    """Sage commands that define the ring R over QQ and the ideal I.
+
+    >>> print(to_sage_script(_EXAMPLE), end="")
+    R.<x0,x1> = PolynomialRing(QQ, order="degrevlex")
+    I = R.ideal([
+      x0^2+x1^2-1,
+      2*x0*x1
+    ])
+    """
+    variables, polynomials = polynomials_of(system, names)
+    lines = ",\n".join(f"  {_expression(terms, variables)}" for terms in polynomials)
+    ring = f'R.<{",".join(variables)}> = PolynomialRing(QQ, order="degrevlex")'
+    return f"{ring}\nI = R.ideal([\n{lines}\n])\n"
+
+
+def to_sage(system: System, names: Sequence[str] | None = None) -> MPolynomialIdeal:
     """The ideal of the polynomials in Sage: over QQ, with term order degrevlex.
 
     There is one generator for each polynomial. This works in Sage itself, or with the part of Sage
@@ -152,7 +203,7 @@ def to_sage(
     _sage()
     rings = optional("sage.rings.polynomial.polynomial_ring_constructor", _SAGE)
     rationals = optional("sage.rings.rational_field", _SAGE).QQ
-    variables, polynomials = _polynomials(system, names)
+    variables, polynomials = polynomials_of(system, names)
     ring = rings.PolynomialRing(rationals, len(variables), list(variables), order="degrevlex")
     unknowns = ring.gens()
     generators = [
@@ -188,13 +239,16 @@ def _sage() -> None:
     optional("sage.all" if is_available("sage.all") else "sage.all__sagemath_singular", _SAGE)
 
 
-def _polynomials(
-    system: QuadraticSystem | BranchSystem, names: Sequence[str] | None
+def polynomials_of(
+    system: System, names: Sequence[str] | None = None
 ) -> tuple[tuple[str, ...], list[list[Term]]]:
     """The variable names, and each quadric as terms (coefficient, indices of its variables)."""
     if isinstance(system, BranchSystem):
         default = tuple(f"h{v}" for v in system.variables)
         polynomials = _branch_terms(system)
+    elif not isinstance(system, QuadraticSystem):
+        default = system.unknowns
+        polynomials = [list(terms) for terms in system.polynomials]
     else:
         default = tuple(f"x{k}" for k in range(system.size))
         polynomials = [_terms(matrix, system.size) for matrix in system.matrices]
@@ -240,11 +294,8 @@ def _expression(terms: Sequence[Term], variables: Sequence[str], julia: bool = F
     for coefficient, factors in terms:
         sign = "-" if coefficient < 0 else "+" if text else ""
         size = format_integer(abs(coefficient))
-        power = (
-            f"{variables[factors[0]]}^2"
-            if len(factors) == 2 and factors[0] == factors[1]
-            else "*".join(variables[k] for k in factors)
-        )
+        powers = Counter(variables[k] for k in factors)
+        power = "*".join(f"{x}^{n}" if n > 1 else x for x, n in powers.items())
         if julia:
             size = f'big"{size}"'
         parts = [size] if size != "1" or not power else []

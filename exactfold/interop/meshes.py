@@ -1,14 +1,13 @@
-"""Writes sheets in space as meshes: OBJ files, animated glTF, and objects of trimesh."""
+"""Writes sheets in space as meshes: OBJ, STL, animated glTF, and objects of trimesh."""
 
 from __future__ import annotations
 
-from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from exactfold._support.arrays import FloatArray, IndexArray
-from exactfold.errors import PackageMissingError, UsageError
+from exactfold.errors import UsageError
 from exactfold.interop.packages import optional
 from exactfold.pattern.loading import PatternLike, as_pattern
 from exactfold.pattern.panel_pattern import PanelPattern
@@ -49,6 +48,16 @@ def obj_text(coords: FloatArray, triangles: IndexArray, name: str) -> str:
     return "\n".join(lines) + "\n"
 
 
+def stl_bytes(coords: FloatArray, triangles: IndexArray) -> bytes:
+    """A sheet in space as a binary STL file, by trimesh.
+
+    Raises `PackageMissingError` without trimesh.
+    """
+    package = optional("trimesh", "'exactfold[meshes]'")
+    mesh = package.Trimesh(coords, triangles, process=False)
+    return bytes(mesh.export(file_type="stl"))
+
+
 def animated_gltf(
     coords: FloatArray, triangles: IndexArray, name: str, *, returns: bool, facts: dict[str, Any]
 ) -> GLTF2:
@@ -59,12 +68,8 @@ def animated_gltf(
     the paper are faces with their own material, and each is hidden from behind. The animation takes
     `SECONDS` from the first frame to the last, and as long back, unless the motion `returns` to the
     first frame by itself. One unit of the sheet is a metre. The z axis is turned into the y axis of
-    glTF, which points up. `facts` are kept as extras. Raises `PackageMissingError`.
+    glTF, which points up. `facts` are kept as extras.
     """
-    if find_spec("pygltflib") is None:
-        raise PackageMissingError(
-            "glTF files need pygltflib, which is not installed: pip install 'exactfold[motion]'"
-        )
     import pygltflib as gltf
 
     corners = coords[:, triangles].astype(np.float64)

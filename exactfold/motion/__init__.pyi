@@ -16,11 +16,11 @@ from exactfold.motion.loops.proofs import LoopProof as LoopProof
 from exactfold.motion.loops.rays import Ray as Ray
 from exactfold.motion.panels.clearance import PanelClearance as PanelClearance
 from exactfold.motion.panels.clearance import prove_contacts as prove_contacts
-from exactfold.motion.panels.followable import PanelComponent as PanelComponent
 from exactfold.motion.panels.followable import PanelMode as PanelMode
-from exactfold.motion.panels.followable import panel_components as panel_components
 from exactfold.motion.panels.followable import panel_modes as panel_modes
 from exactfold.motion.panels.following import follow_panels as follow_panels
+from exactfold.motion.panels.listing import PanelWay as PanelWay
+from exactfold.motion.panels.listing import panel_ways as panel_ways
 from exactfold.motion.panels.motion import PanelMotion as PanelMotion
 from exactfold.motion.panels.proving import PanelProof as PanelProof
 from exactfold.motion.panels.proving import prove_panels as prove_panels

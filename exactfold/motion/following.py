@@ -26,6 +26,8 @@ from exactfold.motion.curves.curve import Curve, LostCurveError, Piece, continue
 from exactfold.motion.curves.drive import PrescribedAngles, not_a_fold
 from exactfold.motion.curves.events import (
     ANGLE,
+    CHANGE,
+    CHANGES,
     CONTACT,
     DEAD_POINT,
     DRIVEN,
@@ -49,6 +51,7 @@ from exactfold.rigidity.equations.problem import Problem
 _MOST_PIECES = 20_000
 _AT_ONCE = 1e-9
 """Events closer than this share of the whole motion happen at the same time."""
+_AT_END = 1e-6
 
 
 def follow(
@@ -69,12 +72,12 @@ def follow(
     followed in floats: first by the Taylor series at the flat sheet, then by arclength continuation
     in the length equations. `until` says where to stop. "contact" is the first contact of two
     faces, or the first fold that closes. "return" is the next flat sheet. "90deg" is the first fold
-    angle of that size. A number is a time. Where another curve crosses (an event "node") the motion
-    stops, unless `through_branch_points` is true. `frames` is the number of frames, at equal steps
-    of time, or of the angle of the fold `by`. `side` is 1 for the ray that `branch` shows, and -1
-    for its mirror image. `pinned` is the triangle that is held, given by vertices of the sheet
-    without the parts that stay flat (`Problem.sheet`); by default it is the largest one. Times
-    depend on it.
+    angle of that size. A number, or "time=1.5", is a time. Where another curve crosses (an event
+    "node") the motion stops, unless `through_branch_points` is true. `frames` is the number of
+    frames, at equal steps of time, or of the angle of the fold `by`. `side` is 1 for the ray that
+    `branch` shows, and -1 for its mirror image. `pinned` is the triangle that is held, given by
+    vertices of the sheet without the parts that stay flat (`Problem.sheet`); by default it is the
+    largest one. Times depend on it.
 
     With more than four corners the branch has boundary heights. On the motion the heights of the
     boundary above the held face keep the ratio of these boundary heights, up to an affine function
@@ -123,7 +126,9 @@ def follow(
         times,
         coords,
         angles_at(problem, curve, times, unknowns, side),
-        tuple(_named(event, problem, unit) for event in _in_order(events, end)),
+        tuple(
+            _named(event, problem, unit, side) for event in _in_order(events, end, curve.duration)
+        ),
         end,
         clock.perf_counter() - began,
         drive=drive,
@@ -161,16 +166,21 @@ class Goal:
         if until == RETURN:
             return cls(frozenset(always | {RETURN}))
         text = str(until)
+        degrees, given = text.endswith("deg"), text.removesuffix("deg").removeprefix("time=")
         try:
-            number = approx_number(text.removesuffix("deg"))
+            number = approx_number(given)
         except NumberError:
             number = -1.0
-        if not (isfinite(number) and number > 0) or (text.endswith("deg") and number > 180):
+        if not (isfinite(number) and number > 0) or (degrees and number > 180):
             raise UsageError(
                 f"until {text!r}: give contact, return, an angle such as 90deg (up to 180deg), or "
-                "a positive length"
+                "a time such as time=1.5"
             )
-        if not text.endswith("deg"):
+        if until == given:
+            raise UsageError(
+                f"until {text!r}: write {text}deg for a fold angle, or time={text} for a time"
+            )
+        if not degrees:
             return cls(frozenset(always | {LENGTH}), time=number)
         kind = FLAT_FOLD if number == 180 else ANGLE
         return cls(frozenset(always | {kind}), angle=radians(number))
@@ -274,9 +284,11 @@ def _first(piece: Piece, events: list[tuple[float, Event]], goal: Goal) -> tuple
     return min(at_once, key=lambda item: item[1] == CONTACT, default=None)
 
 
-def _in_order(events: list[Event], end: str) -> list[Event]:
+def _in_order(events: list[Event], end: str, duration: float) -> list[Event]:
     """The events sorted by time; simultaneous ones, up to rounding, are in a fixed order."""
     events = sorted(events, key=lambda event: event.time)
+    before = duration * (1 - _AT_END)  # a fold that is flat at the end has not changed its letter
+    events = [event for event in events if event.kind != CHANGE or event.time[1] < before]
     span = max((event.time[1] for event in events), default=0.0)
     groups: list[list[Event]] = []
     for event in events:
@@ -340,16 +352,20 @@ def _at_equal_angles(problem: Problem, curve: Curve, by: Edge, frames: int) -> F
     return np.array([*frame_times, coarse[-1]])
 
 
-def _named(event: Event, problem: Problem, unit: float) -> Event:
-    """The event in terms of the vertices and the unit of the pattern."""
+def _named(event: Event, problem: Problem, unit: float, side: int) -> Event:
+    """The event in terms of the vertices and the unit of the pattern, seen on this side."""
     low, high = event.time
     folds = tuple((problem.labels[i], problem.labels[j]) for i, j in event.folds)
     vertices = tuple(problem.labels[v] for v in event.vertices)
+    detail = event.detail
+    if event.kind == CHANGE and side < 0:
+        one, other = CHANGES
+        detail = other if detail == one else one
     return replace(
         event,
         time=(low * unit, high * unit),
         faces=tuple(tuple(problem.labels[v] for v in face) for face in event.faces),
         folds=folds,
         vertices=vertices,
-        detail=f"flat at vertex {', '.join(map(str, vertices))}" if vertices else event.detail,
+        detail=f"flat at vertex {', '.join(map(str, vertices))}" if vertices else detail,
     )

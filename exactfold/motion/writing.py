@@ -1,7 +1,9 @@
-"""`write_motion`: writes a motion as FOLD with frames, as animated glTF, or as OBJ files."""
+"""`write_motion`: writes a motion as FOLD with frames, animated glTF, meshes, or a table."""
 
 from __future__ import annotations
 
+import csv
+import io
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -11,13 +13,13 @@ import numpy as np
 from exactfold.errors import UsageError
 from exactfold.exact.numbers import shown
 from exactfold.interop.fold_frames import MotionFrame, motion_document
-from exactfold.interop.meshes import animated_gltf, gltf_bytes, obj_text
+from exactfold.interop.meshes import animated_gltf, gltf_bytes, obj_text, stl_bytes
 from exactfold.motion.curves.events import RETURN
 from exactfold.motion.curves.in_motion import SheetInMotion
 from exactfold.pattern.fold_writing import checked_target, document_text, write_bytes, write_text
 from exactfold.pattern.triangulating import triangles_of
 
-ENDINGS = (".fold", ".glb", ".gltf", ".obj")
+ENDINGS = (".fold", ".glb", ".gltf", ".obj", ".stl", ".csv")
 
 
 def write_motion(
@@ -27,9 +29,10 @@ def write_motion(
 
     ".fold" is FOLD 1.2: the exact flat sheet, followed by all frames with their fold angles
     (`motion_document`). ".glb" and ".gltf" are glTF 2.0: one file with an animation of the frames,
-    for Blender and three.js; this needs pygltflib (`pip install 'exactfold[motion]'`). ".obj"
-    gives a file for each frame: NAME_0000.obj, NAME_0001.obj, and so on. FOLD files keep panels as
-    they are; in the other formats panels are cut into triangles. `title` is the title of the
+    for Blender and three.js. ".obj" and ".stl" give a file for each frame: NAME_0000.obj,
+    NAME_0001.obj, and so on; STL needs trimesh (`pip install 'exactfold[meshes]'`). ".csv" is a
+    table of the fold angles in degrees, with a row for each frame (`angles_csv`). FOLD files keep
+    panels as they are; in meshes panels are cut into triangles. `title` is the title of the
     pattern. See docs/folding.md.
 
     Raises `UsageError` for any other ending, `PackageMissingError`, `UnwritableFileError`.
@@ -53,12 +56,20 @@ def write_motion(
     if ending == ".fold":
         write_text(target, document_text(fold_motion(motion, title=title)))
         return (target,)
+    if ending == ".csv":
+        write_text(target, angles_csv(motion))
+        return (target,)
     triangles = np.array(triangles_of(motion.pattern), dtype=np.intp)
     name = title or "sheet"
-    if ending == ".obj":
-        files = [target.with_name(f"{target.stem}_{k:04}.obj") for k in range(len(motion.times))]
+    if ending in (".obj", ".stl"):
+        files = [
+            target.with_name(f"{target.stem}_{k:04}{ending}") for k in range(len(motion.times))
+        ]
         for file, coords in zip(files, motion.coords, strict=True):
-            write_text(file, obj_text(coords, triangles, name))
+            if ending == ".obj":
+                write_text(file, obj_text(coords, triangles, name))
+            else:
+                write_bytes(file, stl_bytes(coords, triangles))
         return tuple(files)
     model = animated_gltf(
         motion.coords, triangles, name, returns=motion.end == RETURN, facts=motion.facts
@@ -70,6 +81,25 @@ def write_motion(
 def checked_ending(path: Path) -> str:
     """The ending of the path, if it is one of `ENDINGS`; raises the errors of `checked_target`."""
     return checked_target(path, ENDINGS, "a motion")
+
+
+def angles_csv(motion: SheetInMotion) -> str:
+    """The fold angles of a motion as a table: a column for the time and for each fold.
+
+    Angles are in degrees, valleys positive. Each frame has a row.
+
+    >>> from exactfold.branches.counting.find import find_branch
+    >>> from exactfold.motion.following import follow
+    >>> motion = follow(find_branch("single-vertex-4", "+"), until="90deg", frames=2)
+    >>> angles_csv(motion).splitlines()[0]
+    'time,0-4,1-4,2-4,3-4'
+    """
+    text = io.StringIO()
+    table = csv.writer(text, lineterminator="\n")
+    table.writerow(["time", *(f"{i}-{j}" for i, j in motion.pattern.folds)])
+    for time, row in zip(motion.times, np.degrees(motion.angles), strict=True):
+        table.writerow([repr(float(time)), *(repr(float(angle)) for angle in row)])
+    return text.getvalue()
 
 
 def fold_motion(motion: SheetInMotion, *, title: str | None = None) -> dict[str, Any]:

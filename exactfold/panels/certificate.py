@@ -15,6 +15,7 @@ from exactfold.checker.panels.claims import (
     PanelsClaims,
     PartClaim,
     SupportClaim,
+    TreeClaim,
 )
 from exactfold.errors import NotApplicableError, TooManyModesError
 from exactfold.panels.decomposition import MOST_LISTED
@@ -45,11 +46,6 @@ def certificate_of_panels(result: Decomposition) -> Document:
             f"only a proved decomposition has a certificate; this one is {result.status} "
             f"({result.reason})"
         )
-    if any(part.by_tree for part in result.parts):
-        raise NotApplicableError(
-            "a certificate lists the motions, and here they were counted along trees of vertices "
-            "without a list"
-        )
     pattern = result.pattern
     moving = stars(pattern, result.held)
     listed: dict[tuple[Edge, ...], list[Mode]] = {}
@@ -58,10 +54,16 @@ def certificate_of_panels(result: Decomposition) -> Document:
     supports = [
         _support(pattern, moving, together, listed.get(together.folds))
         for part in result.parts
-        if part.theory == "modes"
+        if part.theory == "modes" and not part.by_tree
         for together in _by_folds(pattern, {v: moving[v] for v in part.vertices}, part.supports)
     ]
-    spaces = [_spaces(part) for part in result.parts if part.theory == "subspaces"]
+    listed_parts = [part for part in result.parts if part.theory == "subspaces"]
+    spaces = [_spaces(part) for part in listed_parts if not part.by_tree]
+    trees: list[TreeClaim] = [
+        {"vertices": list(part.vertices), "components": _counts(part.second_order or {})}
+        for part in result.parts
+        if part.by_tree
+    ]
     claims: PanelsClaims = {
         "interior": len(pattern.interior),
         "border": len(pattern.boundary_set),
@@ -78,6 +80,8 @@ def certificate_of_panels(result: Decomposition) -> Document:
     }
     if spaces:
         claims["spaces"] = spaces
+    if trees:
+        claims["trees"] = trees
     return {
         "format": PANELS.format,
         "version": PANELS.version,

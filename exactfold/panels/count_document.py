@@ -61,6 +61,24 @@ class AsWrittenDocument(TypedDict):
     components: ComponentsDocument | None
 
 
+class ProposalDocument(TypedDict):
+    """A sheet that may have been meant, if relations missed by up to some amount were."""
+
+    noise: NotNegative
+    """With this for --noise, the answer is the one about this sheet."""
+    missed: NotNegative
+    """The drawing misses the relations of this sheet by up to so much of its size."""
+    relations: Natural
+    distance: NotNegative
+    """The largest distance of a vertex from the drawing, by its size."""
+    answer: AsWrittenDocument
+    """What is known of this sheet."""
+    freedom: FreedomDocument | None
+    drawn: DrawnDocument | None
+    others: list[NotNegative]
+    """Other values of --noise that give an exact sheet."""
+
+
 class OfDigits(Protocol):
     """A count for the digits of an inexact drawing."""
 
@@ -75,6 +93,8 @@ class MotionKeys(TypedDict):
     freedom: FreedomDocument | None
     drawn: DrawnDocument | None
     """The answer for the letters of the drawing; null if all ways are known."""
+    proposal: ProposalDocument | None
+    """A sheet that may have been meant by a drawing whose noise has no clear level."""
     modes_count: Natural | None
     modes: list[ModeDocument]
     flat_folds: list[FoldText]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TypedDict
 
-from exactfold._support.documents import FoldText, Natural, VerdictText
+from exactfold._support.documents import FoldText, Natural, NotNegative, VerdictText
 from exactfold._support.verdict import Verdict
 from exactfold.pattern.panel_pattern import Edge
 
@@ -17,6 +17,9 @@ class FreedomDocument(TypedDict):
     most: Natural
     first_order: Natural | None
     """The dimension of the first-order motions; null where it was not needed."""
+    within: NotNegative | None
+    """If not null, the bounds hold for every sheet with the same panels whose vertices lie within
+    this share of the size of those that were read."""
 
 
 class DrawnDocument(TypedDict):
@@ -27,6 +30,9 @@ class DrawnDocument(TypedDict):
     truly: VerdictText
     """Whether true motions of the panels begin with these letters."""
     reasons: list[str]
+    within: NotNegative | None
+    """If not null, the answer holds for every sheet with the same panels whose vertices lie within
+    this share of the size of those that were read."""
     together: list[FoldText]
     """Creases that truly fold together, each as drawn, while all others stay flat; proved, and
     there may be larger sets."""
@@ -36,12 +42,15 @@ class DrawnDocument(TypedDict):
 class Freedom:
     """Proved bounds for the degrees of freedom: the largest dimension of a family of true motions.
 
-    `first_order` is the dimension of the first-order motions, or None where it was not needed.
+    `first_order` is the dimension of the first-order motions, or None where it was not needed. If
+    `within` is a number, the bounds hold for every sheet with the same panels whose vertices lie
+    within this share of the size of those that were read.
     """
 
     least: int
     most: int
     first_order: int | None
+    within: float | None = None
 
     @property
     def text(self) -> str:
@@ -52,11 +61,18 @@ class Freedom:
         """
         if self.least == self.most:
             return f"degrees of freedom: {self.least}"
+        if not self.least:
+            return f"degrees of freedom: at most {self.most}"
         return f"degrees of freedom: between {self.least} and {self.most}"
 
     def to_dict(self) -> FreedomDocument:
         """The object of these bounds in the JSON output."""
-        return {"least": self.least, "most": self.most, "first_order": self.first_order}
+        return {
+            "least": self.least,
+            "most": self.most,
+            "first_order": self.first_order,
+            "within": self.within,
+        }
 
 
 @dataclass(frozen=True)
@@ -64,13 +80,14 @@ class Drawn:
     """Whether the sheet starts to fold with the letters of its drawing, as `match_panels` says.
 
     `together` are folds that truly fold together, each the way of its letter, while all others stay
-    flat. They are proved to do so; there may be larger sets.
+    flat. They are proved to do so; there may be larger sets. `within` is as in `Freedom`.
     """
 
     starts: Verdict
     truly: Verdict
     reasons: tuple[str, ...]
     together: tuple[Edge, ...] = ()
+    within: float | None = None
 
     def to_dict(self) -> DrawnDocument:
         """The object of this answer in the JSON output."""
@@ -78,5 +95,6 @@ class Drawn:
             "starts": str(self.starts),
             "truly": str(self.truly),
             "reasons": list(self.reasons),
+            "within": self.within,
             "together": [f"{i}-{j}" for i, j in self.together],
         }

@@ -19,6 +19,7 @@ from exactfold.panels.count_document import (
     OfDigits,
     PanelCountDocument,
     PanelCountKeys,
+    ProposalDocument,
 )
 from exactfold.panels.elementary import Support
 from exactfold.panels.extension import Extension
@@ -82,7 +83,9 @@ class Decomposition(Page, Ways[Mode], Certified):
 
     `meant` says what was inferred if the digits of the drawing are inexact, and `as_written` is the
     answer for these digits alone. If `doubt` says why an answer would hold for the digits of the
-    sheet only, the status is UNDECIDED, and `as_written` has that answer.
+    sheet only, the status is UNDECIDED, and `as_written` has that answer. `nearby` then has bounds
+    of the degrees of freedom that hold for every sheet near the drawing, and `proposal` is a sheet
+    that may have been meant.
     """
 
     pattern: PanelPattern
@@ -107,6 +110,8 @@ class Decomposition(Page, Ways[Mode], Certified):
     doubt: str = ""
     as_written: OfDigits | None = None
     drawn: Drawn | None = None
+    nearby: Freedom | None = None
+    proposal: Proposal | None = None
     seconds: float = field(default=0.0, compare=False)
 
     WRITER: ClassVar = "exactfold.panels.certificate:certificate_of_panels"
@@ -182,6 +187,7 @@ class Decomposition(Page, Ways[Mode], Certified):
             "components": self._components(),
             "freedom": None if self.freedom is None else self.freedom.to_dict(),
             "drawn": None if self.drawn is None else self.drawn.to_dict(),
+            "proposal": None if self.proposal is None else self.proposal.to_dict(),
             "modes_count": self.modes_count,
             "modes": [mode.to_dict() for mode in self.modes],
             "flat_folds": [f"{i}-{j}" for i, j in self.flat],
@@ -193,9 +199,11 @@ class Decomposition(Page, Ways[Mode], Certified):
     @property
     def freedom(self) -> Freedom | None:
         """Bounds for the degrees of freedom near the flat sheet; None if nothing bounds them."""
+        if self.doubt:
+            return self.nearby
         bounds = [part.freest for part in self.parts]
         dimensions = [part.dimension for part in self.parts]
-        if None in bounds or self.doubt:
+        if None in bounds:
             return None
         free = len(self.free)
         return Freedom(
@@ -234,6 +242,39 @@ class Decomposition(Page, Ways[Mode], Certified):
     def __repr__(self) -> str:
         counts = "" if self.second_order is None else f", {dict(self.second_order)}"
         return f"<Decomposition: {self.status}{counts}, {self.pattern!r}>"
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """A sheet that may have been meant by a drawing without a clear noise level.
+
+    It is the one that the noise level `noise` gives, and `answer` is what is known of it. It has so
+    many `relations`, which the drawing misses by up to `missed`, and lies within `distance` of it;
+    both are shares of the size. The noise levels `others` give other sheets.
+    """
+
+    noise: float
+    missed: float
+    relations: int
+    distance: float
+    answer: OfDigits
+    others: tuple[float, ...] = ()
+
+    def to_dict(self) -> ProposalDocument:
+        """The key `proposal` of JSON."""
+        known = self.answer if isinstance(self.answer, Decomposition) else None
+        freedom = None if known is None else known.freedom
+        drawn = None if known is None else known.drawn
+        return {
+            "noise": self.noise,
+            "missed": self.missed,
+            "relations": self.relations,
+            "distance": self.distance,
+            "answer": self.answer.of_digits(),
+            "freedom": None if freedom is None else freedom.to_dict(),
+            "drawn": None if drawn is None else drawn.to_dict(),
+            "others": list(self.others),
+        }
 
 
 @dataclass(frozen=True)
@@ -290,8 +331,16 @@ class Part:
 
     @property
     def freest(self) -> int | None:
-        """An upper bound for the dimension of true motions; None if nothing bounds it."""
-        return self.most if self.true is None else max(self.true)
+        """An upper bound for the dimension of true motions; None if nothing bounds it.
+
+        The tangent cone of the true motions has their dimension, and lies in the motions to second
+        order.
+        """
+        if self.true is not None:
+            return max(self.true)
+        if self.second_order is not None:
+            return max(self.second_order)
+        return self.most
 
     @property
     def least(self) -> int:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, NotRequired, TypedDict
 from exactfold._support.documents import (
     Digest,
     Face,
+    FoldText,
     Keywords,
     Natural,
     Pair,
@@ -51,11 +52,14 @@ class PanelsDocument(_SheetDocument):
 
     degrees_of_freedom: int
     vertices: Annotated[list[Pair[str]], Keywords(minItems=3)]
-    """Exact coordinates."""
+    """Exact coordinates; if there is a `radius`, no vertex is further than this from its point."""
     faces: Several[Face]
     """Panels, counter-clockwise."""
     field: list[str]
     """The numbers under the square roots r1, r2, ..."""
+    radius: NotRequired[Rational]
+    directions: NotRequired[dict[FoldText, Pair[str]]]
+    """Exact vectors along the edges, where positions are known only within `radius`."""
 
 
 def described(
@@ -94,7 +98,9 @@ def described_panels(pattern: PanelPattern, name: str | None = None) -> PanelsDo
     >>> data["folds"], data["field"], data["faces"]
     (0, [], [[0, 1, 2, 3]])
     """
-    return {
+    from exactfold.pattern.panel_pattern import EnclosedPattern
+
+    data: PanelsDocument = {
         "name": name,
         "interior": len(pattern.interior),
         "boundary": len(pattern.boundary_set),
@@ -105,6 +111,13 @@ def described_panels(pattern: PanelPattern, name: str | None = None) -> PanelsDo
         "vertices": [[number_text(x), number_text(y)] for x, y in pattern.vertices],
         "faces": [list(face) for face in pattern.faces],
     }
+    if isinstance(pattern, EnclosedPattern):
+        data["radius"] = format_rational(pattern.radius)
+        data["directions"] = {
+            f"{i}-{j}": [number_text(x), number_text(y)]
+            for (i, j), (x, y) in pattern.directions.items()
+        }
+    return data
 
 
 def number_text(value: Number) -> str:

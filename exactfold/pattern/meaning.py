@@ -2,22 +2,29 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
+from exactfold._support.plurals import counted
 from exactfold.errors import FoldError, PatternError, TooLargeError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.drawing.drawing import Drawing, Line
-from exactfold.pattern.drawing.meant.left import left_relations
+from exactfold.pattern.drawing.meant.left import left_relations, off_by
 from exactfold.pattern.opened import Opened, panels, triangulated
 
 if TYPE_CHECKING:  # sheets with exact digits do without it
     from exactfold.pattern.panel_pattern import PanelPattern
 
 
+_MOST_EDGES: Final = 1200
+"""Sheets with more edges get no proposals."""
+_TIMES_MISSED: Final = 10
+"""No proposal is further from the drawing than so many times what the drawing misses."""
 _TIMES_NOISE: Final = 100
 """Recognising coordinates must not move one by more than this many times the largest defect."""
+_NONE_NEAR: Final = "no relation between creases holds nearly but not exactly"
 
 
 def meaning(found: Opened, written: Callable[[], Opened]) -> Opened:
@@ -25,15 +32,32 @@ def meaning(found: Opened, written: Callable[[], Opened]) -> Opened:
 
     Digits are inexact if relations between creases hold nearly but not exactly. `written` reads the
     sheet with its digits as written. If no sheet can be inferred, `found` is returned, and its
-    `doubt` says why.
+    `doubt` says why. If the reading asks for relations, they are listed in the lines of the sheet.
     """
     reading = found.reading
+    if reading.snap == "exact" and reading.overrules:
+        raise UsageError(
+            "--snap exact takes the digits as written: leave out --without, --also, --noise and "
+            "--unit"
+        )
+    return _with_relations(_meaning(found, written))
+
+
+def _with_relations(known: Opened) -> Opened:
+    """The same sheet; its lines list the relations if the reading asks for them."""
+    if not known.reading.relations:
+        return known
+    if known.meant is not None:
+        listed = known.meant.listed
+    else:
+        listed = off_by(left_relations(known.sheet)) or (_NONE_NEAR,)
+    return replace(known, lines=known.lines + listed, seen=known.seen + listed)
+
+
+def _meaning(found: Opened, written: Callable[[], Opened]) -> Opened:
+    """`meaning` without a list of the relations."""
+    reading = found.reading
     if reading.snap == "exact":
-        if reading.overrules:
-            raise UsageError(
-                "--snap exact takes the digits as written: leave out --without, --also, --noise "
-                "and --unit"
-            )
         return found
     left = left_relations(found.sheet)
     if not left and not reading.overrules:
@@ -54,15 +78,15 @@ def meaning(found: Opened, written: Callable[[], Opened]) -> Opened:
         )
     meant = inferred(sheet, reading)
     if meant.realized is None or meant.realized.sheet is None:
-        meant = replace(meant, left=left)
-        lines = meant.listed if reading.relations else ()
-        return replace(found, meant=meant, lines=found.lines + lines)
+        return replace(found, meant=replace(meant, left=left))
     exact = meant.realized.sheet
     lines = tuple(line for line in raw.lines if not line.startswith("coordinates kept"))
     return replace(
         raw,
-        sheet=_triangles(exact),
-        lines=(*lines, *meant.lines, *(meant.listed if reading.relations else ())),
+        sheet=_triangles(exact) if meant.existence == "exact" else exact,
+        lines=(*lines, *meant.lines),
+        brief=_with_coordinates(raw, meant.brief),
+        seen=(*raw.seen, *meant.held),
         largest_move=meant.distance or 0.0,
         field_name=exact.field_name,
         meant=meant,
@@ -98,13 +122,68 @@ def recognised(found: Opened) -> Opened | None:
         return None
     if left_relations(sheet) or len(sheet.faces) != len(found.sheet.triangles):
         return None
-    return replace(
-        found,
-        sheet=_triangles(sheet),
-        lines=(*found.lines, known.text),
-        largest_move=known.largest_move,
-        field_name=sheet.field_name,
+    return _with_relations(
+        replace(
+            found,
+            sheet=_triangles(sheet),
+            lines=(*found.lines, known.text),
+            brief=_with_coordinates(found, known.brief),
+            largest_move=known.largest_move,
+            field_name=sheet.field_name,
+        )
     )
+
+
+def proposals(found: Opened, seconds: float) -> list[tuple[float, Opened]]:
+    """Exact sheets near a drawing without a clear noise level, each with a level that gives it.
+
+    The levels are those at the widest gaps between the relations that the drawing misses, the
+    widest first. A sheet that still nearly has relations is left out, and so is one that is far
+    from the drawing for what this misses. After `seconds` no other level is tried. The list is
+    empty if the sheet that was meant is known, or if something was said about it.
+    """
+    reading = found.reading
+    if not found.doubt or found.again is None or reading.overrules or reading.snap == "exact":
+        return []
+    if isinstance(reading.snap, int) or len(found.sheet.edges) > _MOST_EDGES:
+        return []
+    end = time.monotonic() + seconds
+    try:
+        raw = found.again(reading.as_written)
+    except (FoldError, PatternError):
+        return []
+    made: list[tuple[float, Opened]] = []
+    for level in _levels(panels(raw.sheet) if isinstance(raw.sheet, CreasePattern) else raw.sheet):
+        if time.monotonic() > end:
+            break
+        opened = found.again(replace(reading, noise=level))
+        meant = opened.meant
+        if meant is None or not meant.inferred or opened.doubt:
+            continue
+        missed = max(relation.defect for relation in meant.relations)
+        if opened.largest_move <= _TIMES_MISSED * missed:
+            made.append((level, opened))
+    return made
+
+
+def _levels(sheet: PanelPattern) -> list[float]:
+    from exactfold.exact.surds import rational
+    from exactfold.pattern.drawing.meant.drawn import NEAR, Drawn
+    from exactfold.pattern.drawing.meant.levels import proposed_levels
+    from exactfold.pattern.drawing.meant.local import local_relations
+
+    if sheet.field.radicands:
+        return []
+    points = [(rational(x), rational(y)) for x, y in sheet.vertices]
+    drawn = Drawn(points, sheet.edges, frozenset(sheet.boundary_edges))
+    defects = [relation.defect for relation, _ in local_relations(drawn)[0]]
+    return proposed_levels(defects, NEAR * min(drawn.lengths.values()))
+
+
+def _with_coordinates(found: Opened, coordinates: str) -> tuple[str, ...]:
+    """The words of `brief` with these about the coordinates."""
+    lines, _, *more = found.brief or (counted(len(found.sheet.edges), "line"), "")
+    return lines, coordinates, *more
 
 
 def _triangles(exact: PanelPattern) -> CreasePattern | PanelPattern:

@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, Final, TypedDict
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final, TypeAlias, TypedDict
 
 from exactfold._support.documents import Natural, NotNegative
 from exactfold._support.plurals import agreeing, counted
 from exactfold.errors import NotApplicableError
 from exactfold.exact.numbers import decimal_above
-from exactfold.pattern.drawing.meant.left import left_relations, nearly
+from exactfold.pattern.drawing.meant.left import left_relations, nearly, off_by
 from exactfold.pattern.drawing.meant.values import Existence, Kind, Relation
 
 if TYPE_CHECKING:
     from exactfold.pattern.drawing.meant.inference import Inference
+    from exactfold.pattern.drawing.meant.values import Angles
     from exactfold.pattern.meant_sheet import Realized
     from exactfold.pattern.panel_pattern import PanelPattern
     from exactfold.pattern.reading import Reading
@@ -32,6 +34,7 @@ _DISTANT: Final[tuple[Kind, ...]] = ("sectors", "mirrored", "parallel", "grid")
 """The kinds of relations on which no closing condition depends, as they are left out at need."""
 
 _MOST_EDGES: Final = 1000
+_Make: TypeAlias = "Callable[[PanelPattern, Angles, float], Realized]"
 
 
 class RelationDocument(TypedDict):
@@ -62,7 +65,8 @@ class MeantDocument(TypedDict):
     distance: NotNegative | None
     """The largest distance of a vertex from the drawing, by its size."""
     existence: Existence
-    """How a sheet with all relations was proved to exist."""
+    """How a sheet with all relations was proved to exist: by exact coordinates, or by exact
+    directions of its folds and boxes that contain its vertices."""
     left_out: list[RelationDocument]
     """Relations that were found, too, but no exact sheet that has them."""
     left: list[RelationDocument]
@@ -104,7 +108,7 @@ class Meant:
     @property
     def inferred(self) -> bool:
         """Whether the sheet of the answer is the sheet that was meant, not the drawing itself."""
-        return self.existence == "exact"
+        return self.existence != "none"
 
     @property
     def doubt(self) -> str:
@@ -145,21 +149,38 @@ class Meant:
         lines.append(
             f"within {self._within} of the drawing there is a sheet with all of them - PROVED"
         )
+        if self.existence == "box":
+            lines.append(
+                "the directions of its folds are exact; the positions of its vertices are enclosed"
+            )
         if self.left_out:
             lines.append(
                 f"{counted(len(self.left_out), 'more relation')} such as {self.left_out[0].name} "
                 f"{agreeing(len(self.left_out), 'is')} nearly true, but no exact sheet with all "
                 "relations was found; no condition at a vertex needs them"
             )
-        for name, others in self.implied.items():
-            lines.append(f"{name} holds all the same, because of {', '.join(others)}")
-        return tuple(lines)
+        return (*lines, *self.held)
+
+    @property
+    def held(self) -> tuple[str, ...]:
+        """The relations that were deleted and hold all the same, one sentence each."""
+        return tuple(
+            f"{name} holds all the same, because of {', '.join(others)}"
+            for name, others in self.implied.items()
+        )
+
+    @property
+    def brief(self) -> str:
+        """What was inferred, in a few words."""
+        inexact = "" if self.noise is None else f"inexact by {self.noise:.0e}, "
+        relations = counted(len(self.relations), "relation")
+        enclosed = ", positions enclosed" if self.existence == "box" else ""
+        return f"{inexact}{relations} inferred, moved by up to {self._within}{enclosed}"
 
     @property
     def listed(self) -> tuple[str, ...]:
         """The relations, or those that nearly hold if none was inferred, one line each."""
-        shown = self.relations if self.inferred else self.left
-        return tuple(f"{one.name} is off by {one.defect:.1e}" for one in shown)
+        return off_by(self.relations if self.inferred else self.left)
 
     def certificate(self) -> dict[str, Any]:
         """The certificate that the sheet exists near the drawing and has all relations.
@@ -215,24 +236,34 @@ def inferred(written: PanelPattern, reading: Reading) -> Meant:
 
     `written` is the sheet with the digits as written; its coordinates are rational. If no exact
     sheet is found that has all relations, those between distant edges are left out, in the order of
-    `_DISTANT`; this is done for sheets of up to 1,000 edges. Raises the errors of `infer` for
-    relations that do not exist or contradict each other.
+    `_DISTANT`; this is done for sheets of up to 1,000 edges. If that does not help, positions are
+    enclosed, with all relations or without all between distant edges. Raises the errors of `infer`
+    for relations that do not exist or contradict each other.
     """
+    from exactfold.pattern.meant_sheet import enclose, realize, recognise
+
     all_found = _found(written, reading, ())
-    meant = _realized(written, all_found)
-    attempts = len(_DISTANT) if len(written.edges) <= _MOST_EDGES else 0
-    for number in range(1, attempts + 1):
-        if all_found.angles is None or meant.inferred:
-            break
-        kinds_found = {relation.kind for relation in all_found.relations}
-        dropped = [kind for kind in _DISTANT[:number] if kind in kinds_found]
-        if not dropped or dropped[-1] != _DISTANT[number - 1]:
-            continue
-        fewer = _realized(written, _found(written, reading, dropped))
+    first = meant = _realized(written, all_found, realize)
+    if all_found.angles is None or meant.inferred:
+        return meant
+
+    def without(dropped: Sequence[Kind], make: _Make) -> Meant:
+        fewer = _realized(written, _found(written, reading, dropped), make)
         kept = {relation.name for relation in fewer.relations}
         out = tuple(one for one in all_found.relations if one.name not in kept)
-        meant = replace(fewer, left_out=out)
-    return meant
+        return replace(fewer, left_out=out)
+
+    meant = _realized(written, all_found, partial(recognise, relations=all_found.relations))
+    kinds_found = {relation.kind for relation in all_found.relations}
+    distant = [kind for kind in _DISTANT if kind in kinds_found]
+    attempts = len(distant) if len(written.edges) <= _MOST_EDGES else 0
+    for number in range(1, attempts + 1):
+        if not meant.inferred:
+            meant = without(distant[:number], realize)
+    for dropped in ([], distant) if distant else ([],):
+        if not meant.inferred:
+            meant = without(dropped, enclose)
+    return meant if meant.inferred else replace(meant, reason=first.reason)
 
 
 def _found(written: PanelPattern, reading: Reading, dropped: Sequence[Kind]) -> Inference:
@@ -249,9 +280,12 @@ def _found(written: PanelPattern, reading: Reading, dropped: Sequence[Kind]) -> 
     )
 
 
-def _realized(written: PanelPattern, found: Inference) -> Meant:
-    from exactfold.pattern.meant_sheet import realize
-
+def _realized(
+    written: PanelPattern,
+    found: Inference,
+    make: _Make,
+) -> Meant:
+    """What is known of the sheet that was meant, once `make` looked for it."""
     known = Meant(
         noise=found.noise or None,
         clear=found.clear,
@@ -264,7 +298,7 @@ def _realized(written: PanelPattern, found: Inference) -> Meant:
     )
     if found.angles is None:
         return known
-    made = realize(written, found.angles, found.noise)
+    made = make(written, found.angles, found.noise)
     known = replace(known, free_angles=len(found.angles.free), realized=made, reason=made.reason)
     if made.sheet is None:
         return known

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from math import cos, hypot, log10, pi, sin
+from math import cos, hypot, log2, log10, pi, sin
 from typing import Any, Final, TypeAlias
 
 import numpy as np
@@ -23,15 +23,29 @@ from exactfold.errors import (
 from exactfold.exact.numbers import decimal_above, format_rational
 from exactfold.exact.surds import Number, Surd, sign, simple
 from exactfold.pattern.drawing.meant.constructing import constructed
-from exactfold.pattern.drawing.meant.directions import Directions, in_a_tower, parts_of
+from exactfold.pattern.drawing.meant.directions import (
+    Directions,
+    Vector,
+    in_a_tower,
+    parts_of,
+    with_a_one,
+)
+from exactfold.pattern.drawing.meant.enclosing import Enclosed, enclosed, keeps_faces
+from exactfold.pattern.drawing.meant.integral import with_integers
 from exactfold.pattern.drawing.meant.peeling import Lines
-from exactfold.pattern.drawing.meant.positions import Point, bound_edges, placed_together
-from exactfold.pattern.drawing.meant.refining import refined
+from exactfold.pattern.drawing.meant.positions import NO_PLACES, Point, bound_edges, placed_together
+from exactfold.pattern.drawing.meant.refining import Refined, refined
+from exactfold.pattern.drawing.meant.solving import holds, recognised_positions
 from exactfold.pattern.drawing.meant.values import Angles, Edge, Existence, Relation
 from exactfold.pattern.panel_entries import panels_document
-from exactfold.pattern.panel_pattern import PanelPattern
+from exactfold.pattern.panel_pattern import EnclosedPattern, PanelPattern
 
 Written: TypeAlias = tuple[tuple[Fraction, Fraction], ...]
+_SHARP: Final = 1e-12
+"""Free angles of a sheet with enclosed positions are rounded this little, in radians."""
+_FAR: Final = 100
+"""A sheet with enclosed positions is not near the drawing if it is off by so many times the noise.
+"""
 _LEAST: Final = 1e-300
 """A move that floats cannot tell from 0 is proposed to be this long."""
 
@@ -41,8 +55,9 @@ class Realized:
     """The sheet with exact angles near a drawing, or why none was found.
 
     `drawn` is the drawing as written, and `sheet` is the exact sheet; no vertex is further from its
-    written point than `distance` times the larger side of the drawing. If `existence` is "none", no
-    sheet was found, and `reason` says why.
+    written point than `distance` times the larger side of the drawing. If `existence` is "box",
+    only the directions of `sheet` are exact, and its positions are enclosed (`EnclosedPattern`). If
+    it is "none", no sheet was found, and `reason` says why.
     """
 
     drawn: PanelPattern
@@ -78,12 +93,10 @@ def realize(drawn: PanelPattern, angles: Angles, noise: float) -> Realized:
     ('exact', True, True)
     """
     written = tuple(_written(point) for point in drawn.vertices)
+    if not in_a_tower(parts_of(angles)):
+        angles = with_integers(angles)
     if not in_a_tower(parts := parts_of(angles)):
-        return _none(
-            drawn,
-            f"some angles are multiples of pi/{parts}, and these have directions in no small tower "
-            "of square roots",
-        )
+        return _none(drawn, _no_tower(parts))
     points = _exact_points(written, angles, noise)
     return _none(drawn, points) if isinstance(points, str) else _compared(drawn, written, points)
 
@@ -99,10 +112,7 @@ def _exact_points(written: Written, angles: Angles, noise: float) -> list[Point]
         return points
     near = refined(places, angles, bound, noise)
     if not near.exists:
-        return (
-            "no sheet near the drawing seems to have all relations: in floats, edges still miss "
-            f"their directions by {near.off:.1g} of the size"
-        )
+        return _missed(near)
     for recognise in (True, False):
         directions = Directions(angles, near.free, noise, recognise=recognise)
         points = placed_together(written, places, directions, whole, noise)
@@ -111,6 +121,115 @@ def _exact_points(written: Written, angles: Angles, noise: float) -> list[Point]
     directions = Directions(angles, near.free, noise)
     lines = _lines(directions, angles, near.free, bound)
     return constructed(written, near.places, directions, lines, bound, noise)
+
+
+def recognise(
+    drawn: PanelPattern, angles: Angles, noise: float, relations: Iterable[Relation]
+) -> Realized:
+    """The exact sheet near a drawing that has all relations, if its coordinates are short.
+
+    The coordinates are recognised from many digits, which Newton's method finds. The relations are
+    then checked exactly. Raises `UsageError` if the coordinates of the drawing are irrational.
+    """
+    written = tuple(_written(point) for point in drawn.vertices)
+    if not in_a_tower(parts_of(angles)):
+        angles = with_integers(angles)
+    bound = bound_edges(angles)
+    near = refined(np.array([(float(x), float(y)) for x, y in written]), angles, bound, noise)
+    points = recognised_positions(written, near, angles, bound, noise) if near.exists else None
+    if points is None:
+        return _none(drawn, "its coordinates are no short numbers in a field of one square root")
+    if missed := [relation.name for relation in relations if not holds(relation, points)]:
+        return _none(drawn, f"the positions that were recognised miss {missed[0]}")
+    made = _compared(drawn, written, points)
+    return made if made.distance < _FAR * noise else _none(drawn, NO_PLACES)
+
+
+def enclose(drawn: PanelPattern, angles: Angles, noise: float) -> Realized:
+    """The sheet near a drawing whose edges have the given angles, with its positions enclosed.
+
+    Directions are exact, as in `realize`, but positions are known only nearly. Free angles are
+    chosen such that floats find a sheet with these angles. An enclosure proves that there is a
+    sheet near it whose edges have the exact directions. Raises `UsageError` if the coordinates of
+    the drawing are irrational.
+    """
+    written = tuple(_written(point) for point in drawn.vertices)
+    if not in_a_tower(parts_of(angles)):
+        angles = with_integers(angles)
+    if not in_a_tower(parts := parts_of(angles)):
+        return _none(drawn, _no_tower(parts))
+    edges = sorted({*bound_edges(angles), *drawn.folds})
+    places = np.array([(float(x), float(y)) for x, y in written])
+    near = refined(places, angles, edges, noise)
+    reason = _missed(near)
+    for precision, start in ((_SHARP, near.places), (noise, places)):
+        directions = Directions(angles, near.free, precision, recognise=False)
+        found = enclosed(start, directions, edges, precision)
+        if isinstance(found, str):
+            reason = reason or found
+            continue
+        made = _surrounded(drawn, written, directions, edges, found)
+        if made.sheet is not None and made.distance < _FAR * noise:
+            return made
+        reason = reason or made.reason
+    return _none(drawn, reason)
+
+
+def _surrounded(
+    drawn: PanelPattern,
+    written: Written,
+    directions: Directions,
+    edges: Sequence[Edge],
+    found: Enclosed,
+) -> Realized:
+    """The sheet with enclosed positions, if it has the panels of the drawing."""
+    made = _compared(drawn, written, found.points)
+    if made.sheet is None:
+        return made
+    polygons: list[Sequence[Edge]] = [
+        [*zip(face, (*face[1:], face[0]), strict=True)] for face in drawn.faces
+    ]
+    vectors = {edge: _forwards(directions.vector(edge), edge, found) for edge in edges}
+    if None in vectors.values() or not keeps_faces(
+        found.points, [*polygons, drawn.boundary_edges], found.radius
+    ):
+        return _none(drawn, "its positions are not enclosed well enough to tell its panels")
+    known = {edge: vector for edge, vector in vectors.items() if vector is not None}
+    sheet = EnclosedPattern(found.points, drawn.edges, known, found.radius)
+    size = max(max(axis) - min(axis) for axis in zip(*written, strict=True))
+    distance = Fraction(decimal_above(made.distance + found.radius / size, 3))
+    return Realized(drawn, sheet, distance, "box", "")
+
+
+def _forwards(vector: Vector, edge: Edge, found: Enclosed) -> tuple[Number, Number] | None:
+    """The vector, or a multiple of it, as it points from one end of the edge to the other.
+
+    It has nearly the length of the edge. None if the enclosure does not tell where it points.
+    """
+    (ax, ay), (bx, by) = (found.points[v] for v in edge)
+    x, y = with_a_one(vector)
+    along = x * (bx - ax) + y * (by - ay)
+    square = x * x + y * y
+    if sign(along * along - 4 * found.radius**2 * square) <= 0:
+        return None
+    scale = Fraction(2) ** round(log2(abs(float(along / square)))) * sign(along)
+    return simple(x * scale), simple(y * scale)
+
+
+def _no_tower(parts: int) -> str:
+    return (
+        f"some angles are multiples of pi/{parts}, and these have directions in no small tower of "
+        "square roots"
+    )
+
+
+def _missed(near: Refined) -> str:
+    if near.exists:
+        return ""
+    return (
+        "no sheet near the drawing seems to have all relations: in floats, edges still miss their "
+        f"directions by {near.off:.1g} of the size"
+    )
 
 
 def _lines(
@@ -191,7 +310,7 @@ def _none(drawn: PanelPattern, reason: str) -> Realized:
 
 
 def _compared(
-    drawn: PanelPattern, written: Written, points: Sequence[tuple[Surd, Surd]]
+    drawn: PanelPattern, written: Written, points: Sequence[tuple[Number, Number]]
 ) -> Realized:
     """The sheet with these points, if it has the panels of the drawing."""
     try:
@@ -205,7 +324,7 @@ def _compared(
     return Realized(drawn, sheet, _distance(written, points), "exact", "")
 
 
-def _distance(written: Written, points: Sequence[tuple[Surd, Surd]]) -> Fraction:
+def _distance(written: Written, points: Sequence[tuple[Number, Number]]) -> Fraction:
     """An upper bound of how far points moved, relative to the larger side.
 
     Floats propose three digits, and the bound is doubled until exact squares confirm it.

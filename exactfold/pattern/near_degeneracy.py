@@ -23,8 +23,6 @@ class WarningDocument(TypedDict):
 
     vertices: Several[Natural]
     """The vertices at which relations nearly hold."""
-    snap: None
-    """Always null; earlier versions named a denominator here."""
     text: str
 
 
@@ -43,7 +41,7 @@ class NearDegeneracy:
         """The warning as JSON: the vertices and the text."""
         shared = (set[int].intersection(*(set(e) for e, _ in r.terms)) for r in self.relations)
         vertices = sorted({v for vertices in shared for v in vertices})
-        return {"vertices": vertices, "snap": None, "text": self.text}
+        return {"vertices": vertices, "text": self.text}
 
     def __repr__(self) -> str:
         return f"<NearDegeneracy: {nearly(self.relations)}>"

@@ -37,9 +37,10 @@ class Opened(Picture):
     `sheet` is a `CreasePattern` if all faces are triangles with rational corners, else a
     `PanelPattern`. `assignment` holds the letters of the file by edge. `lines` has one sentence
     each for what was read, how coordinates were made exact, and each repair; it is empty if the
-    file needed nothing. `snapped` is the largest change of a coordinate by `snap`. `again` reads
-    the sheet once more with another `Reading` than `reading`; it is None for a sheet that was not
-    read from a file.
+    file needed nothing. `brief` says the same in a few words: lines, coordinates, repairs. `seen`
+    has the sentences that nobody should miss, such as creases that are lost. `snapped` is the
+    largest change of a coordinate by `snap`. `again` reads the sheet once more with another
+    `Reading` than `reading`; it is None for a sheet that was not read from a file.
 
     `meant` is None if no relation between creases holds nearly but not exactly. Otherwise the
     digits of the file are inexact, and `meant` says what was inferred from them: either `sheet` is
@@ -49,6 +50,8 @@ class Opened(Picture):
     sheet: CreasePattern | PanelPattern
     assignment: Mapping[Edge, str] = field(default_factory=dict)
     lines: tuple[str, ...] = ()
+    brief: tuple[str, ...] = ()
+    seen: tuple[str, ...] = ()
     snapped: Fraction = Fraction(0)
     largest_move: float = 0.0
     field_name: str = "Q"

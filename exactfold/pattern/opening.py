@@ -43,6 +43,7 @@ if TYPE_CHECKING:
 _FINAL = (NumberError, StaleExactCoordinatesError)
 _OF_EDGES = (MalformedPatternError, DisconnectedError)
 """For these errors of the strict reader, the error of the reader of drawings is raised instead."""
+_BOX = "`--box`, which takes the rectangle round the drawing for the edge of the paper, reads it"
 _FORCE = "`--force` (`force=True` in Python) reads the sheet all the same"
 
 
@@ -89,9 +90,18 @@ def opened(raw: bytes, name: str, reading: Reading = PLAIN) -> Opened:
             strict = error
         else:
             again = partial(opened, raw, name)
-            lines = _joined(file, name)
+            joined = _joined(file)
+            number = counted(len(file.pattern.edges), "line")
+            read = f"read {Path(name).name}: FOLD, triangulated, as it stands: {joined}"
             found = Opened(
-                file.pattern, file.assignment, lines, file.snapped, reading=reading, again=again
+                file.pattern,
+                file.assignment,
+                (read,) if joined else (),
+                (number, "triangulated, as it stands") if joined else (),
+                (joined,) if joined else (),
+                snapped=file.snapped,
+                reading=reading,
+                again=again,
             )
             if all(file.assignment.get(fold) != "C" for fold in file.pattern.folds):
                 return recognised(found) or meaning(found, lambda: found)
@@ -114,8 +124,9 @@ def opened(raw: bytes, name: str, reading: Reading = PLAIN) -> Opened:
         raise
 
 
-def _joined(file: FoldFile, name: str) -> tuple[str, ...]:
-    """The remark on letters F and J in a sheet of triangles that may mean panels of triangles.
+def _joined(file: FoldFile) -> str:
+    """The remark on letters F and J in a sheet of triangles that may mean panels of triangles;
+    empty if there is none.
 
     J has this meaning by itself. F has it only beside M and V: if no fold has a direction, F says
     no more than U.
@@ -123,11 +134,10 @@ def _joined(file: FoldFile, name: str) -> tuple[str, ...]:
     letters = [file.assignment.get(fold, "U") for fold in file.pattern.folds]
     flat = sum(letter in "FJ" for letter in letters)
     if not flat or not {"M", "V", "J"} & set(letters):
-        return ()
+        return ""
     return (
-        f"read {Path(name).name}: FOLD, triangulated, as it stands: {counted(flat, 'fold')} with "
-        f"the letter F or J may bend like any other (`exactfold convert --repair` joins the panels "
-        "across them)",
+        f"{counted(flat, 'fold')} with the letter F or J may bend like any other (`exactfold "
+        "convert --repair` joins the panels across them)"
     )
 
 
@@ -169,10 +179,28 @@ def from_drawing(drawing: Drawing, reading: Reading = PLAIN) -> Opened:
             again = partial(from_drawing, drawing)
             found = replace(_chosen(given, sheets, reading), reading=reading, again=again)
             return meaning(found, lambda: from_drawing(drawing, reading.as_written))
-        except (FoldError, PatternError):
-            if k == len(tried):
+        except (FoldError, PatternError, MalformedDrawingError) as error:
+            if k == len(tried) or isinstance(error, MalformedDrawingError):
+                remedies = [_BOX] if _box_helps(drawing, reading, error) else []
+                remedies += [_FORCE] if isinstance(error, MalformedDrawingError) else []
+                error.args = ("; ".join((str(error), *remedies)), *error.args[1:])
                 raise
     raise UsageError("no steps of repair were given: name at least one, or give 'all'")
+
+
+def _box_helps(drawing: Drawing, reading: Reading, error: Exception) -> bool:
+    """Whether a drawing that cannot be read could be read with a rectangle round it."""
+    if (
+        reading.box
+        or reading.number is not None
+        or not isinstance(error, MalformedPatternError | MalformedDrawingError)
+    ):
+        return False
+    try:
+        found = from_drawing(drawing, replace(reading.as_written, box=True))
+    except InputError:
+        return False
+    return bool(found.sheet.folds)
 
 
 def _chosen(drawing: Drawing, sheets: Sheets, reading: Reading) -> Opened:
@@ -182,7 +210,7 @@ def _chosen(drawing: Drawing, sheets: Sheets, reading: Reading) -> Opened:
     folds; with `force`, the first line says so instead.
     """
     from exactfold.pattern.drawing.chosen import chosen
-    from exactfold.pattern.drawing.losses import missing
+    from exactfold.pattern.drawing.losses import brief, loud, missing
     from exactfold.pattern.panel_pattern import PanelPattern
 
     k = chosen(sheets.sheets, reading.number)
@@ -192,16 +220,21 @@ def _chosen(drawing: Drawing, sheets: Sheets, reading: Reading) -> Opened:
         (min(line.start, line.end), max(line.start, line.end)): line.letter for line in sheet.lines
     }
     lines = [drawing.source, *drawing.remarks, sheets.coordinates.text]
+    seen = loud(drawing, sheets)
     loss = missing(drawing, sheets, k, folds=bool(pattern.folds))
     if loss is not None:
         if not reading.force:
-            raise MalformedDrawingError(f"{loss}; {_FORCE}")
+            left_out = () if pattern.folds else drawing.remarks
+            raise MalformedDrawingError("; ".join((loss, *left_out)))
         lines.insert(0, f"warning: {loss}")
+        seen = (lines[0], *seen)
     lines += [str(repair) for repair in sheets.repairs]
     return Opened(
         triangulated(pattern) or pattern,
         letters,
         tuple(lines),
+        brief(drawing, sheets),
+        seen,
         largest_move=sheets.coordinates.largest_move,
         field_name=pattern.field_name,
     )

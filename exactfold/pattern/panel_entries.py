@@ -10,7 +10,11 @@ from exactfold.pattern.panel_pattern import PanelPattern
 
 
 def panels_document(pattern: PanelPattern) -> dict[str, Any]:
-    """The vertices, as exact numbers in their field, and the edges."""
+    """The vertices, as exact numbers in their field, and the edges.
+
+    Raises `NotApplicableError` for a sheet whose positions are known only nearly.
+    """
+    pattern.check_positions()
     field = pattern.field
     return {
         "radicands": [[format_rational(c) for c in r] for r in field.radicands],

@@ -13,8 +13,8 @@ from typing import Final, TypeAlias
 
 from exactfold._support.notebook import Picture
 from exactfold._support.plurals import counted
-from exactfold.errors import MalformedPatternError, NotADiskError
-from exactfold.exact.numbers import format_rational
+from exactfold.errors import MalformedPatternError, NotADiskError, NotApplicableError
+from exactfold.exact.numbers import decimal_above, format_rational
 from exactfold.exact.surds import Number, Surd, SurdField, common_field
 from exactfold.pattern.planar import counter_clockwise, trace_faces
 
@@ -169,6 +169,9 @@ class PanelPattern(Picture):
         (ax, ay), (bx, by) = self.scaled_vertices[start], self.scaled_vertices[end]
         return bx - ax, by - ay
 
+    def check_positions(self) -> None:
+        """Raises `NotApplicableError` if the positions of vertices are known only nearly."""
+
     def _check_boundary(self) -> None:
         ends: dict[int, int] = {}
         for edge in self.boundary_edges:
@@ -192,16 +195,11 @@ class PanelPattern(Picture):
         `v X... Y...` for each vertex (all coefficients) and `e I J` for each edge. A newline ends
         each line.
         """
-
-        def text(value: Number) -> str:
-            parts = value.coefficients if isinstance(value, Surd) else (Fraction(value),)
-            return " ".join(format_rational(c) for c in parts)
-
         lines = ["exactfold panels 1"]
         lines += ["r " + " ".join(map(format_rational, r)) for r in self.field.radicands]
-        lines += [f"v {text(x)} {text(y)}" for x, y in self.vertices]
+        lines += [f"v {_text(x)} {_text(y)}" for x, y in self.vertices]
         lines += [f"e {i} {j}" for i, j in self.edges]
-        return hashlib.sha256("".join(line + "\n" for line in lines).encode()).hexdigest()
+        return _digest(lines)
 
     def __hash__(self) -> int:
         return hash((len(self.vertices), self.edges))
@@ -214,6 +212,82 @@ class PanelPattern(Picture):
             f"<PanelPattern: {counted(len(self.interior), 'interior vertex')}, "
             f"{counted(len(self.folds), 'fold')}, {counted(len(self.faces), 'panel')}>"
         )
+
+
+@dataclass(frozen=True, init=False, repr=False)
+class EnclosedPattern(PanelPattern):
+    """A sheet whose folds have exact directions, and whose positions are known only nearly.
+
+    There is a sheet with exactly these `directions`, with the faces of this drawing, and with no
+    vertex further than `radius` from its point in `vertices`. Whoever makes an `EnclosedPattern`
+    has proved that. `directions` maps edges (i, j), i < j, to vectors from i to j, of any length;
+    it has all folds. Everything that depends on the directions of folds alone, such as the ways to
+    fold rigid panels, is exact for this sheet. Positions are not, and no certificate has them.
+    """
+
+    directions: Mapping[Edge, Point]
+    radius: Fraction
+
+    def __init__(
+        self,
+        vertices: Iterable[Sequence[Number]],
+        edges: Iterable[Edge],
+        directions: Mapping[Edge, Point],
+        radius: Fraction,
+    ) -> None:
+        super().__init__(vertices, edges)
+        if missing := [fold for fold in self.folds if fold not in directions]:
+            raise MalformedPatternError(f"fold {missing[0][0]}-{missing[0][1]} has no direction")
+        object.__setattr__(self, "directions", MappingProxyType(dict(directions)))
+        object.__setattr__(self, "radius", radius)
+
+    @property
+    def field(self) -> SurdField:
+        """The field that contains all directions."""
+        return common_field(c for vector in self.directions.values() for c in vector)
+
+    def direction(self, start: int, end: int) -> Point:
+        """A vector along a fold from one end to the other, of any length."""
+        if start < end:
+            return self.directions[start, end]
+        x, y = self.directions[end, start]
+        return -x, -y
+
+    def check_positions(self) -> None:
+        """Raises `NotApplicableError`."""
+        raise NotApplicableError(
+            "the folds of the inferred sheet have exact directions, but the exact positions of its "
+            "vertices are too long to be written down; they are known only within "
+            f"{decimal_above(self.radius, 1)}"
+        )
+
+    @cached_property
+    def sha256(self) -> str:
+        """The digest of the points, the radius, the edges and the exact directions."""
+        lines = ["exactfold enclosed panels 1", f"within {format_rational(self.radius)}"]
+        lines += ["r " + " ".join(map(format_rational, r)) for r in self.field.radicands]
+        lines += [f"v {_text(x)} {_text(y)}" for x, y in self.vertices]
+        lines += [f"e {i} {j}" for i, j in self.edges]
+        lines += [f"d {i} {j} {_text(x)} {_text(y)}" for (i, j), (x, y) in self._sorted()]
+        return _digest(lines)
+
+    def _sorted(self) -> list[tuple[Edge, Point]]:
+        return sorted(self.directions.items(), key=lambda item: item[0])
+
+    def __hash__(self) -> int:
+        return super().__hash__()
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return EnclosedPattern, (self.vertices, self.edges, dict(self.directions), self.radius)
+
+
+def _text(value: Number) -> str:
+    parts = value.coefficients if isinstance(value, Surd) else (Fraction(value),)
+    return " ".join(format_rational(c) for c in parts)
+
+
+def _digest(lines: Iterable[str]) -> str:
+    return hashlib.sha256("".join(line + "\n" for line in lines).encode()).hexdigest()
 
 
 def _exact(value: Number) -> Number:

@@ -1,84 +1,217 @@
-"""Count every crease pattern below a folder, and print what was read, answered and proved.
+"""Count every crease pattern below a folder, with this program and with an older one.
 
-python tests/benchmarks/real_files.py FOLDER [--only TEXT]
+python tests/benchmarks/real_files.py FOLDER [--against COMMIT] [--only TEXT] [--keep FOLDER]
 
-Every file is a process of its own, ended after 60 seconds. The last table is one of docs/panels.md.
+Every file is a process of its own, ended after 60 seconds. The answers are kept below `--keep`, one
+file of JSON lines a program, so that an interrupted run goes on where it stopped. The tables at the
+end are those of docs/panels.md, section 7.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
+import os
 import subprocess
 import sys
+import tempfile
 import time
 from collections import Counter
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from exactfold._support.plurals import counted
 from exactfold.pattern.drawing.formats.read import READERS
 
 LIMIT = 60
+HERE = Path(__file__).resolve().parents[2]
 KINDS = (
-    "rigid, proved",
-    "all ways to fold, proved",
-    "all motions to second order, proved",
-    "facts and UNDECIDED",
+    "complete",
+    "in part",
     "refused",
+    "UNDECIDED, nothing more",
     f"not ended in {LIMIT} s",
     "defect",
 )
+REASONS = {
+    "SeveralSheetsError": "several sheets",
+    "NotADiskError": "holes",
+    "FoldedStateError": "a folded state",
+    "FoldError": "border lines between panels",
+    "DisconnectedError": "lines that do not meet",
+    "MalformedPatternError": "creases that end inside panels",
+    "MalformedDrawingError": "creases that vanish, or no folds",
+}
+Line = dict[str, Any]
 
 
-def counted(path: Path) -> tuple[str, str]:
-    """The kind of answer, and what it says."""
-    command = [sys.executable, "-m", "exactfold", "count", str(path), "--json"]
+def answered(path: Path, source: Path) -> Line:
+    """What `exactfold count` of the program below `source` answers."""
+    command = [sys.executable, "-m", "exactfold", "count", str(path.resolve()), "--json"]
+    began = time.perf_counter()
     try:
-        done = subprocess.run(command, capture_output=True, text=True, timeout=LIMIT, check=False)
+        done = subprocess.run(
+            command,
+            capture_output=True,
+            text=True,
+            timeout=LIMIT,
+            check=False,
+            cwd=source,
+            env={**os.environ, "PYTHONPATH": str(source)},
+        )
     except subprocess.TimeoutExpired:
-        return KINDS[5], ""
-    if done.returncode == 3:
-        return KINDS[4], done.stderr.strip().splitlines()[-1]
-    if done.returncode not in (0, 4):
-        return KINDS[6], f"exit code {done.returncode}: {done.stderr.strip()[-200:]}"
-    return answer(json.loads(done.stdout))
+        return {"code": None, "seconds": LIMIT, "result": None, "error": ""}
+    seconds = round(time.perf_counter() - began, 1)
+    result = json.loads(done.stdout) if done.stdout.startswith("{") else None
+    return {
+        "code": done.returncode,
+        "seconds": seconds,
+        "result": result,
+        "error": done.stderr.strip(),
+    }
 
 
-def answer(result: dict[str, Any]) -> tuple[str, str]:
-    """The kind of a result, and its components."""
+def known_in_part(result: Line) -> list[str]:
+    """What is proved of a sheet whose ways are not all known."""
+    known = []
+    freedom, drawn = result.get("freedom") or {}, result.get("drawn") or {}
+    if drawn.get("starts") in ("proved", "refuted"):
+        known.append(f"drawn letters {drawn['starts']}")
+    if freedom and (freedom["least"] or not freedom["most"]):
+        known.append(f"{freedom['least']} to {freedom['most']} degrees of freedom")
+    found = result["components"] or {}
+    ways = found.get("found_true") or found.get("found") or {}
+    if ways:
+        known.append(f"at least {counted(sum(ways.values()), 'way')}")
+    return known
+
+
+def refused_for(line: Line) -> str:
+    """Why a file was refused, in a few words; programs before errors had classes say nothing."""
+    if line["result"] is None:
+        return ""
+    error = line["result"]["error"]
+    if "creases must be straight" in error["message"]:
+        return "curves"
+    return REASONS.get(error["class"], str(error["class"]))
+
+
+def kind_of(line: Line) -> tuple[str, str]:
+    """The kind of an answer, and what it says."""
+    code, result = line["code"], line["result"]
+    if code is None:
+        return KINDS[4], ""
+    if code == 3:
+        return KINDS[2], refused_for(line)
+    if result is None:
+        return KINDS[5], f"exit code {code}"
     components = result["components"] or {}
-    theory = result["theory"]
-    if result["rigid"]:
-        return KINDS[0], theory
-    if result["status"] == "proved" and (theory == "branches" or components["true"]):
-        return KINDS[1], f"{theory} {components.get('true') or result['distinct']}"
-    if result["status"] == "proved":
-        return KINDS[2], f"{theory} {components['second_order']}"
-    return KINDS[3], result["reason"]
+    if code in (0, 1):
+        if result["rigid"]:
+            return KINDS[0], "rigid"
+        if result["distinct"] is not None:
+            return KINDS[0], counted(result["distinct"], "branch")
+        if result["pieces"]:
+            graphs = counted(result["pieces"]["graphs"], "graph")
+            return KINDS[0], f"{graphs} of dimension {result['dimension']}"
+        spaces = components["true"] or components["second_order"]
+        said = ", ".join(f"{number} of dimension {k}" for k, number in spaces.items())
+        return KINDS[0], said + ("" if components["true"] else ", to second order")
+    known = known_in_part(result)
+    return (KINDS[1], "; ".join(known)) if known else (KINDS[3], "")
+
+
+def withdrawn(before: Line, now: Line) -> bool:
+    """Whether a complete answer of before has changed: it was about noise or lost creases."""
+    return kind_of(before)[0] == KINDS[0] and kind_of(before) != kind_of(now)
+
+
+@contextmanager
+def program(commit: str | None) -> Iterator[Path]:
+    """The folder of the program of a commit; None stands for this one."""
+    if commit is None:
+        yield HERE
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        tree = Path(folder) / "old"
+        git = ["git", "-C", str(HERE), "worktree"]
+        subprocess.run([*git, "add", "-q", "--detach", str(tree), commit], check=True)
+        try:
+            yield tree
+        finally:
+            subprocess.run([*git, "remove", "--force", str(tree)], check=True)
+
+
+def answers(paths: list[Path], folder: Path, commit: str | None, keep: Path) -> dict[str, Line]:
+    """The answer to every file by name, from the file of answers where it is there."""
+    kept: dict[str, Line] = {}
+    if keep.exists():
+        kept = {line["file"]: line for line in map(json.loads, keep.open())}
+    with program(commit) as source, keep.open("a") as out:
+        for path in paths:
+            name = str(path.relative_to(folder))
+            if name in kept:
+                continue
+            line = {"file": name, **answered(path, source)}
+            out.write(json.dumps(line) + "\n")
+            out.flush()
+            kept[name] = line
+            print(f"{line['seconds']:5.1f} s  {kind_of(line)[0]}  {name}", flush=True)
+    return {str(path.relative_to(folder)): kept[str(path.relative_to(folder))] for path in paths}
+
+
+def print_summary(programs: dict[str, dict[str, Line]]) -> None:
+    """Print how many files have each kind of answer."""
+    print(f"\n| answer | {' | '.join(programs)} |\n|---|{'---:|' * len(programs)}")
+    kinds = [Counter(kind_of(line)[0] for line in lines.values()) for lines in programs.values()]
+    for kind in KINDS:
+        print(f"| {kind} | {' | '.join(str(count[kind]) for count in kinds)} |")
+    slowest = [max(line["seconds"] for line in lines.values()) for lines in programs.values()]
+    print(f"| slowest file, in seconds | {' | '.join(map(str, slowest))} |")
+    if len(programs) == 2:
+        before, now = programs.values()
+        noise = sum(withdrawn(before[name], now[name]) for name in now)
+        print(f"\nOf the complete answers before, {noise} are withdrawn or changed (*):")
+        print("they were about noise or lost creases.")
+
+
+def print_files(programs: dict[str, dict[str, Line]]) -> None:
+    """Print a row for each file."""
+    print(f"\n| file | {' | '.join(programs)} |\n|---|{'---|' * len(programs)}")
+    first, *_, now = programs.values()
+    for name in now:
+        cells = []
+        for lines in programs.values():
+            kind, said = kind_of(lines[name])
+            star = "*" if lines is not now and withdrawn(first[name], now[name]) else ""
+            cells.append((f"{kind}: {said}" if said else kind) + star)
+        print(f"| {name} | {' | '.join(cells)} |")
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", type=Path)
+    parser.add_argument("--against", metavar="COMMIT", help="an older program, run beside this one")
     parser.add_argument("--only", default="", help="only paths with this text")
+    parser.add_argument("--keep", type=Path, default=Path("real-files"), help="where answers go")
     arguments = parser.parse_args()
-    kinds: Counter[str] = Counter()
-    formats: Counter[tuple[str, str]] = Counter()
-    for path in sorted(arguments.folder.rglob("*")):
-        ending = path.suffix.lower().removeprefix(".")
-        if ending not in READERS or not path.is_file() or arguments.only not in str(path):
-            continue
-        began = time.perf_counter()
-        kind, said = counted(path)
-        kinds[kind] += 1
-        formats[ending, "refused" if kind == KINDS[4] else "read"] += 1
-        print(f"{time.perf_counter() - began:5.1f} s  {kind}  {path.name}: {said}", flush=True)
-    print("\n| answer | files |\n|---|---:|")
-    for kind in KINDS:
-        print(f"| {kind} | {kinds[kind]} |")
-    print("\n| format | outcome | files |\n|---|---|---:|")
-    for (ending, outcome), number in sorted(formats.items()):
-        print(f"| {ending} | {outcome} | {number} |")
+    paths = [
+        path
+        for path in sorted(arguments.folder.rglob("*"))
+        if path.suffix.lower().removeprefix(".") in READERS
+        and path.is_file()
+        and arguments.only in str(path)
+    ]
+    arguments.keep.mkdir(exist_ok=True)
+    programs: dict[str, dict[str, Line]] = {}
+    for heading, commit in (("before", arguments.against), ("now", None)):
+        if heading == "now" or commit:
+            kept = arguments.keep / f"{commit or 'now'}.jsonl"
+            programs[heading] = answers(paths, arguments.folder, commit, kept)
+    print_summary(programs)
+    print_files(programs)
 
 
 if __name__ == "__main__":

@@ -14,6 +14,7 @@ import exactfold
 from exactfold import PROVED, UNDECIDED, Result, Verdict
 from exactfold._support.results import Certified, Ways
 from exactfold.errors import NotApplicableError
+from exactfold.motion.panels.families import follow_family
 from exactfold.pattern.families import single_vertex
 from exactfold.pattern.opening import panels
 
@@ -42,6 +43,7 @@ RESULTS = {
     "torques": lambda: exactfold.actuate("two-vertex", "+-"),
     "a motion": lambda: _motion(),
     "a motion of panels": lambda: _panel_motion(),
+    "a motion of a family": lambda: _family_motion(),
     "a proved motion": lambda: exactfold.prove(_motion()).motion,
     "a proof": lambda: exactfold.prove(_motion()),
     "a proof of panels": lambda: exactfold.prove(_panel_motion()),
@@ -57,6 +59,11 @@ def _motion():
 
 def _panel_motion():
     return exactfold.follow("zigzags", 3, until="30deg", frames=2)
+
+
+def _family_motion():
+    known = exactfold.match("bird-base")
+    return follow_family(known.pattern, known.densities, frames=2)
 
 
 @cache

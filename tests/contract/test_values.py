@@ -86,7 +86,7 @@ PROVING = {
     "proof of panels": exactfold.motion.prove_panels(
         exactfold.motion.follow_panels(FLAT_FOLDABLE, until="20deg", frames=2)
     ),
-    "component of panels": exactfold.motion.panel_components(FLAT_FOLDABLE)[0],
+    "way of panels": exactfold.motion.panel_ways(FLAT_FOLDABLE)[0],
     "mode of panels": exactfold.motion.panel_modes(FLAT_FOLDABLE)[0],
     "track": TRACK,
     "frame of a track": TRACK.frame(0.2),

@@ -240,7 +240,7 @@ def test_frames_on_an_arc_through_a_node():
 def test_folded_flat_states_end_a_proof(tmp_path):
     """A vertex that can be folded flat: the motion is proved up to there, and not beyond."""
     sheet = load(example_path("single-vertex-4"))
-    proof = prove(follow(find_branch(sheet, "+"), until="0.5", frames=3))
+    proof = prove(follow(find_branch(sheet, "+"), until=0.5, frames=3))
     assert proof.status is PROVED
     assert proof.write(tmp_path / "proof.json")
     assert "one curve without a gap" in checker.summary(checker.verify(tmp_path / "proof.json"))

@@ -209,7 +209,7 @@ def test_one_vertex_of_degree_four_is_a_spherical_four_bar(seed, sign):
 def test_a_motion_ends_where_it_is_asked_to():
     branch = find_branch("two-vertex", "+-")
     assert follow(branch, until=0.25, frames=4).times == pytest.approx([0, 0.25 / 3, 0.5 / 3, 0.25])
-    assert follow(branch, until="0.25").end == "length"
+    assert follow(branch, until="time=0.25").end == "length"
     degrees = follow(branch, until="30deg")
     assert np.degrees(np.max(np.abs(degrees.angles[-1]))) == pytest.approx(30)
     assert (degrees.end, degrees.events[-1].kind) == ("angle", "angle")
@@ -296,3 +296,30 @@ def test_the_last_frame_of_a_return_is_the_flat_sheet():
     assert motion.end == "return"
     assert np.abs(motion.coords[-1] - motion.coords[0]).max() < 1e-14
     assert motion.length_error < 1e-12
+
+
+@pytest.mark.parametrize(
+    ("name", "way", "changes"),
+    [("flat-octahedron", 7, 1), ("random-8", 1, 2), ("two-vertex", 3, 0)],
+)
+def test_a_fold_that_passes_through_flat_is_an_event(name, way, changes):
+    branch = count_branches(name).branches[way - 1]
+    motion = follow(branch, frames=400)
+    events = [event for event in motion.events if event.kind == "change"]
+    assert len(events) == changes
+    mirror = [event for event in follow(branch, side=-1).events if event.kind == "change"]
+    for event, other in zip(events, mirror, strict=True):
+        column = motion.angles[:, motion.pattern.folds.index(event.folds[0])]
+        before, after = column[motion.times < event.time[0]], column[motion.times > event.time[1]]
+        valley = event.detail == "from valley to mountain"
+        assert (before[-1] > 0 > after[0]) if valley else (before[-1] < 0 < after[0])
+        swapped = "from mountain to valley" if valley else "from valley to mountain"
+        assert (other.folds, other.detail) == (event.folds, swapped)
+    flips = (motion.angles[1:-1] * motion.angles[2:] < 0) & (np.abs(motion.angles[2:]) > 1e-6)
+    assert flips.sum() == changes
+
+
+def test_folds_that_are_flat_at_the_end_have_not_changed():
+    back = follow(find_branch("two-vertex", "+-"), until="return", through_branch_points=True)
+    assert back.end == "return"
+    assert [event for event in back.events if event.kind == "change"] == []

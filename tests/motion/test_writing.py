@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import csv
 import io
 import json
 import pickle
@@ -17,7 +18,7 @@ from panel_sheets import regular_twist
 from exactfold import random_square
 from exactfold.branches import find_branch
 from exactfold.errors import PackageMissingError, UnwritableFileError, UsageError
-from exactfold.interop import meshes
+from exactfold.interop import packages
 from exactfold.motion import follow, follow_panels, write_motion
 from exactfold.pattern import PanelPattern, load_fold, open_pattern
 from exactfold.pattern.triangulating import triangles_by_face, triangles_of
@@ -94,10 +95,10 @@ def test_panels_stay_polygons_with_exact_corners(tmp_path):
     assert opened.field_name == "Q(sqrt 3)"
     assert {len(face) for face in document["faces_vertices"]} == {3, 4, 6}
     assert document["faces_vertices"] == [list(face) for face in sheet.faces]
-    assert document["file_title"] == "twist, motion along mode 1"
+    assert document["file_title"] == "twist, motion along way 1"
     assert document["frame_title"].startswith("flat sheet, with the fold angles at time 0.524 of")
     facts = document["frame_exactfold:motion"]
-    assert (facts["modes"], facts["component"], facts["free_folds"]) == ([1], 1, [])
+    assert (facts["modes"], facts["way"], facts["free_folds"]) == ([1], 1, [])
     assert (facts["status"], facts["pattern"]) == (str(PANELS.status), sheet.sha256)
     assert max(map(abs, document["edges_foldAngle"])) == pytest.approx(30)
     edges = [tuple(edge) for edge in document["edges_vertices"]]
@@ -230,11 +231,33 @@ def test_another_reader_sees_the_flat_sheet_with_y_up(tmp_path):
     assert scene.bounds == pytest.approx(np.array([[0, 0, -1], [1, 0, 0]]), abs=1e-6)
 
 
-def test_without_pygltflib_it_is_said(tmp_path, monkeypatch):
-    monkeypatch.setattr(meshes, "find_spec", lambda name: None)
-    with pytest.raises(PackageMissingError, match=r"pip install 'exactfold\[motion\]'"):
-        write_motion(MOTION, tmp_path / "motion.glb")
+# --- STL and CSV ---------------------------------------------------------------------------------
+
+
+def test_stl_has_a_mesh_for_each_frame(tmp_path):
+    files = write_motion(MOTION, tmp_path / "m.stl")
+    assert [file.name for file in files] == [f"m_000{k}.stl" for k in range(6)]
+    for file, coords in zip(files, MOTION.coords, strict=True):
+        mesh = trimesh.load(file, process=False)
+        corners = coords[np.array(PATTERN.triangles)].reshape(-1, 3)
+        assert np.asarray(mesh.triangles).reshape(-1, 3) == pytest.approx(corners, abs=1e-6)
+
+
+def test_stl_without_trimesh_names_the_extra(tmp_path, monkeypatch):
+    monkeypatch.setattr(packages, "find_spec", lambda name: None)
+    with pytest.raises(PackageMissingError, match=r"pip install 'exactfold\[meshes\]'"):
+        write_motion(MOTION, tmp_path / "m.stl")
     assert not list(tmp_path.iterdir())
+
+
+def test_csv_has_the_angles_of_each_frame_in_a_row(tmp_path):
+    [file] = write_motion(MOTION, tmp_path / "m.csv")
+    with file.open(newline="") as text:
+        head, *rows = csv.reader(text)
+    assert head == ["time", *(f"{i}-{j}" for i, j in PATTERN.folds)]
+    table = np.array(rows, dtype=float)
+    assert (table[:, 0] == MOTION.times).all()
+    assert (table[:, 1:] == np.degrees(MOTION.angles)).all()
 
 
 # --- OBJ -----------------------------------------------------------------------------------------
@@ -256,7 +279,7 @@ def test_a_file_for_each_frame(tmp_path):
 
 
 def test_refusals(tmp_path):
-    for name in ("motion", "motion.stl", "fold"):
+    for name in ("motion", "motion.dxf", "fold"):
         with pytest.raises(UsageError, match=r"\.fold, \.glb, \.gltf, \.obj"):
             write_motion(MOTION, tmp_path / name)
     with pytest.raises(UsageError, match="is not a motion"):

@@ -9,7 +9,8 @@ from rich.console import Console
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED
 from exactfold.app.pictures.way_sheets import sheet_of_ways
 from exactfold.app.report.panels import panels_report
-from exactfold.motion.panels.followable import panel_components, panel_modes
+from exactfold.motion.panels.followable import panel_modes
+from exactfold.motion.panels.listing import panel_ways
 from exactfold.panels import by_spaces
 from exactfold.panels import folding_modes as by_modes
 from exactfold.panels.decomposition import decompose
@@ -85,11 +86,11 @@ def test_with_all_other_folds_flat_the_structure_theorem_has_it(result: Decompos
 
 def test_they_can_be_followed_and_are_shown(result: Decomposition) -> None:
     assert [mode.letters for mode in panel_modes(result)] == [m.assignment for m in result.modes]
-    assert panel_components(result)
+    assert panel_ways(result)
     console = Console(file=io.StringIO(), width=200)
     console.print(panels_report(result, None, everything=False))
     text = console.file.getvalue()  # type: ignore[attr-defined]
-    assert "each mode listed below truly folds, and there may be others" in text
+    assert "each way listed below truly folds, and there may be others" in text
     assert "known to truly fold; there may be others" in sheet_of_ways(result, "boxes")
     assert result.to_dict()["rigid"] is False
     assert len(result.to_dict()["modes"]) == len(result.modes)

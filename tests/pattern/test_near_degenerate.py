@@ -46,7 +46,6 @@ def test_a_side_that_is_nearly_straight():
     bent = CreasePattern([(0, 0), (1, "-1e-12"), (2, 0), (1, 1)], [(0, 1, 3), (1, 2, 3)])
     assert near_degenerate(bent).to_dict() == {
         "vertices": [1],
-        "snap": None,
         "text": "one relation nearly holds, border@1, off by 1e-12 of the size, so that answers "
         "hold only for these digits",
     }

@@ -249,7 +249,9 @@ def test_a_sheet_that_hangs_by_a_vertex_is_refused() -> None:
 def test_the_rectangle_round_a_drawing_is_the_edge_of_the_paper(tmp_path):
     path = tmp_path / "open.cp"
     path.write_text("2 0 0 3 2\n3 3 0 0 2\n2 1 0 1 2\n")
-    with pytest.raises(InputError, match="rectangle round the drawing for it with `--box`"):
+    with pytest.raises(
+        InputError, match=r"`--box`, which takes the rectangle round the .* reads it; "
+    ):
         open_pattern(path)
     found = open_pattern(path, Reading(box=True))
     assert len(found.sheet.interior) == 3

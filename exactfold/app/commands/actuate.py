@@ -6,16 +6,18 @@ import json
 from fractions import Fraction
 from pathlib import Path
 
-from exactfold.app.commands.branch import given_signs
+from exactfold.app.commands.ways import choice_of
 from exactfold.app.options.motions import ActuateOptions
 from exactfold.app.shell.json_numbers import numbers_by_name
-from exactfold.app.shell.patterns import read, verdict
-from exactfold.app.shell.shell import EXIT, Bar, name_of, one_at_least
+from exactfold.app.shell.patterns import in_doubt, read, tell_doubt, verdict
+from exactfold.app.shell.shell import EXIT, Bar, name_of
+from exactfold.app.verbs.choosing import the_branch
 from exactfold.branches.counting.find import BranchFinder
 from exactfold.design.actuation.actuate import actuate
 from exactfold.errors import InputError, NumberError
 from exactfold.exact.numbers import as_rational
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
+from exactfold.pattern.opening import Opened, triangles
 
 
 class Driven(ActuateOptions):
@@ -24,28 +26,39 @@ class Driven(ActuateOptions):
     def answer(self) -> int:
         """Find or judge the torques, print the answer, and return the exit code.
 
-        Raises the errors of `read`, `BranchFinder` and `actuate`, `InputError`, and
-        `UsageError` if neither `signs` nor `up` is given.
+        Raises the errors of `read`, `the_branch` and `actuate`, `InputError`, and `UsageError` if
+        no way is named.
         """
         with Bar("reading") as bar:
-            read_sheet = read(self.file, self.reading, "actuate")
+            read_sheet = read(self.file, self.reading, "actuate", verbose=self.verbose)
             pattern = read_sheet.pattern
-            one_at_least("either --signs or --up", self.signs, self.up)
+            self.require_name()
             torques = None if self.torques is None else torques_in(self.torques, pattern)
             actuation = actuate(
                 pattern,
-                given_signs(BranchFinder(pattern), self.signs, self.up),
+                self._signs(read_sheet.opened, bar),
                 creases=self.creases,
                 torques=torques,
                 progress=bar,
             )
         if self.as_json:
-            print(json.dumps(actuation.to_dict(name_of(self.file))))
+            document = actuation.to_dict(name_of(self.file))
+            print(json.dumps(in_doubt(read_sheet.opened, document)))
         else:
             from exactfold.app import report
 
+            tell_doubt(read_sheet.opened)
             report.show(report.actuation_report(actuation, everything=self.everything))
         return EXIT[verdict(read_sheet.opened, actuation.status)]
+
+    def _signs(self, opened: Opened, bar: Bar) -> dict[int, int]:
+        """The vertex signs of the side that is to be driven."""
+        choice = choice_of(self, opened)
+        if choice.signs is not None or choice.up is not None:
+            finder = BranchFinder(triangles(opened, "actuate"))
+            return finder.signs(choice.signs, choice.up)
+        chosen = the_branch(opened, choice, bar, needs="actuate")
+        return {v: chosen.side * sign for v, sign in chosen.branch.vertex_signs.items()}
 
 
 def torques_in(path: Path, pattern: CreasePattern) -> dict[Edge, Fraction]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 
 from exactfold._support.clock import Clock
-from exactfold.app.commands.match import given_letters
+from exactfold.app.commands.ways import given_letters
 from exactfold.app.options.branches import AssignmentsOptions
 from exactfold.app.shell.patterns import read_any, verdict
 from exactfold.app.shell.shell import EXIT, Bar, name_of, say
@@ -14,6 +14,7 @@ from exactfold.design.assignments.forcing import forcing_set
 from exactfold.design.circles.assignment_list import AllAssignments
 from exactfold.design.circles.certificate import assignments_certificate
 from exactfold.design.circles.circles import all_assignments
+from exactfold.design.panels.listed_certificate import panel_assignments_certificate
 from exactfold.design.panels.panel_assignments import PanelAssignments, panel_assignments
 from exactfold.design.refutations.forcing import Forcing
 from exactfold.errors import NotApplicableError, NotCountedError
@@ -30,10 +31,10 @@ class Listed(AssignmentsOptions):
         Raises the errors of `read_any`, and `UsageError` if the letters do not fit.
         """
         with Bar("reading") as bar:
-            opened = read_any(self.file, self.reading)
+            opened = read_any(self.file, self.reading, verbose=self.verbose, doubted=self.as_json)
             listed = self._listed(opened, bar)
-            self._write(listed, bar)
             forcing = self._forcing(listed, opened) if self.forcing else None
+            self._write(listed, forcing, bar)
         if self.as_json:
             print(json.dumps(listed.to_dict(name_of(self.file), forcing=forcing)))
         else:
@@ -45,7 +46,7 @@ class Listed(AssignmentsOptions):
 
     def _listed(self, opened: Opened, bar: Bar) -> AllAssignments | PanelAssignments:
         """The list for a sheet with five corners if there is one, else that for rigid panels."""
-        if isinstance(opened.sheet, CreasePattern):
+        if isinstance(opened.sheet, CreasePattern) and not opened.doubt:
             try:
                 return all_assignments(opened.sheet, progress=bar)
             except NotCountedError:
@@ -67,18 +68,17 @@ class Listed(AssignmentsOptions):
             say(f"no forcing set: {error}")
             return None
 
-    def _write(self, listed: AllAssignments | PanelAssignments, bar: Bar) -> None:
+    def _write(
+        self, listed: AllAssignments | PanelAssignments, forcing: Forcing | None, bar: Bar
+    ) -> None:
         if self.certificate is None:
-            return
-        if isinstance(listed, PanelAssignments):
-            say(
-                "no certificate was written: lists of assignments of panels have none; `exactfold "
-                "match --certificate` proves, or refutes, each assignment by itself"
-            )
             return
         bar("certificate")
         try:
-            document = assignments_certificate(listed, progress=bar)
+            if isinstance(listed, PanelAssignments):
+                document = panel_assignments_certificate(listed, forcing)
+            else:
+                document = assignments_certificate(listed, progress=bar)
         except NotApplicableError as error:
             say(f"no certificate was written: {error}")
         else:

@@ -76,7 +76,7 @@ class Line:
     status: str
     code: int
     text: str = ""
-    distinct: int | None = None
+    ways: str = "?"
     message: str = ""
     warned: bool = False
     in_part: bool = False
@@ -147,7 +147,7 @@ class Batch(CountOptions):
                 elif self.as_json:
                     print(line.text, flush=True)
                 if lines is None or line.status != str(PROVED) or line.warned:
-                    shown.append((line.name, line.status, line.distinct, line.message))
+                    shown.append((line.name, line.status, line.ways, line.message))
         place = {part.name: k for k, part in enumerate(self._parts)}
         shown.sort(key=lambda row: place[row[0]])
         numbers, jsonl = self._numbers(tally), None if self.jsonl is None else str(self.jsonl)
@@ -302,7 +302,9 @@ def line_for(job: Job, result: BranchCount | Decomposition | Exception) -> Line:
         status, code = str(result.status), EXIT[result.status]
         document = _counted(job, result, status, code)
         known = _known(result)
-        message = "" if result.status is PROVED else "; ".join([*known, result.reason])
+        message = "; ".join([*known, result.reason])
+        if result.status is PROVED:
+            message = _to_second_order(result)
         if (warning := result.warning) is not None:
             message = f"{message}{'; ' if message else ''}warning: {warning}"
         warned = warning is not None
@@ -310,7 +312,7 @@ def line_for(job: Job, result: BranchCount | Decomposition | Exception) -> Line:
         text = json.dumps(document)
         return Line(job.name, status, code, text, ways, message, warned, in_part=bool(known))
     failed = _failed(job, result)
-    return Line(job.name, FAILED, failed["exit_code"], json.dumps(failed), None, str(result))
+    return Line(job.name, FAILED, failed["exit_code"], json.dumps(failed), message=str(result))
 
 
 def _counted(job: Job, result: BranchCount | Decomposition, status: str, code: int) -> CountedLine:
@@ -360,11 +362,24 @@ def _known(result: BranchCount | Decomposition) -> list[str]:
     return known
 
 
-def _ways(result: BranchCount | Decomposition) -> int | None:
-    """The number of branches, or of families that provably fold; None if it is not known."""
+def _to_second_order(result: BranchCount | Decomposition) -> str:
+    """The number of ways that are proved to second order only, in words; else empty."""
+    if isinstance(result, BranchCount) or result.true is not None or result.second_order is None:
+        return ""
+    return f"{sum(result.second_order.values())} to second order"
+
+
+def _ways(result: BranchCount | Decomposition) -> str:
+    """The number of branches, or of families that provably fold; a question mark if it is not
+    known.
+    """
     if not isinstance(result, BranchCount):
-        return result.ways
-    return result.distinct if result.families is None else result.families.ways
+        number = result.ways
+    else:
+        number = result.distinct if result.families is None else result.families.ways
+        if number is None and result.status is PROVED:
+            return "infinite"
+    return "?" if number is None else str(number)
 
 
 def _digest(job: Job) -> str | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from dataclasses import replace
+from pathlib import Path
 from typing import Literal, TypedDict
 
 from exactfold._support.documents import FieldName, FoldText
@@ -14,10 +15,11 @@ from exactfold.app.shell.patterns import located
 from exactfold.app.shell.shell import Bar, apart, name_of, said, say, tell
 from exactfold.certificates.entries import write_certificate
 from exactfold.errors import FoldError, NotApplicableError, NotFoldError, PatternError, UsageError
+from exactfold.interop.sheet_files import ENDINGS, FOLD_ENDINGS, write_sheet
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import PanelsDocument, PatternDocument, described, described_panels
 from exactfold.pattern.drawing.drawing import Steps
-from exactfold.pattern.fold_writing import document_text, write_text
+from exactfold.pattern.fold_writing import checked_target, document_text, write_text
 from exactfold.pattern.meant import MeantDocument
 from exactfold.pattern.opening import Opened, ReadDocument, open_pattern
 from exactfold.pattern.panel_writing import Converted, converted
@@ -34,16 +36,19 @@ class Conversion(ConvertOptions):
         to_stdout = str(self.output) == "-"
         if to_stdout and self.as_json:
             raise UsageError("--json describes the file that is written: give it a name")
+        fold = to_stdout or checked_sheet(self.output) in FOLD_ENDINGS
         apart(None if to_stdout else self.output, self.file, self.certificate)
         apart(self.certificate, self.file)
         with Bar("reading"):
             opened = self._opened()
             made = converted(opened, triangulate=self.triangulate)
-            text = document_text(made.document())
-            if not to_stdout:
+            text = document_text(made.document()) if fold else ""
+            if not fold:
+                write_sheet(made.pattern, made.letters, self.output, name=self.file.stem)
+            elif not to_stdout:
                 write_text(self.output, text)
             self._certify(opened)
-        lines = [*_lines(opened, said(self.file)), _written(made, name_of(self.output))]
+        lines = [*_lines(opened, said(self.file)), _written(made, name_of(self.output), fold)]
         if to_stdout:
             for line in lines[:-1]:
                 say(line)
@@ -88,6 +93,11 @@ class Conversion(ConvertOptions):
         return STEPS if self.repair else ()
 
 
+def checked_sheet(path: Path) -> str:
+    """The ending of a file for a sheet, before the work; raises `UsageError` for another one."""
+    return checked_target(path, (*FOLD_ENDINGS, *ENDINGS), "a sheet")
+
+
 def _lines(opened: Opened, name: str) -> list[str]:
     if opened.lines:
         doubt = [f"warning: {opened.doubt}"] if opened.doubt else []
@@ -96,8 +106,9 @@ def _lines(opened: Opened, name: str) -> list[str]:
     return [f"read {name}: FOLD, triangulated, as it stands{moved}"]
 
 
-def _written(made: Converted, output: str) -> str:
+def _written(made: Converted, output: str, exact: bool) -> str:
     pattern = made.pattern
+    field = f"in {pattern.field_name}" if exact else "as floats"
     added = ""
     if made.joins:
         is_ = agreeing(len(made.joins), "is")
@@ -105,7 +116,7 @@ def _written(made: Converted, output: str) -> str:
     return (
         f"wrote {output}: {counted(len(pattern.vertices), 'vertex')}, "
         f"{counted(len(pattern.folds), 'fold')}, {counted(len(pattern.faces), 'panel')}, "
-        f"coordinates in {pattern.field_name}{added}"
+        f"coordinates {field}{added}"
     )
 
 

@@ -79,6 +79,10 @@ class Asked(CountOptions):
             from exactfold.design.panels.vertices import vertices
 
             report.show(report.vertices_line(vertices(opened)))
+        if not isinstance(result, BranchCount) and result.proposal and not self.as_json:
+            report.show("")
+            for line in report.proposal_lines(result.proposal):
+                report.show(line)
         return EXIT[result.status]
 
     def _of_digits(self, result: BranchCount | Decomposition) -> None:
@@ -91,7 +95,8 @@ class Asked(CountOptions):
 
         if self.given.curvature is None:
             raise UsageError(
-                "--rim goes with --curvature: without it, all boundary heights are covered"
+                "--boundary-heights goes with --curvature: without it, all boundary heights are "
+                "covered"
             )
         for option, value in (
             ("--certificate", self.certificate),
@@ -104,7 +109,7 @@ class Asked(CountOptions):
                     "a certificate of one shape"
                 )
         with Bar("reading") as bar:
-            pattern = read(self.pattern, self.reading, "count").pattern
+            pattern = read(self.pattern, self.reading, "count", verbose=self.verbose).pattern
             finder = self.given.finder(pattern)
             result = count_shapes(
                 pattern,
@@ -128,7 +133,9 @@ class Asked(CountOptions):
             raise UsageError("--resume, --workers and --dask go with --stream")
         clock = Clock(self.limit)
         with Bar("reading") as bar:
-            opened = read_any(self.pattern, self.reading)
+            opened = read_any(
+                self.pattern, self.reading, verbose=self.verbose, doubted=self.as_json
+            )
             sheet = opened.sheet
             if isinstance(sheet, CreasePattern) and (better := advice(sheet)) is not None:
                 say(better)
@@ -179,11 +186,26 @@ class Asked(CountOptions):
         return written
 
     def _certified_panels(self, ways: Decomposition, file: Path) -> str | None:
+        from exactfold.design.panels.freedom_certificate import freedom_certificate
         from exactfold.panels.certificate import certificate_of_panels
 
         try:
             write_certificate(certificate_of_panels(ways), file)
         except NotApplicableError as error:
+            if ways.status is PROVED or ways.freedom is None:
+                say(f"no certificate was written: {error}")
+                return None
+        else:
+            return str(file)
+        try:
+            document = freedom_certificate(ways)
+        except NotApplicableError as error:
             say(f"no certificate was written: {error}")
             return None
+        write_certificate(document, file)
+        claims = document["claims"]
+        say(
+            "the certificate proves bounds of the degrees of freedom only: at least "
+            f"{claims['least']}, at most {claims['most']}"
+        )
         return str(file)

@@ -3,24 +3,26 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from exactfold._support.plurals import counted
 from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
-from exactfold.app.commands.branch import chosen
+from exactfold.app.commands.ways import choice_of
 from exactfold.app.options.pictures import DrawOptions
 from exactfold.app.pictures.crease_drawing import pattern_picture
-from exactfold.app.pictures.drawn_ways import branch_way, mode_way
+from exactfold.app.pictures.drawn_ways import branch_way
 from exactfold.app.pictures.folded import Amount, Folded, folded
 from exactfold.app.pictures.multiples import MOST
 from exactfold.app.pictures.picture_files import checked_picture, write_picture
 from exactfold.app.pictures.way_sheets import number_listed, sheet_of_ways, why_no_way
 from exactfold.app.shell.given import Given
 from exactfold.app.shell.patterns import located, read_any, verdict
-from exactfold.app.shell.shell import EXIT, STDIN, Bar, apart, name_of, say, tell
+from exactfold.app.shell.shell import EXIT, STDIN, Bar, apart, say, wrote
+from exactfold.app.verbs.choosing import choose
+from exactfold.app.verbs.chosen import ChosenBranch, ChosenPanels
+from exactfold.app.verbs.moving import along, along_panels
+from exactfold.app.verbs.showing import drawn_panels
 from exactfold.branches.counting.ways import count_opened, decompose_opened
 from exactfold.branches.values.result import BranchCount
 from exactfold.errors import (
@@ -29,15 +31,12 @@ from exactfold.errors import (
     PatternError,
     SeveralSheetsError,
     UndecidedBranchError,
-    UsageError,
 )
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.drawing.drawing import Drawing
 from exactfold.pattern.opening import Opened, has_branches
 
 if TYPE_CHECKING:
-    from exactfold.branches.values.branch import Branch
-    from exactfold.motion.panels.followable import PanelMode
     from exactfold.panels.result import Decomposition
 
 
@@ -63,7 +62,7 @@ class Wanted(DrawOptions):
 
         The exit code is 4 if the drawn way is not proved. Without `output`, the picture goes to
         standard output, or to a new file if standard output is a terminal. Raises the errors of
-        `read_any`, `chosen`, `count_opened`, `follow`, `follow_panels` and `write_picture`.
+        `read_any`, `choose`, `count_opened`, `along`, `along_panels` and `write_picture`.
         """
         target = self._target()
         if target is not None:
@@ -81,7 +80,7 @@ class Wanted(DrawOptions):
         if target is None:
             sys.stdout.write(text)
         else:
-            tell(f"written: {name_of(target)}")
+            wrote(target)
         return EXIT[status]
 
     def _target(self) -> Path | None:
@@ -104,19 +103,12 @@ class Wanted(DrawOptions):
 
     @property
     def _is_plain(self) -> bool:
-        return self.way is None and self.up is None and not self.everything
-
-    @property
-    def _place(self) -> int | None:
-        """The number of the way; None if the way is named by signs or not at all."""
-        if self.way is None or not self.way.isdecimal() or not int(self.way):
-            return None
-        return int(self.way)
+        return not self.is_named and not self.everything
 
     def _drawn(self, bar: Bar) -> tuple[str, Verdict]:
         """The picture, and the verdict on the way that it shows."""
         try:
-            opened = read_any(self.file, self.reading)
+            opened = read_any(self.file, self.reading, verbose=self.verbose)
         except (FoldError, PatternError, SeveralSheetsError) as error:
             if not self._is_plain or self.sheet is not None:
                 raise
@@ -132,17 +124,13 @@ class Wanted(DrawOptions):
 
     def _way(self, opened: Opened, bar: Bar) -> tuple[str, Verdict]:
         """The picture of the ways that were named, and the verdict on them."""
-        sheet = opened.sheet
-        branches = isinstance(sheet, CreasePattern) and has_branches(sheet)
         if self.everything:
             return self._all(opened, bar)
-        named = self._place is None or self.given
-        families = isinstance(sheet, CreasePattern) and sheet.Ve > 4 and sheet.interior and named
-        if (branches or families) and isinstance(sheet, CreasePattern):
-            signs = None if self._place is not None else self.way
-            given = self.given if families or self.given else None
-            return self._branch(chosen(sheet, signs, self.up, self._place, bar, given), bar)
-        return self._mode(opened, bar)
+        bar("solving")
+        chosen = choose(opened, choice_of(self, opened, self.given, side=self.side), bar)
+        if isinstance(chosen, ChosenBranch):
+            return self._branch(chosen, bar)
+        return self._panels(chosen, bar)
 
     def _raw(self) -> Drawing | None:
         """The drawing in a file that is not a sheet; None if there is none.
@@ -160,52 +148,30 @@ class Wanted(DrawOptions):
 
     # --- ways ------------------------------------------------------------------------------------
 
-    def _branch(self, branch: Branch, bar: Bar) -> tuple[str, Verdict]:
+    def _branch(self, chosen: ChosenBranch, bar: Bar) -> tuple[str, Verdict]:
+        branch = chosen.branch
         if branch.status is not PROVED:
             say(f"the branch is not proved: {branch.reason}")
         if self.amount is None:
-            return branch_way(branch, self._place).picture(self._title), branch.status
-        from exactfold.motion.following import follow
-
+            way = branch_way(branch, chosen.number).turned(chosen.side)
+            return way.picture(self._title), branch.status
         bar("following")
-        motion = follow(branch, side=self.side or 1, progress=bar)
+        motion = along(chosen, progress=bar)
         return self._folded(folded(motion, self.amount, self._title)), branch.status
 
-    def _mode(self, opened: Opened, bar: Bar) -> tuple[str, Verdict]:
-        """The picture of a mode of panels, and the verdict on whether the mode provably folds."""
-        if self.side is not None:
-            raise UsageError(
-                "--side is for branches, and this sheet folds along modes: leave out --side"
-            )
-        if self._place is None:
-            raise UsageError(
-                "vertex signs are for triangulated sheets with four corners, and this sheet folds "
-                "along modes of rigid panels: give the number of one, as `exactfold count` lists it"
-            )
-        from exactfold.motion.panels.followable import open_reason, panel_modes
-
-        ways = self._counted(opened, bar)
-        if isinstance(ways, BranchCount):
-            raise NotCountedError("this sheet has no single ways to draw: draw it without --branch")
-        mode = self._chosen(ways, panel_modes(ways))
-        verdict = mode.extends.verdict
+    def _panels(self, chosen: ChosenPanels, bar: Bar) -> tuple[str, Verdict]:
+        """The picture of a way of panels, and the verdict on whether it provably folds."""
+        warning = chosen.answer.known.warning
+        if warning is not None:
+            say(f"warning: {warning}")
+        way = drawn_panels(chosen)
+        verdict = PROVED if chosen.way is None else chosen.way.verdict
         if self.amount is None:
-            if verdict is not PROVED:
-                say(open_reason(mode))
-            return mode_way(mode).picture(self._title), verdict
-        from exactfold.motion.panels.following import follow_panels
-
+            if chosen.way is not None and verdict is not PROVED:
+                say(chosen.way.why_not_followed)
+            return way.picture(self._title), verdict
         bar("following")
-        motion = follow_panels(ways, modes=(mode.number,))
-        return self._folded(folded(motion, self.amount, self._title)), verdict
-
-    def _chosen(self, ways: Decomposition, modes: Sequence[PanelMode]) -> PanelMode:
-        place = self._place or 0
-        if not modes:
-            raise UsageError(f"{why_no_way(ways)}: draw the pattern without --branch")
-        if place > len(modes):
-            raise UsageError(f"--branch {place}: this sheet has {counted(len(modes), 'mode')}")
-        return modes[place - 1]
+        return self._folded(folded(along_panels(chosen), self.amount, self._title)), verdict
 
     def _folded(self, still: Folded) -> str:
         if not still.reached:

@@ -1,6 +1,7 @@
 """`exactfold export`: writes a branch, named by its signs or its number, as a FOLD file.
 
-With `--coq` it writes the sheet as a file that applies the formal proof to this sheet.
+With `--coq` it writes the sheet as a file that applies the formal proof to this sheet, and with
+`--system` the equations of the sheet for another program.
 """
 
 from __future__ import annotations
@@ -22,19 +23,21 @@ from exactfold._support.documents import (
     VertexSigns,
 )
 from exactfold._support.verdict import PROVED, UNDECIDED
-from exactfold.app.commands.branch import chosen
+from exactfold.app.commands.ways import choice_of
 from exactfold.app.options.branches import ExportOptions
 from exactfold.app.shell.given import Given
-from exactfold.app.shell.patterns import read
-from exactfold.app.shell.shell import EXIT, Bar, name_of, one_at_least, one_at_most, say, tell
+from exactfold.app.shell.patterns import in_doubt, read, read_any, tell_doubt, verdict
+from exactfold.app.shell.shell import EXIT, Bar, name_of, say, tell
+from exactfold.app.verbs.choosing import the_branch
 from exactfold.branches.counting.find import find_branches
 from exactfold.branches.values.branch import Branch, GaugeText
-from exactfold.branches.values.export import AMOUNT, BranchExport, exported
+from exactfold.branches.values.export import AMOUNT, ENDINGS, BranchExport, exported
 from exactfold.errors import NotApplicableError, UndecidedBranchError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import PatternDocument, described
-from exactfold.pattern.fold_writing import write_text
+from exactfold.pattern.fold_writing import checked_target, write_text
 from exactfold.pattern.near_degeneracy import WarningDocument, warnings
+from exactfold.pattern.opening import Opened
 
 
 class Wanted(ExportOptions):
@@ -49,20 +52,19 @@ class Wanted(ExportOptions):
         """Find the branch, write it, say what was written, and return the exit code.
 
         A branch that `exported` refuses as undecided is not an error: the reason is printed to
-        stderr. Raises the other errors of `read`, `chosen` and `exported`, and `UsageError` unless
-        exactly one of `signs`, `up` and `place` is given.
+        stderr. Raises the other errors of `read`, `the_branch` and `exported`, and `UsageError` if
+        no branch is named.
         """
-        options = "one of --signs, --up and --branch", self.signs, self.up, self.place
-        one_at_most(*options)
-        if self.given.boundary_heights is not None and self.place is not None:
-            raise UsageError("--rim goes with --signs or --up")
+        self.check_heights()
         output = self.written
+        if output is not None:
+            checked_target(output, ENDINGS, "a branch")  # before the work
         if output is None and self.as_json:
             raise UsageError("--json describes the file that is written: name it with -o")
         with Bar("reading") as bar:
-            pattern = read(self.file, self.reading, "export").pattern
-            one_at_least(*options)
-            branch = chosen(pattern, self.signs, self.up, self.place, bar, self.given)
+            opened = read(self.file, self.reading, "export", verbose=self.verbose).opened
+            self.require_name()
+            branch = self.branch(opened, bar)
             bar("writing")
             try:
                 export = exported(
@@ -79,12 +81,26 @@ class Wanted(ExportOptions):
         if output is None:
             sys.stdout.write(export.text)
         elif self.as_json:
-            print(json.dumps(_summary(branch, export, output, name_of(self.file))))
+            summary = _summary(branch, export, output, name_of(self.file))
+            print(json.dumps(in_doubt(opened, summary)))
         else:
             from exactfold.app import report
 
+            tell_doubt(opened)
             report.show(report.export_report(str(output), branch, export))
-        return EXIT[export.status]
+        return EXIT[verdict(opened, export.status)]
+
+    def branch(self, opened: Opened, bar: Bar) -> Branch:
+        """The branch that the options name."""
+        chosen = the_branch(opened, choice_of(self, opened, self.given), bar, needs="export")
+        if chosen.side < 0:
+            say(f"the letters are those of the other side of branch {chosen.branch.sign_text}")
+        return chosen.branch
+
+    def check_heights(self) -> None:
+        """Raise `UsageError` for boundary heights without vertex signs."""
+        if self.boundary_heights is not None and self.signs is None and self.up is None:
+            raise UsageError("--boundary-heights goes with --signs or --up")
 
     @property
     def written(self) -> Path | None:
@@ -100,7 +116,7 @@ def write_coq(asked: Wanted) -> int:
     """Write the sheet and the requested branches for the formal proof; return the exit code.
 
     The branch that is named is written, if any, or all branches with `asked.everything`; more than
-    `FEW` branches are only written with `asked.force`. Raises the errors of `read`, `chosen`,
+    `FEW` branches are only written with `asked.force`. Raises the errors of `read`, `the_branch`,
     `find_branches`, `to_coq`, `branch_to_coq` and `branches_to_coq`, and `UsageError` for too many
     branches, for a file name that Coq cannot compile, and for options that do not go with `--coq`.
     """
@@ -108,19 +124,16 @@ def write_coq(asked: Wanted) -> int:
     from exactfold.interop import branch_to_coq, branches_to_coq, to_coq
 
     for name, given in (
-        ("--branch", asked.place is not None),
         ("--amount", asked.amount is not None),
         ("--force", asked.force and not asked.everything),
         ("--json", asked.as_json),
     ):
         if given:
             raise UsageError(f"{name} does not go with --coq")
-    one_at_most("one of --signs and --up", asked.signs, asked.up)
-    named = asked.signs is not None or asked.up is not None
+    named = asked.is_named
     if named and asked.everything:
-        raise UsageError("--all names all branches: leave out --signs and --up")
-    if asked.given.boundary_heights is not None and not named:
-        raise UsageError("--rim goes with --signs or --up")
+        raise UsageError("--all names all branches: leave out --way, --signs, --up and --letters")
+    asked.check_heights()
     output = asked.written
     if output is not None and not _MODULE.match(output.name):
         raise UsageError(
@@ -128,11 +141,12 @@ def write_coq(asked: Wanted) -> int:
             "digits and _, then .v"
         )
     with Bar("reading") as bar:
-        pattern = read(asked.file, asked.reading, "export").pattern
+        read_sheet = read(asked.file, asked.reading, "export", verbose=asked.verbose)
+        pattern = read_sheet.pattern
         text = to_coq(pattern)
         branches = []
         if named:
-            branches = [chosen(pattern, asked.signs, asked.up, None, bar, asked.given)]
+            branches = [asked.branch(read_sheet.opened, bar)]
         elif asked.everything:
             _refuse_uncounted(pattern, asked.force)
             every = map("".join, product("+-", repeat=pattern.Vi))
@@ -152,6 +166,28 @@ def write_coq(asked: Wanted) -> int:
         write_text(output, text)
         tell(f"wrote {output}; after `make -C proofs/formal`, verify it with")
         tell(f"coqc -Q proofs/formal Exactfold {shlex.quote(str(output))}")
+    return EXIT[PROVED]
+
+
+def write_system(asked: Wanted) -> int:
+    """Write the equations of the sheet for another program; return the exit code.
+
+    Raises the errors of `read_any`, `sheet_system` and `numbers_in`.
+    """
+    from exactfold.app.verbs.systems import PROGRAMS, sheet_system
+
+    with Bar("reading") as bar:
+        opened = read_any(asked.file, asked.reading)
+        bar("equations")
+        system = sheet_system(opened, asked.given.heights)
+        text = system.text(str(asked.system))
+    if not PROGRAMS[str(asked.system)][1]:  # the text has no comments
+        tell(system.about)
+    if asked.written is None:
+        sys.stdout.write(text)
+    else:
+        write_text(asked.written, text)
+        tell(f"wrote {asked.written}")
     return EXIT[PROVED]
 
 

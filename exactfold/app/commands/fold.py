@@ -3,43 +3,35 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
-from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
-from exactfold._support.plurals import counted
 from exactfold._support.verdict import PROVED, UNDECIDED
-from exactfold.app.commands.branch import also_found, chosen, given_signs
+from exactfold.app.commands.branch import also_found
 from exactfold.app.commands.driving import driven_angles
+from exactfold.app.commands.ways import choice_of
 from exactfold.app.options.motions import FoldOptions
+from exactfold.app.pictures.film import FILMS, checked_film, pillow, write_film
 from exactfold.app.pictures.picture_files import checked_picture, write_picture
 from exactfold.app.shell.given import Given
-from exactfold.app.shell.patterns import read_any, verdict
+from exactfold.app.shell.patterns import in_doubt, read_any, tell_doubt, verdict
 from exactfold.app.shell.shell import EXIT, Bar, name_of, say
-from exactfold.branches.values.branch import Branch
+from exactfold.app.verbs.choosing import choose
+from exactfold.app.verbs.chosen import ChosenBranch, ChosenPanels
+from exactfold.app.verbs.moving import along, along_panels, prove
 from exactfold.errors import UndecidedBranchError, UsageError
-from exactfold.motion.curves.drive import PrescribedAngles
 from exactfold.motion.curves.motion import Motion
-from exactfold.motion.following import Goal, follow
-from exactfold.motion.writing import checked_ending, write_motion
-from exactfold.pattern.crease_pattern import CreasePattern, Triangle
-from exactfold.pattern.fold_writing import require_folder
+from exactfold.motion.following import Goal
+from exactfold.motion.writing import ENDINGS, write_motion
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.fold_writing import checked_target, require_folder
 from exactfold.pattern.opening import Opened, has_branches
 
 if TYPE_CHECKING:  # following branches does not need it
+    from exactfold.motion.panels.families import FamilyMotion
     from exactfold.motion.panels.motion import PanelMotion
     from exactfold.motion.panels.proving import PanelProof
     from exactfold.motion.proving import MotionProof
-    from exactfold.panels.result import Decomposition
-
-
-@dataclass(frozen=True)
-class _Begin:
-    """A ray, and the folds that are driven along it."""
-
-    branch: Branch
-    side: int
-    drive: PrescribedAngles | None = None
 
 
 class Wanted(FoldOptions):
@@ -55,44 +47,55 @@ class Wanted(FoldOptions):
 
         The exit code is 0 if the branch is proved or the modes provably fold, wherever the motion
         ends; with a certificate the motion must be proved, too. A branch that is undecided is not
-        an error: the reason is printed to stderr. Raises the other errors of `read_any`, `chosen`,
-        `follow`, `follow_panels` and `write_motion`, and `UsageError` for options that belong to
-        the other kind of sheet.
+        an error: the reason is printed to stderr. If no way was named, a line says which way was
+        taken, and why. Raises the other errors of `read_any`, `choose`, `along`, `along_panels` and
+        `write_motion`, and `UsageError` for options that belong to the other kind of sheet.
         """
         from exactfold.app import report
 
         self._check_outputs()  # before the work
         with Bar("reading") as bar:
-            opened = read_any(self.file, self.reading)
-            sheet = opened.sheet
-            motion: Motion | PanelMotion
-            if isinstance(sheet, CreasePattern) and (self._named or has_branches(sheet)):
-                begin = self._begin(sheet, bar)
+            opened = read_any(self.file, self.reading, verbose=self.verbose)
+            chosen = self._chosen(opened, bar)
+            if chosen.why:
+                say(chosen.why)
+            motion: Motion | PanelMotion | FamilyMotion
+            if isinstance(chosen, ChosenBranch):
                 try:
-                    motion = self._along(begin, bar)
+                    motion = self._along(chosen, bar)
                 except UndecidedBranchError as error:
-                    say(f"not followed: {error}; {begin.branch.reason}".rstrip("; "))
+                    say(f"not followed: {error}; {chosen.branch.reason}".rstrip("; "))
                     return EXIT[UNDECIDED]
             else:
-                motion = self._panels(opened, bar)
-            proof = self._proof(motion, bar)
+                motion = self._panels(chosen, bar)
+            proof = self._proof(motion, chosen, bar)
             motion = motion if proof is None else proof.motion
             bar("writing")
             written = self._written(motion, proof)
         if self.as_json:
-            document = motion.to_dict(name_of(self.file), written)
+            document = in_doubt(opened, motion.to_dict(name_of(self.file), written))
             print(json.dumps({**document, "proof": None if proof is None else proof.to_dict()}))
         else:
+            tell_doubt(opened)
             report.show(report.motion_report(motion, written, proof))
         if isinstance(motion, Motion) and motion.branch.status is not PROVED:
             say(f"the branch is not proved: {motion.branch.reason}")
             return EXIT[motion.branch.status]
         return EXIT[verdict(opened, PROVED if proof is None else proof.status)]
 
+    @property
+    def _is_film(self) -> bool:
+        """Whether the output is a picture or an animation; checks its place then."""
+        path = self.output
+        return path is not None and path.suffix.lower() in FILMS and bool(checked_film(path))
+
     def _check_outputs(self) -> None:
         """Raise `UsageError` for a wrong ending, `UnwritableFileError` for a missing folder."""
         if self.output is not None:
-            checked_ending(self.output)
+            if not self._is_film:
+                checked_target(self.output, (*ENDINGS, *FILMS), "a motion")
+            else:
+                pillow()
         for drawn in (self.plot, self.picture):
             if drawn is not None:
                 checked_picture(drawn)
@@ -103,135 +106,92 @@ class Wanted(FoldOptions):
     def _title(self) -> str | None:
         return None if str(self.file) == "/dev/stdin" else self.file.stem
 
-    # --- branches --------------------------------------------------------------------------------
+    # --- ways ------------------------------------------------------------------------------------
 
-    @property
-    def _named(self) -> bool:
-        """Whether the options name a branch. More than four corners have branches only then."""
-        return (self.signs or self.up or self.drive) is not None or bool(self.given)
-
-    def _begin(self, pattern: CreasePattern, bar: Bar) -> _Begin:
-        """The ray to follow, and the folds that are driven."""
-        if self.drive is None:
-            return _Begin(self._branch(pattern, bar), self.side or 1)
-        angles = driven_angles(self.drive)
-        Goal.of(self.until)  # before the work
-        if self.side is not None and pattern.Ve > 4:
+    def _chosen(self, opened: Opened, bar: Bar) -> ChosenBranch | ChosenPanels:
+        """The way to follow."""
+        sheet = opened.sheet
+        drive = None if self.drive is None else driven_angles(self.drive)
+        if not isinstance(sheet, CreasePattern):
+            self._refuse_branches()
+        elif drive is not None and self.side is not None and sheet.Ve > 4:
             raise UsageError(
                 "--side does not go with --drive: the angles say to which side the sheet folds"
             )
-        from exactfold.motion.tubes.driven import find_driven
-
-        finder = self.given.finder(pattern)
+        elif drive is not None or has_branches(sheet):
+            Goal.of(self.until)  # before the work
         bar("setting up")
-        signs = None
-        if (self.signs, self.up) != (None, None):
-            signs = given_signs(finder, self.signs, self.up)
-        boundary_heights = None if self.given.boundary_heights is None else finder.boundary_heights
-        driven = find_driven(
-            pattern, angles, signs, boundary_heights=boundary_heights, side=self.side, progress=bar
-        )
-        if signs is None:
-            say(
-                "no branch was named (--signs, --up): this is the first branch found on which the "
-                f"folds start in this ratio: {driven.branch.sign_text}"
-            )
-        if driven.others:
-            say(also_found(driven.others))
-        return _Begin(driven.branch, driven.side, driven.drive)
+        choice = choice_of(self, opened, self.given, drive, self.side)
+        chosen = choose(opened, choice, bar)
+        if isinstance(chosen, ChosenBranch) and chosen.others:
+            say(also_found(chosen.others))
+        return chosen
 
-    def _branch(self, pattern: CreasePattern, bar: Bar) -> Branch:
-        given = {"--component": self.component, "--modes": self.modes}
-        _refuse(
-            given,
-            "motions of rigid panels, and this sheet of triangles folds along branches: name one "
-            "by --signs, --up or --branch",
-        )
-        Goal.of(self.until)  # before the work
-        if (self.signs, self.up, self.place) != (None, None, None):
-            return chosen(pattern, self.signs, self.up, self.place, bar, self.given)
-        up = ",".join(map(str, pattern.foldable_vertices))
-        branch = chosen(pattern, None, up, None, bar, self.given)
-        say(
-            "no branch was named (--signs, --up, --branch): this is the one on which all "
-            "vertices pop up"
-        )
-        return branch
-
-    def _along(self, begin: _Begin, bar: Bar, pinned: Triangle | None = None) -> Motion:
-        return follow(
-            begin.branch,
-            side=begin.side,
+    def _along(self, chosen: ChosenBranch, bar: Bar, held: tuple[int, ...] | None = None) -> Motion:
+        return along(
+            chosen,
             until=self.until,
             frames=self.frames,
             by=self.by,
             through_branch_points=self.through_branch_points,
-            pinned=pinned,
-            drive=begin.drive,
+            held=held,
             progress=bar,
         )
 
-    # --- panels ----------------------------------------------------------------------------------
+    def _panels(self, chosen: ChosenPanels, bar: Bar) -> PanelMotion | FamilyMotion:
+        self._refuse_branches()
+        warning = chosen.answer.known.warning
+        if warning is not None:
+            say(f"warning: {warning}")
+        bar("following")
+        return along_panels(chosen, until=self.until, frames=self.frames, by=self.by)
 
-    def _panels(self, opened: Opened, bar: Bar) -> PanelMotion:
-        from exactfold.branches.counting.ways import decompose_opened
-        from exactfold.motion.panels.following import follow_panels
-
+    def _refuse_branches(self) -> None:
+        """Raise `UsageError` for an option that only branches have."""
         given = {
             "--signs": self.signs,
             "--up": self.up,
-            "--branch": self.place,
-            "--side": self.side,
-            "--rim": self.given.boundary_heights,
+            "--boundary-heights": self.boundary_heights,
             "--drive": self.drive,
             "--through-nodes": self.through_branch_points or None,
         }
-        _refuse(
-            given,
-            "branches of triangulated sheets with four corners, or with more and --rim, and this "
-            "sheet folds along modes of rigid panels: name them by --component or --modes",
-        )
-        answer = decompose_opened(opened, progress=bar)
-        ways = answer.known
-        if ways.warning is not None:
-            say(f"warning: {ways.warning}")
-        bar("following")
-        motion = follow_panels(
-            answer,
-            component=self.component,
-            modes=self.modes,
-            until=self.until,
-            frames=self.frames,
-            by=self.by,
-        )
-        if motion.component is not None and self.component is None:
-            say(_first(ways, motion))
-        return motion
+        for option, value in given.items():
+            if value is not None:
+                raise UsageError(
+                    f"{option} is for branches of triangulated sheets, and this sheet folds along "
+                    "ways of rigid panels: name one by --way or --letters"
+                )
 
     # --- proof -----------------------------------------------------------------------------------
 
-    def _proof(self, motion: Motion | PanelMotion, bar: Bar) -> MotionProof | PanelProof | None:
+    def _proof(
+        self,
+        motion: Motion | PanelMotion | FamilyMotion,
+        chosen: ChosenBranch | ChosenPanels,
+        bar: Bar,
+    ) -> MotionProof | PanelProof | None:
         if self.certificate is None:
             return None
-        if not isinstance(motion, Motion):
-            from exactfold.motion.panels.proving import prove_panels
+        if isinstance(motion, Motion) and isinstance(chosen, ChosenBranch):
+            from exactfold.motion.persistence import prove_persistently
 
-            bar("proving")
-            return prove_panels(motion)
-        from exactfold.motion.persistence import prove_persistently
-
-        begin = _Begin(motion.branch, motion.side, motion.drive)
-        return prove_persistently(motion, lambda held: self._along(begin, bar, held), progress=bar)
+            again = partial(self._along, chosen, bar)
+            return prove_persistently(motion, again, progress=bar)
+        bar("proving")
+        return prove(motion)
 
     # --- files -----------------------------------------------------------------------------------
 
     def _written(
-        self, motion: Motion | PanelMotion, proof: MotionProof | PanelProof | None
+        self, motion: Motion | PanelMotion | FamilyMotion, proof: MotionProof | PanelProof | None
     ) -> list[str]:
         from exactfold.app import report
 
         title, written = self._title or "", []
-        if self.output is not None:
+        if self.output is not None and self._is_film:
+            write_film(motion, self.output)
+            written = [str(self.output)]
+        elif self.output is not None:
             written = [str(f) for f in write_motion(motion, self.output, title=self._title)]
         if self.plot is not None:
             write_picture(report.angles_plot(motion, title), self.plot)
@@ -246,23 +206,3 @@ class Wanted(FoldOptions):
             else:
                 say(f"no certificate was written: {proof.reason}")
         return written
-
-
-def _refuse(given: Mapping[str, object], why: str) -> None:
-    """Raise `UsageError` for the first of these options that was given, with the reason `why`."""
-    for option, value in given.items():
-        if value is not None:
-            raise UsageError(f"{option} is for {why}")
-
-
-def _first(ways: Decomposition, motion: PanelMotion) -> str:
-    """A sentence that says which component was chosen, and from how many."""
-    from exactfold.motion.panels.followable import panel_components
-
-    number = len(panel_components(ways))
-    if number == 1:
-        return f"the only component that can be followed: {motion.name}"
-    return (
-        f"no component was named (--component, --modes): this is the first of "
-        f"{counted(number, 'component')} that can be followed, with most folds: {motion.name}"
-    )

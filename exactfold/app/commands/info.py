@@ -53,7 +53,7 @@ def show_info(asked: InfoOptions) -> None:
     """
     name, exact = name_of(asked.file), asked.exact
     with Bar("reading") as bar:
-        opened = read_any(asked.file, asked.reading)
+        opened = read_any(asked.file, asked.reading, verbose=asked.verbose, doubted=asked.as_json)
         sheet, found = opened.sheet, vertices(opened)
         data: BranchesFactsDocument | DecomposedInfoDocument | PanelInfoDocument
         alone: VertexKeys = {"vertices": found.summary}

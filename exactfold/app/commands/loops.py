@@ -9,7 +9,7 @@ from contextlib import ExitStack
 
 from exactfold.app.options.motions import MotionsOptions
 from exactfold.app.options.reading import overruling
-from exactfold.app.shell.patterns import read, verdict
+from exactfold.app.shell.patterns import in_doubt, read, tell_doubt, verdict
 from exactfold.app.shell.resuming import require_file, resumable
 from exactfold.app.shell.shell import EXIT, Bar, apart, interruptible, name_of
 from exactfold.branches.counting.on_dask import LOCAL
@@ -50,7 +50,7 @@ class Wanted(MotionsOptions):
             raise UsageError("--resume continues a file: it goes with --certificate")
         apart(self.certificate, self.file)
         with Bar("reading") as bar:
-            read_sheet = read(self.file, self.reading, "motions")
+            read_sheet = read(self.file, self.reading, "motions", verbose=self.verbose)
             pattern = read_sheet.pattern
             with ExitStack() as stack:
                 if self.certificate is not None:
@@ -71,7 +71,8 @@ class Wanted(MotionsOptions):
                     replace=False,
                 )
         if self.as_json:
-            print(json.dumps(loops.to_dict(name_of(self.file))))
+            print(json.dumps(in_doubt(read_sheet.opened, loops.to_dict(name_of(self.file)))))
         else:
+            tell_doubt(read_sheet.opened)
             report.show(report.motions_report(loops))
         return EXIT[verdict(read_sheet.opened, loops.status)]

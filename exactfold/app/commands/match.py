@@ -8,11 +8,12 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from exactfold._support.clock import Clock
-from exactfold._support.plurals import counted
 from exactfold._support.verdict import PROVED, REFUTED
+from exactfold.app.commands.ways import given_letters
 from exactfold.app.options.branches import MatchOptions
 from exactfold.app.shell.patterns import read_any
 from exactfold.app.shell.shell import EXIT, Bar, name_of, say
+from exactfold.app.verbs.chosen import DRAWN
 from exactfold.certificates.entries import write_certificate
 from exactfold.design.assignments.boundary_match import can_pop, match_boundary
 from exactfold.design.assignments.boundary_result import BoundaryMatch
@@ -21,13 +22,13 @@ from exactfold.design.assignments.nearest import nearest_branches
 from exactfold.design.assignments.result import Match
 from exactfold.design.assignments.search import match
 from exactfold.design.panels.match import PanelMatch, match_panels
+from exactfold.design.panels.vertices import open_vertices
 from exactfold.errors import (
     NotApplicableError,
     NotCountedError,
     UsageError,
 )
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
-from exactfold.pattern.drawing.bounds import read_text
 from exactfold.pattern.opening import Opened, triangles
 from exactfold.pattern.panel_pattern import PanelPattern
 
@@ -53,11 +54,11 @@ class Asked(MatchOptions):
         clock = Clock(self.limit)
         nearest = None
         with Bar("reading") as bar:
-            opened = read_any(self.file, self.reading)
+            opened = read_any(self.file, self.reading, verbose=self.verbose, doubted=self.as_json)
             letters = self._letters(opened.sheet, opened)
             if isinstance(opened.sheet, PanelPattern) or opened.sheet.Ve > 4:
                 popping = isinstance(opened.sheet, CreasePattern) and can_pop(opened.sheet)
-                if popping and not opened.doubt:
+                if popping and not opened.doubt and not open_vertices(opened, letters):
                     over = match_boundary(
                         opened.sheet, letters, most=self.most or _RIMS, progress=bar
                     )
@@ -74,8 +75,10 @@ class Asked(MatchOptions):
             _in_reach(pattern)
             bar("signs")
             matched = match(pattern, letters, most=self.most or _HALVES, progress=bar)
-            matched = matched.about(opened.meant)
-            if not matched.matches and not opened.doubt:
+            if nearly := open_vertices(opened, letters):
+                say(f"warning: {nearly}")
+            matched = matched.about(opened.meant, nearly)
+            if not matched.matches and not opened.doubt and not nearly:
                 bar("nearest branches")
                 nearest = nearest_branches(matched, tries=self.tries, progress=bar)
             self._write(matched, bar)
@@ -125,7 +128,7 @@ class Asked(MatchOptions):
         return EXIT[panel_match.starts]
 
     def _letters(self, pattern: CreasePattern | PanelPattern, opened: Opened) -> Mapping[Edge, str]:
-        if self.letters is None:
+        if self.letters in (None, DRAWN):
             if opened.letters:
                 return opened.letters
             raise UsageError(
@@ -140,55 +143,4 @@ def _in_reach(pattern: CreasePattern) -> None:
         raise NotCountedError(
             "match needs a sheet that can fold, and this one is rigid: it has only three boundary "
             "vertices"
-        )
-
-
-def given_letters(pattern: CreasePattern | PanelPattern, text: str) -> dict[Edge, str]:
-    """The letters that --letters gives: in the order of the folds, or by fold: "0-4=M,1-5=V".
-
-    @FILE reads them from a file. Folds that are not named are free. Raises `UsageError` and
-    `UnreadableFileError`.
-    """
-    where = ""
-    if text.startswith("@"):
-        where, text = f"{text[1:]}: ", read_text(text[1:])
-    letters = "".join(text.split())
-    try:
-        return _by_name(pattern, letters) if "=" in letters else _in_order(pattern, letters)
-    except UsageError as error:
-        raise UsageError(f"{where}{error}") from None
-
-
-def _in_order(pattern: CreasePattern | PanelPattern, letters: str) -> dict[Edge, str]:
-    folds = pattern.folds
-    for fold, letter in zip(folds, letters, strict=False):
-        _check(fold, letter)
-    if len(letters) != len(folds):
-        raise UsageError(
-            f"{counted(len(letters), 'letter')} for {counted(len(folds), 'fold')}: give one of M, "
-            "V, F, U for each, in the order of `exactfold count`, or by fold as in 0-4=M,1-5=V"
-        )
-    return dict(zip(folds, letters, strict=True))
-
-
-def _by_name(pattern: CreasePattern | PanelPattern, text: str) -> dict[Edge, str]:
-    names = {f"{i}-{j}": (i, j) for i, j in pattern.folds}
-    names |= {f"{j}-{i}": (i, j) for i, j in pattern.folds}
-    letters: dict[Edge, str] = {}
-    for part in filter(None, text.split(",")):
-        name, _, letter = part.partition("=")
-        if name not in names:
-            raise UsageError(f"{part!r} names no fold of the sheet: write 0-4=M for fold 0-4")
-        fold = names[name]
-        _check(fold, letter)
-        if letters.setdefault(fold, letter) != letter:
-            raise UsageError(f"fold {fold[0]}-{fold[1]} has two letters: give one")
-    return letters
-
-
-def _check(fold: Edge, letter: str) -> None:
-    if letter not in tuple("MVFU"):
-        raise UsageError(
-            f"fold {fold[0]}-{fold[1]} has the letter {letter!r}: use M (mountain), V (valley), F "
-            "(flat) or U (free)"
         )

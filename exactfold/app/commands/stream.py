@@ -64,7 +64,7 @@ class Streaming:
         apart(self.file, self.pattern)
         require_file(self.file, resume=True)
         with Bar("reading") as bar:
-            file = read(self.pattern, self.asked.reading, "--stream")
+            file = read(self.pattern, self.asked.reading, "--stream", verbose=self.asked.verbose)
             _require_streamable(file.pattern)
             require_file(self.file, self.asked.resume)
             with resumable(self.file, self.again), interruptible():

@@ -22,7 +22,7 @@ class Asked(VerticesOptions):
         Raises the errors of `read_any`, and `UsageError` for letters that do not fit the folds.
         """
         with Bar("reading") as bar:
-            opened = read_any(self.file, self.reading)
+            opened = read_any(self.file, self.reading, verbose=self.verbose)
             bar("vertices")
             found = vertices(opened, self._letters(opened))
         if self.as_json:
@@ -36,6 +36,6 @@ class Asked(VerticesOptions):
     def _letters(self, opened: Opened) -> Mapping[Edge, str] | None:
         if self.letters is None:
             return None
-        from exactfold.app.commands.match import given_letters
+        from exactfold.app.commands.ways import given_letters
 
         return given_letters(opened.sheet, self.letters)

@@ -1,4 +1,4 @@
-"""`exactfold view`: writes or serves the page that shows a sheet and its ways to fold."""
+"""`exactfold view` and `serve`: write or serve the page of a sheet and its ways to fold."""
 
 from __future__ import annotations
 
@@ -11,12 +11,14 @@ from rich.text import Text
 from exactfold._support.plurals import counted, visible
 from exactfold._support.processes import available_cores
 from exactfold._support.verdict import PROVED
-from exactfold.app.options.pictures import ViewOptions
+from exactfold.app.commands.ways import choice_of
+from exactfold.app.options.pictures import ServeOptions, ViewOptions
 from exactfold.app.report.terminal import show
-from exactfold.app.shell.patterns import read_any
-from exactfold.app.shell.shell import Bar, apart, interruptible, name_of, say, tell
+from exactfold.app.shell.patterns import located, read_any
+from exactfold.app.shell.shell import Bar, apart, interruptible, say, tell, wrote
+from exactfold.app.verbs.choosing import choose
+from exactfold.app.verbs.showing import shown
 from exactfold.app.viewer.page import checked_page, write_view
-from exactfold.app.viewer.server import view_server
 from exactfold.errors import UsageError
 from exactfold.pattern.opening import Opened
 
@@ -25,50 +27,56 @@ class Wanted(ViewOptions):
     """The options of one call, and how they are answered."""
 
     def run(self) -> None:
-        """Write the page and say where, or serve it until Ctrl-C.
-
-        Raises the errors of `read_any`, `write_view` and `view_server`.
-        """
+        """Write the page and say where; raises the errors of `read_any` and `write_view`."""
         name = "sheet" if str(self.file) == "/dev/stdin" else self.file.stem
         output = self.output or Path(f"{name}.view.html")
-        if not self.serve:
-            apart(output, self.file)
-            checked_page(output)  # before the work
+        apart(output, self.file)
+        checked_page(output)  # before the work
         with Bar("reading") as bar, interruptible():
-            opened = read_any(self.file, self.reading)
-            if not self.serve:
-                document = write_view(
-                    opened,
-                    output,
-                    name=visible(name),
-                    branches=self.branches,
-                    frames=self.frames,
-                    proving=self.proving,
-                    workers=self.workers or available_cores(),
-                    progress=bar,
-                )
-        if self.serve:
-            self._serve(opened, name)
-            return
+            opened = read_any(self.file, self.reading, verbose=self.verbose, doubted=False)
+            document = write_view(
+                opened,
+                output,
+                name=visible(name),
+                **self._only(opened, bar),
+                frames=self.frames,
+                proving=self.proving,
+                workers=self.workers or available_cores(),
+                progress=bar,
+            )
         show(Text(document["answer"]))
-        tell(f"written: {name_of(output)}, with {_contents(document)}")
+        wrote(output, _contents(document))
 
-    def _serve(self, opened: Opened, name: str) -> None:
-        with Bar("counting") as bar:
-            try:
-                server = view_server(
-                    opened,
-                    name=visible(name),
-                    branches=self.branches,
-                    frames=self.frames,
-                    proving=self.proving,
-                    port=self.port or 0,
-                    progress=bar,
-                )
-            except OSError as error:
-                raise UsageError(f"port {self.port or 0}: {error.strerror}") from None
+    def _only(self, opened: Opened, bar: Bar) -> dict[str, Any]:
+        """The way that is shown, as arguments of `write_view`; empty if none was named."""
+        if not self.is_named:
+            return {}
+        return shown(choose(opened, choice_of(self, opened), bar))
+
+
+class Served(ServeOptions):
+    """The options of one call of `exactfold serve`, and how they are answered."""
+
+    def run(self) -> None:
+        """Serve the page until Ctrl-C; raises the errors of `located` and `view_server`."""
+        from exactfold.app.serving import view_server
+
+        sheet = None if self.file is None else located(self.file)
+        name = "" if self.file is None else visible(self.file.stem)
+        limit, frames = float(self.limit), self.frames
+        try:
+            server = view_server(
+                sheet,
+                name=name,
+                reading=self.reading,
+                frames=frames,
+                port=self.port or 0,
+                limit=limit,
+            )
+        except OSError as error:
+            raise UsageError(f"port {self.port or 0}: {error.strerror}") from None
         with server:
-            tell(f"{name} is at {server.address} (Ctrl-C ends it)")
+            tell(f"{name or 'the page'} is at {server.address} (Ctrl-C ends it)")
             try:
                 with interruptible():
                     server.serve_forever(poll_interval=0.2)

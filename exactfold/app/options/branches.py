@@ -2,43 +2,38 @@
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated, TypeAlias
+from typing import Annotated
 
 import typer
 
 from exactfold._support.clock import LIMIT
 from exactfold.app.options.reading import ReadingOptions
+from exactfold.app.options.ways import ONE_OF, Letters, WayOptions
 from exactfold.app.shell.parameters import (
+    PROGRAM_NAMES,
     BoundaryHeights,
     Curvature,
     Json,
     Limit,
     Pattern,
-    Place,
     PrescribedAngles,
-    Signs,
-    Up,
     degrees,
     flag,
     number,
+    program_name,
     written,
 )
-from exactfold.app.shell.shell import apart, one_at_most
+from exactfold.app.shell.shell import apart
 from exactfold.errors import UsageError
 
 
 @dataclass(frozen=True, eq=False, repr=False, match_args=False)
-class BranchOptions(ReadingOptions):
+class BranchOptions(WayOptions):
     """The options of `exactfold branch`; `UsageError` if they do not go together."""
 
-    pattern: Pattern
-    signs: Signs = None
-    up: Up = None
     batch: Annotated[
         Path | None,
-        typer.Option(
-            metavar="FILE", help="Instead of --signs: a file with one sign vector per line."
-        ),
+        typer.Option(metavar="FILE", help="Many branches: a file with one sign vector per line."),
     ] = None
     pops: Annotated[
         str | None,
@@ -59,23 +54,14 @@ class BranchOptions(ReadingOptions):
     as_json: Json = False
 
     def __post_init__(self) -> None:
-        one_at_most("one of --signs, --up and --batch", self.signs, self.up, self.batch)
+        super().__post_init__()
+        if self.batch is not None and self.is_named:
+            raise UsageError(f"give {ONE_OF}, or --batch")
         if self.pops is not None and self.batch is not None:
-            raise UsageError("--neighbours goes with --signs or --up")
+            raise UsageError("--neighbours goes with a single branch: leave out --batch")
         if self.certificate is not None and (self.pops is not None or self.batch is not None):
             raise UsageError("--certificate goes with a single branch")
-        apart(self.certificate, self.pattern, self.boundary_heights, self.curvature)
-
-
-Letters: TypeAlias = Annotated[
-    str | None,
-    typer.Option(
-        metavar="MVU...|0-4=M,...",
-        help="Use these letters instead of those in the file: M, V, F (flat) or U (free) for "
-        "each fold in the order of `count`; or letters by fold, the others are free. @FILE "
-        "reads them from a file.",
-    ),
-]
+        apart(self.certificate, self.file, self.boundary_heights, self.curvature)
 
 
 @dataclass(frozen=True, eq=False, repr=False, match_args=False)
@@ -147,13 +133,9 @@ class AssignmentsOptions(ReadingOptions):
 
 
 @dataclass(frozen=True, eq=False, repr=False, match_args=False)
-class ExportOptions(ReadingOptions):
+class ExportOptions(WayOptions):
     """The options of `exactfold export`; `UsageError` if they do not go together."""
 
-    file: Pattern
-    signs: Signs = None
-    up: Up = None
-    place: Place = None
     output: Annotated[
         Path | None,
         typer.Option(
@@ -190,9 +172,48 @@ class ExportOptions(ReadingOptions):
             text="Write a file for the Coq proof instead: the sheet and the named branches.",
         ),
     ] = False
+    system: Annotated[
+        str | None,
+        typer.Option(
+            metavar="PROGRAM",
+            parser=program_name,
+            help="Write the equations of the sheet instead, for "
+            f"{', '.join(PROGRAM_NAMES[:-1])} or {PROGRAM_NAMES[-1]}.",
+        ),
+    ] = None
     as_json: Json = False
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         apart(self.output, self.file, self.boundary_heights)
         if self.everything and not self.coq:
             raise UsageError("--all goes with --coq")
+        if self.system is not None:
+            named = self.is_named or self.amount is not None
+            if self.coq or self.as_json or named:
+                raise UsageError(
+                    "--system writes the equations of the whole sheet: of the other options only "
+                    "-o, --boundary-heights and those for reading go with it"
+                )
+
+
+@dataclass(frozen=True, eq=False, repr=False, match_args=False)
+class CertifyOptions(ReadingOptions):
+    """The options of `exactfold certify`."""
+
+    file: Pattern
+    points: Annotated[
+        Path,
+        typer.Argument(
+            metavar="POINTS.json",
+            help="A list of points; each is a list of coordinates in the order of the unknowns of "
+            "`exactfold export --system`, or an object by unknown. A coordinate is a number, text "
+            'such as "1/3", or a pair [real part, imaginary part].',
+        ),
+    ]
+    boundary_heights: BoundaryHeights = None
+    as_json: Json = False
+    everything: Annotated[bool, flag("--all", text="List every point.")] = False
+
+    def __post_init__(self) -> None:
+        apart(self.points, self.file, self.boundary_heights)

@@ -1,6 +1,5 @@
 """The options of the commands that fold and drive sheets, and checks of which go together."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -8,38 +7,31 @@ from typing import Annotated
 import typer
 
 from exactfold.app.options.reading import ReadingOptions
+from exactfold.app.options.ways import WayOptions
 from exactfold.app.shell.parameters import (
     BoundaryHeights,
     Dask,
     Json,
     Pattern,
-    Place,
     PrescribedAngles,
     Resume,
     Side,
-    Signs,
-    Up,
     flag,
     fold_name,
     number,
-    numbers,
     written,
 )
-from exactfold.app.shell.shell import apart, one_at_most
+from exactfold.app.shell.shell import apart
 from exactfold.errors import UsageError
 
 
 @dataclass(frozen=True, eq=False, repr=False, match_args=False)
-class FoldOptions(ReadingOptions):
+class FoldOptions(WayOptions):
     """The options of `exactfold fold`; `UsageError` if they do not go together.
 
     `side` is None if it was not given.
     """
 
-    file: Pattern
-    signs: Signs = None
-    up: Up = None
-    place: Place = None
     boundary_heights: BoundaryHeights = None
     side: Side = None
     drive: PrescribedAngles = None
@@ -50,30 +42,13 @@ class FoldOptions(ReadingOptions):
             text="Along a branch: go straight on at points where another motion crosses.",
         ),
     ] = False
-    component: Annotated[
-        int | None,
-        number(
-            "For panels: follow the K-th component of the motions, counted from the one with most "
-            "folds. Default: 1.",
-            "K",
-        ),
-    ] = None
-    modes: Annotated[
-        Sequence[int] | None,
-        typer.Option(
-            parser=numbers,
-            metavar="1,3",
-            help="Instead of --component: numbers of modes that share no vertex, as `count` "
-            "lists them.",
-        ),
-    ] = None
     until: Annotated[
         str,
         typer.Option(
             metavar="WHERE",
             help="Where to stop: at `contact`, when faces meet or a fold closes, or at a fold "
             "angle such as 90deg. Along a branch also at `return`, when the sheet is flat again, "
-            "or at a time, given as a number.",
+            "or at a time such as time=1.5.",
         ),
     ] = "contact"
     frames: Annotated[int, number("Number of frames.", least=2)] = 60
@@ -88,8 +63,9 @@ class FoldOptions(ReadingOptions):
     output: Annotated[
         Path | None,
         written(
-            "Write the frames: to FILE.fold; as an animation to .glb or .gltf; or each to a file "
-            "of its own, FILE_0000.obj and so on, for .obj.",
+            "Write the frames: to FILE.fold; as an animation to .glb, .gltf, .gif or .mp4; the end "
+            "as a picture to .png; each to a file of its own, FILE_0000.obj and so on, for .obj "
+            "and .stl; or the fold angles, a row for each frame, to .csv.",
             "FILE",
             "-o",
             "--output",
@@ -113,12 +89,14 @@ class FoldOptions(ReadingOptions):
     as_json: Json = False
 
     def __post_init__(self) -> None:
-        one_at_most("one of --signs, --up and --branch", self.signs, self.up, self.place)
-        if self.place is not None and (self.boundary_heights, self.drive) != (None, None):
-            option = "--drive" if self.boundary_heights is None else "--rim"
-            raise UsageError(f"{option} goes with --signs or --up")
-        if self.component is not None and self.modes is not None:
-            raise UsageError("give either --component or --modes, not both")
+        super().__post_init__()
+        if self.way is not None or self.letters is not None:
+            for option, value in (
+                ("--drive", self.drive),
+                ("--boundary-heights", self.boundary_heights),
+            ):
+                if value is not None:
+                    raise UsageError(f"{option} goes with --signs or --up")
         apart(
             self.output, self.file, self.boundary_heights, self.plot, self.picture, self.certificate
         )
@@ -146,12 +124,9 @@ class MotionsOptions(ReadingOptions):
 
 
 @dataclass(frozen=True, eq=False, repr=False, match_args=False)
-class ActuateOptions(ReadingOptions):
+class ActuateOptions(WayOptions):
     """The options of `exactfold actuate`; `UsageError` if they do not go together."""
 
-    file: Pattern
-    signs: Signs = None
-    up: Up = None
     creases: Annotated[
         int | None,
         number("Drive at most K creases. Default: all.", "K"),
@@ -168,6 +143,6 @@ class ActuateOptions(ReadingOptions):
     everything: Annotated[bool, flag("--all", text="List every branch in the ranking.")] = False
 
     def __post_init__(self) -> None:
-        one_at_most("either --signs or --up", self.signs, self.up)
+        super().__post_init__()
         if self.creases is not None and self.torques is not None:
             raise UsageError("--creases and --torques do not go together")

@@ -1,6 +1,6 @@
 """The options of the commands for whole patterns, and checks of which go together."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
 from typing import Annotated
@@ -93,8 +93,13 @@ class CountOptions(ReadingOptions):
     limit: Limit = LIMIT
     everything: Annotated[bool, flag("--all", text="List every way.")] = False
     verbose: Annotated[
-        bool, flag("--verbose", text="Also say how the ways were found and proved.")
-    ] = False
+        bool,
+        flag(
+            "-v",
+            "--verbose",
+            text="Say each step of reading and repair, and how the ways were found and proved.",
+        ),
+    ] = field(default=False, kw_only=True)
 
     def __post_init__(self) -> None:
         if len(self.patterns) == 1 and self.jsonl is None and self.sheet != "all":
@@ -110,8 +115,8 @@ class CountOptions(ReadingOptions):
         )
         if self.resume or any(value is not None for value in single):
             raise UsageError(
-                "--certificate, --stream, --resume, --workers, --curvature and --rim go with one "
-                "pattern, without --jsonl and without --sheet all"
+                "--certificate, --stream, --resume, --workers, --curvature and --boundary-heights "
+                "go with one pattern, without --jsonl and without --sheet all"
             )
 
 
@@ -136,7 +141,12 @@ class ConvertOptions(ReadingOptions):
 
     file: Pattern
     output: Annotated[
-        Path, typer.Argument(metavar="OUT.fold", help="The FOLD file to write; - for stdout.")
+        Path,
+        typer.Argument(
+            metavar="OUT.fold",
+            help="The FOLD file to write, or - for stdout; .dxf is the crease pattern in layers "
+            "by letter, .obj and .stl a flat mesh.",
+        ),
     ]
     merge: Annotated[
         Fraction | None,

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import typer
 
@@ -25,12 +25,18 @@ from exactfold.pattern.reading import Reading
 class ReadingOptions:
     """How a drawing is read; these options follow the others in the help of a command."""
 
+    panel: ClassVar[str] = "How a drawing is read"
+
     snap: Snap = None
     sheet: Sheet = None
     force: Force = False
     colours: Colours = None
     dashes: Dashes = None
     chords: Chords = None
+    verbose: Annotated[
+        bool,
+        flag("-v", "--verbose", text="Say each step of reading and repair, and where it was done."),
+    ] = False
     box: Annotated[
         bool, flag("--box", text="Take the rectangle round the drawing for the edge of the paper.")
     ] = False

@@ -16,6 +16,7 @@ from exactfold.pattern.crease_pattern import CreasePattern, Edge
 
 if TYPE_CHECKING:
     from exactfold.motion.panels.followable import PanelMode
+    from exactfold.motion.panels.listing import PanelWay
     from exactfold.panels.result import Decomposition
     from exactfold.pattern.panel_pattern import PanelPattern
 
@@ -42,10 +43,8 @@ class DrawnWay:
 
     @property
     def text(self) -> str:
-        """The letters in the order of the folds; a fold of panels that stays flat is a point."""
-        flat = "F" if isinstance(self.pattern, CreasePattern) else "."
-        letters = (self.letters.get(fold, "U") for fold in self.pattern.folds)
-        return "".join(flat if letter == "F" else letter for letter in letters)
+        """The letters in the order of the folds."""
+        return "".join(self.letters.get(fold, "U") for fold in self.pattern.folds)
 
     @property
     def shared(self) -> str:
@@ -95,34 +94,64 @@ def branch_way(branch: Branch, number: int | None = None) -> DrawnWay:
     return DrawnWay(branch.pattern, name, branch.assignment, branch.vertex_signs, angles, number)
 
 
-def mode_way(mode: PanelMode) -> DrawnWay:
-    """An elementary mode of a sheet of panels; all folds that are not active are flat.
+def panel_way(
+    way: PanelWay, pattern: PanelPattern, rates: Mapping[int | Edge, float] | None = None
+) -> DrawnWay:
+    """A way of a sheet of panels with the given rates, by default those with which it is followed.
+
+    All other folds are flat. Lines have widths if a single mode folds; the modes of a family fold
+    independently of each other.
 
     >>> from exactfold.panels.decomposition import decompose
-    >>> from exactfold.motion.panels.followable import panel_modes
+    >>> from exactfold.motion.panels.listing import panel_ways
     >>> from exactfold.pattern.families import single_vertex
     >>> from exactfold.pattern.opening import panels
-    >>> way = mode_way(panel_modes(decompose(panels(single_vertex(4))))[0])
-    >>> way.name, sorted(way.letters) == sorted(way.angles)
-    ('mode 1', True)
+    >>> one = decompose(panels(single_vertex(4)))
+    >>> way = panel_way(panel_ways(one)[0], one.pattern)
+    >>> way.name, sorted(way.letters) == [*one.pattern.folds], len(way.angles)
+    ('way 1', True, 4)
     """
-    points = [(float(x), float(y)) for x, y in mode.pattern.vertices]
+    letters = dict.fromkeys(pattern.folds, "F")
+    angles: dict[Edge, float] = {}
+    if rates:
+        for mode in way.modes:
+            if rate := rates.get(mode.number, 0.0):
+                turn = UPSIDE_DOWN if rate < 0 else {}
+                letters |= {fold: x.translate(turn) for fold, x in mode.letters.items()}
+                angles = {fold: rate * angle for fold, angle in first_angles(mode).items()}
+        free = {fold: rate for fold, rate in rates.items() if fold in way.free}
+        letters |= {fold: "V" if rate > 0 else "M" for fold, rate in free.items()}
+        if len(rates) > 1:
+            angles = {}
+    else:
+        letters |= way.letters
+        if len(way.modes) == 1:
+            angles = first_angles(way.modes[0])
+    name = f"way {way.number}"
+    if way.dimension > 1:
+        name = f"{name}, a family of dimension {way.dimension}"
+    note = _NOTES.get(str(way.verdict), "")
+    return DrawnWay(pattern, name, letters, {}, angles, way.number, note)
+
+
+def first_rates(mode: PanelMode) -> dict[Edge, float]:
+    """Numbers in proportion to the first fold angles over lengths of a mode, in floats."""
     first = mode.folds[0]
     rates = {first: 1.0 if mode.letters[first] == "V" else -1.0}
     for k, known in mode.order_from(first):
         for fold in mode.stars[k].folds:
             rates.setdefault(fold, rates[known] * float(mode.choice[k].gain(known, fold)))
-    angles = {(i, j): rate * dist(points[i], points[j]) for (i, j), rate in rates.items()}
-    letters = {fold: mode.letters.get(fold, "F") for fold in mode.pattern.folds}
-    note = _NOTES.get(str(mode.extends.verdict), "")
-    return DrawnWay(mode.pattern, f"mode {mode.number}", letters, {}, angles, mode.number, note)
+    return rates
+
+
+def first_angles(mode: PanelMode) -> dict[Edge, float]:
+    """Numbers in proportion to the first fold angles of a mode, in floats."""
+    points = [(float(x), float(y)) for x, y in mode.pattern.vertices]
+    return {(i, j): rate * dist(points[i], points[j]) for (i, j), rate in first_rates(mode).items()}
 
 
 def ways_of(result: BranchCount | Decomposition, most: int | None = None) -> Sequence[DrawnWay]:
     """The ways that a count lists, in its order: all of them or the first `most`.
-
-    If a sheet of panels has only families, no way is listed; then the result has the known ways in
-    these families.
 
     >>> from exactfold.branches.counting.collect import count_branches
     >>> [way.number for way in ways_of(count_branches("two-vertex"))]
@@ -130,10 +159,9 @@ def ways_of(result: BranchCount | Decomposition, most: int | None = None) -> Seq
     """
     if isinstance(result, BranchCount):
         return [branch_way(branch, k) for k, branch in enumerate(result.branches[:most], 1)]
-    from exactfold.motion.panels.followable import panel_modes
+    from exactfold.motion.panels.listing import panel_ways
 
-    known = panel_modes(result)[: len(result.modes) or None]
-    return [mode_way(mode) for mode in known[:most]]
+    return [panel_way(way, result.pattern) for way in panel_ways(result)[:most]]
 
 
 def shortened(text: str, most: int = _LONG) -> str:

@@ -11,10 +11,12 @@ from exactfold._support.arrays import FloatArray
 from exactfold._support.plurals import counted, plural
 from exactfold.app.pictures import svg
 from exactfold.motion.curves.events import (
+    CHANGE,
     CONTACT,
     FLAT_FOLD,
     LENGTH,
     NODE,
+    PASSED,
     RETURN,
     SINGULAR,
     TURNING,
@@ -114,7 +116,7 @@ def _events(motion: SheetInMotion, across: svg.Scale) -> list[str]:
     placed = [(across(event.time[1]), event) for event in motion.events]
     for x, group in groupby(placed, key=lambda item: round(item[0], 1)):
         events = [event for _, event in group]
-        turning = all(event.kind == TURNING for event in events)
+        turning = all(event.kind in PASSED for event in events)
         parts.append(
             svg.line(
                 (x, _TOP),
@@ -154,6 +156,9 @@ def _name(events: list[Event]) -> str:
         if kind == TURNING:
             some = folds[0] if len(folds) == 1 else counted(len(folds), "fold")
             words.append(f"{some} {'turns' if len(folds) == 1 else 'turn'} back")
+        elif kind == CHANGE:
+            some = folds[0] if len(folds) == 1 else counted(len(folds), "fold")
+            words.append(f"{some} through flat")
         elif kind in _NAMES:
             named = f"{', '.join(folds[:2])} " if kind == FLAT_FOLD and len(folds) <= 2 else ""
             words.append(f"{named}{_NAMES[kind]}")

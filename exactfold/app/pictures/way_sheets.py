@@ -19,7 +19,7 @@ MOST_NAMED: Final = 6
 
 
 def number_listed(result: BranchCount | Decomposition) -> int:
-    """The number of ways to draw: the branches, or the modes that are listed or known.
+    """The number of ways to draw: the branches, or the ways of rigid panels.
 
     >>> from exactfold.branches.counting.collect import count_branches
     >>> number_listed(count_branches("two-vertex"))
@@ -27,9 +27,9 @@ def number_listed(result: BranchCount | Decomposition) -> int:
     """
     if isinstance(result, BranchCount):
         return len(result.branches)
-    from exactfold.motion.panels.followable import panel_modes
+    from exactfold.motion.panels.listing import panel_ways
 
-    return len(result.modes) or len(panel_modes(result))
+    return len(panel_ways(result))
 
 
 def sheet_of_ways(
@@ -86,12 +86,11 @@ def _title(result: BranchCount | Decomposition, ways: Sequence[DrawnWay], number
     if isinstance(result, BranchCount):
         known = "proved" if result.status is PROVED else "proved to exist"
         return f"{counted(number, 'way')} to start folding, {known}"
+    counts = result.true or result.second_order
+    folding = sum(not way.note for way in ways)
     if number > len(ways):
-        return counted(number, "mode")
-    if result.second_order is None and result.modes:
-        return f"{counted(number, 'mode')} known to truly fold; there may be others"
-    folding, counts = sum(not way.note for way in ways), result.true or result.second_order or {}
-    if not result.modes and {*counts} == {1} and folding == number < counts[1]:
-        return f"{number} of {counts[1]} ways to fold, all known to truly fold"
+        return f"the first {len(ways)} of {counted(number, 'way')}"
+    if counts is None:
+        return f"{counted(number, 'way')} known to truly fold; there may be others"
     which = f"{folding} of them " if folding < number else "all " if number > 1 else ""
-    return f"{counted(number, 'mode')}, {which}known to truly fold"
+    return f"{counted(number, 'way')}, {which}known to truly fold"

@@ -1,7 +1,7 @@
 from exactfold.app.pictures.animation import motion_animation as motion_animation
 from exactfold.app.pictures.crease_drawing import pattern_picture as pattern_picture
 from exactfold.app.pictures.drawn_ways import branch_way as branch_way
-from exactfold.app.pictures.drawn_ways import mode_way as mode_way
+from exactfold.app.pictures.drawn_ways import panel_way as panel_way
 from exactfold.app.pictures.drawn_ways import ways_of as ways_of
 from exactfold.app.pictures.multiples import sheet_of_multiples as sheet_of_multiples
 from exactfold.app.pictures.picture_files import write_picture as write_picture
@@ -17,6 +17,7 @@ from exactfold.app.report.branch import export_report as export_report
 from exactfold.app.report.branch import shapes_report as shapes_report
 from exactfold.app.report.count import count_report as count_report
 from exactfold.app.report.digits import digits_line as digits_line
+from exactfold.app.report.digits import proposal_lines as proposal_lines
 from exactfold.app.report.info import examples_report as examples_report
 from exactfold.app.report.info import expectation as expectation
 from exactfold.app.report.info import info_report as info_report

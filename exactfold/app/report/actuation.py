@@ -104,7 +104,7 @@ def _ranking(actuation: Actuation, everything: bool) -> list[Text | Table]:
     table.add_column("place", justify="right")
     table.add_column("branch", overflow="fold")
     table.add_column("power", justify="right")
-    table.add_column("")
+    table.add_column("note")
     ranking = actuation.ranking()
     shown = ranking if everything else ranking[:_FIRST]
     for place, row in enumerate(shown, 1):

@@ -3,42 +3,50 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import takewhile
 from typing import Any
 
 from rich.console import Group
-from rich.table import Table
+from rich.padding import Padding
 from rich.text import Text
 
 from exactfold._support.plurals import counted
-from exactfold.app.report.terminal import SHOWN, cut, more_text, status_text
+from exactfold.app.report.terminal import cut, more_text, status_text
 
-_BESIDE, _BELOW = 60, 400
-"""Messages of at most 60 letters stand in the table, others below it, shortened to 400."""
+_BESIDE, _BELOW = 24, 400
+"""Messages of at most 24 letters stand in the table, others below it, shortened to 400."""
 
-BatchRow = tuple[str, str, int | None, str]
-"""Name, status, number of branches, and a message: what is missing, wrong, or worth knowing."""
+_ROWS = 32
+"""So many patterns are listed, unless all are asked for."""
+
+_WAYS, _STATUS = 8, 9
+"""The widths of the columns before the name: of "infinite", and of "UNDECIDED"."""
+
+BatchRow = tuple[str, str, str, str]
+"""Name, status, number of ways, and a message: what is missing, wrong, or worth knowing."""
 
 
 def batch_report(
     rows: list[BatchRow], summary: Mapping[str, Any], jsonl: str | None, everything: bool
 ) -> Group:
-    """A line for each pattern, and the number of patterns that are proved."""
-    table = Table(box=None, pad_edge=False)
-    table.add_column("", overflow="fold")
-    table.add_column("ways", justify="right")
-    table.add_column("status")
-    table.add_column("", overflow="fold")
-    limit = len(rows) if everything else SHOWN
+    """A line for each pattern, and the number of patterns that are proved.
+
+    Names come last in a line, and no line breaks in a name.
+    """
+    lines = [_row("ways", Text("status"), "pattern")]
+    limit = len(rows) if everything or len(rows) <= _ROWS else _ROWS
     names = _without_folder([name for name, *_ in rows])
     below: dict[str, list[str]] = {}
-    for name, (_, status, distinct, message) in zip(names[:limit], rows, strict=False):
-        ways = "?" if distinct is None else str(distinct)
+    for name, (_, status, ways, message) in zip(names[:limit], rows, strict=False):
         long = len(message) > _BESIDE
-        table.add_row(name, ways, status_text(status), "" if long else message)
+        beside = "" if long or not message else f": {message}"
+        lines.append(_row(ways, status_text(status), f"{name}{beside}"))
         if long:
             below.setdefault(message if everything else cut(message, _BELOW), []).append(name)
-    parts: list[Any] = [table, *more_text(len(rows) - limit), ""] if rows else []
-    parts += [Text(f"{', '.join(known)}: {message}\n") for message, known in below.items()]
+    parts: list[Any] = [*lines, *more_text(len(rows) - limit), ""] if rows else []
+    for message, known in below.items():
+        parts += [_unbroken(f"{name}:") for name in known]
+        parts.append(Padding(Text(message), (0, 0, 1, 2)))
     counts = ", ".join(f"{summary[key]} {key}" for key in ("proved", "undecided", "failed"))
     if summary["in_part"]:
         undecided = f"{summary['undecided']} undecided"
@@ -53,12 +61,26 @@ def batch_report(
     return Group(*parts, Text(text))
 
 
+def _row(ways: str, status: Text, name: str) -> Text:
+    """A line of the table, which is never broken."""
+    blank = " " * (_STATUS - len(status.plain))
+    line = Text.assemble(f"{ways:>{_WAYS}}  ", status, f"{blank}  {name}")
+    line.no_wrap, line.overflow = True, "ignore"
+    return line
+
+
+def _unbroken(text: str) -> Text:
+    return Text(text, no_wrap=True, overflow="ignore")
+
+
 def _without_folder(names: list[str]) -> list[str]:
-    """The names without the folder that all of them begin with.
+    """The names without the folders that all of them begin with.
 
     >>> _without_folder(["old/a.svg sheet 1", "old/b.svg"]), _without_folder(["a.svg", "old/b.svg"])
     (['a.svg sheet 1', 'b.svg'], ['a.svg', 'old/b.svg'])
+    >>> _without_folder(["/mine/old/a.svg", "/mine/new/a.svg"])
+    ['old/a.svg', 'new/a.svg']
     """
-    folders = [name.rpartition("/")[0] for name in names]
-    shared = f"{folders[0]}/" if folders and len(set(folders)) == 1 and folders[0] else ""
-    return [name.removeprefix(shared) for name in names]
+    folders = [name.split("/")[:-1] for name in names]
+    depth = len([*takewhile(lambda parts: len({*parts}) == 1, zip(*folders, strict=False))])
+    return ["/".join(name.split("/")[depth:]) for name in names]

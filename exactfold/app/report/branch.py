@@ -108,7 +108,7 @@ def branch_row(name: str, result: Branch) -> Row:
 def branches_report(rows: list[Row]) -> Group:
     """The table for several patterns, or for a branch and its neighbours."""
     table = Table(box=None, pad_edge=False)
-    table.add_column("")
+    table.add_column("branch")
     table.add_column("status")
     table.add_column("vertex signs", overflow="fold")
     table.add_column("mountain-valley", overflow="fold")
@@ -122,7 +122,7 @@ def export_report(output: str, branch: Branch, export: BranchExport) -> Table:
     sizes = [abs(angle) for angle in export.angles.values()]
     return facts_table(
         [
-            ("written", output),
+            ("wrote", output),
             ("status", status_text(export.status)),
             ("vertex signs", cut(branch.sign_text)),
             ("mountain-valley", letters_text(cut(branch.assignment_text))),

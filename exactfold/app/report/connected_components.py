@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 from exactfold._support.plurals import agreeing, counted
 from exactfold._support.verdict import PROVED
+from exactfold.app.report.terminal import MOST
 
 if TYPE_CHECKING:
     from exactfold.branches.connected_components.result import ConnectedComponents
@@ -44,7 +45,9 @@ def piece_notes(result: BranchCount) -> list[str]:
     if connected_components.chord is not None:
         i, j = connected_components.chord
         notes.append(f"the fold {i}-{j} from boundary to boundary joins all graphs")
-    if connected_components.joints:
+    if connected_components.joints and len(connected_components.vertices) > MOST:
+        notes.append(_many_joints(connected_components))
+    elif connected_components.joints:
         shown = ", ".join(joint.sign_text for joint in connected_components.joints[:_SHOWN])
         more = len(connected_components.joints) - _SHOWN
         order = ", ".join(map(str, connected_components.vertices[:_SHOWN]))
@@ -69,6 +72,19 @@ def piece_notes(result: BranchCount) -> list[str]:
     if result.warning is not None:
         notes.append(f"warning: {result.warning}")
     return notes
+
+
+def _many_joints(connected_components: ConnectedComponents) -> str:
+    """How many joints there are on a large sheet, and how many stars are flat there."""
+    number, stars = len(connected_components.joints), len(connected_components.vertices)
+    flat = sorted(
+        sum(not sign for sign in joint.signs.values()) for joint in connected_components.joints
+    )
+    some = f"{flat[0]}" if flat[0] == flat[-1] else f"{flat[0]} to {flat[-1]}"
+    return (
+        f"graphs meet at {counted(number, 'solution')} on which {some} of the {stars} stars are "
+        "flat; --json has their signs"
+    )
 
 
 def _range(low: int, high: int) -> str:

@@ -15,9 +15,13 @@ from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.app.report.connected_components import graphs, piece_notes
 from exactfold.app.report.terminal import (
     BY_SIGN,
+    COUNTED,
     SHOWN,
+    SPELLED,
     facts_table,
+    in_numbers,
     letters_text,
+    listed,
     more_text,
     status_text,
 )
@@ -64,9 +68,9 @@ def count_report(
     if verbose:
         parts += ["", facts_table(_details(result, streamed))]
     if result.branches:
-        parts += ["", *branch_table(result.branches, None if everything else SHOWN)]
+        parts += ["", *branch_table(result.branches, everything=everything)]
     if result.open_questions:
-        limit = len(result.open_questions) if everything else SHOWN
+        limit = listed(len(result.open_questions), everything=everything)
         parts += ["", Text("Open", style="bold")]
         parts += [Text(f"- {question}") for question in result.open_questions[:limit]]
         parts += more_text(len(result.open_questions) - limit)
@@ -294,20 +298,24 @@ def _stream_rows(streamed: StreamedCount) -> list[tuple[str, str]]:
     return rows
 
 
-def branch_table(branches: Sequence[Branch], most: int | None = None) -> list[Any]:
-    """A line for each of at most `most` branches, with its number, and how many more there are."""
-    pattern, limit = branches[0].pattern, len(branches) if most is None else most
+def branch_table(branches: Sequence[Branch], *, everything: bool = True) -> list[Any]:
+    """A line for each branch, or for the first ones, with its number, and how many more there are.
+
+    Letters are spelled out on sheets with few folds, or if everything is asked for.
+    """
+    pattern, limit = branches[0].pattern, listed(len(branches), everything=everything)
+    spelled = everything or len(pattern.folds) <= SPELLED
     vertices, wide = pattern.interior, pattern.Vi <= COLUMNS
     counts = any(branch.multiplicity != 1 for branch in branches)
     table = Table(box=None, pad_edge=False)
     table.add_column("way", justify="right")
     for v in vertices if wide else ():
-        table.add_column(f"vertex {v}" if len(vertices) == 1 else str(v))
+        table.add_column(f"vertex {v}" if v == vertices[0] else str(v))
     if not wide:
         table.add_column("vertices up", overflow="fold")
     table.add_column("folds", overflow="fold")
     if counts:
-        table.add_column("counts", justify="right")
+        table.add_column("multiplicity", justify="right")
     for k, branch in enumerate(branches[:limit], 1):
         signs = branch.vertex_signs
         cells: list[Any] = [str(k)]
@@ -315,9 +323,10 @@ def branch_table(branches: Sequence[Branch], most: int | None = None) -> list[An
             cells += [BY_SIGN[signs[v]] for v in vertices]
         else:
             cells.append(_up_list(signs))
-        cells.append(letters_text(branch.assignment_text))
+        letters = branch.assignment_text
+        cells.append(letters_text(letters) if spelled else Text(in_numbers(letters)))
         table.add_row(*cells, *([str(branch.multiplicity)] if counts else []))
-    return [table, *more_text(len(branches) - limit), "", *_legend(branches)]
+    return [table, *more_text(len(branches) - limit), "", *_legend(branches, spelled)]
 
 
 def _up_list(signs: Mapping[int, int]) -> str:
@@ -326,8 +335,11 @@ def _up_list(signs: Mapping[int, int]) -> str:
     return up + (f" (flat: {flat})" if flat else "")
 
 
-def _legend(branches: Sequence[Branch]) -> list[Text]:
+def _legend(branches: Sequence[Branch], spelled: bool) -> list[Text]:
     folds = branches[0].pattern.folds
+    other_side = Text("Each way is shown on one side; on the other all is reversed.")
+    if not spelled:
+        return [Text(COUNTED), other_side]
     order = "of --json"
     if len(folds) <= NAMED:
         order = ", ".join(f"{i}-{j}" for i, j in folds)
@@ -336,5 +348,5 @@ def _legend(branches: Sequence[Branch]) -> list[Text]:
     said = ", ".join(text for letter, text in names.items() if letter in letters)
     return [
         Text(f"Folds in the order {order}; {said}, seen from above."),
-        Text("Each way is shown on one side; on the other all is reversed."),
+        other_side,
     ]

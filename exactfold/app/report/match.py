@@ -11,7 +11,7 @@ from rich.text import Text
 
 from exactfold._support.plurals import agreeing, counted
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED
-from exactfold.app.report.terminal import SHOWN, more_text, status_text
+from exactfold.app.report.terminal import listed, more_text, status_text
 from exactfold.design.assignments.why import fold_text
 
 if TYPE_CHECKING:
@@ -24,6 +24,12 @@ if TYPE_CHECKING:
 
 _NEAR = 8
 """The number of nearest branches that are shown, unless all are asked for."""
+RIGIDLY = (
+    "This is about rigid panels that all move together, from the flat sheet. A model that is "
+    "folded step by step, or whose paper bends, can be right all the same: `exactfold vertices` "
+    "says at which vertices Maekawa's and Kawasaki's conditions for folding flat hold."
+)
+"""What a refutation does not mean."""
 _LETTERS = {"M": "mountain", "V": "valley", "F": "flat fold", "U": "free fold"}
 
 
@@ -35,16 +41,19 @@ def match_report(
     """
     parts: list[Any] = [_answer(match, seconds), "", Text(_asked(match))]
     if match.matches:
-        shown = match.matches if everything else match.matches[:SHOWN]
-        parts += ["", _table(shown, "vertices up", _up), *more_text(len(match.matches) - SHOWN)]
+        limit = listed(len(match.matches), everything=everything)
+        parts += ["", _table(match.matches[:limit], "vertices up", _up)]
+        parts += more_text(len(match.matches) - limit)
     else:
         parts += ["", Text("Why" if match.status is PROVED else "What is known", style="bold")]
         lines = _why(match)
-        limit = len(lines) if everything else SHOWN
+        limit = listed(len(lines), everything=everything)
         parts += [Text(f"- {line}") for line in lines[:limit]]
         parts += more_text(len(lines) - limit)
     if nearest is not None:
         parts += ["", *_nearest(nearest, everything)]
+    if match.status is PROVED and not match.matches:
+        parts += ["", Text(RIGIDLY)]
     if match.matches or (nearest is not None and nearest.rays):
         parts += [
             "",
@@ -63,15 +72,15 @@ NAMED = 12
 def panel_match_report(panel_match: PanelMatch, *, everything: bool = False) -> Group:
     """Whether rigid panels start to fold with the letters, and why, in lines of words."""
     answer, *reasons = panel_match.lines
-    limit = len(reasons) if everything else SHOWN
+    limit = listed(len(reasons), everything=everything)
     head = Text.assemble(
         f"{answer} - ", status_text(panel_match.status), f" ({panel_match.seconds:.2f} s)"
     )
     rest = [Text(f"- {reason}") for reason in reasons[:limit]]
     more = more_text(len(reasons) - limit)
-    return Group(
-        head, "", Text(_asked(panel_match)), *rest, *more, *_first_order(panel_match, everything)
-    )
+    first = _first_order(panel_match, everything)
+    meaning = [Text(f"\n{RIGIDLY}")] if panel_match.starts is REFUTED else []
+    return Group(head, "", Text(_asked(panel_match)), *rest, *more, *first, *meaning)
 
 
 def _first_order(panel_match: PanelMatch, everything: bool) -> list[str | Text]:
@@ -100,12 +109,14 @@ def boundary_match_report(boundary_match: BoundaryMatch, *, everything: bool = F
         "whether the sheet starts to fold with these mountains and valleys is open",
     )
     lines = boundary_match.why
-    limit = len(lines) if everything else SHOWN
+    limit = listed(len(lines), everything=everything)
     head = Text.assemble(
         f"{answer} - ", status_text(boundary_match.status), f" ({boundary_match.seconds:.2f} s)"
     )
     rest = [Text(f"- {line}") for line in lines[:limit]]
-    return Group(head, "", Text(_asked(boundary_match)), *rest, *more_text(len(lines) - limit))
+    rest += more_text(len(lines) - limit)
+    rest += [Text(f"\n{RIGIDLY}")] if boundary_match.starts is REFUTED else []
+    return Group(head, "", Text(_asked(boundary_match)), *rest)
 
 
 def _answer(match: Match, seconds: float) -> Text:

@@ -16,6 +16,7 @@ from exactfold.app.report.branch import boundary_heights_text
 from exactfold.app.report.terminal import cut, facts_table, letters_text, status_text
 from exactfold.motion.curves.events import (
     ANGLE,
+    CHANGE,
     CONTACT,
     DEAD_POINT,
     DRIVEN,
@@ -28,6 +29,7 @@ from exactfold.motion.curves.events import (
     Event,
 )
 from exactfold.motion.curves.motion import Motion
+from exactfold.motion.panels.families import FamilyMotion
 
 if TYPE_CHECKING:
     from exactfold.motion.curves.in_motion import SheetInMotion
@@ -43,7 +45,7 @@ _CORNERS: Final = 8
 
 
 def motion_report(
-    motion: Motion | PanelMotion,
+    motion: Motion | PanelMotion | FamilyMotion,
     written: Sequence[str] = (),
     proof: MotionProof | PanelProof | None = None,
 ) -> Group:
@@ -64,7 +66,7 @@ def motion_report(
     ]
     if len(written) > 4:
         written = [written[0], "...", written[-1]]
-    rows += [("written" if not k else "", name) for k, name in enumerate(written)]
+    rows += [("wrote" if not k else "", name) for k, name in enumerate(written)]
     return Group(facts_table(rows), *_events(motion))
 
 
@@ -91,10 +93,8 @@ def _branch_rows(motion: Motion) -> list[tuple[str, RenderableType]]:
     return rows
 
 
-def _mode_rows(motion: PanelMotion) -> list[tuple[str, RenderableType]]:
-    if motion.component is None:
-        return [("modes", cut(", ".join(map(str, motion.modes))))]
-    return [("component", cut(f"{motion.component} ({motion.name})"))]
+def _mode_rows(motion: PanelMotion | FamilyMotion) -> list[tuple[str, RenderableType]]:
+    return [("way", cut(motion.name.removeprefix("way ")))]
 
 
 def _proof(proof: MotionProof | PanelProof) -> RenderableType:
@@ -136,9 +136,11 @@ def _enclosed(event: Event, *, passed: bool) -> str:
     return f"the first contact is between the times {low:.{digits}g} and {high:.{digits}g}{after}"
 
 
-def _proved(motion: Motion | PanelMotion) -> RenderableType:
+def _proved(motion: Motion | PanelMotion | FamilyMotion) -> RenderableType:
     if isinstance(motion, Motion):
         return "followed in floats: not proved (--certificate proves it)"
+    if isinstance(motion, FamilyMotion):
+        return motion.reason
     if motion.exists is not PROVED:
         return "followed in floats: not proved"
     if motion.closes is not PROVED:
@@ -153,7 +155,7 @@ def ending_text(motion: SheetInMotion) -> str:
     """Why a motion ends, in plain words."""
     last = [event for event in motion.events if event.kind == motion.end]
     if motion.end == LENGTH or not last:
-        return "the length that was asked for"
+        return "the time that was asked for"
     text = event_text(last[-1])
     if motion.end == NODE:
         text += "; --through-nodes goes on"
@@ -176,6 +178,7 @@ def event_text(event: Event) -> str:
         if several
         else f"{folds} closes: its two faces meet",
         TURNING: f"{folds} {'turn' if several else 'turns'} back{detail}",
+        CHANGE: f"{folds} {'change' if several else 'changes'} {event.detail}",
         ANGLE: f"{folds} {'have' if several else 'has'} the angle that was asked for",
         DRIVEN: f"{folds} {'have' if several else 'has'} the angles of the drive",
         DEAD_POINT: f"{folds} {'turn' if several else 'turns'} back: they cannot be driven further",
@@ -214,7 +217,7 @@ def _events(motion: SheetInMotion) -> list[RenderableType]:
     table = Table(box=None, pad_edge=False)
     table.add_column("time")
     table.add_column("event")
-    table.add_column("", overflow="fold")
+    table.add_column("what happens", overflow="fold")
     for event in shown:
         table.add_row(f"{event.time[1]:.6g}", event.kind, event_text(event))
     parts: list[RenderableType] = [Text(""), table]

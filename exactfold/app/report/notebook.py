@@ -17,6 +17,7 @@ from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.result import BranchCount
 from exactfold.design.assignments.result import Match
 from exactfold.motion.curves.in_motion import SheetInMotion
+from exactfold.motion.panels.listing import panel_ways
 from exactfold.panels.result import Decomposition
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.drawing.drawing import Drawing
@@ -93,13 +94,13 @@ def _match(match: Match) -> str:
 
 @shows("html", Decomposition)
 def _panels(result: Decomposition) -> str:
-    heads = ("mode", "", "folds", "truly folds")
-    shown = ways_of(result, ROWS)
+    heads = ("way", "", "folds", "truly folds")
+    ways = panel_ways(result)
     rows = [
-        (way, way.text, str(mode.extends.verdict))
-        for way, mode in zip(shown, result.modes, strict=False)
+        (way, way.text, str(one.verdict))
+        for way, one in zip(ways_of(result, ROWS), ways, strict=False)
     ]
-    return _page(escape(str(panels_answer(result))), heads, rows, len(result.modes), result.warning)
+    return _page(escape(str(panels_answer(result))), heads, rows, len(ways), result.warning)
 
 
 def _page(

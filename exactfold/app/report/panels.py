@@ -11,11 +11,20 @@ from rich.text import Text
 
 from exactfold._support.plurals import agreeing, counted
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED
-from exactfold.app.report.terminal import SHOWN, letters_text, more_text, status_text
+from exactfold.app.report.terminal import (
+    COUNTED,
+    SPELLED,
+    in_numbers,
+    letters_text,
+    listed,
+    more_text,
+    status_text,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from exactfold.motion.panels.listing import PanelWay
     from exactfold.panels.partial import Drawn
     from exactfold.panels.result import Decomposition
     from exactfold.pattern.panel_pattern import Edge
@@ -23,29 +32,31 @@ if TYPE_CHECKING:
 NAMED = 12
 """At most this many folds are named in a line."""
 
-SPELLED = 128
-"""Letters are spelled out, one for each fold, on sheets with at most this many folds."""
 
-_SIDES = (
-    "Each mode is shown on one side; on the other all is reversed. Modes that share no vertex fold "
-    "independently."
-)
+_SIDES = "Each way is shown on one side; on the other all is reversed."
+_FAMILIES = "A family has infinitely many ways; one is shown."
+_EITHER = "U is a fold that is a mountain in some and a valley in others."
 
 
 def panels_report(
     result: Decomposition, certificate: str | None, *, everything: bool, verbose: bool = False
 ) -> Group:
-    """The answer, the modes, what stays flat, and what is undecided."""
+    """The answer, the ways, what stays flat, and what is undecided."""
+    from exactfold.motion.panels.listing import left_out, panel_ways
+
+    ways = panel_ways(result)
     parts: list[Any] = [panels_answer(result)]
-    notes = [*_known(result), *_notes(result, everything)]
+    notes = [*known_lines(result), *_notes(result, everything)]
+    if unlisted := left_out(result, ways):
+        notes.append(unlisted)
     if notes:
         parts += ["", *(Text(note) for note in notes)]
     if certificate is not None:
         parts += ["", Text(f"certificate: {certificate}")]
-    if result.modes:
-        parts += ["", _table(result, everything)]
-        parts += more_text(len(result.modes) - (len(result.modes) if everything else SHOWN))
-        parts += ["", Text(_legend(result, everything))]
+    if ways:
+        parts += ["", _table(result, ways, everything)]
+        parts += more_text(len(ways) - listed(len(ways), everything=everything))
+        parts += ["", Text(_legend(result, ways, everything))]
     if verbose:
         parts += ["", *(Text(line) for line in _details(result))]
     return Group(*parts)
@@ -120,22 +131,27 @@ def _each(result: Decomposition) -> str:
     return "; the dimension is the number of folds that can be folded independently"
 
 
-def _known(result: Decomposition) -> list[str]:
+def known_lines(result: Decomposition) -> list[str]:
     """What is proved where not all motions are known: degrees of freedom, and the drawn letters."""
     from exactfold.panels.result import product
 
     lines = []
     if result.true is None and (freedom := result.freedom) is not None:
         first = freedom.first_order
-        more = "" if first is None else f"; the first-order motions have dimension {first}"
-        lines.append(f"{freedom.text} - PROVED{more}")
+        said = first is None or f"dimension {first}" in result.reason
+        more = "" if said else f"; the first-order motions have dimension {first}"
+        lines.append(f"{_where(freedom.within)}{freedom.text} - PROVED{more}")
     if result.drawn is not None:
-        lines.append(_drawn(result.drawn))
+        where = _where(result.drawn.within)
+        if lines and lines[-1].startswith(where):
+            where = "on the same sheets: " if where else ""
+        lines.append(f"{where}{_drawn(result.drawn)}")
         if result.drawn.together:
             number = len(result.drawn.together)
+            fold = "folds" if number == 1 else "fold together"
             lines.append(
-                f"{counted(number, 'crease')} {'folds' if number == 1 else 'fold'} together as "
-                "drawn, while all others stay flat - PROVED; there may be larger sets"
+                f"{counted(number, 'crease')} {fold} as drawn, while all others stay flat - "
+                "PROVED; there may be larger sets"
             )
     solved = [part for part in result.parts if part.true is not None]
     known = product((part.true for part in solved), 0)
@@ -147,12 +163,25 @@ def _known(result: Decomposition) -> list[str]:
     return lines
 
 
+def _where(within: float | None) -> str:
+    """For which sheets an answer holds, if not for the one that was read."""
+    if within is None:
+        return ""
+    return (
+        f"on every sheet with these panels whose vertices lie within {within:g} of the size from "
+        "those drawn: "
+    )
+
+
 def _drawn(drawn: Drawn) -> str:
     reasons = "; ".join(drawn.reasons)
     if drawn.starts is PROVED:
         return f"it starts to fold with the drawn mountains and valleys - PROVED; {reasons}"
     if drawn.starts is REFUTED:
-        return f"it does not start to fold with the drawn mountains and valleys - PROVED: {reasons}"
+        return (
+            "it does not start to fold with the drawn mountains and valleys, with rigid panels "
+            f"that all move together - PROVED: {reasons}"
+        )
     return f"whether it starts to fold with the drawn mountains and valleys is UNDECIDED: {reasons}"
 
 
@@ -188,7 +217,7 @@ def _notes(result: Decomposition, everything: bool) -> list[str]:
             "with python-sat (pip install 'exactfold[sat]') a search by clauses may find more ways"
         )
     if result.second_order is None and result.modes:
-        notes.append("each mode listed below truly folds, and there may be others")
+        notes.append("each way listed below truly folds, and there may be others")
     asked = result.drawn or result.doubt
     if result.second_order is None and result.rigid is not PROVED and not asked:
         notes.append(
@@ -208,48 +237,35 @@ def _flat(folds: Sequence[Edge], when: str, everything: bool) -> str:
     return f"{counted(len(folds), 'crease')} {stay} flat {when}: {named}{more}"
 
 
-def _table(result: Decomposition, everything: bool) -> Table:
-    modes = result.modes if everything else result.modes[:SHOWN]
+def _table(result: Decomposition, ways: Sequence[PanelWay], everything: bool) -> Table:
     spelled = everything or len(result.pattern.folds) <= SPELLED
+    families = any(way.dimension > 1 for way in ways)
     table = Table(box=None, pad_edge=False)
-    table.add_column("mode", justify="right")
-    table.add_column("vertices", justify="right")
+    table.add_column("way", justify="right")
+    if families:
+        table.add_column("dimension", justify="right")
     table.add_column("folds", overflow="fold")
     table.add_column("truly folds")
-    for number, mode in enumerate(modes, 1):
-        letters = "".join(mode.assignment.get(fold, ".") for fold in result.pattern.folds)
-        shown = letters_text(letters) if spelled else Text(_numbers(letters))
-        verdict = mode.extends.verdict
+    for way in ways[: listed(len(ways), everything=everything)]:
+        letters = "".join(way.letters.get(fold, "F") for fold in result.pattern.folds)
+        shown = letters_text(letters) if spelled else Text(in_numbers(letters, "of either letter"))
+        verdict = way.verdict
         said = {str(PROVED): "yes", str(UNDECIDED): "undecided"}.get(str(verdict), "no")
-        table.add_row(
-            str(number),
-            str(len(mode.active)),
-            shown,
-            f"{said}: {mode.extends.by}",
-        )
+        cells = [str(way.dimension)] if families else []
+        table.add_row(str(way.number), *cells, shown, f"{said}: {way.by}")
     return table
 
 
-def _numbers(letters: str) -> str:
-    """How many folds have each letter in a mode, in words.
-
-    >>> _numbers("VV.M..")
-    '1 mountain, 2 valleys, 3 flat'
-    """
-    known = {"M": "mountain", "V": "valley"}
-    bent = [counted(letters.count(one), word) for one, word in known.items() if one in letters]
-    return ", ".join([*bent, f"{letters.count('.')} flat"])
-
-
-def _legend(result: Decomposition, everything: bool) -> str:
+def _legend(result: Decomposition, ways: Sequence[PanelWay], everything: bool) -> str:
     folds = result.pattern.folds
+    sides = _SIDES
+    if any(way.dimension > 1 for way in ways):
+        either = f"{_EITHER} " * any("U" in way.letters.values() for way in ways)
+        sides = f"{_FAMILIES} {either}{_SIDES}"
     if len(folds) > SPELLED and not everything:
-        return (
-            "Mountains and valleys are counted as seen from above (--all shows the letter of each "
-            f"fold). {_SIDES}"
-        )
+        return f"{COUNTED} {sides}"
     order = ", ".join(f"{i}-{j}" for i, j in folds) if len(folds) <= NAMED else "of --json"
-    return f"Folds in the order {order}; M mountain, V valley, . flat, seen from above. {_SIDES}"
+    return f"Folds in the order {order}; M mountain, V valley, F flat, seen from above. {sides}"
 
 
 def _details(result: Decomposition) -> list[str]:

@@ -19,7 +19,7 @@ def studies_report(studies: Mapping[str, Study]) -> Table:
     table = Table(box=None, pad_edge=False)
     table.add_column("study", style="bold")
     table.add_column("patterns", justify="right")
-    table.add_column("", overflow="fold")
+    table.add_column("what it shows", overflow="fold")
     for name, study in studies.items():
         table.add_row(name, str(sum(study.numbers.values())), study.about)
     return table
@@ -50,7 +50,7 @@ def table_of(table: StudyTable) -> Table:
 def row_report(row: Recomputed) -> Group:
     """A row of a journal beside the row that was computed again."""
     table = Table(box=None, pad_edge=False)
-    table.add_column("", style="bold")
+    table.add_column("value", style="bold")
     table.add_column("in the journal", overflow="fold")
     table.add_column("computed again", overflow="fold")
     for name, value in row.stored.recipe.items():

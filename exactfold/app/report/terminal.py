@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, Final
 
 from rich.console import Console, ConsoleOptions, RenderableType
 from rich.segment import Segment
 from rich.table import Table
 from rich.text import Text
 
-from exactfold._support.plurals import visible
+from exactfold._support.plurals import counted, visible
 from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 
-SHOWN = 32
-"""The number of branches, files and questions that are listed, unless all are asked for."""
+SHOWN = 10
+"""So many ways or questions are listed if there are more than `MOST`, unless all are asked for."""
+MOST = 16
+"""Up to so many are all listed."""
 
 STYLES = {"M": "red", "V": "blue", "F": "dim", "U": "yellow"}
 UP, DOWN, FLAT = Text("up", "green"), Text("down", "magenta"), Text("flat", "dim")
@@ -35,6 +38,26 @@ def letters_text(letters: str) -> Text:
     return text
 
 
+SPELLED = 48
+"""Letters are spelled out, one for each fold, on sheets with at most this many folds."""
+COUNTED = (
+    "Mountains and valleys are counted as seen from above (--all shows the letter of each fold)."
+)
+
+
+def in_numbers(letters: str, either: str = "undecided") -> str:
+    """How many folds have each letter, in words; `either` says what U means.
+
+    >>> in_numbers("VVFMFF")
+    '1 mountain, 2 valleys, 3 flat'
+    """
+    known = {"M": "mountain", "V": "valley"}
+    bent = [counted(letters.count(one), word) for one, word in known.items() if one in letters]
+    others = {"F": "flat", "U": either}
+    rest = [f"{letters.count(one)} {word}" for one, word in others.items() if one in letters]
+    return ", ".join(bent + rest)
+
+
 def cut(text: str, most: int = 160) -> str:
     """Text, truncated if it is long."""
     return text if len(text) <= most else f"{text[:most]}... (--json has all)"
@@ -50,6 +73,15 @@ def facts_table(rows: list[tuple[str, RenderableType]]) -> Table:
     return table
 
 
+def listed(number: int, *, everything: bool) -> int:
+    """How many of a number of things are listed.
+
+    >>> listed(16, everything=False), listed(17, everything=False), listed(17, everything=True)
+    (16, 10, 17)
+    """
+    return number if everything or number <= MOST else SHOWN
+
+
 def more_text(count: int) -> list[Any]:
     """A line that says how many more there are, if there are more."""
     return [Text(f"... and {count} more (--all shows them)")] if count > 0 else []
@@ -61,16 +93,22 @@ def show(content: RenderableType) -> None:
     """
     out = console()
     if out.is_terminal:
-        out.print(content)
+        out.print(content, crop=False)
         return
     with out.capture() as captured:
-        out.print(content)
+        out.print(content, crop=False)
     print("\n".join(line.rstrip() for line in captured.get().splitlines()))
 
 
 def console(*, stderr: bool = False) -> Console:
     """A console without highlighting, so that text and tables stay as they are written."""
     return _Console(stderr=stderr, highlight=False, emoji=False, markup=False)
+
+
+_TOGETHER: Final = re.compile(r"[A-Z]+ \(\d+\.\d+ s\)")
+"""What no line break divides, such as PROVED (0.01 s)."""
+_GLUE: Final = "\ue000"
+"""Stands for a space where no line may break, until lines are broken."""
 
 
 class _Console(Console):
@@ -80,5 +118,12 @@ class _Console(Console):
         self, renderable: RenderableType, options: ConsoleOptions | None = None
     ) -> Iterable[Segment]:
         """The segments of what is printed; only the console's own segments are control codes."""
+        if isinstance(renderable, Text) and _TOGETHER.search(renderable.plain):
+            renderable = renderable.copy()
+            renderable.plain = _TOGETHER.sub(
+                lambda found: found[0].replace(" ", _GLUE), renderable.plain
+            )
         for segment in super().render(renderable, options):
-            yield segment if segment.control else segment._replace(text=visible(segment.text))
+            if not segment.control:
+                segment = segment._replace(text=visible(segment.text.replace(_GLUE, " ")))
+            yield segment

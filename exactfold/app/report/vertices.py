@@ -10,7 +10,7 @@ from rich.text import Text
 
 from exactfold._support.plurals import counted
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED
-from exactfold.app.report.terminal import SHOWN, letters_text, more_text, status_text
+from exactfold.app.report.terminal import letters_text, more_text, status_text
 from exactfold.design.assignments.why import fold_text
 
 if TYPE_CHECKING:
@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from exactfold.design.panels.vertex_repair import Repair
     from exactfold.design.panels.vertices import Vertices
 
+FIRST = 10
+"""At most this many vertices have a line of their own, unless all are asked for."""
 MOST_WORDS = 12
 """At most this many reasons are listed, unless all are asked for."""
 MOST_FOLDS = 24
@@ -32,7 +34,9 @@ def vertices_report(found: Vertices, *, everything: bool = False) -> Group:
     """The answer, the table of the vertices to look at, and what to change there."""
     parts: list[Any] = [vertices_answer(found), *(Text(line) for line in found.notes)]
     rows = found.facts if everything else found.wrong
-    shown = rows if everything else rows[:SHOWN]
+    shown = rows if everything else rows[:FIRST]
+    if len(found.facts) > FIRST and not everything:
+        parts += ["", _summary(found.facts)]
     if shown:
         parts += ["", _table(shown), *more_text(len(rows) - len(shown))]
         words = _grouped(found, rows)
@@ -158,6 +162,35 @@ def _table(facts: Sequence[VertexFacts]) -> Table:
             _maekawa(v),
         )
     return table
+
+
+def _summary(facts: Sequence[VertexFacts]) -> Table:
+    """A line for each kind of vertices: of one degree, with the same answers."""
+    kinds: dict[tuple[int, str, str, str], list[VertexFacts]] = {}
+    for v in facts:
+        kawasaki = "near" if v.off is not None and not v.kawasaki else _kawasaki(v)
+        kind = (len(v.folds), _starts(v), kawasaki, _maekawa(v))
+        kinds.setdefault(kind, []).append(v)
+    table = Table(box=None, pad_edge=False)
+    table.add_column("vertices", justify="right", no_wrap=True)
+    table.add_column("degree", justify="right", no_wrap=True)
+    for title in ("starts to fold", "Kawasaki", "Maekawa"):
+        table.add_column(title)
+    for (degree, starts, kawasaki, maekawa), some in sorted(kinds.items()):
+        if kawasaki == "near":
+            kawasaki = _off_between([abs(v.off) for v in some if v.off is not None])
+        table.add_row(str(len(some)), str(degree), starts, kawasaki, maekawa)
+    return table
+
+
+def _off_between(off: Sequence[float]) -> str:
+    """By how many degrees Kawasaki's condition is missed, from the least to the most.
+
+    >>> _off_between([44.1, 45.93]), _off_between([1e-7])
+    ('off by 44.1 to 45.9 degrees', 'off by 1e-07 degrees')
+    """
+    least, most = f"{min(off):.3g}", f"{max(off):.3g}"
+    return f"off by {least} degrees" if least == most else f"off by {least} to {most} degrees"
 
 
 def _starts(facts: VertexFacts) -> str:

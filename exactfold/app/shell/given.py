@@ -18,7 +18,7 @@ from exactfold.pattern.crease_pattern import CreasePattern
 
 @dataclass(frozen=True)
 class Given:
-    """The files that --rim and --curvature name; None for an option that is not given."""
+    """The files of --boundary-heights and --curvature; None for an option that is not given."""
 
     boundary_heights: Path | None = None
     curvature: Path | None = None
@@ -26,17 +26,23 @@ class Given:
     def __bool__(self) -> bool:
         return self.boundary_heights is not None or self.curvature is not None
 
+    @property
+    def heights(self) -> dict[Any, Any] | None:
+        """The boundary heights in the file, by vertex; None without a file.
+
+        Raises the errors of `numbers_in`.
+        """
+        if self.boundary_heights is None:
+            return None
+        return numbers_in(self.boundary_heights, BoundaryHeightsError, "-1/2")
+
     def finder(self, pattern: CreasePattern) -> BranchFinder:
         """The finder of branches of a pattern with these boundary heights and angle deficits.
 
         If the pattern needs boundary heights and none are given, default heights are used. Raises
         `UnreadableFileError`, and the errors of `BranchFinder` with the name of the file in front.
         """
-        boundary_heights = (
-            None
-            if self.boundary_heights is None
-            else numbers_in(self.boundary_heights, BoundaryHeightsError, "-1/2")
-        )
+        boundary_heights = self.heights
         curvature = None
         if self.curvature is not None:
             curvature = numbers_in(self.curvature, BadCurvatureError, "1/3")

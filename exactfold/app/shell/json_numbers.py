@@ -19,9 +19,22 @@ def numbers_by_name(path: Path, error: type[InputError], noun: str, shape: str) 
     errors of `read_bytes`, and `error` if the file has another structure, repeats a name or holds
     an integer that is too long. Names and values are not checked otherwise.
     """
+    data = read_json(path, error, shape, noun)
+    if not isinstance(data, dict):
+        raise error(f"{path} does not hold numbers by {noun}: {shape}")
+    return data
+
+
+def read_json(path: Path, error: type[InputError], shape: str, noun: str = "name") -> Any:
+    """The contents of a JSON file; numbers with a decimal point are text, so no digit is lost.
+
+    Raises the errors of `read_bytes`, and `error` if the file is not JSON, repeats a name or holds
+    an integer that is too long. In messages, `noun` says what names are, and `shape` says how to
+    write the file.
+    """
     try:
         text = read_bytes(path).decode("utf-8")
-        data = json.loads(
+        return json.loads(
             text,
             parse_int=_integer,
             parse_float=str,
@@ -34,9 +47,6 @@ def numbers_by_name(path: Path, error: type[InputError], noun: str, shape: str) 
         raise error(f"{path}: {number}") from None
     except (ValueError, RecursionError):
         raise error(f"{path} is not JSON: {shape}") from None
-    if not isinstance(data, dict):
-        raise error(f"{path} does not hold numbers by {noun}: {shape}")
-    return data
 
 
 def _integer(digits: str) -> int:

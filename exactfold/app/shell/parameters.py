@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable
 from fractions import Fraction
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Final, Literal
 
 import typer
 
@@ -127,25 +127,12 @@ def fold_name(text: object) -> tuple[int, int]:
     return min(i, j), max(i, j)
 
 
-def numbers(text: object) -> tuple[int, ...]:
-    """The numbers in a list such as 1,3; each is at least 1."""
-    return tuple(whole(1)(part.strip()) for part in str(text).split(","))
-
-
 def sizes(text: object) -> tuple[int, ...]:
     """The sorted sizes in a list of numbers and ranges such as 2-5,8; each is at least 1."""
     try:
         return tuple(sorted({size for part in str(text).split(",") for size in read_sizes(part)}))
     except UsageError as error:
         raise typer.BadParameter(str(error)) from None
-
-
-def sign_vectors(text: object) -> tuple[str, ...]:
-    """Vertex signs of several branches, such as +-+,++-."""
-    vectors = tuple(part.strip() for part in str(text).split(",") if part.strip())
-    if not vectors or any(set(part) - set("+-0") for part in vectors):
-        raise typer.BadParameter(f"{text!r} is not a list of vertex signs such as +-+,++-")
-    return vectors
 
 
 def distance(text: object) -> Fraction:
@@ -165,6 +152,17 @@ def method_name(text: object) -> str:
     if name not in METHODS and name not in ALIASES:
         raise typer.BadParameter(f"{name!r} is not one of {', '.join(METHODS)}")
     return name
+
+
+PROGRAM_NAMES: Final = ("msolve", "m2", "singular", "sage", "julia", "sympy")
+"""The programs for which `exactfold export --system` writes equations."""
+
+
+def program_name(text: object) -> str:
+    """A program of `PROGRAM_NAMES`; raises `BadParameter`."""
+    if str(text) not in PROGRAM_NAMES:
+        raise typer.BadParameter(f"{text!r} is none of {', '.join(PROGRAM_NAMES)}")
+    return str(text)
 
 
 def complete_method(incomplete: str) -> list[str]:
@@ -270,19 +268,6 @@ Limit = Annotated[
         help="When the search for motions of panels stops, to print what is proved so far.",
     ),
 ]
-Signs = Annotated[
-    str | None,
-    typer.Option(
-        metavar="+-...",
-        help="Vertex signs in the order of the interior vertices; @FILE reads them from a file.",
-    ),
-]
-Up = Annotated[
-    str | None,
-    typer.Option(
-        metavar="5,7", help="Instead of --signs: the vertices that pop up. All others pop down."
-    ),
-]
 PrescribedAngles = Annotated[
     str | None,
     typer.Option(
@@ -296,8 +281,8 @@ PrescribedAngles = Annotated[
 BoundaryHeights = Annotated[
     Path | None,
     typer.Option(
-        "--rim",
-        metavar="RIM.json",
+        "--boundary-heights",
+        metavar="HEIGHTS.json",
         help='Heights of all boundary vertices, {"0": 1, "1": "-1/2", ...}, if the boundary is '
         "convex. Default with more than four corners: the heights of a saddle, which are printed.",
     ),
@@ -307,7 +292,7 @@ Curvature = Annotated[
     typer.Option(
         metavar="FILE.json",
         help='Angle deficits of interior vertices, {"5": "1/10", ...}, 0 for the others. The sheet '
-        "is then not flat by itself. Without --rim its boundary stays in a plane.",
+        "is then not flat by itself. Without --boundary-heights its boundary stays in a plane.",
     ),
 ]
 
@@ -318,15 +303,12 @@ Dask = Annotated[
         help="Run on the dask.distributed cluster with this scheduler; `local` starts one here.",
     ),
 ]
-Place = Annotated[
-    int | None, number("Instead of --signs: the N-th branch that `count` lists.", "N", "--branch")
-]
 Resume = Annotated[bool, flag("--resume", text="Continue the FILE that an interrupted run left.")]
 Side = Annotated[
     int | None,
     typer.Option(
         parser=one_side,
         metavar="+|-",
-        help="For branches: - follows the mirror image, with all signs reversed.",
+        help="- follows the mirror image, with all signs and letters reversed.",
     ),
 ]

@@ -107,6 +107,12 @@ def tell(text: str) -> None:
     print(visible(text), flush=True)
 
 
+def wrote(path: Path, what: str = "") -> None:
+    """Print which file was written, and what is in it; a closed standard output is no failure."""
+    with suppress(OSError):
+        tell(f"wrote {name_of(path)}{': ' if what else ''}{what}")
+
+
 def exit_code(error: Exception) -> int:
     """The exit code of a command that ended with an error."""
     if isinstance(error, NotEnoughMemoryError):

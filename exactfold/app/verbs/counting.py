@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from fractions import Fraction
 from os import PathLike
-from typing import TYPE_CHECKING, TypeGuard, cast, overload
+from typing import TYPE_CHECKING, Final, TypeGuard, cast, overload
 
 from exactfold._support.clock import LIMIT, Clock
 from exactfold._support.progress import Progress
 from exactfold.app.verbs.choosing import the_branch
+from exactfold.app.verbs.chosen import Choice
 from exactfold.branches.counting.batch import count_many
+from exactfold.branches.counting.doubted import doubted_branch
 from exactfold.branches.counting.find import BoundaryHeights, Deficits, Signs
 from exactfold.branches.counting.registry import choose
 from exactfold.branches.counting.ways import count_opened, decompose_opened
@@ -22,6 +25,8 @@ from exactfold.pattern.fold import FoldFile
 from exactfold.pattern.loading import PatternLike, open_sheet
 from exactfold.pattern.opening import Opened
 from exactfold.pattern.reading import Reading
+
+_PROPOSING: Final = 5.0
 
 if TYPE_CHECKING:
     from typing import TypeAlias
@@ -206,7 +211,28 @@ def counted_with_letters(
         return result
     from exactfold.design.panels.drawn import with_drawn
 
-    return with_drawn(result, opened, progress=progress, clock=clock)
+    known = with_drawn(result, opened, progress=progress, clock=clock)
+    return _with_proposal(known, opened, clock) if opened.doubt else known
+
+
+def _with_proposal(result: Decomposition, opened: Opened, clock: Clock) -> Decomposition:
+    """The answer, with an exact sheet that may have been meant, and what is known of it.
+
+    Sheets are looked for during five seconds, and their answer takes five more at most.
+    """
+    from exactfold.panels.result import Proposal
+    from exactfold.pattern.meaning import proposals
+
+    made = proposals(opened, _PROPOSING)
+    if not made or clock.passed:
+        return result
+    (noise, sheet), *rest = made
+    answer = counted_with_letters(sheet, "auto", 0, clock.at_most(_PROPOSING))
+    relations = () if sheet.meant is None else sheet.meant.relations
+    missed = max((relation.defect for relation in relations), default=0.0)
+    others = tuple(level for level, _ in rest)
+    proposal = Proposal(noise, missed, len(relations), sheet.largest_move, answer, others)
+    return replace(result, proposal=proposal)
 
 
 def decompose(
@@ -252,6 +278,8 @@ def branch(
     with more than four corners, and `curvature` angle deficits of interior vertices, both as in
     `exactfold.branches.find_branch`.
 
+    If the digits of a drawing are in doubt, the branch is UNDECIDED, and `reason` says why.
+
     Raises `NotCountedError` for a sheet of panels, which has modes, and if no branch has the
     letters; `UsageError` if none or several of the arguments name the branch, if several branches
     have the letters, and for a number that is not in the list; and the errors of `find_branch`.
@@ -264,17 +292,9 @@ def branch(
     >>> exactfold.branch("two-vertex", way=3).sign_text
     '+-'
     """
-    chosen, _ = the_branch(
-        open_sheet(sheet),
-        way,
-        signs,
-        up,
-        letters,
-        boundary_heights=boundary_heights,
-        curvature=curvature,
-        progress=progress,
-    )
-    return chosen
+    choice = Choice(way, signs, up, letters, boundary_heights, curvature)
+    opened = open_sheet(sheet)
+    return doubted_branch(the_branch(opened, choice, progress).branch, opened)
 
 
 def _is_one(sheet: object) -> TypeGuard[PatternLike]:

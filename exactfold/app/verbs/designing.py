@@ -8,13 +8,15 @@ from typing import TYPE_CHECKING
 
 from exactfold._support.clock import LIMIT, Clock
 from exactfold._support.progress import Progress
-from exactfold._support.verdict import PROVED
-from exactfold.app.verbs.choosing import Letters, asked_letters, the_branch
+from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.app.verbs.choosing import the_branch
+from exactfold.app.verbs.chosen import Choice, Letters, asked_letters
 from exactfold.branches.counting.find import Signs
 from exactfold.design.actuation.actuate import actuate as actuate_branch
 from exactfold.design.assignments.boundary_match import can_pop, match_boundary
 from exactfold.design.assignments.search import match as match_branches
 from exactfold.design.panels.match import match_panels
+from exactfold.design.panels.vertices import open_vertices
 from exactfold.design.panels.vertices import vertices as vertices_of
 from exactfold.design.refutations.asked import by_fold
 from exactfold.errors import NotCountedError
@@ -63,7 +65,8 @@ def match(
     pattern = opened.sheet
     wanted = by_fold(pattern.folds, asked_letters(opened, letters))
     popping = isinstance(pattern, CreasePattern) and pattern.Ve > 4 and can_pop(pattern)
-    if popping and not opened.doubt:
+    nearly = open_vertices(opened, wanted)
+    if popping and not opened.doubt and not nearly:
         over = match_boundary(pattern, wanted, progress=progress, **_at_most(most))
         if over.status is PROVED:
             return replace(over, meant=opened.meant)
@@ -72,7 +75,7 @@ def match(
     if pattern.interior and pattern.Ve == 3:
         raise NotCountedError("this sheet is rigid: it has three vertices on its boundary")
     found = match_branches(pattern, wanted, progress=progress, **_at_most(most))
-    return found.about(opened.meant)
+    return found.about(opened.meant, nearly)
 
 
 def vertices(sheet: PatternLike, letters: Letters | None = None) -> Vertices:
@@ -108,7 +111,8 @@ def actuate(
     """Find torques on the folds that drive a triangulated sheet along one branch and no other.
 
     The branch is named as in `branch`. If `creases` is given, at most so many folds have torques.
-    If `torques`, exact numbers by fold, are given, they are judged instead (docs/actuation.md).
+    If `torques`, exact numbers by fold, are given, they are judged instead (docs/actuation.md). If
+    the digits of a drawing are in doubt, the answer is UNDECIDED, and `reason` says why.
 
     Raises `NotCountedError` for larger panels and for more than 12 vertices that fold, and the
     errors of `branch` and of `exactfold.design.actuate`.
@@ -121,11 +125,16 @@ def actuate(
     pattern = triangles(opened, "actuate")
     wanted: Signs | None = signs
     if way is not None or letters is not None:
-        branch, side = the_branch(opened, way, signs, up, letters, progress=progress)
-        wanted, up = {v: side * sign for v, sign in branch.vertex_signs.items()}, None
-    return actuate_branch(
+        chosen = the_branch(opened, Choice(way, signs, up, letters), progress, needs="actuate")
+        signed = chosen.branch.vertex_signs.items()
+        wanted, up = {v: chosen.side * sign for v, sign in signed}, None
+    found = actuate_branch(
         pattern, wanted, up=up, creases=creases, torques=torques, progress=progress
     )
+    if not opened.doubt:
+        return found
+    reason = f"{opened.doubt}; the digits as written: {found.status}, {found.reason}"
+    return replace(found, status=UNDECIDED, reason=reason)
 
 
 def _at_most(most: int | None) -> dict[str, int]:

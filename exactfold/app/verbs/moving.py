@@ -4,39 +4,29 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from exactfold._support.progress import Progress
-from exactfold.app.verbs.choosing import (
-    Letters,
-    Ray,
-    asked_letters,
-    listed,
-    modes_with,
-    the_branch,
-)
+from exactfold.app.verbs.choosing import choose, listed
+from exactfold.app.verbs.choosing_panels import panels_way
+from exactfold.app.verbs.chosen import Choice, ChosenBranch, ChosenPanels, Letters, on_side
 from exactfold.branches.counting.find import BoundaryHeights, Signs
-from exactfold.branches.counting.ways import decompose_opened
 from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.result import BranchCount
 from exactfold.design.assignments.result import MatchedRay
-from exactfold.design.refutations.asked import by_fold
-from exactfold.errors import UsageError
-from exactfold.motion.curves.drive import PrescribedAngles
+from exactfold.errors import NotFollowedError, UsageError
 from exactfold.motion.curves.motion import Motion
 from exactfold.motion.following import follow as follow_branch
 from exactfold.motion.loops.matching import Loops, find_loops
+from exactfold.motion.panels.families import FamilyMotion, follow_family
 from exactfold.motion.panels.following import follow_panels
 from exactfold.motion.panels.motion import PanelMotion
 from exactfold.motion.panels.proving import PanelProof, prove_panels
 from exactfold.motion.proving import MotionProof
 from exactfold.motion.proving import prove as prove_motion
-from exactfold.motion.tubes.driven import find_driven
 from exactfold.panels.result import Decomposition
-from exactfold.pattern.crease_pattern import CreasePattern, Edge
+from exactfold.pattern.crease_pattern import Edge
 from exactfold.pattern.loading import PatternLike, open_sheet
-from exactfold.pattern.opening import Opened, has_branches
 
 if TYPE_CHECKING:
     from typing import TypeAlias
@@ -47,7 +37,7 @@ Way: TypeAlias = "Branch | MatchedRay | BranchCount | Decomposition | PatternLik
 
 def follow(
     sheet: Way,
-    way: int | Sequence[int] | None = None,
+    way: int | None = None,
     *,
     signs: Signs | None = None,
     up: Iterable[int] | None = None,
@@ -61,20 +51,20 @@ def follow(
     held: Sequence[int] | None = None,
     through_branch_points: bool = False,
     progress: Progress | None = None,
-) -> Motion | PanelMotion:
+) -> Motion | PanelMotion | FamilyMotion:
     """Follow the motion of a sheet along one way, from the flat state to the event `until`.
 
     `sheet` is a `Branch`, a way of a `Match`, a `BranchCount`, a `Decomposition`, or anything that
-    `read` takes. These arguments choose the way: `way`, its number in the list of `count`, from 1,
-    or several numbers of modes that fold together; `signs` or `up` for a branch, as in `branch`;
-    `letters` for a branch or a mode, "drawn" for the letters of the file. Without them, the sheet
-    follows the branch on which all vertices pop up, or the modes with most folds.
+    `read` takes. These arguments choose the way: `way`, its number in the list of `count`, from 1;
+    `signs` or `up` for a branch, as in `branch`; `letters`, "drawn" for those of the file. Without
+    them, the sheet follows the way that has the mountains and valleys of the file, if one is known;
+    else the branch on which all vertices pop up, or the first way in the list.
 
     `until` says where the motion ends: "contact" at the first contact of two faces or the first
     fold that closes, "90deg" at the first fold angle of that size; along a branch also "return"
-    when the sheet is flat again, and a number at that time. The motion has `frames` frames, at
-    equal steps of time, or of the angle of the fold `by`. `side` is -1 for the mirror image. `held`
-    has the corners of the face that does not move.
+    when the sheet is flat again, and a number, or "time=1.5", at that time. The motion has `frames`
+    frames, at equal steps of time, or of the angle of the fold `by`. `side` is -1 for the mirror
+    image. `held` has the corners of the face that does not move.
 
     These arguments are for branches only: `boundary_heights` are for a sheet with more than four
     corners. `drive` gives angles in degrees to which folds are driven
@@ -89,46 +79,108 @@ def follow(
     >>> exactfold.follow("two-vertex", signs="+-", until="90deg", frames=5)
     <Motion: branch +-, 5 frames to angle at 1.37421>
     >>> exactfold.follow("zigzags", 2, until="90deg", frames=5)
-    <PanelMotion: mode 2, followed, 5 frames to angle at 1.5708>
+    <PanelMotion: way 2, followed, 5 frames to angle at 1.5708>
     """
-    asked = _Asked(way, signs, up, letters, boundary_heights, drive, side)
+    choice = Choice(way, signs, up, letters, boundary_heights, drive=drive, side=side)
     if isinstance(sheet, Branch | MatchedRay):
-        asked.refuse_names("a branch")
-        start = (sheet, side or 1) if isinstance(sheet, Branch) else (sheet.branch, sheet.side)
-        return _along(start, None, until, frames, by, held, through_branch_points, progress)
-    if isinstance(sheet, BranchCount):
-        if not isinstance(way, int):
+        _refuse_names(choice)
+        ray = (sheet, side or 1) if isinstance(sheet, Branch) else (sheet.branch, sheet.side)
+        chosen: ChosenBranch | ChosenPanels = ChosenBranch(*ray)
+    elif isinstance(sheet, BranchCount):
+        if way is None:
             raise UsageError("name a way of the count by its number, as in `follow(result, 3)`")
-        start = listed(sheet.known, way), side or 1
-        return _along(start, None, until, frames, by, held, through_branch_points, progress)
-    if not isinstance(sheet, Decomposition):
-        opened = open_sheet(sheet)
-        if isinstance(opened.sheet, CreasePattern) and asked.is_branch(opened.sheet):
-            start, drive_found = asked.ray(opened, opened.sheet, progress)
-            return _along(
-                start, drive_found, until, frames, by, held, through_branch_points, progress
-            )
-        letters = None if letters is None else asked_letters(opened, letters)
-        sheet = decompose_opened(opened, progress=progress)
-    answer, sheet = sheet, sheet.known
-    asked.refuse_of_panels(through_branch_points)
-    wanted = None if letters is None else by_fold(sheet.pattern.folds, letters)
-    rates = modes_with(sheet, way, wanted)
-    if rates is not None and side == -1:
-        rates = {number: -rate for number, rate in rates.items()}
+        chosen = ChosenBranch(listed(sheet.known, way), side or 1, way)
+    elif isinstance(sheet, Decomposition):
+        _refuse_of_panels(choice, through_branch_points)
+        chosen = panels_way(sheet, way, letters)
+        chosen = on_side(chosen, side or 1)
+    else:
+        chosen = choose(open_sheet(sheet), choice, progress)
+    if isinstance(chosen, ChosenBranch):
+        return along(
+            chosen,
+            until=until,
+            frames=frames,
+            by=by,
+            through_branch_points=through_branch_points,
+            held=held,
+            progress=progress,
+        )
+    _refuse_of_panels(choice, through_branch_points)
+    return along_panels(chosen, until=until, frames=frames, by=by, held=held)
+
+
+def along(
+    chosen: ChosenBranch,
+    *,
+    until: str | float = "contact",
+    frames: int = 60,
+    by: Edge | None = None,
+    through_branch_points: bool = False,
+    held: Sequence[int] | None = None,
+    progress: Progress | None = None,
+) -> Motion:
+    """The motion along a branch that was chosen; the arguments are those of `follow`."""
+    pinned = None
+    if held is not None:
+        if len(held) != 3:
+            raise UsageError(f"held {tuple(held)}: give the three corners of a triangle")
+        pinned = held[0], held[1], held[2]
+    return follow_branch(
+        chosen.branch,
+        side=chosen.side,
+        until=until,
+        frames=frames,
+        by=by,
+        through_branch_points=through_branch_points,
+        pinned=pinned,
+        drive=chosen.drive,
+        progress=progress,
+    )
+
+
+def along_panels(
+    chosen: ChosenPanels,
+    *,
+    until: str | float = "contact",
+    frames: int = 60,
+    by: Edge | None = None,
+    held: Sequence[int] | None = None,
+) -> PanelMotion | FamilyMotion:
+    """The motion of rigid panels along a way that was chosen; the arguments are those of `follow`.
+
+    Raises `NotFollowedError` for a way that cannot be followed.
+    """
+    way = chosen.way
+    if chosen.direction is not None:
+        if by is not None:
+            raise UsageError("by is not for a family, whose fold angles may turn back")
+        return follow_family(
+            chosen.answer.known.pattern,
+            chosen.direction.densities,
+            until=str(until),
+            frames=frames,
+            held=0 if held is None else _face(chosen.answer.known, held),
+            way=None if way is None else way.number,
+        )
+    if way is not None:
+        way.require_folding()
+    numbers = [key for key in chosen.rates if isinstance(key, int)]
+    known = chosen.answer.known
     return follow_panels(
-        answer,
-        modes=None if rates is None else [n for n in rates if isinstance(n, int)],
-        amounts=rates,
+        chosen.answer,
+        way=None if way is None else way.number,
+        modes=numbers if way is None and numbers else None,
+        amounts=chosen.rates or None,
         until=str(until),
         frames=frames,
         by=by,
-        held=0 if held is None else _face(sheet, held),
+        held=0 if held is None else _face(known, held),
     )
 
 
 def prove(
-    motion: Motion | PanelMotion, *, progress: Progress | None = None
+    motion: Motion | PanelMotion | FamilyMotion, *, progress: Progress | None = None
 ) -> MotionProof | PanelProof:
     """Prove that a motion exists without a gap, and which faces touch first.
 
@@ -145,6 +197,8 @@ def prove(
     """
     if isinstance(motion, PanelMotion):
         return prove_panels(motion)
+    if isinstance(motion, FamilyMotion):
+        raise NotFollowedError(f"no proof of such a motion is known: {motion.reason}")
     if not isinstance(motion, Motion):
         raise UsageError(f"{type(motion).__name__} is not a motion: `follow` makes one")
     return prove_motion(motion, progress=progress)
@@ -160,9 +214,9 @@ def loops(
 ) -> Loops:
     """Find all motions of a triangulated sheet with four corners that return to the flat state.
 
-    Each motion is proved from end to end; contact is ignored (docs/motions.md). `sheet` is anything
-    that `read` takes. `workers` processes share the work. Each proof is written to the file
-    `certificate` as soon as it is found; with `resume`, an interrupted file is continued.
+    Each motion is proved from end to end; contact is ignored (docs/motion.md, 11). `sheet` is
+    anything that `read` takes. `workers` processes share the work. Each proof is written to the
+    file `certificate` as soon as it is found; with `resume`, an interrupted file is continued.
 
     Raises `NotCountedError` for larger panels, for a sheet that does not have four corners, and for
     a sheet whose branches are not proved, and the errors of `exactfold.motion.find_loops`.
@@ -180,109 +234,20 @@ def loops(
     )
 
 
-@dataclass(frozen=True)
-class _Asked:
-    """The arguments of `follow` that choose a way of a sheet."""
+def _refuse_names(choice: Choice) -> None:
+    """Raise `UsageError` if an argument chooses a way, although `sheet` is one way already."""
+    for name in [*choice.names, *choice.of_branches]:
+        raise UsageError(f"{name} chooses a way of a sheet, and this is a branch already")
 
-    way: int | Sequence[int] | None
-    signs: Signs | None
-    up: Iterable[int] | None
-    letters: Letters | None
-    boundary_heights: BoundaryHeights | None
-    drive: Mapping[Edge, float | None] | None
-    side: int | None
 
-    def is_branch(self, pattern: CreasePattern) -> bool:
-        """Whether the way is a branch; with more than four corners, if it is named like one."""
-        like_one = (self.signs, self.up, self.boundary_heights, self.drive) != (
-            None,
-            None,
-            None,
-            None,
+def _refuse_of_panels(choice: Choice, through_branch_points: bool) -> None:
+    """Raise `UsageError` for arguments that are for branches only."""
+    given = choice.of_branches + ["through_branch_points"] * through_branch_points
+    for name in given:
+        raise UsageError(
+            f"{name} is for branches, and this sheet folds along ways of rigid panels: choose one "
+            "by way or letters"
         )
-        return like_one or has_branches(pattern)
-
-    def ray(
-        self, opened: Opened, pattern: CreasePattern, progress: Progress | None
-    ) -> tuple[Ray, PrescribedAngles | None]:
-        """The chosen ray, and the folds that are driven."""
-        if self.drive is not None:
-            if self.way is not None or self.letters is not None:
-                raise UsageError("drive goes with signs or up, not with way or letters")
-            signs = self.signs
-            if self.up is not None:
-                signs = the_branch(opened, None, signs, self.up, None)[0].vertex_signs
-            driven = find_driven(
-                pattern,
-                self.drive,
-                signs,
-                boundary_heights=self.boundary_heights,
-                side=self.side,
-                progress=progress,
-            )
-            return (driven.branch, driven.side), driven.drive
-        if self.way is not None and not isinstance(self.way, int):
-            raise UsageError("two branches cannot be followed together: give one number for way")
-        up = self.up
-        if (self.way, self.signs, up, self.letters) == (None, None, None, None):
-            up = pattern.foldable_vertices
-        branch, side = the_branch(
-            opened,
-            self.way,
-            self.signs,
-            up,
-            self.letters,
-            boundary_heights=self.boundary_heights,
-            progress=progress,
-        )
-        return (branch, side * (self.side or 1)), None
-
-    def refuse_names(self, what: str) -> None:
-        """Raise `UsageError` if an argument chooses a way, although `sheet` is one way already."""
-        for name in ("way", "signs", "up", "letters", "boundary_heights", "drive"):
-            if getattr(self, name) is not None:
-                raise UsageError(f"{name} chooses a way of a sheet, and this is {what} already")
-
-    def refuse_of_panels(self, through_branch_points: bool) -> None:
-        """Raise `UsageError` for arguments that are for branches only."""
-        given = {name: getattr(self, name) for name in ("signs", "up", "boundary_heights", "drive")}
-        for name, value in (
-            given | {"through_branch_points": through_branch_points or None}
-        ).items():
-            if value is not None:
-                raise UsageError(
-                    f"{name} is for branches, and this sheet of rigid panels has modes: choose one "
-                    "by way or letters"
-                )
-
-
-def _along(
-    start: Ray,
-    drive: PrescribedAngles | None,
-    until: str | float,
-    frames: int,
-    by: Edge | None,
-    held: Sequence[int] | None,
-    through_branch_points: bool,
-    progress: Progress | None,
-) -> Motion:
-    branch, side = start
-    pinned = None
-    if held is not None:
-        if len(held) != 3:
-            raise UsageError(f"held {tuple(held)}: give the three corners of a triangle")
-        pinned = held[0], held[1], held[2]
-    return follow_branch(
-        branch,
-        side=side,
-        until=until,
-        frames=frames,
-        by=by,
-        through_branch_points=through_branch_points,
-        pinned=pinned,
-        drive=drive,
-        progress=progress,
-    )
 
 
 def _face(ways: Decomposition, corners: Sequence[int]) -> int:

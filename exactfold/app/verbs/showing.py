@@ -2,38 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from os import PathLike
 from pathlib import Path
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
-from exactfold._support.plurals import counted
 from exactfold._support.progress import Progress
 from exactfold.app.pictures.crease_drawing import pattern_picture
-from exactfold.app.pictures.drawn_ways import DrawnWay, branch_way, mode_way
+from exactfold.app.pictures.drawn_ways import DrawnWay, branch_way, panel_way
 from exactfold.app.pictures.picture_files import write_picture
 from exactfold.app.pictures.stills import motion_stills
 from exactfold.app.pictures.way_sheets import sheet_of_ways
-from exactfold.app.verbs.choosing import Letters, asked_letters, listed, modes_with, the_branch
+from exactfold.app.verbs.choosing import choose, listed
+from exactfold.app.verbs.choosing_panels import panels_way
+from exactfold.app.verbs.chosen import Choice, ChosenBranch, ChosenPanels, Letters
 from exactfold.app.viewer.document import FRAMES, view_document
 from exactfold.app.viewer.page import checked_page, view_page
 from exactfold.branches.counting.find import Signs
-from exactfold.branches.counting.ways import decompose_opened
 from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.result import BranchCount
-from exactfold.design.refutations.asked import by_fold
-from exactfold.errors import UsageError
-from exactfold.motion.curves.motion import Motion
-from exactfold.motion.panels.followable import panel_modes
-from exactfold.motion.panels.motion import PanelMotion
+from exactfold.errors import NotCountedError, UsageError
+from exactfold.motion.curves.in_motion import SheetInMotion
 from exactfold.panels.result import Decomposition
-from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.drawing.drawing import Drawing
 from exactfold.pattern.fold_writing import write_text
 from exactfold.pattern.loading import PatternLike, open_sheet
-from exactfold.pattern.opening import has_branches
 
-Shown: TypeAlias = "PatternLike | Branch | BranchCount | Decomposition | Motion | PanelMotion"
+Shown: TypeAlias = "PatternLike | Branch | BranchCount | Decomposition | SheetInMotion"
 """What can be drawn."""
 
 
@@ -66,11 +61,11 @@ def draw(
     (3, 4)
     """
     named = [x for x in (way, signs, up, letters) if x is not None]
-    if isinstance(sheet, Branch | Motion | PanelMotion) and named:
+    if isinstance(sheet, Branch | SheetInMotion) and named:
         raise UsageError("way, signs, up and letters choose a way of a sheet: leave them out here")
     if isinstance(sheet, Branch):
         text = branch_way(sheet).picture(title)
-    elif isinstance(sheet, Motion | PanelMotion):
+    elif isinstance(sheet, SheetInMotion):
         text = motion_stills(sheet, title=title)
     elif named:
         text = _way(sheet, way, signs, up, letters, progress).picture(title)
@@ -88,8 +83,11 @@ def draw(
 
 def view(
     sheet: PatternLike,
+    way: int | None = None,
     *,
-    signs: Sequence[str] | None = None,
+    signs: Signs | None = None,
+    up: Iterable[int] | None = None,
+    letters: Letters | None = None,
     frames: int = FRAMES,
     proving: bool = False,
     name: str | None = None,
@@ -99,8 +97,9 @@ def view(
 ) -> str:
     """The page that shows how a sheet folds, as HTML text; with `path`, also written to a file.
 
-    The page opens in a browser without a network. `sheet` is anything that `read` takes. For a
-    large sheet, `signs` names the branches that the page shows. Each way is followed in `frames`
+    The page opens in a browser without a network. `sheet` is anything that `read` takes. The page
+    shows all ways that are known, or the one that `way`, `signs`, `up` or `letters` names, as in
+    `follow`. Each way is followed in `frames`
     frames to its first contact; with `proving`, its motion is also proved. `workers` processes
     share the work.
 
@@ -114,10 +113,18 @@ def view(
     """
     if path is not None:
         checked_page(Path(path))
+    choice = Choice(way, signs, up, letters)
+    only: dict[str, Any] = {}
+    if choice.names:
+        opened = open_sheet(sheet)
+        only = shown(choose(opened, choice, progress))
+        if name is None and isinstance(sheet, str | PathLike):
+            name = Path(sheet).stem
+        sheet = opened
     document = view_document(
         sheet,
         name=name,
-        branches=signs,
+        **only,
         frames=frames,
         proving=proving,
         workers=workers,
@@ -142,21 +149,26 @@ def _way(
         if way is None:
             raise UsageError("name a way of the count by its number, as in `draw(result, 3)`")
         return branch_way(listed(sheet.known, way), way)
-    if not isinstance(sheet, Decomposition):
-        opened = open_sheet(sheet)
-        pattern = opened.sheet
-        named = signs is not None or up is not None
-        if isinstance(pattern, CreasePattern) and (named or has_branches(pattern)):
-            branch, side = the_branch(opened, way, signs, up, letters, progress=progress)
-            return branch_way(branch, way).turned(side)
-        letters = None if letters is None else asked_letters(opened, letters)
-        sheet = decompose_opened(opened, progress=progress).known
-    if signs is not None or up is not None:
-        raise UsageError("signs and up are for branches: choose a mode of this sheet by way")
-    wanted = None if letters is None else by_fold(sheet.pattern.folds, letters)
-    rates = modes_with(sheet, way, wanted) or {}
-    modes = panel_modes(sheet)
-    [(number, rate)] = rates.items()
-    if not isinstance(number, int) or not 1 <= number <= len(modes):
-        raise UsageError(f"there is no way {number}: the sheet has {counted(len(modes), 'mode')}")
-    return mode_way(modes[number - 1]).turned(int(rate))
+    if isinstance(sheet, Decomposition):
+        if signs is not None or up is not None:
+            raise UsageError("signs and up are for branches: choose a way of this sheet by way")
+        chosen: ChosenBranch | ChosenPanels = panels_way(sheet, way, letters)
+    else:
+        chosen = choose(open_sheet(sheet), Choice(way, signs, up, letters), progress)
+    if isinstance(chosen, ChosenBranch):
+        return branch_way(chosen.branch, chosen.number).turned(chosen.side)
+    return drawn_panels(chosen)
+
+
+def shown(chosen: ChosenBranch | ChosenPanels) -> dict[str, Any]:
+    """The way that a page shows, as arguments of `view_document`."""
+    if isinstance(chosen, ChosenBranch):
+        return {"branches": [chosen.branch]}
+    return {"ways": [] if chosen.way is None else [chosen.way.number]}
+
+
+def drawn_panels(chosen: ChosenPanels) -> DrawnWay:
+    """The picture of a way of rigid panels with the letters that were asked for."""
+    if chosen.way is None:
+        raise NotCountedError("this sheet has no single way to draw")
+    return panel_way(chosen.way, chosen.answer.known.pattern, chosen.rates)

@@ -2,34 +2,20 @@
 
 from __future__ import annotations
 
-import re
-from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Final, Literal, TypedDict, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, Final, Literal, TypedDict
 
-from exactfold._support.documents import Fold, Keywords, Natural, ProvedOrNot, Triangle
-from exactfold._support.plurals import counted
+from exactfold._support.documents import Fold, Keywords, Natural, Triangle
 from exactfold._support.progress import Progress
-from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.app.viewer.listing import Drawn, Facts, Listed, file_letters, listed_ways
 from exactfold.app.viewer.marks import Mark, marks_of
-from exactfold.app.viewer.ways import (
-    Followed,
-    Following,
-    FollowingPanels,
-    Letters,
-    Way,
-    branch_way,
-    component_way,
-    mode_way,
-)
-from exactfold.branches.counting.find import BranchFinder
+from exactfold.app.viewer.ways import Followed, Letters, Way
 from exactfold.branches.counting.pools import Pool, process_pool
-from exactfold.branches.counting.ways import count_opened, decompose_opened
-from exactfold.errors import ExactfoldError, InputError, UsageError, WorkerDiedError
+from exactfold.errors import UsageError, WorkerDiedError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.fold_writing import fold_document
 from exactfold.pattern.loading import PatternLike, open_sheet
@@ -38,22 +24,12 @@ from exactfold.pattern.triangulating import triangles_of
 
 if TYPE_CHECKING:
     from exactfold.branches.values.branch import Branch
-    from exactfold.branches.values.result import BranchCount
 
-MOST_LISTED: Final = 10
-"""With up to this many foldable vertices, all branches are listed."""
-MOST_NEIGHBOURS: Final = 24
-MOST_COMPONENTS: Final = 200
 FRAMES: Final = 32
 MOST_FRAMES: Final = 1000
 
 _WORTH_A_PROCESS: Final = 6
 """Following this many motions takes about as long as starting a process."""
-_LETTER: Final = {"M": "M", "V": "V", "F": "F", "J": "F"}
-"""Letters of a file as the page draws them; all other letters are drawn as unassigned."""
-_SECONDS: Final = re.compile(r" \(\d+\.\d+ s\)")
-
-J = TypeVar("J")
 
 
 class FlatSheet(TypedDict):
@@ -74,18 +50,6 @@ class FlatSheet(TypedDict):
     """The vertices to look at."""
 
 
-class Facts(TypedDict):
-    """What is known of the ways in which a sheet folds."""
-
-    kind: Literal["branches", "panels"]
-    answer: str
-    status: ProvedOrNot
-    complete: bool
-    """Whether `ways` are proved to be all."""
-    reason: str
-    notes: list[str]
-
-
 class ViewDocument(Facts):
     """What the page shows of a sheet."""
 
@@ -95,6 +59,8 @@ class ViewDocument(Facts):
     sheet: FlatSheet
     read: list[str]
     ways: list[Way]
+    drawn: Drawn | None
+    """The way with the letters of the file, if it is known."""
     served: bool
     """Whether motions that are missing can be asked for."""
 
@@ -103,7 +69,8 @@ def view_document(
     sheet: PatternLike,
     *,
     name: str | None = None,
-    branches: Sequence[str] | None = None,
+    branches: Sequence[str | Branch] | None = None,
+    ways: Sequence[int] | None = None,
     frames: int = FRAMES,
     proving: bool = False,
     workers: int = 1,
@@ -114,8 +81,12 @@ def view_document(
     For a triangulated sheet with four corners, the document has its branches, each of which
     represents two mirror images. With up to ten foldable vertices these are all branches. For
     larger sheets they are the branch on which all vertices pop up, and its neighbours. `branches`
-    selects branches by their vertex signs instead. For any other sheet, the document has the
-    components of the motions of its rigid panels, up to 200, and the modes that cannot be followed.
+    selects branches instead, by their vertex signs or as they were found, and `ways` selects ways
+    of rigid panels by their numbers. A convex triangulated sheet with more corners has one branch
+    for each choice of vertices that pop up, and each represents a family over all boundary heights.
+    For any other sheet, the document has the ways of its rigid panels, up to 200, in the order in
+    which `count` lists them; a family is represented by one of its motions. If no way in the list
+    has the letters of the file, but the sheet is proved to fold with them, that motion comes first.
     Each way is followed in `frames` frames to the first contact; if it cannot be followed, the
     document says why.
 
@@ -131,7 +102,13 @@ def view_document(
     [('+-', 'MVVVMVM', 'flat-fold')]
     """
     known = Known.of(
-        sheet, name=name, branches=branches, frames=frames, proving=proving, progress=progress
+        sheet,
+        name=name,
+        branches=branches,
+        ways=ways,
+        frames=frames,
+        proving=proving,
+        progress=progress,
     )
     useful = max(1, len(known.listed) // _WORTH_A_PROCESS)
     return known.document(known.followed(process_pool(min(workers, useful)), progress))
@@ -139,17 +116,21 @@ def view_document(
 
 @dataclass(frozen=True)
 class Known:
-    """A sheet and the ways in which it folds, which have not been followed yet.
-
-    Each entry of `listed` is a way as JSON and the job that follows it, or None if it is not
-    followed. `follower` does such a job. `facts` are keys of the document.
-    """
+    """A sheet and the ways in which it folds, which have not been followed yet."""
 
     opened: Opened
     name: str
-    follower: Callable[[Any], Followed]
-    listed: tuple[tuple[Way, Any], ...]
-    facts: Facts
+    known: Listed
+
+    @property
+    def listed(self) -> tuple[tuple[Way, Any], ...]:
+        """The ways with the jobs that follow them."""
+        return self.known.ways
+
+    @property
+    def follower(self) -> Callable[[Any], Followed]:
+        """It does the job of a way."""
+        return self.known.follower
 
     @classmethod
     def of(
@@ -157,7 +138,8 @@ class Known:
         sheet: PatternLike,
         *,
         name: str | None = None,
-        branches: Sequence[str] | None = None,
+        branches: Sequence[str | Branch] | None = None,
+        ways: Sequence[int] | None = None,
         frames: int = FRAMES,
         proving: bool = False,
         progress: Progress | None = None,
@@ -171,32 +153,8 @@ class Known:
         title = name or (
             Path(sheet).stem if isinstance(sheet, str | PathLike) else "crease pattern"
         )
-        pattern = opened.sheet
-        folds_along_branches = isinstance(pattern, CreasePattern) and has_branches(pattern)
-        if branches is not None and not folds_along_branches:
-            raise UsageError(
-                "vertex signs name branches, but this sheet folds along modes of rigid panels; "
-                "leave the signs out, and all modes are shown"
-            )
-        try:
-            if isinstance(pattern, CreasePattern) and folds_along_branches:
-                known_branches = _branches(opened, pattern, branches, progress)
-                facts, follower = _branch_facts(known_branches), Following(frames, proving)
-                listed = tuple((branch_way(branch), branch) for branch in known_branches.branches)
-                return cls(opened, title, follower, listed, facts)
-            return _panels(opened, title, frames, proving, progress)
-        except (InputError, UsageError, WorkerDiedError):
-            raise
-        except ExactfoldError as error:
-            nothing: Facts = {
-                "kind": "branches" if folds_along_branches else "panels",
-                "answer": "nothing is known about how this sheet folds",
-                "status": "undecided",
-                "complete": False,
-                "reason": str(error),
-                "notes": [],
-            }
-            return cls(opened, title, Following(frames), (), nothing)
+        listed = listed_ways(opened, branches, ways, frames, proving, progress)
+        return cls(opened, title, listed)
 
     def followed(self, pool: Pool, progress: Progress | None) -> list[Way]:
         """All ways with their motions."""
@@ -214,21 +172,13 @@ class Known:
             "format": "exactfold view result",
             "version": 1,
             "name": self.name,
-            "sheet": _sheet_json(self.opened),
+            "sheet": sheet_json(self.opened),
             "read": list(self.opened.lines),
-            **self.facts,
+            **self.known.facts,
             "ways": [*ways],
+            "drawn": self.known.drawn,
             "served": served,
         }
-
-
-@dataclass(frozen=True)
-class _Branches:
-    """Branches of a triangulated sheet, and their count if all branches were counted."""
-
-    pattern: CreasePattern
-    branches: tuple[Branch, ...]
-    count: BranchCount | None
 
 
 class _Numbered:
@@ -256,96 +206,7 @@ def _numbered(
             yield k, outcome
 
 
-def _branches(
-    opened: Opened,
-    pattern: CreasePattern,
-    chosen: Sequence[str] | None,
-    progress: Progress | None,
-) -> _Branches:
-    foldable = pattern.foldable_vertices
-    if chosen is None and len(foldable) <= MOST_LISTED:
-        count = count_opened(opened, progress=progress)
-        return _Branches(pattern, tuple(count.known), count)  # type: ignore[arg-type]
-    finder = BranchFinder(pattern)
-    if chosen is not None:
-        vectors = [finder.signs(signs, None) for signs in dict.fromkeys(chosen)]
-        branches = [finder.find(signs, progress=progress) for signs in vectors]
-        return _Branches(pattern, tuple(branches), None)
-    up = finder.signs(None, foldable)
-    near = finder.neighbours(up, foldable[:MOST_NEIGHBOURS], progress=progress)
-    return _Branches(pattern, (finder.find(up), *near.values()), None)
-
-
-def _branch_facts(known_branches: _Branches) -> Facts:
-    if known_branches.count is not None:
-        from exactfold.app.report.count import answer
-
-        count = known_branches.count
-        whole = count.status is PROVED and len(count) == (count.real or 0)
-        return {
-            "kind": "branches",
-            "answer": _SECONDS.sub("", answer(count).plain),
-            "status": str(count.status),
-            "complete": whole,
-            "reason": count.reason,
-            "notes": [] if count.warning is None else [f"warning: {count.warning}"],
-        }
-    vertices = counted(len(known_branches.pattern.foldable_vertices), "foldable vertex")
-    proved = all(branch.status is PROVED for branch in known_branches.branches)
-    return {
-        "kind": "branches",
-        "answer": f"{counted(len(known_branches.branches), 'branch')} of a sheet with {vertices}",
-        "status": str(PROVED if proved else UNDECIDED),
-        "complete": False,
-        "reason": "each branch was found by its vertex signs, and "
-        f"{'all are' if proved else 'not all are'} proved; the branches of the sheet were not "
-        "counted",
-        "notes": [],
-    }
-
-
-def _panels(
-    opened: Opened, name: str, frames: int, proving: bool, progress: Progress | None
-) -> Known:
-    from exactfold.app.report.panels import panels_answer
-    from exactfold.motion.panels.followable import (
-        open_reason,
-        panel_components,
-        panel_modes,
-        why_nothing_follows,
-    )
-
-    answer = decompose_opened(opened, progress=progress)
-    ways = answer.known
-    modes = panel_modes(ways)
-    by_number = {mode.number: mode for mode in modes}
-    components = panel_components(ways, modes)
-    shown = components[:MOST_COMPONENTS]
-    listed: list[tuple[Way, Any]] = [
-        (component_way(ways, component, by_number), k) for k, component in enumerate(shown, 1)
-    ]
-    open_modes = [mode for mode in modes if mode.extends.verdict is not PROVED]
-    listed += [(mode_way(mode, open_reason(mode)), None) for mode in open_modes[:MOST_COMPONENTS]]
-    notes = [] if ways.warning is None else [f"warning: {ways.warning}"]
-    left = len(components) - len(shown)
-    if left:
-        notes.append(f"{counted(left, 'more component')} left out")
-    if not components and ways.rigid is not PROVED:
-        notes.append(f"no motion can be followed: {why_nothing_follows(ways, modes)}")
-    facts: Facts = {
-        "kind": "panels",
-        "answer": _SECONDS.sub("", panels_answer(answer).plain),
-        "status": str(answer.status),
-        "complete": answer.true is not None
-        and Counter(component.dimension for component in shown)
-        == {dimension: number for dimension, number in answer.true.items() if dimension},
-        "reason": answer.reason,
-        "notes": notes,
-    }
-    return Known(opened, name, FollowingPanels(ways, frames, proving), tuple(listed), facts)
-
-
-def _sheet_json(opened: Opened) -> FlatSheet:
+def sheet_json(opened: Opened) -> FlatSheet:
     """The flat sheet: a FOLD object without letters, and everything else the page needs.
 
     `letters` are those of the file, by fold; they are shown if there is no way to fold.
@@ -364,8 +225,6 @@ def _sheet_json(opened: Opened) -> FlatSheet:
         "triangles": [list(triangle) for triangle in triangles_of(pattern)],
         "interior": list(pattern.interior),
         "foldable": list(foldable),
-        "letters": "".join(
-            _LETTER.get(opened.assignment.get(edge, "U"), "U") for edge in pattern.folds
-        ),
+        "letters": file_letters(opened),
         "marks": marks_of(opened),
     }

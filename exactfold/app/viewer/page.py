@@ -12,13 +12,16 @@ from collections.abc import Mapping, Sequence
 from functools import cache
 from os import PathLike
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from exactfold._support.progress import Progress
 from exactfold.app.pictures import crease_style
 from exactfold.app.viewer.document import FRAMES, ViewDocument, view_document
 from exactfold.pattern.fold_writing import checked_target, write_text
 from exactfold.pattern.loading import PatternLike
+
+if TYPE_CHECKING:
+    from exactfold.branches.values.branch import Branch
 
 _ENDINGS: Final = (".html", ".htm")
 _ROOM: Final = Path(__file__).parent
@@ -43,18 +46,42 @@ def view_page(document: Mapping[str, Any]) -> str:
     >>> page.count("</script>")
     3
     """
-    library, script = _LIBRARY.read_text(encoding="utf-8"), _script()
-    style = look_css() + (_PAGE / "style.css").read_text(encoding="utf-8")
+    return _page(f"{document['name']} - exactfold", document, bool(document["served"]))
+
+
+def start_page(name: str, *, begins: bool) -> str:
+    """The page of a server: it has no sheet yet, and asks the server for one if `begins`."""
+    title = f"{name} - exactfold" if name else "exactfold"
+    return _page(title, {"served": True, "begins": begins, "name": name}, served=True)
+
+
+@cache
+def page_policy(*, served: bool, framed: bool = False) -> str:
+    """The content security policy of the page: its own scripts and styles, and nothing else.
+
+    With `served`, the page may ask the server that it came from. With `framed`, the policy also
+    says that no page may show this one in a frame, which only a header can say.
+    """
+    policy = _policy([_LIBRARY.read_text(encoding="utf-8"), _script()], _style(), served)
+    return f"{policy}; frame-ancestors 'none'" if framed else policy
+
+
+def _page(title: str, data: Mapping[str, Any], served: bool) -> str:
     parts = {
-        "title": html.escape(f"{document['name']} - exactfold"),
-        "policy": _policy([library, script], style, bool(document["served"])),
-        "style": style,
-        "data": script_json(document),
-        "library": library,
-        "script": script,
+        "title": html.escape(title),
+        "policy": page_policy(served=served),
+        "style": _style(),
+        "data": script_json(data),
+        "library": _LIBRARY.read_text(encoding="utf-8"),
+        "script": _script(),
     }
     page = (_PAGE / "index.html").read_text(encoding="utf-8")
     return _PLACE.sub(lambda match: parts[match[1]], page)
+
+
+@cache
+def _style() -> str:
+    return look_css() + (_PAGE / "style.css").read_text(encoding="utf-8")
 
 
 def write_view(
@@ -62,7 +89,8 @@ def write_view(
     path: str | PathLike[str],
     *,
     name: str | None = None,
-    branches: Sequence[str] | None = None,
+    branches: Sequence[str | Branch] | None = None,
+    ways: Sequence[int] | None = None,
     frames: int = FRAMES,
     proving: bool = False,
     workers: int = 1,
@@ -82,6 +110,7 @@ def write_view(
         sheet,
         name=name,
         branches=branches,
+        ways=ways,
         frames=frames,
         proving=proving,
         workers=workers,
@@ -131,7 +160,7 @@ def _policy(scripts: Sequence[str], style: str, served: bool) -> str:
     allowed = " ".join(_digest(text) for text in scripts)
     return (
         f"default-src 'none'; script-src {allowed}; style-src {_digest(style)}; "
-        f"img-src data:; connect-src {_SELF if served else _NOBODY}; "
+        f"img-src data: blob:; connect-src {_SELF if served else _NOBODY}; "
         "base-uri 'none'; form-action 'none'"
     )
 

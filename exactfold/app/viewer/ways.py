@@ -2,30 +2,38 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, NamedTuple, NotRequired, TypeAlias, TypedDict
+from typing import TYPE_CHECKING, Annotated, Final, NamedTuple, NotRequired, TypeAlias, TypedDict
 
-from exactfold._support.documents import Keywords, NotNegative, Positive, Sign, VerdictText
+from exactfold._support.documents import Keywords, Natural, NotNegative, Positive, Sign, VerdictText
 from exactfold._support.plurals import counted
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.app.report.motion import ending_text, event_text
 from exactfold.app.viewer.coding import CodedFrames, coded_frames, levelled
+from exactfold.app.viewer.families import Representative
 from exactfold.branches.values.export import AMOUNT
 from exactfold.errors import ExactfoldError, WorkerDiedError
 from exactfold.motion.following import follow
 from exactfold.motion.panels.followable import LINEAR
 from exactfold.motion.proving import prove
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.opening import panels
 
 if TYPE_CHECKING:
     from exactfold.branches.values.branch import Branch
     from exactfold.motion.curves.in_motion import SheetInMotion
     from exactfold.motion.curves.motion import Motion
-    from exactfold.motion.panels.followable import PanelComponent, PanelMode
+    from exactfold.motion.panels.families import FamilyMotion
+    from exactfold.motion.panels.listing import PanelWay
     from exactfold.motion.panels.motion import PanelMotion
     from exactfold.panels.result import Decomposition
-    from exactfold.pattern.crease_pattern import CreasePattern, Edge
+    from exactfold.pattern.crease_pattern import Edge
     from exactfold.pattern.panel_pattern import PanelPattern
+
+MOST_DRIVERS: Final = 6
+"""Up to this many free fold angles of a family have sliders."""
 
 Letters: TypeAlias = Annotated[str, Keywords(pattern="^[MVFU]*$")]
 
@@ -60,12 +68,23 @@ class Followed(TypedDict):
     """Why there is no motion."""
     letters: NotRequired[Letters]
     angles: NotRequired[list[float]]
+    family: NotRequired[Family | None]
+
+
+class Family(TypedDict):
+    """A family of infinitely many ways, one of which is shown."""
+
+    dimension: Positive
+    drivers: list[Natural]
+    """Folds, by their place in `folds`, whose angles can be chosen independently."""
 
 
 class Way(TypedDict):
     """A way in which the sheet folds."""
 
     name: str
+    number: Positive | None
+    """The number of the way in the list of `count`; null if it is not in that list."""
     signs: Annotated[str, Keywords(pattern="^[-+0?]*$")]
     letters: Letters
     """One for each fold of the sheet, in the order of `folds`."""
@@ -78,6 +97,8 @@ class Way(TypedDict):
     motion: DrawnMotion | None
     why: str
     """Why there is no motion."""
+    family: Family | None
+    """If infinitely many ways belong together and this one represents them."""
 
 
 @dataclass(frozen=True)
@@ -89,22 +110,33 @@ class Following:
 
     frames: int
     proving: bool = False
+    dimension: int = 1
+    """The dimension of the family of each branch."""
 
     def __call__(self, branch: Branch) -> Followed:
         """The motion along a branch up to the first contact, or the reason why there is none."""
+        angles = _angles(branch.pattern, _leading(branch))
         try:
-            motion = follow(branch, frames=self.frames)
-            proof = _proof(motion) if self.proving else _in_floats(motion)
-            return {"motion": _drawn(motion, proof), "why": ""}
+            return {**self._motion(branch), "angles": angles}
         except WorkerDiedError:
             raise
         except ExactfoldError as error:
-            return not_followed(str(error))
+            return {**not_followed(str(error)), "angles": angles}
+
+    def _motion(self, branch: Branch) -> Followed:
+        if self.dimension > 1 and not self.proving:
+            return _family_of(branch, self.dimension, self.frames)
+        motion = follow(branch, frames=self.frames)
+        proof = _proof(motion) if self.proving else _in_floats(motion)
+        found: Followed = {"motion": _drawn(motion, proof), "why": ""}
+        if self.dimension > 1:
+            found["family"] = _family(motion, self.dimension)
+        return found
 
 
 @dataclass(frozen=True)
 class FollowingPanels:
-    """Follows the components of the motions of rigid panels, given by their numbers, from 1 on.
+    """Follows the ways of rigid panels, given by their numbers, from 1 on, or by a direction.
 
     With `proving`, the first contact of a motion that is proved to exist is proved, too.
     """
@@ -113,13 +145,21 @@ class FollowingPanels:
     frames: int
     proving: bool = False
 
-    def __call__(self, component: int) -> Followed:
-        """The motion along a component up to the first contact, or the reason why there is none."""
+    def __call__(self, way: int | Representative) -> Followed:
+        """The motion along a way or in a direction, or the reason why there is none."""
+        from exactfold.motion.panels.families import follow_family
         from exactfold.motion.panels.following import follow_panels
 
+        motion: PanelMotion | FamilyMotion
         try:
-            motion = follow_panels(self.ways, component=component, frames=self.frames)
-            drawn = _drawn(motion, _proof_of_panels(motion, self.proving))
+            if isinstance(way, Representative):
+                motion = follow_family(self.ways.pattern, way.densities, frames=self.frames)
+                drawn = _drawn(motion, _in_floats(motion))
+                dimension = way.dimension or motion.dimension
+            else:
+                motion = follow_panels(self.ways, way=way, frames=self.frames)
+                drawn = _drawn(motion, _proof_of_panels(motion, self.proving))
+                dimension = len(motion.curves) + len(self.ways.free)
         except WorkerDiedError:
             raise
         except ExactfoldError as error:
@@ -129,6 +169,7 @@ class FollowingPanels:
             "why": "",
             "letters": letters_of(motion.pattern, motion.assignment),
             "angles": _angles(motion.pattern, motion.leading_angles),
+            "family": _family(motion, dimension) if dimension > 1 else None,
         }
 
 
@@ -154,6 +195,31 @@ def _drawn(motion: SheetInMotion, known: _Known) -> DrawnMotion:
         "exists": known.exists,
         "said": known.said,
     }
+
+
+def _family_of(branch: Branch, dimension: int, frames: int) -> Followed:
+    """A motion that starts like a branch, in the family over all boundary heights."""
+    from exactfold.motion.panels.families import follow_family
+
+    sheet = panels(branch.pattern)
+    densities = {
+        (i, j): angle / math.hypot(*map(float, sheet.direction(i, j)))
+        for (i, j), angle in branch.fold_angles.degrees(AMOUNT).items()
+    }
+    motion = follow_family(sheet, densities, frames=frames)
+    family = _family(motion, dimension)
+    return {"motion": _drawn(motion, _in_floats(motion)), "why": "", "family": family}
+
+
+def _family(motion: SheetInMotion, dimension: int) -> Family:
+    """The family to which a motion belongs; its drivers are independent in the middle of it."""
+    from exactfold.motion.panels.closing import Closing
+
+    sheet = motion.pattern
+    pattern = panels(sheet) if isinstance(sheet, CreasePattern) else sheet
+    drivers = Closing(pattern).drivers(motion.angles[(len(motion.angles) + 1) // 2])
+    places = [sheet.folds.index(fold) for fold in drivers[:MOST_DRIVERS]]
+    return {"dimension": dimension, "drivers": places}
 
 
 def _in_floats(motion: SheetInMotion) -> _Known:
@@ -183,7 +249,7 @@ def _proof(motion: Motion) -> _Known:
 
 
 def _proof_of_panels(motion: PanelMotion, contacts: bool) -> _Known:
-    """What docs/panel_motion.md proves of a motion of panels, and of its first contact if asked."""
+    """What is proved of a motion of panels, and of its contact if asked (docs/motion.md, 18)."""
     if motion.closes is PROVED:
         said = (
             "every vertex closes exactly at all fold angles"
@@ -219,48 +285,65 @@ def not_followed(why: str) -> Followed:
     return {"motion": None, "why": why}
 
 
-def branch_way(branch: Branch) -> Way:
-    """A branch without its motion."""
-    try:
-        leading = branch.fold_angles.degrees(AMOUNT)
-    except ExactfoldError:
-        leading = {}
+def branch_way(branch: Branch, number: int | None = None) -> Way:
+    """A branch without its motion and its angles; `number` is its place in the list of `count`."""
     return {
         "name": f"branch {branch.sign_text}",
+        "number": number,
         "signs": branch.sign_text,
         "letters": letters_of(branch.pattern, branch.assignment),
         "saddle": branch.saddle,
         "multiplicity": branch.multiplicity,
         "status": str(branch.status),
         "reason": branch.reason or "a branch with these vertex signs and letters exists",
-        "angles": _angles(branch.pattern, leading),
+        "angles": [],
         "motion": None,
         "why": "",
+        "family": None,
     }
 
 
-def component_way(
-    ways: Decomposition, component: PanelComponent, modes: Mapping[int, PanelMode]
-) -> Way:
-    """A component of the true motions of rigid panels, without its motion."""
-    folding = [modes[number] for number in component.modes]
-    letters: dict[Edge, str] = {}
-    for mode in folding:
-        letters.update(mode.letters)
-    if not folding:
-        letters.update(dict.fromkeys(component.free, "V"))
-    numbers = ", ".join(map(str, component.modes))
-    name = f"mode{'s' if len(folding) > 1 else ''} {numbers}" if folding else "free folds"
-    shown = sorted({_shown_by(mode.extends.by) for mode in folding})
-    why = " and ".join(shown) or "folds from boundary to boundary are free"
-    if component.dimension > 1:
-        what = "modes" if folding else "folds"
-        still = ", free folds flat" if folding and component.free else ""
+def family_way(ways: Decomposition, family: Representative) -> Way:
+    """A family, or the letters of the file, without the motion."""
+    letters = {e: "V" if x > 0 else "M" for e, x in family.densities.items() if x}
+    return _panel_way(ways.pattern, family.name, None, letters, str(PROVED), family.why)
+
+
+def _leading(branch: Branch) -> Mapping[Edge, float]:
+    """The angles in degrees with which a branch starts; empty if they are not known."""
+    try:
+        return branch.fold_angles.degrees(AMOUNT)
+    except ExactfoldError:
+        return {}
+
+
+def panel_way(ways: Decomposition, way: PanelWay) -> Way:
+    """A way of rigid panels without its motion."""
+    name = f"way {way.number}"
+    if way.dimension > 1:
+        name = f"{name}, a family of dimension {way.dimension}"
+    verdict = str(way.verdict)
+    if way.verdict is not PROVED:
+        doubt = "it is undecided whether it truly folds"
+        said = doubt if way.verdict is UNDECIDED else "it does not truly fold"
+        shown = _panel_way(
+            ways.pattern, name, way.number, way.letters, verdict, f"{said}: {way.by}"
+        )
+        return {**shown, **not_followed(way.why_not_followed)}
+    why = " and ".join(sorted({_shown_by(mode.extends.by) for mode in way.modes}))
+    if way.spaces:
+        why = " and ".join(filter(None, (why, "true motions start in its directions")))
+    why = why or "folds from boundary to boundary are free"
+    if way.dimension > 1 and not way.spaces:
+        what = "modes" if way.modes else "folds"
+        still = ", free folds flat" if way.modes and way.free else ""
         why += (
-            f"; one motion of a family of dimension {component.dimension}: all {what} at the same "
+            f"; one motion of a family of dimension {way.dimension}: all {what} at the same "
             f"rate{still}"
         )
-    return _panel_way(ways.pattern, name, letters, str(PROVED), f"it truly folds, as {why}")
+    return _panel_way(
+        ways.pattern, name, way.number, way.letters, verdict, f"it truly folds, as {why}"
+    )
 
 
 def _shown_by(by: str) -> str:
@@ -272,34 +355,22 @@ def _shown_by(by: str) -> str:
     return f"its loops of vertices close ({by})"
 
 
-def mode_way(mode: PanelMode, why: str) -> Way:
-    """A mode that belongs to no component that can be followed, with the reason."""
-    verdict = mode.extends.verdict
-    said = (
-        "it is undecided whether it truly folds"
-        if verdict is UNDECIDED
-        else "it does not truly fold"
-    )
-    way = _panel_way(
-        mode.pattern,
-        f"mode {mode.number}",
-        mode.letters,
-        str(verdict),
-        f"{said}: {mode.extends.by}",
-    )
-    return {**way, **not_followed(why)}
-
-
 def letters_of(pattern: CreasePattern | PanelPattern, assignment: Mapping[Edge, str]) -> str:
     """A letter for each fold in the order of `pattern.folds`; F if none is given."""
     return "".join(assignment.get(fold, "F") for fold in pattern.folds)
 
 
 def _panel_way(
-    pattern: PanelPattern, name: str, letters: Mapping[Edge, str], status: str, reason: str
+    pattern: PanelPattern,
+    name: str,
+    number: int | None,
+    letters: Mapping[Edge, str],
+    status: str,
+    reason: str,
 ) -> Way:
     return {
         "name": name,
+        "number": number,
         "signs": "",
         "letters": letters_of(pattern, letters),
         "saddle": 0,
@@ -309,6 +380,7 @@ def _panel_way(
         "angles": [],
         "motion": None,
         "why": "",
+        "family": None,
     }
 
 

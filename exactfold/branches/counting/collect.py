@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
+from exactfold._support.plurals import agreeing
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.branches.counting.by_theorem import IN_MEMORY, is_too_many, too_many
@@ -151,12 +152,27 @@ def _higher(
         f"{pattern.D} modulo planes",
         why="the boundary is convex and has more than four vertices",
         true_branches=PROVED,
-        open_questions=tuple(
-            f"whether the star of vertex {v} is flat in other solutions: {reason}"
-            for v, reason in (connected_components.open or {}).items()
-        ),
+        open_questions=_open_stars(connected_components.open or {}),
         connected_components=connected_components,
     )
+
+
+def _open_stars(open_: Mapping[int, str]) -> tuple[str, ...]:
+    """The questions about stars that may be flat; vertices with the same reason share one.
+
+    >>> _open_stars({1: "too many", 4: "too many"})
+    ('whether the stars of vertices 1, 4 are flat in other solutions: too many',)
+    """
+    by_reason: dict[str, list[int]] = {}
+    for v, reason in open_.items():
+        by_reason.setdefault(reason, []).append(v)
+    questions = []
+    for reason, vertices in by_reason.items():
+        of = "star of vertex" if len(vertices) == 1 else "stars of vertices"
+        named = ", ".join(map(str, vertices))
+        flat = agreeing(len(vertices), "is")
+        questions.append(f"whether the {of} {named} {flat} flat in other solutions: {reason}")
+    return tuple(questions)
 
 
 def _not_convex(pattern: CreasePattern) -> BranchCount:

@@ -9,10 +9,19 @@ from exactfold._support.verdict import UNDECIDED
 from exactfold.branches.values.result import BranchCount
 
 if TYPE_CHECKING:
+    from exactfold.branches.values.branch import Branch
     from exactfold.panels.result import Decomposition
     from exactfold.pattern.opening import Opened
 
 B = TypeVar("B", bound=BranchCount)
+
+
+def doubted_branch(branch: Branch, opened: Opened) -> Branch:
+    """The branch of an open sheet, UNDECIDED if it is one for the digits of the sheet only."""
+    if not opened.doubt or branch.status is UNDECIDED:
+        return branch
+    reason = f"{opened.doubt}; the digits as written: {branch.status}, {branch.reason}"
+    return replace(branch, status=UNDECIDED, reason=reason)
 
 
 @overload

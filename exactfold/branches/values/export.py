@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from os import PathLike
-from typing import Any
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
 
 from exactfold._support.verdict import PROVED, Verdict
 from exactfold.branches.values.angles import Bounds, FoldAngles
@@ -15,21 +18,28 @@ from exactfold.branches.values.second_order import second_order_sheet
 from exactfold.errors import UndecidedBranchError, UsageError
 from exactfold.exact.numbers import format_rational, shown
 from exactfold.interop.fold_frames import branch_document
+from exactfold.interop.sheet_files import ENDINGS as SHEET_ENDINGS
+from exactfold.interop.sheet_files import FOLD_ENDINGS, write_sheet
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
-from exactfold.pattern.fold_writing import document_text, write_text
+from exactfold.pattern.fold_writing import checked_target, document_text, write_text
 
 AMOUNT = 30.0
 """The largest fold angle in degrees: visible, and still close to the unfolded state."""
+
+ENDINGS: Final = (*FOLD_ENDINGS, *SHEET_ENDINGS, ".csv")
 
 
 @dataclass(frozen=True, repr=False)
 class BranchExport:
     """A branch as `export_branch` writes it.
 
-    `document` is the FOLD object, and `text` is its JSON. `angles` are degrees by fold, as written.
-    `length_error` is the largest relative change of the length of an edge in the frame in space.
+    `pattern` is its sheet, and `letters` are its mountains and valleys. `document` is the FOLD
+    object, and `text` is its JSON. `angles` are degrees by fold, as written. `length_error` is the
+    largest relative change of the length of an edge in the frame in space.
     """
 
+    pattern: CreasePattern = field(repr=False)
+    letters: Mapping[Edge, str] = field(repr=False)
     document: Mapping[str, Any]
     angles: Mapping[Edge, float]
     length_error: float
@@ -45,8 +55,25 @@ class BranchExport:
         return f"<BranchExport: {self.status}, {name}, {len(self.angles)} folds>"
 
     def write(self, path: str | PathLike[str]) -> None:
-        """Write the whole file or nothing; raises `UnwritableFileError`."""
-        write_text(path, self.text)
+        """Write the whole file or nothing, in the format that its ending names.
+
+        ".fold" and ".json" are FOLD. ".dxf" is the crease pattern with the letters of the branch,
+        ".obj" and ".stl" are the sheet in space, and ".csv" is a table of letters and angles by
+        fold (docs/export.md). Raises `UsageError` for any other ending, `UnwritableFileError`, and
+        `PackageMissingError`.
+        """
+        ending = checked_target(Path(path), ENDINGS, "a branch")
+        if ending in FOLD_ENDINGS:
+            write_text(path, self.text)
+        elif ending == ".csv":
+            rows = [
+                f"{i}-{j},{self.letters[i, j]},{angle!r}" for (i, j), angle in self.angles.items()
+            ]
+            write_text(path, "\n".join(["fold,letter,degrees", *rows]) + "\n")
+        else:
+            [frame] = self.document["file_frames"]
+            coords = np.array(frame["vertices_coords"], dtype=np.float64)
+            write_sheet(self.pattern, self.letters, path, coords=coords)
 
 
 def export_branch(
@@ -58,6 +85,8 @@ def export_branch(
     force: bool = False,
 ) -> BranchExport:
     """Write a branch as a FOLD 1.2 file that Origami Simulator and Rabbit Ear open.
+
+    With another ending the file has another format: see `BranchExport.write`.
 
     `edges_foldAngle` is proportional to the first-order fold angles f_e(h) L_e / (c c') of the
     branch (`fold_angles`), and the largest has the size of `amount` degrees. A second frame is the
@@ -130,7 +159,9 @@ def exported(
             [format_rational(bound) for bound in heights[v]] for v in range(len(pattern.vertices))
         ],
     )
-    return BranchExport(document, angles, folded.length_error, branch.status)
+    return BranchExport(
+        pattern, branch.assignment, document, angles, folded.length_error, branch.status
+    )
 
 
 def _require_writable(branch: Branch, force: bool) -> None:

@@ -311,6 +311,7 @@ class BranchCount(Page, Ways[Branch], Certified):
             "components": None,
             "freedom": None,
             "drawn": None,
+            "proposal": None,
             "modes_count": None,
             "modes": [],
             "flat_folds": [],

@@ -58,6 +58,8 @@ NODE_WORK = 16  # an arc through a branch point counts as much work as so many t
 
 # --- letters and pieces --------------------------------------------------------------------------
 MOST_OPEN = 1 << 12  # ways to complete the open letters of one assignment
+MOST_ASSIGNMENTS = 1 << 18  # assignments of a part of a sheet of rigid panels
+LETTER_STEPS = 1 << 20  # letters of a vertex, or forcing sets, that are tried fold by fold
 ASSIGNED_VERTICES = 8  # vertices that can pop, of a sheet whose assignments are listed
 PIECE_VERTICES = 16  # vertices that can pop, of a sheet whose pieces are counted
 PIECE_UNKNOWNS = 9  # unknowns of a system for solutions with flat vertices
@@ -77,3 +79,5 @@ SPACE_STEPS = 1 << 22  # products of densities in one search
 SPACE_LEAVES = 1 << 12  # spaces of motions of one part
 MOST_LISTED = 1 << 12  # modes of one support that are checked one by one
 MOST_SUPPORTS = 1 << 15  # supports of a sheet
+TREE_JOINTS = 10  # folds to other vertices at one vertex of a tree
+TREE_CASES = 1 << 16  # cases of one vertex of a tree

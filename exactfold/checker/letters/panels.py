@@ -73,7 +73,8 @@ def check(data: dict[str, Any]) -> VerifiedPanelLetters:
     steps, densities = (items(evidence[key], key) for key in ("flat", "densities"))
     whole = check_never(sheet, near, wanted, claims["never"], steps)
     if "refuted" in (starts, truly):
-        cases = Cases(sheet, near, wanted, true=starts == "proved")
+        refuted = truly == "refuted"
+        cases = Cases(sheet, near, wanted, true=starts == "proved", truly=refuted)
         few = cases.cover(items(evidence["refuted"], "refuted"), items(evidence["tree"], "tree"))
         decided = truly == "undecided" or few or _rests(near, claims["never"])
         require(

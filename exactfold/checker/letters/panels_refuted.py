@@ -4,7 +4,8 @@ At each vertex a motion to second order lies in one of the two closed nappes of 
 of its lines if the vertex has at most four folds. Each case ends in one of these contradictions
 (docs/assignment.md, Theorem 4 and Theorem 5): heights of stars whose sums contradict the letters; a
 star that is curved; a vertex that cannot have its letters (`vertices`); a loop round which the
-densities do not fit; or a fold that has a letter but stays flat.
+densities do not fit; sets of folds that exclude all spaces of motions (`panels_spaces`); or a fold
+that has a letter but stays flat.
 """
 
 from __future__ import annotations
@@ -18,7 +19,8 @@ from ..core.towers import Number
 from ..panels.lines import Line, lines_at
 from ..panels.loops import MOST_ORDER, Loops
 from ..panels.modes import Modes, corners_of, name
-from ..sheets.panels import Edge, Near, PanelSheet, Vector, cross, pair
+from ..sheets.panels import Edge, Near, PanelSheet, Vector, cross, pair, read_edges
+from .panels_spaces import Exclusion
 from .vertices import can_fold
 
 SIDES = {"V": 1, "M": -1}
@@ -42,13 +44,20 @@ class State:
 class Cases:
     """The case distinctions for one sheet and its letters.
 
-    If `true`, they refute only true motions.
+    If `true`, they refute only true motions. If `truly`, they have to refute true motions as well.
     """
 
     def __init__(
-        self, sheet: PanelSheet, near: Near, wanted: Mapping[Edge, str], *, true: bool
+        self,
+        sheet: PanelSheet,
+        near: Near,
+        wanted: Mapping[Edge, str],
+        *,
+        true: bool,
+        truly: bool = True,
     ) -> None:
-        self.sheet, self.near, self.wanted, self.true = sheet, near, wanted, true
+        self.sheet, self.near, self.wanted = sheet, near, wanted
+        self.true, self.truly = true, truly
         self.live = {pair(v, u) for v, around in near.items() for u in around}
         self._lines: dict[int, list[Line]] = {}
 
@@ -59,14 +68,15 @@ class Cases:
         one vertex: a vertex without motions to second order has no configurations near the flat
         state (docs/vertices.md, Theorem 1). It does as well if all cases are refuted by sums that
         are not 0 at any fold of these vertices: the terms of lowest order of a true motion are a
-        motion in which each fold follows its letter or is flat, and some fold is not. A step about
-        a fold that stays flat names no vertex.
+        motion in which each fold follows its letter or is flat, and some fold is not. For the same
+        reason one step about the spaces of motions does if 0 is the only such motion in them. A
+        step about a fold that stays flat names no vertex.
         """
         sets = [self._refuted(entry, f"refuted set {k}") for k, entry in enumerate(refuted)]
         stack = [State()]
         named: set[int] = set()
         sums: list[set[Edge]] = []
-        only_sums = True
+        only_sums, still = True, False
         for step in tree:
             state = stack.pop()
             kind, *at = items(step, "a step")
@@ -101,6 +111,11 @@ class Cases:
                 stack += self._chosen(state, v)
             elif kind == "loop":
                 self._check_loop(state, *at)
+            elif kind == "spaces":
+                exclusion = self._exclusion(*at)
+                require(exclusion.shown(), "the sets of folds do not exclude all spaces of motions")
+                named |= exclusion.spaces.near.keys()
+                still = len(tree) == 1 and self.truly and exclusion.still()
             else:
                 require(kind == "flat", f"a step of the tree is {kind!a}")
                 i, j = (natural(v, "a vertex") for v in at)
@@ -111,7 +126,7 @@ class Cases:
         few = all(len(self.near[v]) <= 4 for v in named)
         folds = {pair(v, u) for v in named for u in self.near[v]}
         strict_sums = only_sums and all(folds <= strict for strict in sums)
-        return few or len(named) == 1 or strict_sums
+        return few or len(named) == 1 or strict_sums or still
 
     # --- lines of vertices -----------------------------------------------------------------------
 
@@ -154,6 +169,13 @@ class Cases:
         require(3 <= natural(order, "order") <= MOST_ORDER, f"there is no order {order}")
         fails = Loops(modes).fails(lines, loop, order)
         require(fails, f"the loop {name(loop)} is not proved to fail at order {order}")
+
+    def _exclusion(self, vertices: Any, sets: Any) -> Exclusion:
+        """The sets of folds of a step, all of which have letters, for the vertices of the step."""
+        own = sorted({natural(v, "a vertex") for v in items(vertices, "vertices")})
+        sides = {fold: SIDES[letter] for fold, letter in self.wanted.items() if letter in SIDES}
+        folds = [read_edges(some, "a set of folds") for some in items(sets, "sets")]
+        return Exclusion(self.sheet, {v: self.near[v] for v in own}, sides, folds)
 
     # --- heights of stars ------------------------------------------------------------------------
 

@@ -17,11 +17,19 @@ from ..core import limits
 from ..core.kinds import DocumentKind
 from ..core.reading import at_most, counted, items, keys, keys_of, natural, refusing, require, same
 from ..sheets.panels import Edge, Near, PanelSheet, connected, pair, read_edges, read_panels
-from .claims import ModeClaim, ModesClaims, PanelFacts, PanelsClaims, PartClaim, SupportClaim
+from .claims import (
+    ModeClaim,
+    ModesClaims,
+    PanelFacts,
+    PanelsClaims,
+    PartClaim,
+    SupportClaim,
+)
 from .components import components, times
 from .leaves import PartComponents, verified_part
 from .loops import MOST_ORDER, Loops
 from .modes import Modes, Support, corners_of, name, named
+from .trees import verified_trees
 
 MOST_LISTED = limits.MOST_LISTED
 MOST_SUPPORTS = limits.MOST_SUPPORTS
@@ -35,14 +43,16 @@ def check(data: dict[str, Any]) -> PanelsClaims:
     held flat.
     """
     claims = data["claims"]
-    given = claims.get("spaces", []) if isinstance(claims, dict) else []
-    keys(claims, keys_of(PanelsClaims if given else ModesClaims), "claims")
+    more = [key for key in ("spaces", "trees") if isinstance(claims, dict) and claims.get(key)]
+    keys(claims, " ".join([keys_of(ModesClaims), *more]), "claims")
     sheet, digest = read_panels(data["pattern"])
     held = read_edges(claims["held"], "held")
     for i, j in held:
         require((i, j) in sheet.folds, f"{i}-{j} is held flat, but is not a fold")
     near = sheet.live(held)
     groups = connected(near)
+    trees = verified_trees(sheet, groups, items(claims.get("trees", []), "trees"))
+    groups = [group for group in groups if min(group) not in trees]
     large = [group for group in groups if any(len(around) > 4 for around in group.values())]
     small = {v for group in groups if group not in large for v in group}
     modes = Modes(sheet, {v: around for v, around in near.items() if v in small})
@@ -51,7 +61,8 @@ def check(data: dict[str, Any]) -> PanelsClaims:
     pairs = _paired(_supports(modes), items(claims["supports"], "supports"))
     supports, loops = [support for support, _ in pairs], Loops(modes)
     extending = [_extending(loops, support, entry) for support, entry in pairs]
-    parts = _parts(sheet, large, items(given, "spaces"))
+    parts = _parts(sheet, large, items(claims.get("spaces", []), "spaces"))
+    parts += trees.values()
     second = components([(s.vertices, s.count) for s in supports], len(free))
     second = times(second, [part.second for part in parts])
     true = None
@@ -72,7 +83,7 @@ def check(data: dict[str, Any]) -> PanelsClaims:
         "second_order": second,
         "true": true,
         "rigid": _rigid(second, true, moves),
-        "modes": None if large else sum(support.count for support in supports),
+        "modes": None if large or trees else sum(support.count for support in supports),
     }
     if claims["rigid"] == "undecided":  # "undecided" claims nothing, so that it is always right
         facts["rigid"] = "undecided"
@@ -253,6 +264,8 @@ def summary(claims: PanelsClaims) -> str:
     true = "are not decided" if claims["true"] is None else "are the same"
     leaves = [leaf for part in claims.get("spaces", ()) for leaf in part["leaves"]]
     folding = sum(leaf["extending"] for leaf in leaves)
+    trees = [tree["components"] for tree in claims.get("trees", ())]
+    folding += sum(n for counts in trees for d, n in counts.items() if d != "0")
     if claims["true"] is None and folding:
         true += f" (at least {folding} components of its parts extend to true motions)"
     if claims["true"] not in (None, claims["second_order"]):

@@ -51,6 +51,17 @@ class PartClaim(TypedDict):
     leaves: list[LeafClaim]
 
 
+class TreeClaim(TypedDict):
+    """A part of the sheet whose vertices form a tree, and its components by dimension.
+
+    All of them extend to true motions, and there are no others if no vertex has more than four
+    folds.
+    """
+
+    vertices: list[int]
+    components: dict[str, int]
+
+
 class PanelFacts(TypedDict):
     """The claims that the checker finds again: the sheet, its components, the number of modes."""
 
@@ -74,6 +85,8 @@ class ModesClaims(PanelFacts):
 
 
 class PanelsClaims(ModesClaims, total=False):
-    """The same claims, with the parts that are split into spaces if there are any."""
+    """The same claims, with the parts that are split into spaces if there are any, and those that
+    are counted along trees."""
 
     spaces: list[PartClaim]
+    trees: list[TreeClaim]

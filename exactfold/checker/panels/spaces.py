@@ -9,7 +9,7 @@ show that their common zeros are one component.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
@@ -200,24 +200,15 @@ class Spaces:
     def _split(self, space: Space) -> list[Leaf]:
         """The leaves of a part.
 
-        A semidefinite form leaves its kernel, and a form of inertia (1, 1) the zeros of both
-        factors. The zeros of the second factor are wanted only where the first does not vanish,
+        The zeros of the second factor of a form are wanted only where the first does not vanish,
         because the others are zeros of the first. So the values of the first factor are kept as
         densities of a fold (v, -n), which is not in the sheet.
         """
-        products: dict[int, Squares] = {}
-        left: list[int] = []
-        for v in sorted({v for fold in folds_of(space) for v in fold if v in self.near}):
-            squares = self.squares(v, space)
-            signs = [d.sign() for d, _ in squares]
-            if signs and abs(sum(signs)) == len(signs):
-                return self._within(space, [values for _, values in squares])
-            if len(signs) == 2:
-                products[v] = squares
-            elif signs:
-                left.append(v)
+        kernel, products, left = self._forms(space)
+        if kernel:
+            return self._within(space, kernel)
         if not products:
-            return [Leaf([_on_folds(motion) for motion in space], tuple(left))]
+            return [Leaf([_on_folds(motion) for motion in space], left)]
         v, one, other = self.factors(products, space)
         leaves = self._within(space, [one])
         self._kept += 1
@@ -228,6 +219,34 @@ class Spaces:
         leaves += self._within(kept, [other])
         at_most(len(leaves), MOST_LEAVES, "the spaces of motions", "SPACE_LEAVES")
         return leaves
+
+    def narrowed(self, part: Space) -> tuple[Iterator[Space] | None, tuple[int, ...]]:
+        """Smaller spaces that hold all motions of a part; or None, and the vertices of its forms.
+
+        A semidefinite form leaves its kernel, and one of inertia (1, 1) the zeros of its factors.
+        """
+        kernel, products, left = self._forms(part)
+        if kernel:
+            return iter([self.vanishing(part, kernel)]), ()
+        if not products:
+            return None, left
+        _, *both = self.factors(products, part)
+        return (self.vanishing(part, [values]) for values in both), ()
+
+    def _forms(self, part: Space) -> tuple[list[list[Number]], dict[int, Squares], tuple[int, ...]]:
+        """Functions that vanish with a semidefinite form; the forms that split; other vertices."""
+        products: dict[int, Squares] = {}
+        left: list[int] = []
+        for v in sorted({v for fold in folds_of(part) for v in fold if v in self.near}):
+            squares = self.squares(v, part)
+            signs = [d.sign() for d, _ in squares]
+            if signs and abs(sum(signs)) == len(signs):
+                return [values for _, values in squares], {}, ()
+            if len(signs) == 2:
+                products[v] = squares
+            elif signs:
+                left.append(v)
+        return [], products, tuple(left)
 
     def _within(self, space: Space, rows: Sequence[Sequence[Number]]) -> list[Leaf]:
         """The leaves of the subspace on which linear functions vanish; none if a kept one does."""

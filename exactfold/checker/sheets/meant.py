@@ -23,7 +23,7 @@ from ..core.reading import (
     same,
 )
 from .panels import PanelSheet, dot, read_panels
-from .relations import RelationClaim, Relations
+from .relations import RelationClaim, Relations, same_terms
 
 
 class MeantClaims(TypedDict):
@@ -82,14 +82,20 @@ def _check_near(drawn: PanelSheet, sheet: PanelSheet, within: Fraction) -> None:
 
 
 def summary(claims: MeantClaims) -> str:
-    """One line that states the verified claims."""
+    """One line that states the verified claims.
+
+    A relation that is claimed as one of several kinds, such as straight and parallel, counts once.
+    """
     kinds = [entry["kind"] for entry in claims["relations"]]
     each = ", ".join(f"{kinds.count(kind)} {kind}" for kind in dict.fromkeys(kinds))
+    different = len({same_terms(entry) for entry in claims["relations"]})
+    if different < len(kinds):
+        each += f"; {counted(len(kinds) - different, 'is', 'are')} the same as others"
     within = rounded(parse_rational(claims["within"]), 3, up=True)
     return (
         f"VALID: within {within} of the size of the drawing {claims['drawn']} there is a sheet "
         f"with the same {counted(claims['panels'], 'panel', 'panels')} and with "
-        f"{counted(len(kinds), 'exact relation', 'exact relations')} of angles"
+        f"{counted(different, 'exact relation', 'exact relations')} of angles"
         f"{f' ({each})' if kinds else ''}; sha256 {claims['sha256']}"
     )
 

@@ -96,7 +96,7 @@ class PanelSheet:
         while waiting:
             v = waiting.pop()
             near = [u for u in self.around[v] if pair(v, u) not in flat]
-            kept[v] = self._foldable(v, near)
+            kept[v] = self.foldable(v, near)
             for u in near:
                 if u not in kept[v]:
                     flat.add(pair(v, u))
@@ -104,7 +104,8 @@ class PanelSheet:
                         waiting.append(u)
         return {v: near for v, near in sorted(kept.items()) if near}
 
-    def _foldable(self, v: int, near: list[int]) -> list[int]:
+    def foldable(self, v: int, near: list[int]) -> list[int]:
+        """The neighbours of a vertex whose folds may fold, if only those to `near` may."""
         for k, u in enumerate(near):
             after = near[(k + 1) % len(near)]
             a, b = self.vector(v, u), self.vector(v, after)

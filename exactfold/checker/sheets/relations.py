@@ -35,6 +35,12 @@ class RelationClaim(TypedDict):
     parts: int
 
 
+def same_terms(entry: RelationClaim) -> frozenset[tuple[int, ...]]:
+    """What relations with the same terms have in common, whatever their kinds and signs."""
+    signs = ([(i, j, sign * n) for i, j, n in entry["terms"]] for sign in (1, -1))
+    return frozenset(max(sorted(terms) for terms in signs))
+
+
 class Relations:
     """Verifies relations between the angles of the edges of a sheet, each at most once."""
 

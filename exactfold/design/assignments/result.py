@@ -191,17 +191,21 @@ class Match(Page, Ways[MatchedRay], Certified):
         """`matches`."""
         return self.matches
 
-    def about(self, meant: Meant | None) -> Match:
-        """This answer for a sheet that was read; UNDECIDED if it holds for its digits only."""
+    def about(self, meant: Meant | None, nearly: str = "") -> Match:
+        """This answer for a sheet that was read; UNDECIDED if it holds for its digits only.
+
+        That is so if `meant` or `nearly` says why.
+        """
         matched = replace(self, meant=meant)
-        if meant is None or not meant.doubt:
+        doubt = nearly if meant is None else meant.doubt or nearly
+        if not doubt:
             return matched
         return replace(
             matched,
             status=UNDECIDED,
             matches=(),
             refutations=(),
-            reasons=(meant.doubt,),
+            reasons=(doubt,),
             open_signs=(),
             leaves=0,
             compared=(),

@@ -14,6 +14,7 @@ from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.certificates.entries import Document
 from exactfold.checker.letters.panels import PANEL_LETTERS, PanelLettersClaims
 from exactfold.design.panels.cells import CellSearch, Steps
+from exactfold.design.panels.excluding import excluded
 from exactfold.design.panels.match import PanelMatch, flat_with_letters, rests
 from exactfold.design.panels.parts import PartAnswer
 from exactfold.design.panels.refutation import PanelRefutation, held
@@ -41,7 +42,7 @@ def starting_certificate(matched: PanelMatch) -> Document:
     moving = stars(matched.pattern, held(matched.letters))
     truly, evidence = matched.truly, dict[str, Any]()
     if matched.starts is PROVED:
-        evidence["motion"] = [_motion(matched, moving, part) for part in matched.parts]
+        evidence["motion"] = [motion_evidence(matched, moving, part) for part in matched.parts]
         if truly is REFUTED:
             part = next(part for part in matched.parts if part.truly is REFUTED)
             evidence |= {
@@ -84,10 +85,9 @@ def _refuted(matched: PanelMatch, moving: Mapping[int, Star]) -> tuple[Document,
     part = min(parts, key=lambda part: part.truly is not REFUTED)
     own = {v: moving[v] for v in part.vertices}
     if part.by_list:
-        raise NotApplicableError(
-            "no certificate can be written: the complete list of motions refutes the letters, and "
-            "that list has a certificate of its own (`exactfold count --certificate`)"
-        )
+        truly = part.truly is REFUTED
+        step = excluded(matched.pattern, matched.letters, part.vertices, truly=truly)
+        return {"refuted": [], "tree": [step]}, part.truly
     if part.vertex is not None:
         return {"refuted": [], "tree": [["vertex", part.vertex]]}, part.truly
     if not part.refutations:
@@ -200,7 +200,9 @@ def _pairs(folds: Iterable[Edge]) -> list[list[int]]:
 # --- motions -------------------------------------------------------------------------------------
 
 
-def _motion(matched: PanelMatch, moving: Mapping[int, Star], part: PartAnswer) -> Document | None:
+def motion_evidence(
+    matched: PanelMatch, moving: Mapping[int, Star], part: PartAnswer
+) -> Document | None:
     """The evidence of a part that moves: None if no letters are asked of it, signs, or densities.
 
     If all vertices have at most four folds, the signs of the folds are enough.

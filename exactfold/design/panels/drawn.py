@@ -13,6 +13,7 @@ from exactfold.design.panels.match import match_panels
 from exactfold.design.panels.refutation import held
 from exactfold.design.refutations.refutation import Letters
 from exactfold.panels.clauses import ModeClauses, has_solver
+from exactfold.panels.nearby.answers import with_nearby
 from exactfold.panels.partial import Drawn
 from exactfold.panels.result import Decomposition
 from exactfold.panels.stars import stars
@@ -31,11 +32,14 @@ def with_drawn(
 ) -> Decomposition:
     """The ways, with the answer for the letters of the drawing if not all ways are known.
 
-    The ways are returned as they are if all of them are known, if the drawing has no mountain and
-    no valley, or if the drawing is too inexact to say anything of the sheet that was meant.
+    The ways are returned as they are if all of them are known, or if the drawing has no mountain
+    and no valley. If the drawing is too inexact to infer the sheet that was meant, the answer is
+    what holds for every sheet near it (`with_nearby`).
     """
+    if opened.doubt:
+        return with_nearby(ways, opened)
     known = ways.second_order is not None
-    if known or opened.doubt or not {"M", "V"}.intersection(opened.letters.values()):
+    if known or not {"M", "V"}.intersection(opened.letters.values()):
         return ways
     matched = match_panels(opened, progress=progress, clock=clock)
     together: tuple[Edge, ...] = ()

@@ -27,6 +27,7 @@ from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.design.panels.parts import PartAnswer, answered
 from exactfold.design.panels.refutation import PanelRefutation, held
 from exactfold.design.panels.together import Together, going_together
+from exactfold.design.panels.vertices import open_vertices
 from exactfold.design.refutations.asked import by_fold
 from exactfold.design.refutations.refutation import Letters
 from exactfold.panels.decomposition import groups_of
@@ -138,8 +139,8 @@ class PanelMatch(Certified):
     def about(self, opened: Opened) -> PanelMatch:
         """This answer for a sheet that was read; UNDECIDED if it holds for its digits only.
 
-        That is so if relations between creases nearly hold, or if a loop that nearly closes refutes
-        the letters.
+        That is so if relations between creases nearly hold, if a loop that nearly closes refutes
+        the letters, or if nearly straight folds decide them at a vertex.
         """
         matched = replace(self, meant=opened.meant)
         limit = near_limit(None if opened.meant is None else opened.meant.noise)
@@ -148,6 +149,8 @@ class PanelMatch(Certified):
         doubt = opened.doubt
         if not doubt and nearly and opened.reading.snap != "exact":
             doubt = nearly[0]
+        if not doubt and self.starts is not UNDECIDED:
+            doubt = open_vertices(opened, self.letters)
         if not doubt:
             return matched
         return replace(

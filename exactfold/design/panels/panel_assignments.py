@@ -6,7 +6,7 @@ import time
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import prod
-from typing import Annotated, Final, Literal, TypedDict
+from typing import Annotated, ClassVar, Final, Literal, TypedDict
 
 from exactfold._support.clock import UNLIMITED, Clock
 from exactfold._support.documents import (
@@ -18,6 +18,7 @@ from exactfold._support.documents import (
 )
 from exactfold._support.plurals import counted
 from exactfold._support.progress import Progress
+from exactfold._support.results import Certified
 from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.branches.counting.collect import count_branches
 from exactfold.design.panels.block_letters import UPSIDE_DOWN, BlockLetters
@@ -88,7 +89,7 @@ class PartLetters:
 
 
 @dataclass(frozen=True, repr=False)
-class PanelAssignments:
+class PanelAssignments(Certified):
     """All assignments of M and V to the folds of a sheet of rigid panels that motions have.
 
     The motions are those to second order in which all folds bend that can bend in any motion; an
@@ -103,6 +104,8 @@ class PanelAssignments:
     flat: tuple[Edge, ...]
     doubt: str = ""
     seconds: float = field(default=0.0, compare=False)
+
+    WRITER: ClassVar = "exactfold.design.panels.listed_certificate:panel_assignments_certificate"
 
     @property
     def status(self) -> Verdict:
@@ -119,7 +122,7 @@ class PanelAssignments:
         left = sum(len(part.undecided) for part in self.parts)
         if left:
             why.append(f"of {counted(left, 'assignment')} of parts it is not known")
-        return "; ".join([*filter(None, [self.doubt]), *why])
+        return "; ".join(dict.fromkeys([*filter(None, [self.doubt]), *why]))
 
     @property
     def number(self) -> int | None:
@@ -186,6 +189,8 @@ def panel_assignments(
     given = opened.sheet
     sheet = panels(given) if isinstance(given, CreasePattern) else given
     moving, interior = stars(sheet), set(sheet.interior)
+    if opened.doubt:
+        return _doubted(sheet, opened.doubt, time.perf_counter() - start)
     free = tuple(e for e in sheet.folds if not interior & set(e))
     active = {edge for star in moving.values() for edge in star.folds}
     parts: list[PartLetters] = []
@@ -203,9 +208,14 @@ def panel_assignments(
         tuple(parts),
         free,
         tuple(e for e in sheet.folds if e not in active and e not in free),
-        opened.doubt,
-        time.perf_counter() - start,
+        seconds=time.perf_counter() - start,
     )
+
+
+def _doubted(sheet: PanelPattern, doubt: str, seconds: float) -> PanelAssignments:
+    """The answer for inexact digits: no list, as a list would hold for these digits only."""
+    why = f"{doubt}; --snap exact lists the assignments of the digits"
+    return PanelAssignments(sheet, (PartLetters(sheet.folds, (), (), why),), (), (), why, seconds)
 
 
 def _of_branches(sheet: CreasePattern, active: set[Edge]) -> PartLetters | None:

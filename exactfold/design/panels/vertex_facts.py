@@ -14,6 +14,8 @@ from flint import arb
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.design.refutations.refutation import Letters
 from exactfold.exact.surds import Number, ball
+from exactfold.panels.nearby.box import Box
+from exactfold.panels.nearby.letters import NearbyFan
 from exactfold.panels.stars import Star, bracket, dot, star_at
 from exactfold.panels.vertex_motions import Fan
 from exactfold.pattern.panel_pattern import Edge, PanelPattern, Point
@@ -98,14 +100,14 @@ class VertexFacts:
 
 
 def vertex_facts(
-    sheet: PanelPattern, letters: Letters, *, exactly: bool = False
+    sheet: PanelPattern, letters: Letters, *, exactly: bool = False, box: Box | None = None
 ) -> tuple[VertexFacts, ...]:
     """The facts about every interior vertex of a sheet with the letters M, V, F and U of its folds.
 
     All verdicts are exact. Where two folds nearly form a straight crease and the answer depends on
     whether they do, the verdict is UNDECIDED, unless `exactly` says that the coordinates are meant
-    as they are. If one vertex is refuted, no finite folding of the sheet near the flat state has
-    the letters.
+    as they are. With a `box`, it is UNDECIDED unless it is proved for every sheet in the box. If
+    one vertex is refuted, no finite folding of the sheet near the flat state has the letters.
 
     >>> from exactfold.pattern.opening import open_pattern
     >>> from exactfold.pattern.data import example_path
@@ -113,10 +115,12 @@ def vertex_facts(
     >>> [(v.vertex, str(v.starts)) for v in vertex_facts(opened.sheet, opened.letters)][:2]
     [(9, 'refuted'), (10, 'refuted')]
     """
-    return tuple(_facts(sheet, star_at(sheet, v), letters, exactly) for v in sheet.interior)
+    return tuple(_facts(sheet, star_at(sheet, v), letters, exactly, box) for v in sheet.interior)
 
 
-def _facts(sheet: PanelPattern, star: Star, letters: Letters, exactly: bool) -> VertexFacts:
+def _facts(
+    sheet: PanelPattern, star: Star, letters: Letters, exactly: bool, box: Box | None
+) -> VertexFacts:
     given = "".join(letters.get(fold, "U") for fold in star.folds)
     fan = Fan(star)
     starts, able = _answers(fan, given)
@@ -131,6 +135,11 @@ def _facts(sheet: PanelPattern, star: Star, letters: Letters, exactly: bool) -> 
             verdict, reason = UNDECIDED, _open_text(star, pairs, able)
             break
         possible = possible or straight_able
+    if box is not None:
+        nearby = NearbyFan(box, star.vertex)
+        possible = possible or nearby.may_fold(["F" if x == "F" else "U" for x in given])
+        if verdict is not UNDECIDED and not _holds_nearby(nearby, given, verdict, possible):
+            verdict, reason = UNDECIDED, _nearby_text(box, starts and able, reason)
     flat = star.only(f for f, x in zip(star.folds, given, strict=True) if x != "F")
     kawasaki, off = _alternating(flat)
     kept = given.replace("F", "")
@@ -154,6 +163,13 @@ def _answers(fan: Fan, letters: str) -> tuple[bool, bool]:
     """Whether the vertex has its letters, and whether it moves with any letters."""
     able = fan.folds(["F" if x == "F" else "U" for x in letters])
     return fan.folds(letters) or {"M", "V"}.isdisjoint(letters), able
+
+
+def _holds_nearby(nearby: NearbyFan, given: str, verdict: Verdict, possible: bool) -> bool:
+    """Whether a verdict for the sheet as written is proved for every sheet of a box."""
+    if {"M", "V"}.isdisjoint(given):
+        return not possible or nearby.must_fold(["F" if x == "F" else "U" for x in given])
+    return nearby.must_fold(given) if verdict is PROVED else not nearby.may_fold(given)
 
 
 def _flips(star: Star, given: str, fan: Fan) -> tuple[tuple[Edge, ...], ...]:
@@ -196,6 +212,8 @@ def _straightened(star: Star) -> Iterator[tuple[Star, tuple[_Pair, ...]]]:
         if 1 < size < len(pairs) > _MOST_PAIRS:
             continue
         for chosen in combinations(pairs, size):
+            if len({place for pair in chosen for place in pair[:2]}) < 2 * size:
+                continue  # a fold is in two pairs, and not both can be straight
             directions = list(star.directions)
             for pair in chosen:
                 x, y = directions[pair.one]
@@ -363,6 +381,11 @@ def _open_text(star: Star, pairs: tuple[_Pair, ...], starts: bool) -> str:
         f"folds {folds} miss a straight line by {degrees(pair.off):.1g} degrees: the vertex "
         f"{written} to fold as it is written, and with a straight line it {straight}"
     )
+
+
+def _nearby_text(box: Box, starts: bool, reason: str) -> str:
+    written = "it starts to fold" if starts else f"it does not start to fold: {reason}"
+    return f"as written {written}; this is not proved for every {box.text}"
 
 
 def _named(folds: Iterable[Edge], separator: str = ", ") -> str:

@@ -24,13 +24,14 @@ from exactfold.design.panels.vertex_facts import VertexFacts, vertex_facts
 from exactfold.design.panels.vertex_repair import Repair, repaired
 from exactfold.design.refutations.asked import by_fold
 from exactfold.design.refutations.refutation import Letters
+from exactfold.panels.nearby.box import box_of
 from exactfold.panels.stars import Star, star_at
 from exactfold.panels.vertex_motions import Fan
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import PanelsDocument, described_panels
 from exactfold.pattern.loading import PatternLike, open_sheet
 from exactfold.pattern.meant import Meant, MeantDocument
-from exactfold.pattern.opening import panels
+from exactfold.pattern.opening import Opened, panels
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
 _OTHER: Final = {"M": "V", "V": "M"}
@@ -230,7 +231,10 @@ class Vertices:
         """What follows for the sheet, what is asked for, and what is known of folding flat."""
         notes = []
         if self.refuted:
-            notes.append("so the sheet as a whole cannot start to fold with these letters")
+            notes.append(
+                "so the sheet as a whole cannot start to fold with these letters if its panels are "
+                "rigid and all move together; a model that is folded step by step can be right"
+            )
         if self.facts:
             notes.append(self.flat_line)
         return tuple(notes)
@@ -346,9 +350,10 @@ def vertices(pattern: PatternLike, letters: Mapping[Edge, str] | str | None = No
     `letters` is a mapping from folds (i, j), i < j, or a text in the order of the folds, with M, V,
     F (stays flat) or U (free); None takes the letters of the file. Each vertex is decided both ways
     by the theorem of Abel et al. (docs/vertices.md, Theorem 1). A verdict is UNDECIDED only where
-    two folds nearly form a straight crease and the answer depends on whether they do; with the
-    snap "exact" the coordinates are taken as they are. Raises `UsageError` for letters that do not
-    fit, and the errors of `open_pattern`.
+    two folds nearly form a straight crease and the answer depends on whether they do, or where it
+    is not the same for all sheets near a drawing that is too inexact to infer the one that was
+    meant; with the snap "exact" the coordinates are taken as they are. Raises `UsageError` for
+    letters that do not fit, and the errors of `open_pattern`.
 
     >>> vertices("bird-base")
     <Vertices: 5 vertices, starts proved>
@@ -361,8 +366,17 @@ def vertices(pattern: PatternLike, letters: Mapping[Edge, str] | str | None = No
     sheet = panels(opened.sheet) if isinstance(opened.sheet, CreasePattern) else opened.sheet
     given = opened.letters if letters is None else letters
     asked = by_fold(sheet.folds, given)
-    facts = vertex_facts(sheet, asked, exactly=opened.reading.snap == "exact")
+    exactly = opened.reading.snap == "exact"
+    facts = vertex_facts(sheet, asked, exactly=exactly, box=box_of(opened))
     return Vertices(sheet, asked, facts, opened.meant, time.perf_counter() - start)
+
+
+def open_vertices(opened: Opened, letters: Letters) -> str:
+    """Why letters that are refuted at no vertex by itself are open at one; else empty."""
+    if opened.reading.snap == "exact" or opened.doubt:
+        return ""
+    found = vertices(opened, letters)
+    return found.reason if found.starts is UNDECIDED else ""
 
 
 def _which(some: Sequence[VertexFacts], count: int) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Annotated, TypedDict
 
 import numpy as np
@@ -18,16 +19,22 @@ from exactfold.motion.curves.framework import Framework
 from exactfold.motion.curves.zeros import least_of, zero_of
 from exactfold.pattern.crease_pattern import Edge, Triangle
 
-CONTACT, FLAT_FOLD, TURNING = "contact", "flat-fold", "turning"
+CONTACT, FLAT_FOLD, TURNING, CHANGE = "contact", "flat-fold", "turning", "change"
 NODE, SINGULAR, RETURN = "node", "singular", "return"
 ANGLE, LENGTH = "angle", "length"
 DRIVEN, DEAD_POINT = "driven", "dead-point"
 
-KINDS = CONTACT, FLAT_FOLD, TURNING, NODE, SINGULAR, RETURN, ANGLE, DRIVEN, DEAD_POINT
+KINDS = CONTACT, FLAT_FOLD, TURNING, CHANGE, NODE, SINGULAR, RETURN, ANGLE, DRIVEN, DEAD_POINT
 """All kinds of events."""
 
-ENDS = (*(kind for kind in KINDS if kind != TURNING), LENGTH)
-"""Where motions end: at an event that is no turning of a crease, or at a time without an event."""
+CHANGES = "from mountain to valley", "from valley to mountain"
+"""What a fold does that passes through flat: its angle grows, or falls."""
+
+PASSED = TURNING, CHANGE
+"""Kinds of events at which no motion ends."""
+
+ENDS = (*(kind for kind in KINDS if kind not in PASSED), LENGTH)
+"""Where motions end: at an event of these kinds, or at a time without an event."""
 
 _SAMPLES = 8
 _NEAR_FLAT = 0.3
@@ -54,12 +61,13 @@ class Event:
     """Something that happens between two times of a motion.
 
     `kind` is one of the following. "contact": two `faces` meet. "flat-fold": a fold reaches 180
-    degrees. "turning": a fold angle has a critical point, so the crease turns back. "node": another
-    curve of configurations crosses, often where the stars of `vertices` are flat. "singular": the
-    curve could not be followed further. "return": the sheet is flat again. "angle": the requested
-    angle is reached. "driven": the driven folds have their angles. "dead-point": they turn back
-    before. `time` is a lower and an upper bound of the time of the event. `faces` are given by
-    their corners. `detail` says more in words.
+    degrees. "turning": a fold angle has a critical point, so the crease turns back. "change": a
+    fold passes through flat, so that a mountain becomes a valley or the other way round. "node":
+    another curve of configurations crosses, often where the stars of `vertices` are flat.
+    "singular": the curve could not be followed further. "return": the sheet is flat again. "angle":
+    the requested angle is reached. "driven": the driven folds have their angles. "dead-point": they
+    turn back before. `time` is a lower and an upper bound of the time of the event. `faces` are
+    given by their corners. `detail` says more in words.
     """
 
     kind: str
@@ -111,6 +119,7 @@ class Watch:
             *self._branch_point(piece),
             *self._angle_events(piece, grid, angles),
             *self._turnings(piece, grid, positions, angles),
+            *self._changes(piece, grid, angles),
             *self._returns(piece, grid, raw),
         ]
         if self.look_for_contacts:
@@ -196,6 +205,20 @@ class Watch:
             if self.driven and (i, j) == self.driven[0][0]:
                 folds = tuple(fold for fold, _ in self.driven)
                 events.append(self._event(piece, DEAD_POINT, low, high, folds=folds))
+        return events
+
+    def _changes(
+        self, piece: Piece, grid: FloatArray, angles: FloatArray
+    ) -> list[tuple[float, Event]]:
+        """Folds that pass through flat; `detail` is for the side of the branch that was named."""
+        events = []
+        bent = np.abs(angles) > _FLAT  # smaller angles may be rounding errors
+        for k, e in np.argwhere((angles[1:] * angles[:-1] < 0) & bent[1:] & bent[:-1]):
+            fold = _FoldOnPiece.of(self.framework, piece, e)
+            low, high = _bracket(partial(fold.angle, near=0.0), grid[k], grid[k + 1])
+            folds = (tuple(int(v) for v in self.framework.hinges[e, :2]),)
+            detail = CHANGES[int(angles[k, e] > 0)]
+            events.append(self._event(piece, CHANGE, low, high, folds=folds, detail=detail))
         return events
 
     def _returns(

@@ -164,7 +164,7 @@ class Motion(SheetInMotion):
         branch = self.branch
         return {
             "format": "exactfold motion result",
-            "version": 2,
+            "version": 3,
             "pattern": described(branch.pattern, name),
             "theory": "branches",
             "vertex_signs": {str(v): s for v, s in sorted(branch.vertex_signs.items())},
@@ -173,7 +173,7 @@ class Motion(SheetInMotion):
             "rim": self._boundary_heights_reported,
             "drive": None if self.drive is None else self.drive.to_dict(),
             "modes": None,
-            "component": None,
+            "way": None,
             **self.frames_reported(written),
             "warnings": warnings(branch.pattern),
             "seconds": round(self.seconds, 3),

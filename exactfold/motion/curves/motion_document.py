@@ -139,7 +139,7 @@ class MotionDocument(FrameKeys):
     """A motion along a branch; what belongs to panels is null."""
 
     format: Literal["exactfold motion result"]
-    version: Literal[2]
+    version: Literal[3]
     pattern: PatternDocument
     theory: Literal["branches"]
     """What the sheet folds along."""
@@ -156,7 +156,7 @@ class MotionDocument(FrameKeys):
     drive: Goals | None
     """By driven fold i-j the angle to which it is driven; null without --drive."""
     modes: None
-    component: None
+    way: None
     warnings: list[WarningDocument]
     seconds: NotNegative
     proof: ProofDocument | None
@@ -167,7 +167,7 @@ class PanelMotionDocument(FrameKeys):
     """A motion of rigid panels; what belongs to branches is null."""
 
     format: Literal["exactfold motion result"]
-    version: Literal[2]
+    version: Literal[3]
     pattern: PanelsDocument
     theory: Literal["modes"]
     """What the sheet folds along."""
@@ -178,9 +178,9 @@ class PanelMotionDocument(FrameKeys):
     rim: None
     drive: None
     modes: list[Positive]
-    """The numbers of the modes that fold, as count lists them."""
-    component: Positive | None
-    """The number of the component; null where modes were named."""
+    """The numbers of the modes that fold, in `modes` of count --json."""
+    way: Positive | None
+    """The number of the way, as count lists it; null where the modes are part of no listed way."""
     warnings: Empty
     seconds: NotNegative
     proof: PanelProofDocument | None

@@ -61,13 +61,14 @@ class PanelClearance:
 
 
 def prove_contacts(motion: PanelMotion) -> PanelClearance:
-    """The first contact of a motion of panels, proved (docs/panel_motion.md, 5).
+    """The first contact of a motion of panels, proved (docs/motion.md, 20).
 
     The positions of all vertices are enclosed over intervals of time, computed from the exact
-    motion. Planes are found that separate all panels (docs/contacts.md, Theorem 1). Panels touch
+    motion. Planes are found that separate all panels (docs/motion.md, Theorem 9). Panels touch
     where an edge runs through a panel, or at time pi, where all folds close.
 
-    Raises `NotApplicableError` for a motion that is not proved to exist (`motion.exists`).
+    Raises `NotApplicableError` for a motion that is not proved to exist (`motion.exists`), and for
+    a sheet whose positions are known only nearly.
 
     >>> from exactfold.motion.panels.following import follow_panels
     >>> from exactfold.pattern.families import single_vertex
@@ -81,6 +82,7 @@ def prove_contacts(motion: PanelMotion) -> PanelClearance:
         raise NotApplicableError(
             "nothing is proved of contacts, because the motion is not proved to exist"
         )
+    motion.pattern.check_positions()
     contacts = PanelContacts(motion.pattern)
     pieces = PanelPieces(motion)
     pairs = PanelPairs(contacts, pieces.unit)

@@ -1,4 +1,4 @@
-"""What a sheet of rigid panels can be followed along: elementary modes, and their components."""
+"""What a sheet of rigid panels can be followed along: elementary modes."""
 
 from __future__ import annotations
 
@@ -6,15 +6,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from fractions import Fraction
 from functools import cached_property
-from itertools import islice
 from types import MappingProxyType
 from typing import Final
 
-import networkx as nx
-
 from exactfold._support.plurals import counted
 from exactfold._support.verdict import PROVED, UNDECIDED
-from exactfold.errors import TooManyModesError, UsageError
+from exactfold.errors import UsageError
 from exactfold.exact.joined_fields import joined
 from exactfold.exact.surds import Number, exact, sign, simple
 from exactfold.panels.densities import Density, Roots
@@ -25,7 +22,6 @@ from exactfold.panels.stars import Star, stars
 from exactfold.panels.subspaces import Leaf
 from exactfold.pattern.panel_pattern import Edge, PanelPattern, Point
 
-MOST_COMPONENTS: Final = 100_000
 LINEAR: Final = "linear transmissions"
 _REASONS: Final = 3
 
@@ -115,25 +111,6 @@ class PanelMode:
         )
 
 
-@dataclass(frozen=True)
-class PanelComponent:
-    """Modes that share no vertex and all truly fold, together with the free folds.
-
-    The true configurations near the flat state that belong to the component are the product of one
-    curve for each mode and one interval for each free fold (docs/panels.md, Which modes truly
-    fold). `modes` are the numbers of the modes.
-    """
-
-    modes: tuple[int, ...]
-    free: tuple[Edge, ...]
-    folds: int
-
-    @property
-    def dimension(self) -> int:
-        """The number of folds that can be chosen independently."""
-        return len(self.modes) + len(self.free)
-
-
 def panel_modes(result: Decomposition) -> tuple[PanelMode, ...]:
     """The modes of a decomposition: first those it lists, in its order, then others it contains.
 
@@ -164,54 +141,20 @@ def panel_modes(result: Decomposition) -> tuple[PanelMode, ...]:
             extends = extension(result.pattern, moving, choice)
             modes.append(add(choice, _letters(choice), extends))
         for leaf in _lines(part):
-            choice = _on_line(leaf, moving)
-            line = add(choice, _letters(choice), Extension(PROVED, LINEAR))
+            line = line_mode(result, leaf, moving, len(modes) + 1)
             if line.is_linear:
                 modes.append(line)
     return tuple(modes)
 
 
-def panel_components(
-    result: Decomposition, modes: Sequence[PanelMode] | None = None
-) -> tuple[PanelComponent, ...]:
-    """The components that can be followed; those with the most active folds come first.
-
-    They are the maximal sets of modes that truly fold and share no vertex, together with all free
-    folds. Modes whose extension is refuted or undecided belong to none. `modes` are those of
-    `panel_modes`. Raises `TooManyModesError` if there are more than 100,000; then the modes have to
-    be named.
-
-    >>> from exactfold.panels.decomposition import decompose
-    >>> from exactfold.pattern.families import single_vertex
-    >>> from exactfold.pattern.opening import panels
-    >>> panel_components(decompose(panels(single_vertex(4))))[1]
-    PanelComponent(modes=(2,), free=(), folds=4)
-    """
-    folding = [
-        mode
-        for mode in (panel_modes(result) if modes is None else modes)
-        if mode.extends.verdict is PROVED
-    ]
-    graph = nx.Graph()
-    graph.add_nodes_from(range(len(folding)))
-    places = [set(mode.vertices) for mode in folding]
-    for i in range(len(folding)):
-        graph.add_edges_from((i, j) for j in range(i) if places[i].isdisjoint(places[j]))
-    components = [
-        PanelComponent(
-            tuple(sorted(folding[k].number for k in clique)),
-            result.free,
-            sum(len(folding[k].letters) for k in clique) + len(result.free),
-        )
-        for clique in islice(nx.find_cliques(graph), MOST_COMPONENTS + 1)
-    ]
-    if len(components) > MOST_COMPONENTS:
-        raise TooManyModesError(
-            f"there are more than {MOST_COMPONENTS} components; name the modes that have to fold"
-        )
-    if not components and result.free:
-        components = [PanelComponent((), result.free, len(result.free))]
-    return tuple(sorted(components, key=lambda one: (-one.folds, one.modes)))
+def line_mode(
+    result: Decomposition, leaf: Leaf, moving: Mapping[int, Star], number: int = 0
+) -> PanelMode:
+    """The motions on a space with one parameter as a mode, which folds if it `is_linear`."""
+    choice = _on_line(leaf, moving)
+    around = tuple(moving[mode.vertex].only(mode.folds) for mode in choice)
+    extends = Extension(PROVED, LINEAR)
+    return PanelMode(result.pattern, number, around, choice, _letters(choice), extends)
 
 
 def closes_always(directions: Sequence[Point], values: Sequence[Number]) -> bool:
@@ -294,7 +237,7 @@ def open_reason(mode: PanelMode) -> str:
 
 
 def why_nothing_follows(result: Decomposition, known: Sequence[PanelMode]) -> str:
-    """Why a sheet without a component (`panel_components`) cannot be followed."""
+    """Why a sheet cannot be followed of which no way can (`panel_ways`)."""
     if known:
         more = f"; and so on for {len(known) - _REASONS} more" if len(known) > _REASONS else ""
         return "; ".join(open_reason(mode) for mode in known[:_REASONS]) + more

@@ -21,10 +21,10 @@ from exactfold.motion.panels.curves import FollowedCurve, LinearCurve, curve_of
 from exactfold.motion.panels.followable import (
     PanelMode,
     open_reason,
-    panel_components,
     panel_modes,
     why_nothing_follows,
 )
+from exactfold.motion.panels.listing import panel_ways, require_listed
 from exactfold.motion.panels.motion import AnglesAt, PanelMotion, all_angles, sampled_times
 from exactfold.motion.panels.places import Placing
 from exactfold.panels.decomposition import decompose
@@ -38,7 +38,7 @@ _AT_180 = 1e-9
 def follow_panels(
     sheet: Decomposition | PanelPattern,
     *,
-    component: int | None = None,
+    way: int | None = None,
     modes: Sequence[int] | None = None,
     amounts: Mapping[int | Edge, float] | None = None,
     until: str = CONTACT,
@@ -46,17 +46,17 @@ def follow_panels(
     by: Edge | None = None,
     held: int = 0,
 ) -> PanelMotion:
-    """The motion of a sheet of rigid panels along a component, from the flat sheet until an event.
+    """The motion of a sheet of rigid panels along a way, from the flat sheet until an event.
 
-    A component is a set of elementary modes that truly fold and share no vertex, together with the
+    A way is a set of elementary modes that truly fold and share no vertex, together with the
     folds that go from boundary to boundary (docs/panels.md, Which modes truly fold). If all
     vertices of a mode are linear in the half-angle tangents, all its folds stay in proportion, and
     this is proved (`PanelMotion.closes`). Other modes are followed in floats by the transmissions
-    of their vertices, until the first fold reaches 180 degrees (docs/panel_motion.md).
+    of their vertices, until the first fold reaches 180 degrees (docs/motion.md, 18 and 19).
 
-    `sheet` is a decomposition, or a pattern to decompose. `component` is its number in
-    `panel_components`, beginning with 1; by default it is the first, which has the most active
-    folds. Alternatively, `modes` are the numbers of modes in the table of `exactfold count`.
+    `sheet` is a decomposition, or a pattern to decompose. `way` is the number of the way in
+    `panel_ways`, as `exactfold count` lists it, beginning with 1; by default it is the first, which
+    has the most active folds. Alternatively, `modes` are numbers of modes (`panel_modes`).
     `amounts` are the rates of the modes, by number, and of the free folds, by their ends; negative
     rates fold to the other side of the sheet. By default all modes have rate 1 and free folds stay
     flat; if there is no mode, all free folds have rate 1.
@@ -72,16 +72,16 @@ def follow_panels(
     >>> from exactfold.pattern.families import single_vertex
     >>> from exactfold.pattern.opening import panels
     >>> follow_panels(panels(single_vertex(4)), until="90deg", frames=5)
-    <PanelMotion: mode 1, proved, 5 frames to angle at 1.5708>
+    <PanelMotion: way 1, proved, 5 frames to angle at 1.5708>
     """
     began = clock.perf_counter()
     answer = sheet if isinstance(sheet, Decomposition) else decompose(sheet)
     result = answer.known
     pattern = result.pattern
-    goal = _goal(until)
+    goal = goal_angle(until)
     if frames < 2:
         raise UsageError(f"{frames} frames: a motion needs at least 2")
-    number, chosen = _chosen(result, component, modes, answer.doubt)
+    number, chosen = _chosen(result, way, modes, answer.doubt)
     rates, free_rates = _rates(result, chosen, amounts)
     kept = [(mode, rate) for mode, rate in zip(chosen, rates, strict=True) if rate]
     curves = tuple(curve_of(mode) for mode, _ in kept)
@@ -131,8 +131,8 @@ def follow_panels(
     )
 
 
-def _goal(until: str) -> float:
-    """The fold angle at which a motion stops, in radians."""
+def goal_angle(until: str) -> float:
+    """The fold angle at which a motion stops, in radians; raises `UsageError`."""
     if until == CONTACT:
         return pi
     try:
@@ -140,34 +140,41 @@ def _goal(until: str) -> float:
     except (ValueError, AttributeError):
         number = -1.0
     if not (isfinite(number) and 0 < number <= 180):
-        raise UsageError(f"until {until!r}: give contact, or an angle such as 90deg, up to 180deg")
+        angle = f"{until}deg" if str(until).isdecimal() else "90deg"
+        raise UsageError(
+            f"until {until!r}: give contact, or an angle such as {angle}, up to 180deg"
+        )
     return radians(number) if number < 180 else pi
 
 
 def _chosen(
-    result: Decomposition, component: int | None, numbers: Sequence[int] | None, doubt: str
+    result: Decomposition, way: int | None, numbers: Sequence[int] | None, doubt: str
 ) -> tuple[int | None, tuple[PanelMode, ...]]:
-    """The modes that have to fold, and the number of their component if one was chosen."""
-    if component is not None and numbers is not None:
-        raise UsageError("give either a component or modes, but not both")
+    """The modes that have to fold, and the number of their way if modes were not named."""
+    if way is not None and numbers is not None:
+        raise UsageError("give either a way or modes, but not both")
     known = panel_modes(result)
     if numbers is not None:
         return None, _named_modes(known, numbers)
     if result.rigid is PROVED:
         sheet = "the sheet is rigid - PROVED"
         if doubt:
-            sheet = f"the digits as written are rigid, but {doubt}"
+            sheet = "the digits as written are rigid, but they are inexact (`count` says how)"
         raise NotFollowedError(f"{sheet}; there is no motion to follow")
-    components = panel_components(result, known)
-    if not components:
+    ways = panel_ways(result, known)
+    if way is None and (not ways or ways[0].why_not_followed or ways[0].in_spaces):
         raise NotFollowedError(
             f"there is no motion to follow: {why_nothing_follows(result, known)}"
         )
-    at = 1 if component is None else component
-    if not 1 <= at <= len(components):
-        raise UsageError(f"there is no component {at}: give a number from 1 to {len(components)}")
-    inside = set(components[at - 1].modes)
-    return at, tuple(mode for mode in known if mode.number in inside)
+    at = 1 if way is None else way
+    require_listed(ways, at)
+    ways[at - 1].require_folding()
+    if ways[at - 1].in_spaces:
+        raise NotFollowedError(
+            f"way {at} bends in a space of motions, in which no mode is known: `follow_family` "
+            "follows one of its directions"
+        )
+    return at, ways[at - 1].modes
 
 
 def _named_modes(known: Sequence[PanelMode], numbers: Sequence[int]) -> tuple[PanelMode, ...]:

@@ -36,7 +36,7 @@ _NAMED: Final = 8
 
 @dataclass(frozen=True, repr=False, eq=False)
 class PanelMotion(SheetInMotion):
-    """A sheet of rigid panels that folds along a component of its finite motions.
+    """A sheet of rigid panels that folds along one way, a set of its finite motions.
 
     Each of the `curves` belongs to one elementary mode and has a driver, the fold of the mode that
     closes first. At time t, the angle of a driver is t times its rate, and so is the angle of a
@@ -53,7 +53,7 @@ class PanelMotion(SheetInMotion):
     """
 
     pattern: PanelPattern
-    component: int | None = field(compare=False)
+    way: int | None = field(compare=False)
     curves: tuple[LinearCurve | FollowedCurve, ...]
     rates: tuple[float, ...]
     free_rates: Mapping[Edge, float]
@@ -87,7 +87,7 @@ class PanelMotion(SheetInMotion):
         """PROVED if this motion is proved to exist until a fold is at 180 degrees; else UNDECIDED.
 
         This is proved for modes that close exactly, and for modes that provably fold and have at
-        most four active folds at each vertex (docs/panel_motion.md, 1 and 2). Modes that share no
+        most four active folds at each vertex (docs/motion.md, 18 and 19). Modes that share no
         vertex move independently. Whether panels touch on the way is a different question.
         """
         known = all(isinstance(curve, LinearCurve) or _continues(curve) for curve in self.curves)
@@ -118,7 +118,9 @@ class PanelMotion(SheetInMotion):
 
     @property
     def name(self) -> str:
-        """The modes and the number of free folds that fold, in words."""
+        """The number of the way, or the modes and the number of free folds that fold, in words."""
+        if self.way is not None:
+            return f"way {self.way}"
         what = []
         if self.modes:
             numbers = ", ".join(map(str, self.modes[:_NAMED]))
@@ -164,7 +166,7 @@ class PanelMotion(SheetInMotion):
         """The facts about the motion that files contain, as JSON."""
         return {
             "modes": list(self.modes),
-            "component": self.component,
+            "way": self.way,
             "free_folds": [f"{i}-{j}" for i, j in self.free_rates],
             **self.facts_of_frames(),
         }
@@ -177,7 +179,7 @@ class PanelMotion(SheetInMotion):
         """
         return {
             "format": "exactfold motion result",
-            "version": 2,
+            "version": 3,
             "pattern": described_panels(self.pattern, name),
             "theory": "modes",
             "vertex_signs": None,
@@ -186,7 +188,7 @@ class PanelMotion(SheetInMotion):
             "rim": None,
             "drive": None,
             "modes": list(self.modes),
-            "component": self.component,
+            "way": self.way,
             **self.frames_reported(written),
             "warnings": [],
             "seconds": round(self.seconds, 3),
@@ -286,7 +288,7 @@ class PanelMotion(SheetInMotion):
 
 
 def _continues(curve: FollowedCurve) -> bool:
-    """Whether the theorem of docs/panel_motion.md, 2, applies to a mode."""
+    """Whether docs/motion.md, Theorem 12, applies to a mode."""
     mode = curve.mode
     return mode.extends.verdict is PROVED and all(len(star.folds) <= 4 for star in mode.stars)
 

@@ -146,8 +146,10 @@ class Placing:
         """All vertices exactly, from the quaternions p + q d of the folds; other folds are flat.
 
         Raises `UsageError` if two panels give different places to a common corner, because then the
-        folds do not close.
+        folds do not close, and `NotApplicableError` if the positions of vertices are known only
+        nearly.
         """
+        self.pattern.check_positions()
         coordinates = [c for point in self.pattern.vertices for c in point]
         tower = JoinedField([*coordinates, *(x for turn in turns.values() for x in turn)])
         flat = [(tower.number(x), tower.number(y)) for x, y in self.pattern.vertices]

@@ -75,6 +75,14 @@ class Exact:
         return common_field(c for point in self.points for c in point).name
 
     @property
+    def brief(self) -> str:
+        """In a few words, what the coordinates are now."""
+        if self.reason:
+            return "exact as written" if self.field_name != "Q" else "decimals as written"
+        kept = f" but for {counted(len(self.kept), 'vertex')}" if self.kept else ""
+        return f"exact in {self.field_name}{kept}"
+
+    @property
     def text(self) -> str:
         """One line on how the coordinates were made exact."""
         if self.reason:
@@ -92,10 +100,10 @@ class Exact:
         if self.largest_move == 0:
             parts.append("nothing moved")
         else:
-            parts.append(
-                f"largest move {self.largest_move:.1g} of the size, "
-                f"tolerance {float(self.tolerance):.1g}"
-            )
+            within = f"tolerance {float(self.tolerance):.1g}"
+            if self.largest_move > self.tolerance:
+                within = f"{within} of a number, to which crossings and the common unit add"
+            parts.append(f"largest move {self.largest_move:.1g} of the size, {within}")
         return "; ".join(parts)
 
 

@@ -3,7 +3,7 @@
 A drawing has one point where a slit has two sides. So that a planar drawing can show the sheet, a
 thin strip of paper is taken away along each slit: creases that end there become a little shorter.
 This changes no angle between creases and nothing round an interior vertex, so the sheet folds in
-the same ways.
+the same ways. Contacts are those of the sheet without the strips.
 """
 
 from __future__ import annotations

@@ -29,6 +29,12 @@ class Line(NamedTuple):
     letter: str
 
 
+class Loud(str):
+    """A remark that is always printed, such as that curves were read as straight lines."""
+
+    __slots__ = ()
+
+
 @dataclass(frozen=True)
 class SvgReading:
     """The choices with which an SVG file is read.
@@ -51,7 +57,8 @@ class Drawing(Picture):
 
     A reader gives fractions; `exact_coordinates` may turn them into numbers with square roots.
     `source` says in a few words what was read ("SVG of 1200 x 800, colours of Origami Simulator").
-    `remarks` has a sentence for each thing that the reader left out or interpreted. Points may
+    `remarks` has a sentence for each thing that the reader left out or interpreted; those that
+    nobody should miss are `Loud`. Points may
     nearly coincide, and lines may cross or repeat; `repaired` mends that. `exact` says that the
     file states exact coordinates beside its decimals, so that they need not be found.
     """

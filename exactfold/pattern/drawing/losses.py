@@ -1,11 +1,12 @@
-"""Says which creases of a drawing are missing in a sheet that was made of it."""
+"""Says in short how a sheet was made of a drawing, and which creases are missing in it."""
 
 from __future__ import annotations
 
 from collections import Counter
+from math import hypot
 
 from exactfold._support.plurals import agreeing, counted
-from exactfold.pattern.drawing.drawing import Drawing
+from exactfold.pattern.drawing.drawing import Drawing, Loud
 from exactfold.pattern.drawing.mending import Lost, floats, used
 from exactfold.pattern.drawing.repair import Sheets
 from exactfold.pattern.drawing.segments import KINDS
@@ -14,7 +15,7 @@ _WHY = {
     "dangling": "creases that end inside a panel or meet no other line cannot fold; draw them "
     "from line to line, or leave them out",
     "border": "creases with no panel on one side are taken for the boundary; draw a closed "
-    "boundary round them, or take the rectangle round the drawing for it with `--box`",
+    "boundary round them",
 }
 
 
@@ -23,8 +24,8 @@ def missing(drawing: Drawing, sheets: Sheets, k: int, *, folds: bool) -> str | N
 
     The creases are the lines M and V. In a drawing without these letters, they are the lines U.
     Lines round a sheet count as lost only if the drawing has boundary lines elsewhere. A lost line
-    belongs to the sheets whose bounding boxes contain its middle, or to all sheets if there are
-    none. A sheet without `folds` is a loss, too, and then the text says what the reader left out.
+    belongs to the sheets whose bounding boxes contain its middle; if there are none, it belongs to
+    the nearest sheet. A sheet without `folds` is a loss, too.
     """
     letters = {line.letter for line in drawing.lines}
     creases = letters & {"M", "V"} or {"U"}
@@ -42,7 +43,26 @@ def missing(drawing: Drawing, sheets: Sheets, k: int, *, folds: bool) -> str | N
         ]
         if any(line.letter in creases for line in gone):
             said.append(_sentence(gone, creases, why))
-    return "; ".join([*said, *([] if folds else drawing.remarks)]) or None
+    return "; ".join(said) or None
+
+
+def brief(drawing: Drawing, sheets: Sheets) -> tuple[str, ...]:
+    """What was read, in a few words each: lines, coordinates, and how much was mended."""
+    number = Counter[str]()
+    for repair in sheets.repairs:
+        if not repair.loud:
+            number[repair.step if repair.step in ("join", "split") else "mended"] += repair.count
+    words = [counted(len(drawing.lines), "line"), sheets.coordinates.brief]
+    words += [f"cut at {counted(number['split'], 'point')}"] if number["split"] else []
+    words += [f"{counted(number['join'], 'flat line')} left out"] if number["join"] else []
+    words += [f"{number['mended']} mended"] if number["mended"] else []
+    return tuple(words)
+
+
+def loud(drawing: Drawing, sheets: Sheets) -> tuple[str, ...]:
+    """What nobody should miss of how a drawing was read, one sentence each."""
+    remarks = [remark for remark in drawing.remarks if isinstance(remark, Loud)]
+    return (*remarks, *(repair.sentence for repair in sheets.repairs if repair.loud))
 
 
 def _sentence(gone: list[Lost], creases: set[str], why: str) -> str:
@@ -56,8 +76,14 @@ def _sentence(gone: list[Lost], creases: set[str], why: str) -> str:
 
 
 def _belongs(line: Lost, k: int, boxes: list[tuple[float, float, float, float]]) -> bool:
-    inside = [left <= line.x <= right and low <= line.y <= high for left, low, right, high in boxes]
-    return inside[k] or not any(inside)
+    away = [
+        hypot(
+            max(left - line.x, 0, line.x - right),
+            max(low - line.y, 0, line.y - high),
+        )
+        for left, low, right, high in boxes
+    ]
+    return away[k] == min(away)
 
 
 def _box(sheet: Drawing) -> tuple[float, float, float, float]:

@@ -43,6 +43,7 @@ class Repair:
 
     Indices are those of the given drawing; points that were added follow them. `lost` has the
     lines that were dropped, or taken for the boundary, although they may have been meant as folds.
+    A `loud` repair is always printed, as it changes what the answer is about.
     """
 
     step: str
@@ -50,6 +51,7 @@ class Repair:
     places: tuple[Place, ...]
     sentence: str
     lost: tuple[Lost, ...] = ()
+    loud: bool = False
 
     def __repr__(self) -> str:
         return f"<Repair: {self.step}, {self.count}>"
@@ -196,7 +198,7 @@ def without_duplicates(drawing: Drawing) -> tuple[Drawing, list[Repair]]:
             "and creases over flat lines"
         )
     repairs += repair("duplicates", count, (a for a, _ in again), drawing.points, sentence)
-    repairs += repair(
+    without = repair(
         "duplicates",
         len(torn),
         (a for a, _ in torn),
@@ -204,6 +206,7 @@ def without_duplicates(drawing: Drawing) -> tuple[Drawing, list[Repair]]:
         f"{counted(len(torn), 'line')} drawn as mountain and as valley "
         f"{agreeing(len(torn), 'is')} now without direction (U)",
     )
+    repairs += [replace(each, loud=True) for each in without]
     lines = [Line(a, b, _winner(all_of)) for (a, b), all_of in letters.items()]
     return with_lines(drawing, lines), repairs
 

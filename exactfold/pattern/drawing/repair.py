@@ -36,10 +36,7 @@ _COARSEST: Final = Fraction(1, 300)
 _ADVISED: Final = Fraction(1, 100)
 """Merging at a larger share of the size is never advised."""
 _TRIALS: Final = 3
-_MEET: Final = (
-    "let lines meet in common ends, or say with `exactfold convert --merge EPS` by which share of "
-    "the size they miss each other"
-)
+_MEET: Final = "draw each line from one line to another, so that they meet in common ends"
 
 
 def repaired(

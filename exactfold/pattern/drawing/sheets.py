@@ -73,8 +73,8 @@ def sheets(drawing: Drawing) -> tuple[tuple[Drawing, ...], list[Repair]]:
     parts = _parts(drawing)
     if not parts:
         raise MalformedPatternError(
-            "the lines of the drawing enclose no face: draw the boundary of the sheet (`--box` "
-            "takes the rectangle round the drawing)"
+            "the lines of the drawing enclose no face: draw the boundary of the sheet as a closed "
+            "line"
         )
     places = floats(drawing.points)
     _check_all(drawing, parts, places)
@@ -108,11 +108,12 @@ def sheets(drawing: Drawing) -> tuple[tuple[Drawing, ...], list[Repair]]:
     )
     opened = (
         f"cuts ({counted(len(slits), 'line')}) are opened: creases end {farthest:.2g} before "
-        "them, which changes no angle and no way to fold"
+        "them; no angle and no way to fold changes, and contacts are those of the open sheet"
     )
     points = drawing.points
     reports = repair("border", len(alone), alone, points, empty_ones)
-    return tuple(made), reports + repair("border", len(slits), slits, points, opened)
+    reports += repair("border", len(slits), slits, points, opened)
+    return tuple(made), [replace(each, loud=True) for each in reports]
 
 
 def _parts(drawing: Drawing) -> list[_Part]:
@@ -192,10 +193,16 @@ def _check_nested(part: _Part, outer: Sequence[_Part], is_alone: bool, places: F
     framed = is_alone and letters <= {*"BCU"} and all(len(other.faces) == 1 for other in outer)
     if outer and not framed and not letters <= {*"BC"}:
         v = part.outline[0]
+        why = "leave out a frame round the drawing; a hole is drawn with boundary lines"
+        if any(line.letter == "C" for line in part.lines):
+            why = (
+                "sheets with slits that do not begin at the edge of the paper are not counted yet; "
+                "to read this one without cuts, give its cuts and flat lines the letter U, in an "
+                "SVG file by `--colours '#0f0=U,#ff0=U'`"
+            )
         raise DisconnectedError(
             f"creases near ({places[v][0]:.6g}, {places[v][1]:.6g}) lie inside a panel, and no "
-            "line joins them to the rest (leave out a frame round the drawing; a hole is drawn "
-            "with boundary lines)",
+            f"line joins them to the rest ({why})",
             vertices=[v],
         )
 

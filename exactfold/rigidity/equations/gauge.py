@@ -75,7 +75,7 @@ class Gauge:
                 else f"vertex signs name a branch of a sheet with four boundary vertices, but this "
                 f"sheet has {sheet.Ve}. Its ways to fold form continuous families, with one way "
                 "for each choice of the boundary heights: give them (`exactfold branch` with "
-                "--rim; in Python find_branch with boundary_heights=)"
+                "--boundary-heights; in Python find_branch with boundary_heights=)"
             )
         corner = sheet.reflex_corner
         if corner is not None:

@@ -111,8 +111,8 @@ def test_nothing_found_is_undecided(tmp_path):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ([], "give either --signs or --up"),
-        (["--signs", "+-", "--up", "4"], "give either --signs or --up"),
+        ([], "give one of --way, --signs, --up and --letters"),
+        (["--signs", "+-", "--up", "4"], "give one of --way, --signs, --up and --letters"),
         (["--signs", "+-", "--creases", "2", "--torques", "x"], "do not go together"),
         (["--signs", "+-", "--creases", "8"], "from 1 to 7"),
         (["--signs", "+"], "1 sign for 2 vertices"),

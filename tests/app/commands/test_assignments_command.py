@@ -44,7 +44,18 @@ def test_the_forcing_set_of_given_letters():
     assert "no forcing set: these letters are not among the assignments" in wrong.stderr
 
 
-def test_a_list_of_panels_has_no_certificate(tmp_path):
-    done = run("assignments", "map-fold", "--certificate", tmp_path / "list.json")
-    assert "match --certificate" in " ".join(done.stderr.split())
-    assert not (tmp_path / "list.json").exists()
+def test_a_list_of_panels_has_a_certificate(tmp_path):
+    file = tmp_path / "list.json"
+    run("assignments", "square-twist", "--forcing", "--certificate", file)
+    claims = exactfold.check(file).claims
+    assert (claims["number"], claims["forcing"]["folds"]) == (12, [[4, 5], [4, 7], [5, 6]])
+    run("assignments", "map-fold", "--certificate", file)
+    assert exactfold.check(file).claims["number"] == 0
+
+
+def test_a_list_that_the_checker_does_not_find_has_no_certificate(tmp_path):
+    file = tmp_path / "list.json"
+    done = run("assignments", "hypar-2", "--certificate", file)
+    said = "no certificate was written: the checker does not find the list again: the motions"
+    assert said in " ".join(done.stderr.split())
+    assert not file.exists()

@@ -116,7 +116,7 @@ MENDED = {
 def test_what_is_no_triangulated_sheet_is_read_as_a_drawing(tmp_path, document, said, code):
     path = written(tmp_path, document)
     for command, expected in ((["count"], 0), (["info"], 0), (["branch", "--signs", "+"], code)):
-        result = run(*command, "--force", path)
+        result = run(*command, "--force", path, "-v")
         assert result.exit_code == expected
         assert f"exactfold: read {path}: FOLD, " in result.stderr
         assert said in result.stderr
@@ -239,4 +239,4 @@ def test_sheets_in_order_whose_branches_have_no_names_exit_4(tmp_path, words):
         assert result.exit_code == UNDECIDED
         assert words in result.stderr
         assert result.stderr.count("\n") == 1
-        assert "--rim" not in result.stderr
+        assert "--boundary-heights" not in result.stderr

@@ -214,7 +214,9 @@ def test_files_that_were_counted_are_skipped_and_failed_ones_tried_again(
     assert sorted(d["name"] for d in lines(out)) == sorted(map(str, [*paths, bad, bad]))
     monkeypatch.setenv("COLUMNS", "300")
     again = run("count", *paths, bad, "--jsonl", out, "--jobs", 1).stdout
-    assert f"{bad.name} ? FAILED a FOLD file contains one JSON object" in " ".join(again.split())
+    assert f"? FAILED {bad.name} {bad.name}: a FOLD file contains one JSON object" in " ".join(
+        again.split()
+    )
     assert "1 failed; 4 counted in an earlier run" in " ".join(again.split())
     write_fold(random_square(3, seed=9), paths[0])  # another pattern under the same name
     assert (
@@ -293,8 +295,10 @@ def test_without_a_file_the_lines_are_printed() -> None:
     paths = [example_path(name) for name in names]
     result = run("count", *paths, "--json", "--jobs", 1)
     assert [json.loads(line)["name"] for line in result.stdout.splitlines()] == [*map(str, paths)]
-    table = run("count", *paths, "--jobs", 1).stdout
-    assert "2 patterns: 2 proved, 0 undecided, 0 failed" in table
+    table = run("count", *paths, "waterbomb", "--jobs", 1).stdout
+    assert "3 patterns: 3 proved, 0 undecided, 0 failed" in table
+    rows = [line.split()[:2] for line in table.splitlines()[:4]]
+    assert rows == [["ways", "status"], ["4", "PROVED"], ["2", "PROVED"], ["1", "PROVED"]]
 
 
 def test_the_line_of_progress_tells_of_what_is_not_proved(

@@ -133,8 +133,8 @@ def test_neighbours(pops: str, texts: str) -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ((), "give one of --signs, --up and --batch"),
-        (("--drive", "3-5=9"), "give one of --signs, --up and --batch"),
+        ((), "give one of --way, --signs, --up and --letters"),
+        (("--drive", "3-5=9"), "give one of --way, --signs, --up and --letters"),
         (("--signs", "++", "--up", "4"), "give one of"),
         (("--signs", "+"), "1 sign for 2 vertices"),
         (("--signs", "+?"), "'?' is not a vertex sign"),

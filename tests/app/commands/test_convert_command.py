@@ -256,3 +256,27 @@ def test_what_is_no_map_of_letters(tmp_path: Path, text: str) -> None:
     result = run("info", path, "--colours", text)
     assert result.exit_code == USAGE
     assert "is not a list such as red=M,blue=V" in " ".join(result.stderr.split())
+
+
+def test_a_suffix_that_is_not_written_is_refused(tmp_path: Path) -> None:
+    for command in (
+        ["convert", "miura", tmp_path / "miura.svg"],
+        ["convert", "miura", tmp_path / "miura"],
+        ["export", "two-vertex", "--signs", "+-", "-o", tmp_path / "b.glb"],
+        ["random", "--interior", "3", "--seed", "1", "-o", tmp_path / "r.dxf"],
+    ):
+        result = run(*command)
+        assert result.exit_code == USAGE
+        assert "is written as .fold, .json" in result.stderr
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("ending", ["dxf", "obj", "stl"])
+def test_other_formats_are_written(ending: str, tmp_path: Path) -> None:
+    out = tmp_path / f"miura.{ending}"
+    result = run("convert", "miura", out)
+    assert result.exit_code == PROVED
+    assert "24 folds, 16 panels, coordinates as floats" in " ".join(result.stdout.split())
+    assert not out.read_bytes().startswith(b"{")
+    if ending == "dxf":
+        assert run("count", out).stdout.startswith("8 families of ways to fold, 7 of dimension 1")

@@ -1,6 +1,7 @@
 """`exactfold draw`: which picture, where it goes, and what is said."""
 
 import importlib.util
+import json
 import sys
 from xml.etree import ElementTree
 
@@ -9,9 +10,9 @@ from running import BAD_INPUT, PROVED, UNDECIDED, USAGE, run
 
 from exactfold.app.commands import draw
 from exactfold.app.pictures.folded import Amount, folded
-from exactfold.app.report import branch_way, mode_way, pattern_picture, sheet_of_multiples, ways_of
+from exactfold.app.report import branch_way, panel_way, pattern_picture, sheet_of_multiples, ways_of
 from exactfold.branches import count_ways, find_branch
-from exactfold.motion import follow, panel_modes
+from exactfold.motion import follow, follow_panels, panel_ways
 from exactfold.pattern import load, open_pattern
 from exactfold.pattern.data import example_path
 
@@ -39,7 +40,7 @@ def test_without_a_way_the_letters_of_the_file_are_drawn():
     assert (text.count('class="M"'), text.count('class="V"')) == (6, 6)
 
 
-@pytest.mark.parametrize("which", [("--branch", "-+"), ("--signs", "-+"), ("--up", "5")])
+@pytest.mark.parametrize("which", [("--signs", "-+"), ("--up", "5"), ("--letters", "VVMMVVM")])
 def test_a_branch_by_its_signs(which):
     expected = branch_way(find_branch("two-vertex", "-+")).picture("two-vertex")
     assert drawn("two-vertex", *which) == expected
@@ -47,26 +48,43 @@ def test_a_branch_by_its_signs(which):
 
 def test_a_branch_by_signs_in_a_file(tmp_path):
     (tmp_path / "signs").write_text("-+\n")
-    assert drawn("two-vertex", "--branch", f"@{tmp_path / 'signs'}") == drawn(
-        "two-vertex", "--branch", "-+"
+    assert drawn("two-vertex", "--signs", f"@{tmp_path / 'signs'}") == drawn(
+        "two-vertex", "--signs", "-+"
     )
 
 
 def test_a_branch_by_its_number():
     branch = count_ways("two-vertex").branches[2]
-    assert drawn("two-vertex", "--branch", 3) == branch_way(branch, 3).picture("two-vertex")
-    assert title(drawn("two-vertex", "--branch", 3)) == "two-vertex, branch 3: +-"
+    assert drawn("two-vertex", "--way", 3) == branch_way(branch, 3).picture("two-vertex")
+    assert title(drawn("two-vertex", "--way", 3)) == "two-vertex, branch 3: +-"
 
 
-def test_a_mode_of_panels_by_its_number():
-    modes = panel_modes(count_ways("zigzags"))
-    text = drawn("zigzags", "--branch", 3)
-    assert text == mode_way(modes[2]).picture("zigzags")
-    assert title(text) == "zigzags, mode 3"
-    other = run("draw", "zigzags", "--branch", 4)
+def test_a_way_of_panels_by_its_number():
+    counted = count_ways("zigzags")
+    ways = panel_ways(counted)
+    text = drawn("zigzags", "--way", 2)
+    assert text == panel_way(ways[1], counted.pattern).picture("zigzags")
+    assert title(text) == "zigzags, way 2"
+    assert title(drawn("zigzags", "--way", 3)) == "zigzags, way 3, a family of dimension 2"
+    other = run("draw", "zigzags", "--way", 4)
     assert other.exit_code == 1  # refuted
-    assert "mode 4 does not truly fold" in other.stderr
-    assert title(other.stdout) == "zigzags, mode 4, does not truly fold"
+    assert "way 4 does not truly fold" in other.stderr
+    assert title(other.stdout) == "zigzags, way 4, does not truly fold"
+
+
+def test_letters_choose_the_side_of_each_mode_of_a_family():
+    ways = panel_ways(count_ways("zigzags"))
+    first, second = ways[2].modes
+    letters = dict.fromkeys(first.pattern.folds, "F")
+    letters |= first.letters
+    letters |= {fold: "M" if x == "V" else "V" for fold, x in second.letters.items()}
+    asked = "".join(letters[fold] for fold in first.pattern.folds)
+    one = run("fold", "zigzags", "--letters", asked, "--json")
+    data = json.loads(one.stdout)
+    assert (data["way"], data["modes"]) == (3, [first.number, second.number])
+    assert "".join(data["assignment"][f"{i}-{j}"] for i, j in first.pattern.folds) == asked
+    both = drawn("zigzags", "--letters", asked)
+    assert both.count('class="M"') == sum(letter == "M" for letter in asked)
 
 
 def test_all_ways_as_they_are_counted():
@@ -75,7 +93,7 @@ def test_all_ways_as_they_are_counted():
     assert text == sheet_of_multiples(
         ways_of(result), "two-vertex: 4 ways to start folding, proved"
     )
-    assert title(drawn("zigzags", "--all")) == "zigzags: 5 modes, 4 of them known to truly fold"
+    assert title(drawn("zigzags", "--all")) == "zigzags: 4 ways, 3 of them known to truly fold"
 
 
 def test_many_ways_are_cut_with_a_word():
@@ -85,20 +103,24 @@ def test_many_ways_are_cut_with_a_word():
 
 
 def test_the_folded_sheet_is_drawn_in_space():
-    text = drawn("two-vertex", "--branch", "+-", "--folded", "60deg")
+    text = drawn("two-vertex", "--signs", "+-", "--folded", "60deg")
     assert title(text) == "two-vertex, branch +-, folded to 60°"
     assert text.count("<path") == len(load("two-vertex").triangles)
-    assert title(drawn("zigzags", "--branch", "1", "--folded", "45deg")).endswith("to 45°")
+    assert title(drawn("zigzags", "--way", "1", "--folded", "45deg")).endswith("to 45°")
 
 
 def test_the_other_side_of_a_branch_is_its_mirror_image():
-    asked = ("two-vertex", "--branch", "+-", "--folded", "60deg")
+    asked = ("two-vertex", "--signs", "+-", "--folded", "60deg")
     motion = follow(find_branch("two-vertex", "+-"), side=-1)
     mirror = drawn(*asked, "--side", "-")
     assert mirror == folded(motion, Amount.of("60deg"), "two-vertex").text
     assert mirror != drawn(*asked) == drawn(*asked, "--side", "+")
-    refused = run("draw", "zigzags", "--branch", "1", "--folded", "45deg", "--side", "-")
-    assert (refused.exit_code, "--side is for branches" in refused.stderr) == (USAGE, True)
+    asked = ("zigzags", "--way", "1", "--folded", "45deg")
+    ways = count_ways("zigzags")
+    number = panel_ways(ways)[0].modes[0].number
+    below = follow_panels(ways, way=1, amounts={number: -1})
+    assert drawn(*asked, "--side", "-") == folded(below, Amount.of("45deg"), "zigzags").text
+    assert drawn(*asked, "--side", "-") != drawn(*asked)
 
 
 def test_a_drawing_with_a_hole_is_drawn_and_the_reason_told(tmp_path):
@@ -123,7 +145,7 @@ def test_names_of_files_are_made_safe(tmp_path):
 
 def test_files_are_written_by_their_ending(tmp_path):
     result = run("draw", "two-vertex", "-o", tmp_path / "p.svg")
-    assert (result.exit_code, result.stdout) == (PROVED, f"written: {tmp_path / 'p.svg'}\n")
+    assert (result.exit_code, result.stdout) == (PROVED, f"wrote {tmp_path / 'p.svg'}\n")
     assert (tmp_path / "p.svg").read_text("utf-8") == drawn("two-vertex")
     assert drawn("two-vertex", "-o", "-") == drawn("two-vertex")
     wrong = run("draw", "two-vertex", "-o", tmp_path / "p.gif")
@@ -133,13 +155,13 @@ def test_files_are_written_by_their_ending(tmp_path):
 
 @pytest.mark.parametrize(
     ("asked", "name"),
-    [((), "two-vertex-drawn.svg"), (("--branch", "2"), "two-vertex-way.svg")],
+    [((), "two-vertex-drawn.svg"), (("--way", "2"), "two-vertex-way.svg")],
 )
 def test_on_a_terminal_a_file_is_written(asked, name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(draw, "on_a_terminal", lambda: True)
     result = run("draw", "two-vertex", *asked)
-    assert result.stdout == f"written: {name}\n"
+    assert result.stdout == f"wrote {name}\n"
     assert (tmp_path / name).read_text("utf-8").startswith("<svg")
 
 
@@ -155,11 +177,11 @@ def test_the_pattern_is_not_replaced_by_its_picture(tmp_path):
 @pytest.mark.parametrize(("ending", "start"), [("png", b"\x89PNG\r\n\x1a\n"), ("PDF", b"%PDF-")])
 def test_png_and_pdf(ending, start, tmp_path):
     path = tmp_path / f"p.{ending}"
-    assert run("draw", "two-vertex", "--branch", "+-", "-o", path).exit_code == PROVED
+    assert run("draw", "two-vertex", "--signs", "+-", "-o", path).exit_code == PROVED
     raw = path.read_bytes()
     assert raw.startswith(start)
     if ending == "png":  # twice as wide as the SVG picture, from the header
-        svg = ElementTree.fromstring(drawn("two-vertex", "--branch", "+-"))
+        svg = ElementTree.fromstring(drawn("two-vertex", "--signs", "+-"))
         assert int.from_bytes(raw[16:20], "big") == pytest.approx(
             2 * float(svg.get("width")), abs=2
         )
@@ -179,17 +201,17 @@ def test_png_without_cairosvg_names_the_extra(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("asked", "message"),
     [
-        (("--branch", "1", "--all"), "give one of"),
-        (("--branch", "1", "--up", "4"), "give one of"),
+        (("--way", "1", "--all"), "give one of"),
+        (("--way", "1", "--up", "4"), "give one of"),
         (("--most", "3"), "--most goes with --all"),
-        (("--folded", "60deg"), "--folded goes with"),
-        (("--branch", "1", "--side", "-"), "--side goes with --folded"),
-        (("--branch", "1", "--folded", "60"), "60deg"),
-        (("--branch", "1", "--folded", "190deg"), "up to 180deg"),
-        (("--branch", "1", "--folded", "nan"), "60deg"),
-        (("--branch", "9"), "lists 4 branches"),
-        (("--branch", "+"), "1 sign for 2 vertices"),
-        (("--branch", "x+"), "is not a vertex sign"),
+        (("--folded", "60deg"), "--folded needs a way"),
+        (("--way", "1", "--side", "-"), "--side goes with --folded"),
+        (("--way", "1", "--folded", "60"), "60deg"),
+        (("--way", "1", "--folded", "190deg"), "up to 180deg"),
+        (("--way", "1", "--folded", "nan"), "60deg"),
+        (("--way", "9"), "there is no way 9: `count` lists 1 to 4"),
+        (("--signs", "+"), "1 sign for 2 vertices"),
+        (("--signs", "x+"), "is not a vertex sign"),
     ],
 )
 def test_wrong_usage_is_told(asked, message):
@@ -199,10 +221,10 @@ def test_wrong_usage_is_told(asked, message):
 
 
 def test_signs_are_not_for_panels():
-    result = run("draw", "zigzags", "--branch", "+-")
+    result = run("draw", "zigzags", "--signs", "+-")
     assert result.exit_code == USAGE
-    assert "give the number of one" in result.stderr
-    assert "this sheet has 5 modes" in run("draw", "zigzags", "--branch", "6").stderr
+    assert "name one by way or letters" in result.stderr
+    assert "`count` lists 1 to 4" in run("draw", "zigzags", "--way", "5").stderr
 
 
 def test_a_sheet_without_ways_is_told(tmp_path):
@@ -213,13 +235,13 @@ def test_a_sheet_without_ways_is_told(tmp_path):
     assert "the sheet is rigid: no fold can fold" in result.stderr
 
 
-def test_free_folds_are_not_said_to_be_no_way_to_fold(tmp_path):
+def test_free_folds_are_a_way_to_fold(tmp_path):
     lines = "".join(f'<path stroke="red" d="M{x} 0V9"/>' for x in (2, 5))
     (tmp_path / "s.svg").write_text(
         '<svg xmlns="http://www.w3.org/2000/svg"><path fill="none" stroke="black" d="M0 0H9V9H0Z"/>'
         f"{lines}</svg>"
     )
-    for asked in (["--all"], ["--branch", "1"]):
-        said = run("draw", tmp_path / "s.svg", *asked).stderr
-        assert "the only folds that can fold are 4-5, 6-7, from boundary to boundary" in said
-        assert f"draw the pattern without {asked[0]}" in said
+    assert title(drawn(tmp_path / "s.svg", "--all")) == "s: 1 way, known to truly fold"
+    alone = drawn(tmp_path / "s.svg", "--way", 1)
+    assert title(alone) == "s, way 1, a family of dimension 2"
+    assert alone.count('class="V"') == 2

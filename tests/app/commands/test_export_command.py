@@ -49,8 +49,8 @@ def signs_in(path):
         (["--up", "4"], "+-"),
         (["--up", "4,5"], "++"),
         (["--up", ""], "--"),
-        (["--branch", "1"], "--"),
-        (["--branch", "3"], "+-"),
+        (["--way", "1"], "--"),
+        (["--way", "3"], "+-"),
     ],
 )
 def test_the_branch_is_named_in_three_ways(out, how, signs):
@@ -74,7 +74,7 @@ def test_signs_are_read_from_a_file(tmp_path, out):
 def test_the_branches_of_the_listing_in_its_order(out):
     listed = [branch.sign_text for branch in count_branches(two_vertex()).branches]
     for k, signs in enumerate(listed, 1):
-        assert run(TWO, "--branch", k, "-o", out).exit_code == OK
+        assert run(TWO, "--way", k, "-o", out).exit_code == OK
         assert signs_in(out) == signs
 
 
@@ -139,14 +139,14 @@ def test_json_says_what_was_written(out):
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ([], "one of --signs, --up and --branch"),
-        (["--signs", "++", "--up", "4"], "one of --signs, --up and --branch"),
-        (["--up", "4", "--branch", "1"], "one of --signs, --up and --branch"),
+        ([], "one of --way, --signs, --up and --letters"),
+        (["--signs", "++", "--up", "4"], "one of --way, --signs, --up and --letters"),
+        (["--up", "4", "--way", "1"], "one of --way, --signs, --up and --letters"),
         (["--signs", "+-+"], "3 signs for 2 vertices"),
         (["--signs", "+x"], "'x' is not a vertex sign"),
         (["--up", "0"], "vertex 0 is not an interior vertex"),
         (["--up", "a"], "--up takes vertex indices"),
-        (["--branch", "5"], "--branch 5: `exactfold count` lists 4 branches"),
+        (["--way", "5"], "there is no way 5: `count` lists 1 to 4"),
         (["--signs", "++", "--amount", "0"], "largest fold angle cannot be 0.0 degrees"),
         (["--signs", "++", "--amount", "200"], "largest fold angle cannot be 200.0 degrees"),
         (["--signs", "++", "--amount", "nan"], "--amount: 'nan' is not a number"),
@@ -251,21 +251,28 @@ def test_all_branches_are_written_for_coq():
 
 def test_a_branch_is_written_for_coq():
     branch = find_branch("two-vertex", "+-")
-    assert run("two-vertex", "--coq", "--up", "4").stdout == branch_to_coq(
-        branch_certificate(branch)
-    )
+    text = branch_to_coq(branch_certificate(branch))
+    for named in (["--up", "4"], ["--way", "3"], ["--letters", "MVVVMVM"]):
+        assert run("two-vertex", "--coq", *named).stdout == text
 
 
 @pytest.mark.parametrize(
     ("arguments", "code", "said"),
     [
-        (["two-vertex", "--signs", "-+", "--up", "4"], USAGE, "give one of --signs and --up"),
-        (["two-vertex", "--all", "--up", "4"], USAGE, "leave out --signs and --up"),
+        (
+            ["two-vertex", "--signs", "-+", "--up", "4"],
+            USAGE,
+            "give one of --way, --signs, --up and --letters",
+        ),
+        (["two-vertex", "--all", "--up", "4"], USAGE, "leave out --way, --signs"),
         (["waterbomb", "--all"], USAGE, "with four corners, not 6"),
-        (["two-vertex", "--branch", "1"], USAGE, "--branch does not go with --coq"),
         (["two-vertex", "--amount", "20"], USAGE, "--amount does not go with --coq"),
         (["two-vertex", "--force"], USAGE, "--force does not go with --coq"),
-        (["two-vertex", "--rim", "rim.json"], USAGE, "--rim goes with --signs or --up"),
+        (
+            ["two-vertex", "--boundary-heights", "rim.json"],
+            USAGE,
+            "--boundary-heights goes with --signs or --up",
+        ),
         (["two-vertex", "--json"], USAGE, "--json does not go with --coq"),
         (["random-8", "--all"], USAGE, "have 256 sign vectors, and Coq takes a second or more"),
         (["flat-vertex", "--all"], USAGE, "vertex 5 is flat on the branch with the signs +0"),

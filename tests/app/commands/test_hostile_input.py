@@ -84,7 +84,7 @@ def test_heights_of_many_digits(here):
     )
     for number in ("1" * 70_000, "0." + "1" * 70_000, "1e30000"):
         Path("rim.json").write_text(f'{{"0": 0, "1": 0, "2": {number}, "3": 0, "4": 1}}')
-        done = run("branch", "pentagon.fold", "--signs", "+", "--rim", "rim.json")
+        done = run("branch", "pentagon.fold", "--signs", "+", "--boundary-heights", "rim.json")
         assert done.exit_code == BAD_INPUT, done.output
         assert "rim.json: " in done.stderr
         assert len(done.stderr.splitlines()) == 1
@@ -100,7 +100,7 @@ def test_names_do_not_steer_the_terminal(tmp_path, monkeypatch, two_vertex):
     for arguments, said in (
         (["info", NAME + "x"], SHOWN + "x"),
         (["convert", NAME, "2" + NAME], "wrote 2" + SHOWN),
-        (["draw", NAME, "-o", "\x1b[31m.svg"], r"written: \x1b[31m.svg"),
+        (["draw", NAME, "-o", "\x1b[31m.svg"], r"wrote \x1b[31m.svg"),
         (["count", NAME, "two-vertex"], r"a\x1b[2J\x1b]"),
         (["match", NAME], SHOWN),
     ):

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import random
+import re
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +15,7 @@ from running import INVALID, PROVED, UNDECIDED, USAGE, run
 
 import exactfold
 from exactfold.errors import NotApplicableError, UsageError
+from exactfold.pattern.drawing.meant import positions
 
 
 def written(tmp_path: Path, document: dict[str, Any], name: str = "noisy") -> Path:
@@ -50,7 +53,14 @@ def test_the_headline_is_about_the_sheet_that_was_meant(miura: Path) -> None:
     assert "of the drawing: 8 families of ways to fold, 7 of dimension 1 and 1 of" in said
     assert "the digits as written: rigid - PROVED" in said
     assert said.endswith("(--snap exact)")
-    lines = [line.removeprefix("exactfold: ") for line in result.stderr.splitlines()]
+    (line,) = result.stderr.splitlines()
+    assert re.fullmatch(
+        r"exactfold: read noisy.fold: 40 lines, inexact by .e-09, "
+        r"46 relations inferred, moved by up to \d\.\de-9; -v for more",
+        line,
+    )
+    lines = run("count", miura, "-v").stderr.splitlines()
+    lines = [line.removeprefix("exactfold: ") for line in lines]
     assert any(line.startswith("the drawing is inexact by ") for line in lines)
     assert any(" relations of angles (" in line and " independent; by " in line for line in lines)
     assert any(line.endswith("there is a sheet with all of them - PROVED") for line in lines)
@@ -90,7 +100,7 @@ def test_match_and_python_answer_about_the_same_sheet(miura: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "command", [("fold",), ("draw", "--branch", "1"), ("info",), ("view",), ("convert",)]
+    "command", [("fold",), ("draw", "--way", "1"), ("info",), ("view",), ("convert",)]
 )
 def test_all_commands_take_the_sheet_that_was_meant(
     miura: Path, tmp_path: Path, command: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
@@ -98,7 +108,7 @@ def test_all_commands_take_the_sheet_that_was_meant(
     monkeypatch.chdir(tmp_path)
     name, *more = command
     output = {"draw": ["-o", "a.svg"], "view": ["-o", "a.html"], "convert": ["a.fold"]}
-    result = run(name, miura, *more, *output.get(name, []))
+    result = run(name, miura, *more, *output.get(name, []), "-v")
     assert result.exit_code == PROVED
     said = result.stderr + result.stdout
     assert "of the drawing there is a sheet with all of them - PROVED" in said
@@ -205,3 +215,77 @@ def test_a_denominator_that_leaves_near_relations_is_no_remedy(miura: Path) -> N
     result = run("count", miura, "--snap", 10**7)
     assert result.exit_code == UNDECIDED
     assert "--snap 10000000 leaves them" in " ".join(result.stdout.split())
+
+
+@pytest.fixture
+def too_long(miura: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The turned Miura sheet, where coordinates of more than 10 bits count as too long."""
+    monkeypatch.setattr(positions, "_MOST_BITS", 10)
+    return miura
+
+
+def test_ways_are_counted_from_directions_if_coordinates_are_too_long(too_long: Path) -> None:
+    result = run("count", too_long, "--json")
+    data = json.loads(result.stdout)
+    assert (result.exit_code, data["components"]["true"]) == (PROVED, {"1": 7, "3": 1})
+    assert data["meant"]["existence"] == "box"
+    assert 0 < data["meant"]["distance"] < 1e-7
+    pattern = data["pattern"]
+    assert 0 < Fraction(pattern["radius"]) < Fraction(1, 10**20)
+    folds = exactfold.read(too_long).sheet.folds
+    assert {f"{i}-{j}" for i, j in folds} <= set(pattern["directions"])
+    said = run("count", too_long, "-v").stderr
+    assert "directions of its folds are exact; the positions of its vertices are enclosed" in said
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ("count", "--certificate", "out.json"),
+        ("match", "--certificate", "out.json"),
+        ("convert", "out.fold", "--certificate", "out.json"),
+        ("fold", "--certificate", "out.json"),
+    ],
+)
+def test_no_certificate_has_enclosed_positions(
+    too_long: Path, tmp_path: Path, command: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    name, *more = command
+    result = run(name, too_long, *more)
+    assert "positions of its vertices are too long to be written down" in " ".join(
+        (result.stderr + result.stdout).split()
+    )
+    assert not (tmp_path / "out.json").exists()
+
+
+@pytest.mark.parametrize("command", [("fold",), ("info",), ("vertices",), ("view", "-o", "a.html")])
+def test_other_commands_take_enclosed_positions(
+    too_long: Path, tmp_path: Path, command: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    name, *more = command
+    result = run(name, too_long, *more)
+    assert result.exit_code == PROVED, result.stderr
+
+
+def test_a_doubt_is_said_once_and_no_letters_of_the_digits_are_listed(by_hand: Path) -> None:
+    for command in ("count", "match", "info", "assignments"):
+        letters = ["--letters", "M" * 10] if command == "match" else []
+        result = run(command, by_hand, *letters)
+        said = " ".join((result.stderr + result.stdout).split())
+        assert said.count("the sheet that was meant is not known") == 1, command
+    assert run("count", by_hand, "--json").stderr.count("is not known") == 1
+    data = json.loads(run("assignments", by_hand, "--json").stdout)
+    assert (data["status"], data["number"], data["at_most"]) == ("undecided", None, None)
+    assert [part["assignments"] for part in data["parts"]] == [[]]
+    assert "--snap exact lists the assignments of the digits" in data["reason"]
+    assert run("assignments", by_hand, "--snap", "exact").exit_code == PROVED
+
+
+def test_relations_say_so_where_none_is_near() -> None:
+    for pattern in ("miura", "two-vertex"):
+        for more in ([], ["--snap", "exact"]):
+            said = run("count", pattern, "--relations", *more).stderr
+            assert said.endswith("no relation between creases holds nearly but not exactly\n")
+    assert "nearly but not exactly" not in run("count", "miura").stderr

@@ -13,9 +13,12 @@ from pathlib import Path
 import pytest
 from running import BAD_INPUT, PROVED, run
 
+from exactfold.app.cli import TAGLINE
+from exactfold.app.shell.usage import PANELS
 from exactfold.branches import METHODS
 from exactfold.pattern.data import EXAMPLES, example_path
 
+ROOT = Path(__file__).parents[3]
 COMMANDS = ("count", "check", "branch", "export", "actuate", "random", "info", "examples")
 
 
@@ -81,7 +84,10 @@ def test_a_name_that_is_neither_gets_the_names() -> None:
         assert result.exit_code == BAD_INPUT
         said = " ".join((result.stderr + result.stdout).split())
         assert "two-vertx is neither a file nor a shipped pattern" in said
-        assert all(name in said for name in EXAMPLES)
+        assert "shipped pattern: did you mean two-vertex" in said
+        assert "zigzags" not in said
+    said = run("count", "crane").stderr
+    assert all(name in said for name in EXAMPLES)
     assert "No such file" in run("count", "x.fold").stderr
     assert "No such file" in run("count", "folder/two-vertex").stderr
 
@@ -135,3 +141,25 @@ def test_a_script_for_every_shell(shell: str) -> None:
         [sys.executable, "-c", script], env=environment, capture_output=True, text=True, check=False
     )
     assert "_EXACTFOLD_COMPLETE=complete_" in done.stdout
+
+
+def test_misspelt_commands_and_options_get_the_near_ones() -> None:
+    assert run("cuont", "miura").stderr.startswith(
+        "exactfold: no such command 'cuont': did you mean count or convert?; see "
+    )
+    said = run("count", "miura", "--limt", "3").stderr
+    assert said.startswith("exactfold: no such option: --limt: did you mean --limit")
+
+
+def test_the_help_has_groups_and_a_short_name() -> None:
+    helped = run("-h")
+    assert (helped.exit_code, helped.stdout) == (PROVED, run("--help").stdout)
+    assert " ".join(TAGLINE.split()) in " ".join(helped.stdout.split())
+    places = [helped.stdout.index(f"─ {panel} ─") for panel in PANELS]
+    assert places == sorted(places)
+    assert "Commands" not in helped.stdout
+    assert TAGLINE.split("? ")[0] in (ROOT / "README.md").read_text(encoding="utf-8")
+    for name in ("count", "check", "random", "examples"):
+        assert run(name, "-h").stdout == run(name, "--help").stdout != ""
+    text = run("match", "-h").stdout
+    assert text.index("How a drawing is read") < text.index("--colours")

@@ -28,7 +28,7 @@ def test_random_then_count(tmp_path):
     path = tmp_path / "r.fold"
     result = run("random", "--interior", 4, "--seed", 11, "--denominator", 64, "-o", path)
     assert result.exit_code == 0
-    assert result.stdout == ""
+    assert result.stdout == f"wrote {path}: 8 vertices, 13 folds, 10 panels\n"
     assert read_fold(path) == random_square(4, 11, 64)
     assert run("random", "--interior", 4, "--seed", 11, "--denominator", 64).stdout == (
         path.read_text()
@@ -106,3 +106,13 @@ def test_long_areas_are_decimals_unless_asked_for(tmp_path):
     assert f" {exact}\n" in run("info", path, "--exact").stdout
     assert json.loads(run("info", path, "--json").stdout)["area"] == exact
     assert "about" not in run("info", "two-vertex").stdout
+
+
+def test_reading_is_one_line_and_v_says_each_step():
+    short = run("info", "zigzags").stderr
+    assert short == "exactfold: read zigzags: 12 lines, exact in Q, cut at 12 points; -v for more\n"
+    long = run("info", "zigzags", "-v").stderr.splitlines()
+    assert long[0] == "exactfold: read zigzags: SVG, 12 lines (2 mountain, 6 valley, 4 boundary)"
+    assert len(long) > 2
+    assert run("info", "zigzags", "--verbose").stderr.splitlines() == long
+    assert run("info", "two-vertex").stderr == ""

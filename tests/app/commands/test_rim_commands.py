@@ -1,4 +1,4 @@
-"""--rim, --curvature and `assignments` on the command line."""
+"""--boundary-heights, --curvature and `assignments` on the command line."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_a_branch_with_a_rim(here: Path) -> None:
-    options = ["branch", "pentagon.fold", "--signs", "+-", "--rim", "rim.json"]
+    options = ["branch", "pentagon.fold", "--signs", "+-", "--boundary-heights", "rim.json"]
     done = run(*options, "--certificate", "c.json")
     assert done.exit_code == 0
     assert "0: 1, 1: -1/2, 2: 1/4, 4: 1/10, others 0" in " ".join(done.stdout.split())
@@ -53,7 +53,7 @@ def test_a_shape_with_deficits(here: Path) -> None:
     )
     jsonschema.validate(counted, schema("shapes"))
     assert counted["distinct"] == 4
-    assert run("count", "pentagon.fold", "--rim", "rim.json").exit_code == 2
+    assert run("count", "pentagon.fold", "--boundary-heights", "rim.json").exit_code == 2
     more = run("count", "pentagon.fold", "--curvature", "deficits.json", "--stream", "x.txt")
     assert more.exit_code == 2
 
@@ -61,36 +61,46 @@ def test_a_shape_with_deficits(here: Path) -> None:
 @pytest.mark.parametrize(
     ("option", "text", "name", "said"),
     [
-        ("--rim", '{"0": 1}', "BoundaryHeightsError", "boundary vertex 1 has no height"),
         (
-            "--rim",
+            "--boundary-heights",
+            '{"0": 1}',
+            "BoundaryHeightsError",
+            "boundary vertex 1 has no height",
+        ),
+        (
+            "--boundary-heights",
             RIM.replace("0.25", '"x"'),
             "BoundaryHeightsError",
             "the height of vertex 2: 'x'",
         ),
         (
-            "--rim",
+            "--boundary-heights",
             RIM.replace("0.25", "NaN"),
             "BoundaryHeightsError",
             "the height of vertex 2: 'NaN'",
         ),
-        ("--rim", RIM.replace('"3"', '"0"'), "BoundaryHeightsError", "vertex 0 is given twice"),
         (
-            "--rim",
+            "--boundary-heights",
+            RIM.replace('"3"', '"0"'),
+            "BoundaryHeightsError",
+            "vertex 0 is given twice",
+        ),
+        (
+            "--boundary-heights",
             RIM.replace('"3"', '"0-5"'),
             "BoundaryHeightsError",
             "0-5 is not a boundary vertex",
         ),
         (
-            "--rim",
+            "--boundary-heights",
             RIM.replace("}", ', "00": 2}'),
             "BoundaryHeightsError",
             "00 is not a boundary vertex",
         ),
-        ("--rim", "[1, 2]", "BoundaryHeightsError", "does not hold numbers by vertex"),
-        ("--rim", "{", "BoundaryHeightsError", "is not JSON"),
+        ("--boundary-heights", "[1, 2]", "BoundaryHeightsError", "does not hold numbers by vertex"),
+        ("--boundary-heights", "{", "BoundaryHeightsError", "is not JSON"),
         (
-            "--rim",
+            "--boundary-heights",
             '{"0": 0, "1": 10, "2": 16, "3": 9, "4": -2}',
             "BoundaryHeightsError",
             "lie in one plane",
@@ -116,7 +126,7 @@ def test_numbers_of_any_length_are_printed(here: Path) -> None:
     """Python alone writes integers of up to 4300 digits."""
     Path("long.json").write_text(RIM.replace("0.25", "1e-4400"))
     Path("tall.json").write_text('{"5": 1e4400}')
-    shape = ["--rim", "long.json", "--curvature", "tall.json"]
+    shape = ["--boundary-heights", "long.json", "--curvature", "tall.json"]
     for command in (["branch", "--signs", "+-"], ["count"]):
         done = run(command[0], "pentagon.fold", *command[1:], *shape)
         assert done.exit_code == 0
@@ -124,11 +134,17 @@ def test_numbers_of_any_length_are_printed(here: Path) -> None:
 
 
 def test_such_a_branch_is_drawn_and_exported(here: Path) -> None:
-    for options in (["--signs", "+-", "--rim", "rim.json"], ["--branch", "+-"], ["--up", "5"]):
+    for options in (
+        ["--signs", "+-", "--boundary-heights", "rim.json"],
+        ["--signs", "+-"],
+        ["--up", "5"],
+    ):
         done = run("draw", "pentagon.fold", *options, "-o", "a.svg")
         assert done.exit_code == 0
         assert "branch +-" in Path("a.svg").read_text()
-    exported = run("export", "pentagon.fold", "--signs", "+-", "--rim", "rim.json", "-o", "e.fold")
+    exported = run(
+        "export", "pentagon.fold", "--signs", "+-", "--boundary-heights", "rim.json", "-o", "e.fold"
+    )
     assert exported.exit_code == 0
 
 
@@ -140,7 +156,7 @@ def test_folds_drive_a_sheet(here: Path) -> None:
     assert "driven 1-5 to 6, 2-6 to -5 degrees; sines of half the angles in ratio" in said
     assert "on which the driven angles reach the sizes asked for" in said
     assert "folds 1-5, 2-6 have the angles of the drive" in said
-    assert "no branch was named (--signs, --up): this is the first branch found" in done.stderr
+    assert "no way was named: this is the first branch found" in done.stderr
     claims = checker.check(checker.load(Path("c.json").read_text()))
     assert claims["drive"]["folds"] == [[1, 5], [2, 6]]
     # From a file; a fold without an angle goes along as on the branch.
@@ -150,7 +166,7 @@ def test_folds_drive_a_sheet(here: Path) -> None:
         "pentagon.fold",
         "--signs",
         "+-",
-        "--rim",
+        "--boundary-heights",
         "rim.json",
         "--drive",
         "drive.json",
@@ -213,16 +229,25 @@ def test_what_does_not_go_with_a_drive(here: Path) -> None:
         assert said in " ".join(done.stderr.split())
 
     drive = ["--drive", "1-5=6,2-6=-5"]
-    refused("--drive goes with --signs or --up", "pentagon.fold", *drive, "--branch", "1")
+    refused("--drive goes with --signs or --up", "pentagon.fold", *drive, "--way", "1")
     refused("the angles say to which side", "pentagon.fold", *drive, "--side", "+")
     refused("--drive is for branches", "zigzags", "--drive", "1-2=3")
     done = run("branch", "pentagon.fold", "--signs=--", *drive, "--neighbours", "all")
     assert done.exit_code == 2
-    assert "--drive goes with --signs or --up, and with --rim" in done.stderr
+    assert "--drive goes with --signs or --up, and with --boundary-heights" in done.stderr
 
 
 def test_such_a_branch_is_followed_and_proved(here: Path) -> None:
-    options = ["--signs", "+-", "--rim", "rim.json", "--until", "5deg", "--frames", "2"]
+    options = [
+        "--signs",
+        "+-",
+        "--boundary-heights",
+        "rim.json",
+        "--until",
+        "5deg",
+        "--frames",
+        "2",
+    ]
     done = run("fold", "pentagon.fold", *options, "--certificate", "c.json")
     assert done.exit_code == 0
     said = "boundary in the ratio 0: 1, 1: -1/2, 2: 1/4, 4: 1/10, others 0"
@@ -239,10 +264,15 @@ def test_such_a_branch_is_followed_and_proved(here: Path) -> None:
 
 def test_what_a_rim_does_not_go_with_is_refused(here: Path) -> None:
     for options, reason in (
-        (["six.fold", "--rim", "rim.json", "--branch", "1"], "--rim goes with --signs or --up"),
-        (["pentagon.fold", "--rim", "rim.json", "--modes", "1"], "--modes is for motions of rigid"),
-        (["square-twist", "--rim", "rim.json"], "--rim is for branches of triangulated sheets"),
-        (["pentagon.fold", "--rim", "six.fold"], "six.fold"),
+        (
+            ["six.fold", "--boundary-heights", "rim.json", "--way", "1"],
+            "--boundary-heights goes with --signs or --up",
+        ),
+        (
+            ["square-twist", "--boundary-heights", "rim.json"],
+            "--boundary-heights is for branches of triangulated sheets",
+        ),
+        (["pentagon.fold", "--boundary-heights", "six.fold"], "six.fold"),
     ):
         done = run("fold", *options)
         assert done.exit_code in (2, 3)

@@ -124,7 +124,7 @@ def test_errors_and_invalid_certificates(tmp_path: Path) -> None:
     out = tmp_path / "c.json"
     printed("error", "count", tmp_path / "none.fold")
     printed("examples", "examples")
-    printed("export", "export", "two-vertex", "--branch", "1", "-o", tmp_path / "b.fold")
+    printed("export", "export", "two-vertex", "--way", "1", "-o", tmp_path / "b.fold")
     printed("motion", "fold", "two-vertex", "--up", "4", "--frames", "3")
     printed("motion", "fold", "zigzags", "--frames", "3")
     printed("error", "info", written(tmp_path, "{"))

@@ -53,7 +53,7 @@ def test_a_sheet_that_cannot_start() -> None:
     assert result.exit_code == INVALID
     text = words(result.stdout)
     assert text.startswith("none of the 4 vertices can start to fold with its letters - REFUTED")
-    assert "so the sheet as a whole cannot start to fold with these letters" in text
+    assert "so the sheet as a whole cannot start to fold with these letters if its" in text
     assert "exchange the letter of 9-13 (then vertex 13 cannot fold)" in text
     data = valid(run("vertices", "zigzags", "--json").stdout)
     assert (data["status"], data["starts"]) == ("proved", "refuted")
@@ -106,6 +106,31 @@ def test_nearly_straight_lines_leave_it_open(off: str, code: int, tmp_path: Path
     if code == UNDECIDED:
         assert result.stdout.startswith("whether vertex 0 can start to fold with its letters is o")
         assert run("vertices", path, "--letters", "VMMM", "--snap", "exact").exit_code == PROVED
+
+
+@pytest.mark.parametrize("corners", [4, 5], ids=["four corners", "five corners"])
+def test_match_leaves_open_what_a_nearly_straight_line_decides(
+    corners: int, tmp_path: Path
+) -> None:
+    """A bend by 3e-4 lets the vertex fold; `vertices` calls it open, and `match` has to agree."""
+    points = [("0", "0"), ("1", "0"), ("0", "1"), ("-1", "0"), ("0.0003", "-1"), ("0.8", "0.8")]
+    rim = (
+        [(1, 2), (2, 3), (3, 4), (4, 1)]
+        if corners == 4
+        else [(1, 5), (5, 2), (2, 3), (3, 4), (4, 1)]
+    )
+    sheet = PanelPattern(
+        [(Fraction(x), Fraction(y)) for x, y in points[: corners + 1]],
+        [*rim, *((0, k) for k in range(1, 5))],
+    )
+    path = tmp_path / "crossed.fold"
+    path.write_text(document_text(converted(Opened(sheet)).document(None)))
+    result = run("match", path, "--letters", "VMMM")
+    assert result.exit_code == UNDECIDED
+    assert "and with a straight line it does not" in words(result.stderr + result.stdout)
+    assert exactfold.match(path, "VMMM").status is exactfold.UNDECIDED
+    assert run("match", path, "--letters", "VMMM", "--snap", "exact").exit_code == PROVED
+    assert run("match", path, "--letters", "MVMV").exit_code == INVALID  # with or without the line
 
 
 def test_vertices_with_the_same_reason_share_a_line(tmp_path: Path) -> None:
@@ -198,4 +223,23 @@ def test_fold_does_not_call_the_digits_of_a_doubted_drawing_rigid(tmp_path: Path
     assert "PROVED" not in result.stderr + result.stdout
     info = words(run("info", path).stdout)
     assert "these facts hold for the digits as written: 3 relations nearly hold" in info
-    assert "the digits as written are rigid, but 3 relations nearly hold" in words(result.stderr)
+    assert "the digits as written are rigid, but they are inexact" in words(result.stderr)
+
+
+def test_many_vertices_are_summed_up_and_the_first_ten_are_listed(tmp_path: Path) -> None:
+    """A grid of 12 vertices with a wrong letter at each, and one that is right."""
+    sheet = PanelPattern(
+        [(i, j) for i in range(6) for j in range(5)],
+        [(5 * i + j, 5 * i + j + 5) for i in range(5) for j in range(5)]
+        + [(5 * i + j, 5 * i + j + 1) for i in range(6) for j in range(4)],
+    )
+    path = tmp_path / "grid.fold"
+    letters = dict.fromkeys(sheet.folds, "M")
+    path.write_text(document_text(converted(Opened(sheet, letters)).document(None)))
+    shown = run("vertices", path)
+    rows = [line.split() for line in shown.stdout.splitlines()]
+    assert ["12", "4", "no", "holds", "no:", "M", "-", "V", "=", "4"] in rows
+    assert sum(row[1:3] == ["4", "MMMM"] for row in rows) == 10
+    assert "... and 2 more (--all shows them)" in shown.stdout
+    rows = [line.split() for line in run("vertices", path, "--all").stdout.splitlines()]
+    assert sum(row[1:3] == ["4", "MMMM"] for row in rows) == 12

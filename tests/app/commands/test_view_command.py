@@ -20,17 +20,18 @@ def test_the_page_is_written_beside_the_reader(tmp_path, monkeypatch):
     assert result.stdout.splitlines() == [
         "2 ways to start folding - PROVED; all real, each counted once, every one",
         "continues to a true motion",
-        "written: single-vertex-4.view.html, with 2 branches",
+        "wrote single-vertex-4.view.html: 2 branches",
     ]
     assert Path("single-vertex-4.view.html").read_text("utf-8").startswith("<!doctype html>")
 
 
-def test_branches_may_begin_with_a_minus(tmp_path):
+@pytest.mark.parametrize("named", [["--signs", "--"], ["--up", ""], ["--way", "1"]])
+def test_one_way_alone(named, tmp_path):
     target = tmp_path / "some.html"
     few = ("--frames", "2", "--workers", "1")
-    result = run("view", "two-vertex", "-o", target, "--branches", "--,+-", *few)
+    result = run("view", "two-vertex", "-o", target, *named, *few)
     assert result.exit_code == OK
-    assert result.stdout.endswith(f"written: {target}, with 2 branches\n")
+    assert result.stdout.endswith(f"wrote {target}: 1 branch\n")
 
 
 def test_a_drawing_with_panels_is_shown_by_its_modes(tmp_path):
@@ -38,19 +39,18 @@ def test_a_drawing_with_panels_is_shown_by_its_modes(tmp_path):
     result = run("view", "zigzags", "-o", target, "--frames", "2")
     assert result.exit_code == OK
     assert result.stdout.startswith("3 families of ways to fold")
-    assert result.stdout.endswith(
-        f"written: {target}, with 3 ways to fold, and 1 mode not followed\n"
-    )
-    assert "read zigzags: SVG" in result.stderr
+    assert result.stdout.endswith(f"wrote {target}: 3 ways to fold, and 1 mode not followed\n")
+    assert "read zigzags: 12 lines, exact in Q" in result.stderr
 
 
 @pytest.mark.parametrize(
     ("arguments", "code", "message"),
     [
-        (["two-vertex", "--branches", "+x"], USAGE, "'+x' is not a list of vertex signs"),
-        (["two-vertex", "--branches", "+-+"], USAGE, "3 signs for 2 vertices"),
-        (["two-vertex", "--serve", "-o", "a.html"], USAGE, "--serve writes no file"),
-        (["two-vertex", "--port", "8000"], USAGE, "--port goes with --serve"),
+        (["two-vertex", "--branches", "++,+-"], USAGE, "--branches is now --way N"),
+        (["two-vertex", "--signs", "+x"], USAGE, "'x' is not a vertex sign"),
+        (["two-vertex", "--signs", "+-+"], USAGE, "3 signs for 2 vertices"),
+        (["zigzags", "--way", "9"], USAGE, "there is no way 9: `count` lists 1 to 4"),
+        (["two-vertex", "--serve"], USAGE, "--serve is now `exactfold serve PATTERN`"),
         (["missing.fold"], BAD_INPUT, "missing.fold"),
         (["two-vertex", "-o", "page.txt"], USAGE, "a page is written as .html, .htm"),
         (["two-vertex", "-o", "no/a.html"], BAD_INPUT, "no/a.html: there is no folder"),
@@ -59,7 +59,6 @@ def test_a_drawing_with_panels_is_shown_by_its_modes(tmp_path):
             USAGE,
             "a motion in a page needs at least 2 and at most 1000",
         ),
-        (["two-vertex", "--serve", "--port", "99999"], USAGE, "give a number from 0 to 65535"),
         (["two-vertex", "-o", "-"], USAGE, "give the output file a name"),
     ],
 )
@@ -73,14 +72,14 @@ def test_what_is_refused(arguments, code, message, tmp_path, monkeypatch):
 
 @pytest.mark.slow
 def test_ctrl_c_ends_the_server():
-    command = [sys.executable, "-m", "exactfold", "view", "two-vertex", "--serve", "--frames", "2"]
+    command = [sys.executable, "-m", "exactfold", "serve", "two-vertex", "--frames", "2"]
     with subprocess.Popen(
         command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     ) as served:
         line = served.stdout.readline()
-        port = int(re.search(r"http://127\.0\.0\.1:(\d+)/", line)[1])
-        connection = HTTPConnection("127.0.0.1", port, timeout=60)
-        connection.request("GET", "/")
+        port, path = re.search(r"http://127\.0\.0\.1:(\d+)(/[\w-]+/)", line).groups()
+        connection = HTTPConnection("127.0.0.1", int(port), timeout=60)
+        connection.request("GET", path)
         assert connection.getresponse().status == 200
         connection.close()
         served.send_signal(signal.SIGINT)

@@ -68,7 +68,7 @@ def test_json_has_the_warning_that_is_said(
     result = run(name, moved, *more, "--snap", "exact")
     assert result.exit_code == PROVED
     (found,) = json.loads(result.stdout)["warnings"]
-    assert found == {"vertices": [4], "snap": None, "text": warning(result.stderr)}
+    assert found == {"vertices": [4], "text": warning(result.stderr)}
     assert json.loads(run("info", example_path("flat-vertex"), "--json").stdout)["warnings"] == []
 
 
@@ -83,7 +83,7 @@ def test_a_batch_names_the_patterns_with_a_warning(
     result = run(*given, "--jsonl", out)
     assert (result.exit_code, result.stderr) == (PROVED, "")
     shown = " ".join(result.stdout.split())
-    assert f"moved.fold 4 PROVED moved.fold: warning: {text[:60]}" in shown
+    assert f"4 PROVED moved.fold moved.fold: warning: {text[:60]}" in shown
     assert "2 patterns: 2 proved, 0 undecided, 0 failed; 1 with a warning; results in" in shown
     assert good not in result.stdout
     lines = {line["name"]: line for line in map(json.loads, out.read_text().splitlines())}

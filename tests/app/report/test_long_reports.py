@@ -14,8 +14,8 @@ from exactfold.pattern.panel_pattern import PanelPattern
 def printed(report: Any) -> str:
     out = console()
     with out.capture() as captured:
-        out.print(report)
-    return captured.get()
+        out.print(report, crop=False)
+    return "".join(f"{line.rstrip()}\n" for line in captured.get().splitlines())
 
 
 def crossings(number: int) -> PanelPattern:
@@ -33,7 +33,7 @@ def crossings(number: int) -> PanelPattern:
 
 
 def rows(message: str, *names: str) -> list[BatchRow]:
-    return [(name, "failed", None, message) for name in names]
+    return [(name, "failed", "?", message) for name in names]
 
 
 SUMMARY = dict.fromkeys(
@@ -43,15 +43,15 @@ SUMMARY = dict.fromkeys(
 
 def test_on_large_sheets_letters_are_counted_not_spelled_out() -> None:
     small, large = decompose(crossings(3)), decompose(crossings(40))
-    assert "1         1  .VV...........  yes: forest" in printed(
+    assert "1          5  FVVFFFVVFFFVVF  yes: forest" in printed(
         panels_report(small, None, everything=False)
     )
     assert len(large.pattern.folds) == 199
     brief = " ".join(printed(panels_report(large, None, everything=False)).split())
-    assert "1 1 2 valleys, 197 flat yes: forest" in brief
+    assert "1 2 valleys, 197 flat yes: forest" in brief
     assert "--all shows the letter of each fold" in brief
     full = printed(panels_report(large, None, everything=True))
-    assert "...................." in full
+    assert "FFFFFFFFFFFFFFFFFFFF" in full
     assert "flat yes" not in full
     assert "Folds in the order of --json" in full
 
@@ -66,12 +66,23 @@ def test_a_sheet_without_folds_says_so() -> None:
 def test_a_long_message_stands_once_below_the_table() -> None:
     message = " ".join(["word"] * 30)
     said = printed(batch_report(rows(message, "a/b.svg", "a/c.svg"), SUMMARY, None, False))
-    table, below, *_ = said.split("\n\n")
-    assert [line.split() for line in table.splitlines()[1:]] == [
-        ["b.svg", "?", "FAILED"],
-        ["c.svg", "?", "FAILED"],
+    table, below = said.rpartition("\n\n")[0].split("\n\n")
+    assert [line.split() for line in table.splitlines()] == [
+        ["ways", "status", "pattern"],
+        ["?", "FAILED", "b.svg"],
+        ["?", "FAILED", "c.svg"],
     ]
-    assert " ".join(below.split()) == f"b.svg, c.svg: {message}"
+    assert " ".join(below.split()) == f"b.svg: c.svg: {message}"
+
+
+def test_names_of_files_are_not_broken() -> None:
+    folder = "a long folder/" * 8
+    names = [f"{folder}1/{'x' * 70}.svg", f"{folder}2/{'y' * 70}.svg"]
+    said = printed(batch_report(rows("word " * 9, *names), SUMMARY, None, False))
+    for name in names:
+        short = name.removeprefix(folder)
+        assert f"       ?  FAILED     {short}\n" in said
+        assert f"\n{short}:\n" in said
 
 
 def test_a_very_long_message_is_shortened_unless_all_is_asked_for() -> None:
@@ -83,4 +94,4 @@ def test_a_very_long_message_is_shortened_unless_all_is_asked_for() -> None:
 
 def test_a_short_message_stands_beside_the_name() -> None:
     said = printed(batch_report(rows("no folds", "b.svg"), SUMMARY, None, False))
-    assert said.splitlines()[1].split() == ["b.svg", "?", "FAILED", "no", "folds"]
+    assert said.splitlines()[1].split() == ["?", "FAILED", "b.svg:", "no", "folds"]

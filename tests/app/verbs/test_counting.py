@@ -63,7 +63,7 @@ def test_every_verb_takes_a_sheet_as_a_dictionary():
     assert exactfold.prove(motion).status is exactfold.PROVED
     assert exactfold.loops(sheet).status is exactfold.PROVED
     assert exactfold.draw(sheet, signs="+-") == exactfold.draw(find_branch(pattern, "+-"))
-    assert "two vertices" in exactfold.view(sheet, signs=["+-"], frames=3, name="two vertices")
+    assert "two vertices" in exactfold.view(sheet, signs="+-", frames=3, name="two vertices")
 
 
 @pytest.mark.parametrize("name", [name for name in EXAMPLES if "bird" not in name])
@@ -152,11 +152,11 @@ def test_a_branch_is_named_in_four_ways(lettered):
 @pytest.mark.parametrize(
     ("named", "said"),
     [
-        ({}, "name the branch by one of signs, up, letters and way$"),
-        ({"signs": "+-", "way": 3}, "and way, not way and signs$"),
+        ({}, "name the way by one of way, signs, up and letters$"),
+        ({"signs": "+-", "way": 3}, "up and letters, not way and signs$"),
         (
             {"way": 3, "boundary_heights": {0: 1}},
-            "boundary_heights and curvature go with signs or up",
+            "boundary_heights goes with signs or up, not with way",
         ),
         ({"way": 0}, "there is no way 0: `count` lists 1 to 4"),
         ({"way": 5}, "there is no way 5: `count` lists 1 to 4"),
@@ -180,20 +180,20 @@ def test_with_more_corners_letters_name_a_branch_and_numbers_do_not():
     sheet = families.single_vertex(5)
     found = exactfold.branch(sheet, letters="MMVMV")
     assert (found.status, found.assignment_text) == (exactfold.PROVED, "MMVMV")
-    with pytest.raises(NotCountedError, match="lists no single branch of a sheet with 5 corners"):
+    with pytest.raises(NotCountedError, match="lists no single way of a sheet with 5 corners"):
         exactfold.branch(sheet, way=1)
     with pytest.raises(NotCountedError, match=r"^no branch has these letters"):
         exactfold.branch(sheet, letters="MMVVV")
 
 
-def test_a_sheet_of_panels_has_modes_instead():
+def test_a_sheet_of_panels_has_other_ways():
     with pytest.raises(NotCountedError) as caught:
         exactfold.branch("miura", "+")
     assert str(caught.value) == (
-        "this sheet of rigid panels has modes instead of branches: `count` lists them, and "
-        "`follow(sheet, 1)` follows the first"
+        "branch takes branches of triangulated sheets, and this sheet of rigid panels has other "
+        "ways: `count` lists them, and `follow` takes their numbers"
     )
-    assert exactfold.follow("miura", 1, frames=2).modes == (1,)
+    assert exactfold.follow("miura", 1, frames=2).way == 1
 
 
 def test_a_rim_is_taken_along():

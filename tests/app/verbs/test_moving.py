@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 import exactfold
 from exactfold.branches import find_branch
 from exactfold.checker import summary, verify
 from exactfold.design import match
-from exactfold.errors import NotCountedError, UsageError
-from exactfold.motion import find_driven, follow_panels
+from exactfold.errors import NotCountedError, NotFollowedError, UsageError
+from exactfold.motion import find_driven, follow_panels, panel_ways
 from exactfold.motion import follow as follow_branch
 from exactfold.pattern import families
 
@@ -51,17 +52,24 @@ def test_without_a_name_all_vertices_pop_up_or_most_folds_fold():
     assert exactfold.follow("two-vertex", **SHORT).branch.sign_text == "++"
     wanted = follow_panels(exactfold.decompose("zigzags"), **SHORT)
     assert exactfold.follow("zigzags", **SHORT) == wanted
-    assert wanted.modes == (2,)
+    assert (wanted.way, wanted.modes) == (1, (2,))
 
 
-def test_modes_are_followed_by_number_by_letters_and_together():
+def test_ways_of_panels_are_followed_by_number_and_by_letters():
     ways = exactfold.decompose("zigzags")
     wanted = follow_panels(ways, modes=[3], **SHORT)
-    assert exactfold.follow("zigzags", 3, **SHORT) == wanted
-    assert exactfold.follow(ways, 3, **SHORT) == wanted
+    assert exactfold.follow("zigzags", 2, **SHORT) == wanted
+    assert exactfold.follow(ways, 2, **SHORT) == wanted
     assert exactfold.follow("zigzags", letters=mode_letters(3), **SHORT) == wanted
-    both = exactfold.follow("zigzags", [1, 5], **SHORT)
+    both = exactfold.follow("zigzags", 3, **SHORT)
     assert both.modes == (1, 5)
+    alone = exactfold.follow("zigzags", letters=mode_letters(5), **SHORT)
+    assert (alone.way, alone.modes) == (3, (5,))
+
+
+def test_without_a_name_the_letters_of_the_drawing_are_followed():
+    motion = exactfold.follow("miura", **SHORT)
+    assert dict(motion.assignment) == exactfold.read("miura").letters
 
 
 def test_letters_turned_over_are_followed_on_the_other_side():
@@ -69,15 +77,17 @@ def test_letters_turned_over_are_followed_on_the_other_side():
     motion = exactfold.follow("zigzags", letters=turned, **SHORT)
     assert motion.rates == (-1.0,)
     assert dict(motion.assignment) == turned
-    assert exactfold.follow("zigzags", 3, side=-1, **SHORT) == motion
+    assert exactfold.follow("zigzags", 2, side=-1, **SHORT) == motion
 
 
 def test_letters_that_no_mode_or_several_modes_have():
-    with pytest.raises(NotCountedError, match="no known mode has these letters"):
+    with pytest.raises(NotCountedError, match="no known way has these letters"):
         exactfold.follow("zigzags", letters="MMMMMMMMMMMM")
-    with pytest.raises(UsageError, match=r"5 modes have these letters: name one by way=1, 2, 3, 4"):
+    with pytest.raises(UsageError, match="3 ways have these letters: name one by way, 1, 2, 3"):
+        exactfold.follow("zigzags", letters={(4, 9): "V"})
+    with pytest.raises(UsageError, match="no fold has the letter M or V"):
         exactfold.follow("zigzags", letters={})
-    with pytest.raises(UsageError, match="not by both"):
+    with pytest.raises(UsageError, match="not way and letters"):
         exactfold.follow("zigzags", 1, letters={})
 
 
@@ -118,11 +128,10 @@ def test_with_more_corners_a_branch_is_named_and_else_the_panels_move():
 @pytest.mark.parametrize(
     ("sheet", "named", "said"),
     [
-        ("zigzags", {"signs": "+"}, "signs is for branches, .* choose one by way or letters"),
+        ("zigzags", {"signs": "+"}, "signs is for branches .* name one by way or letters"),
         ("zigzags", {"drive": {(0, 1): 3}}, "drive is for branches"),
         ("zigzags", {"through_branch_points": True}, "through_branch_points is for"),
-        ("zigzags", {"way": 9}, "there is no mode 9: give numbers from 1 to 5"),
-        ("two-vertex", {"way": [1, 2]}, "two branches cannot be followed together"),
+        ("zigzags", {"way": 9}, "there is no way 9: `count` lists 1 to 4"),
         ("two-vertex", {"way": 9}, "there is no way 9: `count` lists 1 to 4"),
     ],
 )
@@ -163,3 +172,29 @@ def test_loops_are_written_and_checked(tmp_path):
     assert exactfold.check(file).claims["loops"] == 2
     with pytest.raises(NotCountedError):
         exactfold.loops("miura")
+
+
+def test_a_way_in_a_space_of_motions_is_followed_in_one_of_its_directions():
+    motion = exactfold.follow("flapping-bird", 7, until="60deg", frames=4)
+    ways = panel_ways(exactfold.decompose("flapping-bird"))
+    assert (motion.way, motion.dimension, motion.end) == (7, 1, "angle")
+    assert np.degrees(np.abs(motion.angles[-1]).max()) == pytest.approx(60)
+    bent = {fold: letter for fold, letter in motion.assignment.items() if letter != "F"}
+    assert bent == dict(ways[6].letters)
+    assert motion.length_error < 1e-9
+    below = exactfold.follow("flapping-bird", 7, side=-1, until="60deg", frames=4)
+    assert below.angles == pytest.approx(-motion.angles)
+    with pytest.raises(UsageError, match="by is not for a family"):
+        exactfold.follow("flapping-bird", 7, by=(5, 6))
+    with pytest.raises(NotFollowedError, match="no proof of such a motion is known"):
+        exactfold.prove(motion)
+
+
+def test_letters_of_a_drawing_in_a_family_are_followed_as_match_proves_them():
+    motion = exactfold.follow("bird-base", until="30deg", frames=3)
+    letters = exactfold.read("bird-base").letters
+    assert {f: x for f, x in motion.assignment.items() if letters[f] != "U"} == {
+        f: x for f, x in letters.items() if x != "U"
+    }
+    last = dict(zip(motion.pattern.folds, motion.angles[-1], strict=True))
+    assert all((last[f] > 0) == (x == "V") for f, x in letters.items() if x in "MV")

@@ -6,12 +6,12 @@ import pytest
 
 import exactfold
 from exactfold.app.pictures.crease_drawing import pattern_picture
-from exactfold.app.pictures.drawn_ways import branch_way, mode_way
+from exactfold.app.pictures.drawn_ways import branch_way, panel_way
 from exactfold.app.pictures.stills import motion_stills
 from exactfold.app.pictures.way_sheets import sheet_of_ways
 from exactfold.branches import find_branch
 from exactfold.errors import NotCountedError, UsageError
-from exactfold.motion import panel_modes
+from exactfold.motion import panel_ways
 from exactfold.pattern import read_drawing
 from exactfold.pattern.data import example_path
 
@@ -34,15 +34,18 @@ def test_a_branch_is_drawn_however_it_is_named():
     assert exactfold.draw("two-vertex", 3) == exactfold.draw(count, 3) == numbered
 
 
-def test_a_mode_is_drawn_by_number_and_by_letters():
+def test_a_way_of_panels_is_drawn_by_number_and_by_letters():
     ways = exactfold.decompose("zigzags")
-    mode = panel_modes(ways)[2]
-    wanted = mode_way(mode).picture()
-    letters = dict.fromkeys(ways.pattern.folds, "F") | dict(mode.letters)
-    assert exactfold.draw("zigzags", 3) == exactfold.draw(ways, 3) == wanted
+    way = panel_ways(ways)[1]
+    wanted = panel_way(way, ways.pattern).picture()
+    letters = dict.fromkeys(ways.pattern.folds, "F") | dict(way.letters)
+    assert exactfold.draw("zigzags", 2) == exactfold.draw(ways, 2) == wanted
     assert exactfold.draw("zigzags", letters=letters) == wanted
     turned = {fold: {"M": "V", "V": "M"}.get(x, x) for fold, x in letters.items()}
-    assert exactfold.draw("zigzags", letters=turned) == mode_way(mode).turned(-1).picture()
+    assert (
+        exactfold.draw("zigzags", letters=turned)
+        == panel_way(way, ways.pattern).turned(-1).picture()
+    )
     assert exactfold.draw("zigzags", letters=turned) != wanted
 
 
@@ -60,8 +63,8 @@ def test_all_ways_of_a_count_and_a_motion_are_drawn():
 @pytest.mark.parametrize(
     ("sheet", "named", "error", "said"),
     [
-        ("zigzags", {"way": 9}, UsageError, "there is no way 9: the sheet has 5 modes"),
-        ("zigzags", {"signs": "+"}, UsageError, "signs and up are for branches: choose a mode"),
+        ("zigzags", {"way": 9}, UsageError, "there is no way 9: `count` lists 1 to 4"),
+        ("zigzags", {"signs": "+"}, UsageError, "signs is for branches of triangulated sheets"),
         ("two-vertex", {"way": 9}, UsageError, "there is no way 9"),
         ("two-vertex", {"letters": "MMMMMMM"}, NotCountedError, "no branch has these letters"),
     ],

@@ -1,7 +1,6 @@
 """The page in a real browser: it opens, folds, is clicked, typed at, and saves a file."""
 
 import json
-import threading
 import time
 from itertools import pairwise
 
@@ -11,8 +10,8 @@ from browser import chromium
 from test_document import CORNER_AND_CENTRE
 
 from exactfold.app.pictures.crease_style import COLOUR
-from exactfold.app.viewer import view_server, write_view
-from exactfold.branches import count_branches, find_branch
+from exactfold.app.viewer import write_view
+from exactfold.branches import count_branches
 from exactfold.motion import follow
 from exactfold.pattern import load, open_pattern
 
@@ -50,7 +49,41 @@ def test_it_opens_without_a_complaint_and_asks_nothing_of_a_network(browser, pag
     browser.open(pages["waterbomb"])
     assert browser.run("document.title") == "waterbomb - exactfold"
     assert "one family of dimension 3" in browser.text("#answer")
-    assert browser.run("document.getElementById('play').disabled")
+
+
+def test_sliders_choose_another_way_of_a_family_and_play_goes_on(browser, pages):
+    browser.open(pages["waterbomb"])
+    sheet = load("waterbomb")
+    i, j = np.array(sheet.edges).T
+    at = [browser.run(f"exactfold.store.get().ways[0].family.drivers[{k}]") for k in range(3)]
+    names = browser.run(
+        "Array.from(document.querySelectorAll('#family label span'), (n) => n.textContent)"
+    )
+    assert names == ["Fold {}–{}".format(*sheet.folds[k]) for k in at]
+    before = browser.run("exactfold.angles()")
+    wish = round(before[at[0]]) + 25
+    browser.run(
+        "(() => { const slider = document.querySelector('#family input');"
+        f" slider.value = {wish}; slider.dispatchEvent(new Event('input')) }})()"
+    )
+    after = browser.run("exactfold.angles()")
+    assert after[at[0]] == pytest.approx(wish, abs=1e-3)
+    assert [after[k] for k in at[1:]] == pytest.approx([before[k] for k in at[1:]], abs=1e-3)
+    shape = np.array(browser.run("exactfold.positions()")).reshape(-1, 3)
+    flat = np.array([[float(x), float(y)] for x, y in sheet.vertices])
+    lengths = [np.linalg.norm(c[i] - c[j], axis=1) for c in (shape, flat)]
+    assert np.allclose(*lengths, atol=1e-6)
+    browser.click("#play")
+    browser.until("exactfold.store.get().time !== 0.55")
+    assert browser.complaints() == []
+
+
+def test_without_a_motion_there_is_nothing_to_play(browser, pages):
+    browser.open(pages["zigzags"])
+    browser.click(".way:last-child")
+    assert browser.run("document.getElementById('transport').hidden")
+    browser.click(".way:first-child")
+    assert not browser.run("document.getElementById('transport').hidden")
 
 
 def test_the_slider_folds_the_sheet(browser, pages):
@@ -72,13 +105,13 @@ def test_the_slider_folds_the_sheet(browser, pages):
 def test_vertices_to_look_at_have_a_ring_and_say_why(browser, pages):
     browser.open(pages["zigzags"])
     ring = "[data-vertex='9'] .ring.refuted"
-    assert browser.run('document.querySelectorAll(".ring").length') == 4
+    assert browser.run('document.querySelectorAll("#pattern .ring").length') == 4
     assert browser.run(f'document.querySelector("{ring}") !== null')
     label = browser.run("document.querySelector(\"[data-vertex='9']\").getAttribute('aria-label')")
     assert "It cannot start to fold with the letters of the file: its mountains 9-13, 4-9" in label
     assert "vertex that cannot start to fold" in browser.text("#legend")
     browser.open(pages["h1-4"])
-    assert browser.run('document.querySelectorAll(".ring").length') == 0
+    assert browser.run('document.querySelectorAll("#pattern .ring").length') == 0
 
 
 def _pixels(browser):
@@ -288,7 +321,7 @@ def test_panes_stack_on_a_phone(browser, pages):
     browser.open(pages["h1-4"], width=360, height=740)
     assert browser.run("document.documentElement.scrollWidth") <= 360
     boxes = browser.run(
-        "Array.from(document.querySelectorAll('main > .pane, .side > .pane'), (branch point) => {"
+        "Array.from(document.querySelectorAll('main > .pane, .side > .pane'), (node) => {"
         " const b = node.getBoundingClientRect(); return [b.left, b.top, b.right, b.bottom] })"
     )
     assert len(boxes) == 4
@@ -298,7 +331,7 @@ def test_panes_stack_on_a_phone(browser, pages):
         assert top >= bottom
     small = browser.run(
         "Array.from(document.querySelectorAll('#play, #mirror, #home, #download'),"
-        " (branch point) => node.getBoundingClientRect().height)"
+        " (node) => node.getBoundingClientRect().height)"
     )
     assert min(small) >= 32
 
@@ -308,32 +341,139 @@ def test_panels_are_followed_or_have_a_reason(browser, pages):
     names = browser.run(
         "Array.from(document.querySelectorAll('.way .signs'), (n) => n.textContent)"
     )
-    assert names[-1] == "mode 4does not fold on"
+    assert names[-1] == "way 4does not fold on"
     browser.click(".way:last-child")
     assert "does not close" in browser.text("#empty")
-    assert browser.run("document.getElementById('play').disabled")
+    assert browser.run("document.getElementById('transport').hidden")
     browser.click(".way:first-child")
     assert browser.run("document.getElementById('empty').hidden")
-    assert not browser.run("document.getElementById('play').disabled")
+    assert not browser.run("document.getElementById('transport').hidden")
     assert browser.complaints() == []
 
 
-def test_branches_come_from_the_server_as_they_are_asked_for(browser):
-    with view_server("h1-4", branches=["++++"], frames=4) as server:
-        thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.05})
-        thread.start()
-        try:
-            browser.open(server.address)
-            browser.until("exactfold.store.get().ways[0].motion !== null")
-            vertex = load("h1-4").interior[1]
-            browser.click(f'[data-vertex="{vertex}"] .reach')
-            browser.until("exactfold.store.get().ways.length === 2")
-            assert browser.shown() == ("+-++", find_branch("h1-4", "+-++").assignment_text, False)
-            browser.click("#search")
-            browser.press("++x", "\ue007")
-            browser.until("document.getElementById('message').className.includes('wrong')")
-            assert "'x' is not a vertex sign" in browser.text("#message")
-            assert all("422" in line for line in browser.complaints())
-        finally:
-            server.shutdown()
-            thread.join()
+def test_two_ways_fold_side_by_side_and_faster(browser, pages):
+    browser.open(pages["h1-4"])
+    browser.click("#beside")
+    assert not browser.run("document.getElementById('stage2').hidden")
+    first = browser.text("#beside-name")
+    browser.press("\ue015", "\ue015")  # two ways down the list
+    browser.until("exactfold.store.get().way === 2")
+    assert browser.text("#beside-name") == first
+    assert browser.run("exactfold.store.get().beside.way") == 0
+    browser.run("exactfold.store.set({time: 0.3})")
+    before = _pixels(browser)
+    browser.run("exactfold.store.set({time: 0.9})")
+    assert _pixels(browser) != before
+    browser.run(
+        "(() => { const box = document.getElementById('speed'); box.value = '4';"
+        " box.dispatchEvent(new Event('change')) })()"
+    )
+    assert browser.run("exactfold.store.get().speed") == 4
+    browser.click("#beside")
+    assert browser.run("document.getElementById('stage2').hidden")
+    assert browser.complaints() == []
+
+
+def test_the_letters_of_the_file_are_asked_for_at_once(browser, pages, folder):
+    write_view("miura", folder / "miura.html", name="miura", frames=4)
+    browser.open((folder / "miura.html").as_uri())
+    drawn = browser.run("exactfold.page.drawn")
+    assert browser.run("exactfold.store.get().way") == drawn["way"]
+    browser.click(".way:last-child")
+    browser.click("#as-drawn")
+    assert browser.run("exactfold.store.get().way") == drawn["way"]
+    assert browser.run("exactfold.store.get().asks.size") == 24
+    assert browser.text("#count") == "1 of 8 ways agrees"
+
+
+def test_the_picture_that_is_shown_is_saved(browser, pages, folder):
+    image = pytest.importorskip("PIL.Image")
+    browser.open(pages["h1-4"])
+    browser.click("#png")
+    [path] = _saved(folder, ".png")
+    picture = image.open(path).convert("RGB")
+    assert picture.size == tuple(
+        browser.run("[exactfold.view.picture().width, exactfold.view.picture().height]")
+    )
+    colours = {colour for _, colour in picture.getcolors(1 << 20)}
+    assert (255, 255, 255) in colours  # the ground of the page, not black
+    assert len(colours) > 20
+    assert browser.run("document.getElementById('gif').hidden")  # it needs the server
+
+
+def _saved(folder, ending):
+    """The files with an ending that were downloaded."""
+    for _ in range(200):
+        found = list((folder / "downloads").glob(f"*{ending}"))
+        if found:
+            return found
+        time.sleep(0.05)
+    return []
+
+
+def test_the_address_holds_the_state(browser, pages):
+    browser.open(pages["h1-4"])
+    browser.run("exactfold.store.set({way: 3, mirrored: true, time: 0.25})")
+    browser.run("exactfold.store.set({asks: new Map([[1, 'M']])})")
+    way, mirrored = browser.run("[exactfold.store.get().way, exactfold.store.get().mirrored]")
+    browser.until("location.hash.includes('asks=1M')")
+    address = browser.run("location.href")
+    browser.driver.get("about:blank")
+    browser.open(address)
+    state = browser.run(
+        "(({way, mirrored, time, asks}) => [way, mirrored, time, [...asks]])(exactfold.store.get())"
+    )
+    assert state == [way, mirrored, 0.25, [[1, "M"]]]
+
+
+CONTRAST = """(() => {
+  const rgb = (text) => (text.match(/[\\d.]+/g) ?? []).map(Number);
+  const light = ([r, g, b]) => [r, g, b].map((c) => c / 255)
+    .map((c) => (c <= 0.03928 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4))
+    .reduce((sum, c, k) => sum + c * [0.2126, 0.7152, 0.0722][k], 0);
+  const ground = (node) => {
+    for (let at = node; at; at = at.parentElement) {
+      const found = rgb(getComputedStyle(at).backgroundColor);
+      if (found.length === 3 || found[3] > 0.99) return found;
+    }
+    return [255, 255, 255];
+  };
+  const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  const bad = [];
+  while (walker.nextNode()) {
+    const node = walker.currentNode.parentElement;
+    const text = walker.currentNode.data.trim();
+    if (!text || node.closest("script, svg title, .message, option")) continue;
+    if (!node.getClientRects().length) continue;
+    const style = getComputedStyle(node);
+    const ink = rgb(node.closest("svg") ? style.fill : style.color);
+    const pair = [light(ink), light(ground(node))].sort((a, b) => b - a);
+    const ratio = (pair[0] + 0.05) / (pair[1] + 0.05);
+    if (ratio < 4.5) bad.push(`${ratio.toFixed(2)} ${node.className} ${text}`);
+  }
+  return bad;
+})()"""
+
+
+@pytest.mark.parametrize("dark", [False, True])
+@pytest.mark.parametrize("name", ["h1-4", "zigzags", "waterbomb"])
+def test_all_text_has_enough_contrast(browser, pages, name, dark):
+    browser.open(pages[name], dark=dark)
+    browser.run("document.querySelectorAll('details').forEach((one) => (one.open = true))")
+    assert browser.run(CONTRAST) == []
+    last = "document.querySelector('.way:last-child')"
+    browser.run(f"{last}.click()")
+    assert browser.run(CONTRAST) == []
+
+
+def test_on_a_phone_the_sheet_stays_in_sight_while_a_way_is_chosen(browser, pages):
+    browser.open(pages["h1-4"], width=390, height=844)
+    browser.run("document.querySelector('.way:last-child').scrollIntoView({block: 'end'})")
+    browser.run("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    box = "document.getElementById('stage').getBoundingClientRect()"
+    top, bottom = browser.run(f"[{box}.top, {box}.bottom]")
+    assert 0 <= top < bottom <= 844
+    assert bottom - top > 150
+    low = browser.run("document.querySelector('.way:last-child').getBoundingClientRect().bottom")
+    assert low > bottom  # the way is below the sheet, not behind it
+    assert low <= browser.run("innerHeight") + 1

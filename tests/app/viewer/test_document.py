@@ -18,8 +18,9 @@ from exactfold.app.viewer import page as page_module
 from exactfold.app.viewer import view_document, view_page
 from exactfold.app.viewer.coding import coded_frames, decoded_frames, levelled
 from exactfold.branches import count_branches, count_ways, find_branch
+from exactfold.design import match_panels
 from exactfold.errors import UsageError
-from exactfold.motion import follow, follow_panels, panel_components, prove, prove_contacts
+from exactfold.motion import follow, follow_panels, panel_ways, prove, prove_contacts
 from exactfold.pattern.families import single_vertex
 from exactfold.pattern.loading import open_sheet
 from exactfold.solve.certify import algebraic
@@ -150,11 +151,11 @@ def test_a_branch_with_a_flat_vertex_has_the_reason_in_place_of_a_motion():
 def test_panels_list_what_is_followed_and_what_is_not():
     ways = count_ways("zigzags")
     document = document_of("zigzags")
-    components = panel_components(ways)
+    listed = [way for way in panel_ways(ways) if not way.why_not_followed]
     followed = [way for way in document["ways"] if way["motion"]]
-    assert (document["kind"], len(followed)) == ("panels", len(components))
+    assert (document["kind"], len(followed)) == ("panels", len(listed))
     [left] = [way for way in document["ways"] if way["motion"] is None]
-    assert (left["status"], left["name"]) == ("refuted", "mode 4")
+    assert (left["status"], left["name"]) == ("refuted", "way 4")
     assert "does not close" in left["why"]
     assert set(left["letters"]) == {"M", "V"}
     assert [way["motion"]["proved"] for way in followed].count(True) == 1
@@ -182,32 +183,58 @@ def test_it_says_what_is_proved_of_a_motion_of_panels():
     assert "; the drawing is computed in floats; faces stay rigid" in ways[0]["motion"]["said"]
     assert (ways[0]["motion"]["proved"], ways[0]["motion"]["exists"]) == (False, True)
     way = ways[2]
-    event = prove_contacts(follow_panels(count_ways("zigzags"), component=3)).event
+    event = prove_contacts(follow_panels(count_ways("zigzags"), way=3)).event
     low, high = event.time
     times = f"its first contact is proved to be between the times {low:.12g} and {high:.12g}"
     assert way["motion"]["said"] == exact + times
 
 
-def test_free_folds_alone_are_not_the_whole_of_a_larger_family():
-    document = view_document(CORNER_AND_CENTRE, frames=2)
-    assert document["answer"].startswith("1 family of ways to fold, of dimension 4 - PROVED")
-    [way] = document["ways"]
-    assert (way["name"], way["letters"].count("V")) == ("free folds", 1)
-    assert not document["complete"]
-    assert document["sheet"]["foldable"] == []  # nothing pops: there are no vertex signs
+def test_graphs_over_the_boundary_heights_are_families_with_a_motion_each():
+    document = view_document(CORNER_AND_CENTRE, frames=3)
+    assert "these 2 graphs of dimension 4" in document["answer"]
+    assert document["complete"]
+    [way] = document["ways"]  # the other graph is its mirror image
+    branch = find_branch(CORNER_AND_CENTRE, "+")
+    assert (way["signs"], way["letters"]) == ("+", branch.assignment_text)
+    assert way["family"]["dimension"] == 4
+    folds = [document["sheet"]["folds"][k] for k in way["family"]["drivers"]]
+    assert len({tuple(fold) for fold in folds}) == 4
+    assert [0, 1] in folds  # it goes from border to border, and nothing else turns it
 
 
-@pytest.mark.parametrize(
-    ("sheet", "status", "answer"),
-    [
-        ("waterbomb", "proved", "infinitely many ways"),
-        (single_vertex(3), "proved", "0 ways to start folding"),
-    ],
-)
-def test_sheets_that_are_not_followed_open_with_the_reason(sheet, status, answer):
-    document = view_document(sheet)
-    assert (document["status"], document["ways"]) == (status, [])
-    assert document["answer"].startswith(answer)
+def test_families_of_panels_have_a_representative_each_and_the_letters_of_the_file_come_first():
+    document = view_document("bird-base", frames=3)
+    matched = match_panels("bird-base")
+    assert document["answer"].startswith("16 families of ways to fold, each of dimension 5")
+    first, *others = document["ways"]
+    assert document["drawn"] == {"way": 0, "mirrored": False}
+    assert first["letters"] == "".join(matched.letters[f] for f in matched.pattern.folds)
+    assert [way["name"] for way in others] == [
+        f"way {k}, a family of dimension 5" for k in range(1, 17)
+    ]
+    assert len({way["letters"] for way in others}) == 16
+    for way in document["ways"]:
+        assert (way["family"]["dimension"], len(way["family"]["drivers"])) == (5, 5)
+        frames = decoded_frames(way["motion"])
+        for i, j in document["sheet"]["fold"]["edges_vertices"]:
+            lengths = np.linalg.norm(frames[:, i] - frames[:, j], axis=1)
+            assert np.allclose(lengths, lengths[0], rtol=1e-5)
+        assert np.ptp(frames[-1][:, 2]) > 0.05 * way["motion"]["scale"]
+
+
+def test_a_listed_way_that_has_the_letters_of_the_file_is_named():
+    document = document_of("miura")
+    drawn = document["drawn"]
+    turned = str.maketrans("MV", "VM") if drawn["mirrored"] else {}
+    letters = document["ways"][drawn["way"]]["letters"].translate(turned)
+    assert letters == document["sheet"]["letters"]
+    assert document_of("zigzags")["drawn"] is None  # the sheet does not fold with its letters
+
+
+def test_a_rigid_sheet_opens_with_the_reason():
+    document = view_document(single_vertex(3))
+    assert (document["status"], document["ways"]) == ("proved", [])
+    assert document["answer"].startswith("0 ways to start folding")
     assert document["reason"]
     assert view_page(document).count("</script>") == 3
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import combinations
 from typing import Any
 
 import pytest
@@ -9,6 +10,8 @@ from forge import Document, beyond, given, refused, verified, with_one_key_more,
 
 from exactfold import checker
 from exactfold.checker.letters import panels_motion as panel_letters_motion
+from exactfold.checker.letters.panels_refuted import SIDES
+from exactfold.checker.letters.panels_spaces import Exclusion
 from exactfold.checker.sheets.panels import read_panels
 
 NOTHING: dict[str, Any] = {"together": [], "never": []}
@@ -279,6 +282,50 @@ def test_a_loop_fails_at_an_order() -> None:
 def test_a_loop_that_fails_at_a_higher_order_says_nothing_of_the_second() -> None:
     document = refuting("order", [*LOOP[:-1], [*LOOP[-1], 3]])
     stopped(document, "a loop that fails at a higher order refutes only true motions")
+
+
+# --- spaces of motions ---------------------------------------------------------------------------
+
+
+def test_spaces_of_motions_are_excluded_by_sets_of_folds() -> None:
+    """Theorem 5; the letters of the second file agree with a straight crease, all else flat."""
+    message = "the sets of folds do not exclude all spaces of motions"
+    for name, truly in (("spaces", "refuted"), ("spaces-weakly", "undecided")):
+        document = sheet(name)
+        [[kind, vertices, sets]] = document["evidence"]["tree"]
+        assert (kind, document["claims"]["truly"]) == ("spaces", truly)
+        verified(refuting(name, [["spaces", vertices, sets]]))
+        for few in ([], sets[:1]):
+            stopped(refuting(name, [["spaces", vertices, few]]), message)
+        stopped(refuting(name, [["spaces", [], sets]]), message)
+        free = "U" * len(document["claims"]["letters"])
+        stopped(refuting(name, [["spaces", vertices, sets]], free), message)
+
+
+@pytest.mark.parametrize("letters", ["MVVMMMMMMMVVMVVV", "VVVVVVMMMMVVVVVV"])
+def test_no_sets_of_folds_exclude_letters_that_occur(letters: str) -> None:
+    pattern = read_panels(sheet("spaces")["pattern"])[0]
+    sets = [*((fold,) for fold in pattern.folds), *combinations(pattern.folds, 2)]
+    sides = {fold: SIDES[x] for fold, x in zip(pattern.folds, letters, strict=True)}
+    near = pattern.live([])
+    assert not Exclusion(pattern, near, sides, sets).shown()
+    other = sides | {fold: -sides[fold] for fold in pattern.folds[:1]}
+    assert Exclusion(pattern, near, other, sets).shown()
+
+
+def test_motions_that_follow_their_letters_in_part_leave_true_motions_open() -> None:
+    document = sheet("spaces-weakly")
+    document["claims"]["truly"] = "refuted"
+    cases = "the cases name several vertices, not all with at most four folds"
+    stopped(document, f"{cases}: true motions are open")
+
+
+def test_two_steps_about_spaces_leave_true_motions_open() -> None:
+    document = sheet("spaces")
+    step = document["evidence"]["tree"][0]
+    cases = "the cases name several vertices, not all with at most four folds"
+    truly = refuting("spaces", [["split", 2], step, step], truly="refuted")
+    stopped(truly, f"{cases}: true motions are open")
 
 
 # --- heights of stars ----------------------------------------------------------------------------

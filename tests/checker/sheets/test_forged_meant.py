@@ -8,6 +8,7 @@ from fractions import Fraction
 import pytest
 from forge import Document, beyond, given, refused, verified, with_one_key_more, without
 
+from exactfold.checker.sheets.meant import summary
 from exactfold.pattern.drawing.meant.values import Edge, Kind, Relation
 from exactfold.pattern.meant_sheet import Realized, certificate
 from exactfold.pattern.panel_pattern import PanelPattern
@@ -168,6 +169,20 @@ def test_relations_that_appear_twice() -> None:
             again["terms"] = [[i, j, -n] for i, j, n in relation["terms"]][::-1]
         made["claims"]["relations"] = [relation, again]
         stopped(made, f"{relation['name']} appears twice")
+
+
+def test_one_fact_under_two_kinds_counts_once() -> None:
+    """A straight line is parallel to itself; such claims would only swell the number."""
+    once = claim("straight", "straight@0:1-3", [((0, 1), 1), ((0, 3), -1)])
+    again = claim("parallel", "parallel:0-3,0-1", [((0, 3), 1), ((0, 1), -1)])
+    other = claim("grid", "grid:0-1,0-2", [((0, 1), 1), ((0, 2), -1)], 2)
+    made = star(*CROSS, said=[once, again, other])
+    said = (
+        "with 2 exact relations of angles (1 straight, 1 parallel, 1 grid; 1 is the same as others)"
+    )
+    assert said in summary(verified(made))
+    made = star(*CROSS, said=[again, other])
+    assert "with 2 exact relations of angles (1 parallel, 1 grid);" in summary(verified(made))
 
 
 def test_no_parts() -> None:

@@ -85,7 +85,7 @@ def test_all_pairs_of_edges_of_a_small_grid(columns: int, rows: int) -> None:
 )
 def test_folds_that_may_fold(around: list[Point], kept: list[int]) -> None:
     sheet = drawn([(0, 0), *around], [(0, k + 1) for k in range(len(around))])
-    assert sheet._foldable(0, list(range(1, len(around) + 1))) == kept
+    assert sheet.foldable(0, list(range(1, len(around) + 1))) == kept
 
 
 @pytest.mark.parametrize("edge", [(1, 1), (2, 1), (1, 4)])

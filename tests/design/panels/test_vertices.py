@@ -19,6 +19,8 @@ from exactfold.errors import UsageError
 from exactfold.exact.surds import RATIONALS
 from exactfold.panels.stars import star_at
 from exactfold.panels.vertex_motions import vertex_motion
+from exactfold.pattern.drawing.meant.values import Relation
+from exactfold.pattern.meant import Meant
 from exactfold.pattern.opening import Opened
 from exactfold.pattern.panel_pattern import PanelPattern, Point
 from exactfold.pattern.reading import Reading
@@ -229,6 +231,19 @@ def test_the_snap_exact_takes_nearly_straight_folds_as_they_are() -> None:
     assert vertices(Opened(sheet, letters)).starts is UNDECIDED
     found = vertices(Opened(sheet, letters, reading=Reading("exact")))
     assert (found.starts, found.status) == (PROVED, PROVED)
+
+
+def test_folds_are_nearly_straight_to_the_noise_of_a_drawing() -> None:
+    """Bent by 1/100 the vertex folds; a drawing inexact by as much may mean a straight line."""
+    around: list[Point] = [(1, 0), (0, 1), (-1, 0), (Fraction(1, 100), -1)]
+    sheet = sheet_of(around)
+    letters = {(0, k): letter for k, letter in enumerate("VMMM", 1)}
+    near = Relation("straight", "straight@0:2-4", (((0, 2), 1), ((0, 4), -1)), 1, 5e-3)
+    assert vertices(Opened(sheet, letters, meant=Meant(left=(near,)))).starts is UNDECIDED
+    exact = Opened(sheet, letters, reading=Reading("exact"))
+    assert (vertices(Opened(sheet, letters)).starts, vertices(exact).starts) == (PROVED, PROVED)
+    bent: list[Point] = [(1, 0), (0, 1), (-1, 0), (Fraction(1, 3), -1)]
+    assert vertices(Opened(sheet_of(bent), letters, meant=Meant(left=(near,)))).starts is PROVED
 
 
 # --- whole sheets --------------------------------------------------------------------------------

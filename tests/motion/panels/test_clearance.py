@@ -191,7 +191,7 @@ def test_a_mode_that_is_not_linear_is_clear_until_its_first_fold_closes():
 
 def test_strips_that_fold_up_together_meet_at_120_degrees():
     """Two outer strips of equal width fold over the middle one until they meet edge to edge."""
-    motion = follow_panels(count_ways("zigzags"), component=3, frames=2)
+    motion = follow_panels(count_ways("zigzags"), way=3, frames=2)
     found = prove_contacts(motion)
     assert found.status is PROVED
     low, high = found.event.time

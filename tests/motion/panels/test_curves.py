@@ -14,8 +14,8 @@ from panel_sheets import (
 )
 
 from exactfold._support.verdict import PROVED, UNDECIDED
-from exactfold.motion.panels.followable import panel_components
 from exactfold.motion.panels.following import follow_panels
+from exactfold.motion.panels.listing import panel_ways
 from exactfold.panels.decomposition import decompose
 
 
@@ -31,7 +31,7 @@ def test_miura_ori(rows, zigzags):
     for k, (i, j) in enumerate(pattern.folds):
         (_, y), (_, z) = pattern.vertices[i], pattern.vertices[j]
         (straight if y == z else zigzag).append(k)
-    if motion.component == 1 and rows > 1:
+    if motion.way == 1 and rows > 1:
         assert len(straight) + len(zigzag) == np.count_nonzero(motion.angles[5])
     inner = motion.angles[1:-1]
     active = [k for k in straight if inner[0, k]]
@@ -93,12 +93,12 @@ def rational_turn(x):
     ],
 )
 def test_four_active_folds_stay_in_proportion_where_the_vertex_folds_flat(tips, linear):
-    """A straight crease that folds alone does so whatever Q is (docs/panel_motion.md, 1)."""
-    components = panel_components(decompose(one_vertex(*tips)))
+    """A straight crease that folds alone does so whatever Q is (docs/motion.md, 18)."""
+    ways = panel_ways(decompose(one_vertex(*tips)))
     found = {}
-    for k, component in enumerate(components, 1):
-        motion = follow_panels(decompose(one_vertex(*tips)), component=k, frames=2)
-        found.setdefault(component.folds, []).append(motion.closes is PROVED)
+    for k, way in enumerate(ways, 1):
+        motion = follow_panels(decompose(one_vertex(*tips)), way=k, frames=2)
+        found.setdefault(way.folds, []).append(motion.closes is PROVED)
     assert found == linear
 
 
@@ -155,6 +155,6 @@ def test_all_folds_of_a_strip_grow_until_the_first_closes(seed):
 def test_a_tiling_closes_round_its_loops(size):
     result = decompose(tiling(size, size))
     for number in (1, 2):
-        motion = checked(follow_panels(result, component=number, until="180deg", frames=31))
+        motion = checked(follow_panels(result, way=number, until="180deg", frames=31))
         assert motion.closes is UNDECIDED
         assert motion.curves[0].mode.extends.by == "loops to order 17"

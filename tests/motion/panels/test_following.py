@@ -20,37 +20,38 @@ from scipy.optimize import linprog
 
 from exactfold._support.verdict import PROVED, REFUTED
 from exactfold.errors import NotApplicableError, UsageError
-from exactfold.motion.panels.followable import panel_components, panel_modes
+from exactfold.motion.panels.followable import panel_modes
 from exactfold.motion.panels.following import follow_panels
+from exactfold.motion.panels.listing import panel_ways
 from exactfold.panels.decomposition import decompose
 from exactfold.pattern.panel_pattern import PanelPattern
 
 # --- what is followed ----------------------------------------------------------------------------
 
 
-def test_components_begin_with_the_one_with_most_folds():
+def test_ways_begin_with_the_one_with_most_folds():
     result = decompose(miura(2, 2))
-    components = panel_components(result)
-    assert [one.folds for one in components] == sorted((c.folds for c in components), reverse=True)
-    assert sorted(one.dimension for one in components) == [1, 1, 1, 2]
-    assert follow_panels(result).modes == components[0].modes
-    both = next(k for k, one in enumerate(components, 1) if one.dimension == 2)
-    motion = checked(follow_panels(result, component=both, until="180deg"))
-    assert motion.modes == components[both - 1].modes
+    ways = panel_ways(result)
+    assert [one.folds for one in ways] == sorted((c.folds for c in ways), reverse=True)
+    assert sorted(one.dimension for one in ways) == [1, 1, 1, 2]
+    assert follow_panels(result).modes == ways[0].numbers
+    both = next(k for k, one in enumerate(ways, 1) if one.dimension == 2)
+    motion = checked(follow_panels(result, way=both, until="180deg"))
+    assert motion.modes == ways[both - 1].numbers
     assert motion.closes is PROVED
 
 
 def test_modes_without_a_common_vertex_fold_at_their_own_rates():
     result = decompose(miura(2, 2))
-    both = next(one for one in panel_components(result) if one.dimension == 2)
-    first, second = both.modes
+    both = next(one for one in panel_ways(result) if one.dimension == 2)
+    first, second = both.numbers
     motion = checked(
-        follow_panels(result, modes=both.modes, amounts={first: -2, second: 1}, until="180deg")
+        follow_panels(result, modes=both.numbers, amounts={first: -2, second: 1}, until="180deg")
     )
     assert motion.rates == (-1.0, 0.5)
     one, other = (angle(motion, driver) for driver in motion.drivers)
     assert (abs(one), abs(other)) == (pi, pytest.approx(pi / 2))
-    alone = follow_panels(result, modes=both.modes, amounts={second: 1}, until="90deg")
+    alone = follow_panels(result, modes=both.numbers, amounts={second: 1}, until="90deg")
     assert alone.modes == (second,)
     spots = motion.exactly({first: -3, second: Fraction(1, 2)})
     assert lengths_kept(motion.pattern, spots)
@@ -226,7 +227,7 @@ def test_a_mode_that_does_not_fold_is_not_followed():
     for number in refuted:
         with pytest.raises(NotApplicableError, match=r"the loop [\d-]+ does not close at order 3"):
             follow_panels(result, modes=[number])
-    followed = {k for one in panel_components(result) for k in one.modes}
+    followed = {k for one in panel_ways(result) for k in one.numbers if one.verdict is PROVED}
     assert followed.isdisjoint(refuted)
 
 
@@ -236,8 +237,8 @@ def test_a_mode_that_does_not_fold_is_not_followed():
         ({"until": "far"}, "give contact, or an angle"),
         ({"until": "200deg"}, "up to 180deg"),
         ({"frames": 1}, "at least 2"),
-        ({"component": 9}, "no component 9: give a number from 1 to 4"),
-        ({"component": 1, "modes": [1]}, "not both"),
+        ({"way": 9}, "there is no way 9: `count` lists 1 to 4"),
+        ({"way": 1, "modes": [1]}, "not both"),
         ({"modes": [7]}, "no mode 7: give numbers from 1 to"),
         ({"modes": [1, 4]}, "cannot fold together: both use vertex"),
         ({"amounts": {17: 1}}, "an amount is given for mode 17"),

@@ -63,8 +63,8 @@ def test_a_slit_to_a_vertex_takes_it_to_the_boundary():
     assert shape(slit.sheet) == (0, 4, 5)
     assert sorted(slit.letters.values()) == [*"MMMV"]
     assert slit.lines[-1] == (
-        "cuts (1 line) are opened: creases end 0.004 before them, which changes no angle and no "
-        "way to fold: at 5 (2, 0)"
+        "cuts (1 line) are opened: creases end 0.004 before them; no angle and no way "
+        "to fold changes, and contacts are those of the open sheet: at 5 (2, 0)"
     )
 
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from fractions import Fraction
 
 import pytest
 from drawings import SQUARE, as_fold
 
-from exactfold.errors import MalformedDrawingError
+from exactfold.errors import MalformedDrawingError, MalformedPatternError
 from exactfold.pattern.drawing.formats.read import parse_drawing
 from exactfold.pattern.opening import Opened, from_drawing
 from exactfold.pattern.reading import Reading
@@ -16,6 +17,9 @@ LOOSE = (("0.5", "0.1"), ("0.6", "0.8"), "M")
 AWAY = [((str(a), str(b)), (str(c), str(d)), "B") for a, b, c, d in ((5, 0, 6, 0), (6, 0, 5, 1))]
 SECOND = [*AWAY, (("5", "1"), ("5", "0"), "B"), (("5", "0"), ("5.5", "0.5"), "V")]
 """A triangle with its altitude, beside the square."""
+
+
+BOX = "; `--box`, which takes the rectangle round the drawing for the edge of the paper, reads it"
 
 
 def sheet(lines, **more) -> Opened:
@@ -27,6 +31,7 @@ def loss(lines, **more) -> str:
     with pytest.raises(MalformedDrawingError) as caught:
         sheet(lines, **more)
     said, _, remedy = str(caught.value).rpartition("; ")
+    said = said.removesuffix(BOX)
     assert remedy == "`--force` (`force=True` in Python) reads the sheet all the same"
     assert sheet(lines, force=True, **more).lines[0] == f"warning: {said}"
     return said
@@ -74,7 +79,7 @@ def test_creases_round_the_sheet_are_a_loss_if_a_boundary_is_drawn() -> None:
     assert said.startswith("the sheet has no folds; 4 lines of the drawing (4 mountain) are not in")
 
 
-def test_a_sheet_loses_only_what_lies_in_it_and_all_lose_what_lies_nowhere() -> None:
+def test_a_sheet_loses_what_lies_in_it_or_nearer_to_it_than_to_others() -> None:
     second = [*SQUARE, *SECOND, (("5.5", "0.1"), ("5.7", "0.1"), "V")]
     assert sheet(second, number=1).lines[0].startswith("read s.fold")
     assert "1 line of the drawing (1 valley) is not in the sheet, the first near (5.6, 0.1)" in (
@@ -82,13 +87,55 @@ def test_a_sheet_loses_only_what_lies_in_it_and_all_lose_what_lies_nowhere() -> 
     )
     nowhere = [*SQUARE, *SECOND, (("2", "0"), ("3", "0"), "V")]
     assert "(2.5, 0)" in loss(nowhere, number=1)
-    assert "(2.5, 0)" in loss(nowhere, number=2)
+    assert sheet(nowhere, number=2).lines[0].startswith("read s.fold")
 
 
 def test_a_sheet_without_folds_is_refused_with_what_was_left_out() -> None:
     assert loss(SQUARE[:4]) == "the sheet has no folds"
     assert loss([*SQUARE[:4], (("0", "0"), ("1", "1"), "F")]) == "the sheet has no folds"
+
+
+def test_the_box_is_advised_only_where_it_helps() -> None:
+    right = (("1", "0"), ("1", "1"), "M")
+    beside = [SQUARE[0], right, *SQUARE[2:]]
+    with pytest.raises(MalformedDrawingError, match=re.escape(BOX)):
+        sheet(beside)
+    assert sheet(beside, box=True).sheet.folds
+    open_end = [*SQUARE[:3], LOOSE]
+    with pytest.raises(MalformedPatternError) as caught:
+        sheet(open_end)
+    assert "--box" not in str(caught.value)
+    with pytest.raises(MalformedDrawingError, match="the sheet has no folds"):
+        sheet(open_end, box=True)
     with pytest.raises(MalformedDrawingError, match="no folds; left out 1 auxiliary line; `--f"):
         from_drawing(
             parse_drawing("1 0 0 1 0\n1 1 0 0 1\n1 0 1 0 0\n4 0 0 1 1\n", "a.cp"), Reading()
         )
+
+
+def test_a_drawing_is_summed_up_in_a_few_words() -> None:
+    assert sheet(SQUARE).brief == ("6 lines", "exact in Q")
+    assert sheet(SQUARE).seen == ()
+    flat = (("0.5", "0.1"), ("1", "0"), "F")
+    across = [(("0", "0.25"), ("1", "0.25"), "M"), (("0.5", "0"), ("0.5", "1"), "V")]
+    again = SQUARE[4]
+    found = sheet([*SQUARE, flat, *across, again])
+    assert found.brief == (
+        "10 lines",
+        "exact in Q",
+        "cut at 7 points",
+        "1 flat line left out",
+        "1 mended",
+    )
+
+
+def test_what_nobody_should_miss_is_seen() -> None:
+    lost = sheet([*SQUARE, LOOSE], force=True)
+    assert [line.partition(":")[0] for line in lost.seen] == ["warning"]
+    slit = (("0.25", "1"), ("0.25", "0.5"), "C")
+    cut = sheet([*SQUARE[:4], (("0", "0.5"), ("1", "0.5"), "M"), slit])
+    (opened,) = cut.seen
+    assert opened.startswith("cuts (1 line) are opened: creases end ")
+    assert opened.endswith("and contacts are those of the open sheet")
+    assert "(0.25, 1)" not in opened  # its places are in `lines`
+    assert any(line.startswith(opened) and "(0.25, 1)" in line for line in cut.lines)

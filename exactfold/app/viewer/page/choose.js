@@ -40,7 +40,7 @@ function keepsTo(letters, asks) {
 function reads(way, side, text, k) {
   const wanted = text.trim().toUpperCase().replaceAll("−", "-").replaceAll(/[\s,]/g, "");
   if (!wanted) return true;
-  if (/^#?\d+$/.test(wanted) && Number(wanted.replace("#", "")) === k + 1) return true;
+  if (/^#?\d+$/.test(wanted) && Number(wanted.replace("#", "")) === (way.number ?? k + 1)) return true;
   if (/^[+\-0?]+$/.test(wanted) && side.signs) return fits(side.signs.slice(0, wanted.length), wanted);
   if (/^[MVFU?]+$/.test(wanted)) {
     for (let at = 0; at + wanted.length <= side.letters.length; at++) {

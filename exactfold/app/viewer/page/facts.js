@@ -9,13 +9,14 @@ const ICONS = {
 };
 
 export function showFacts(page, way) {
-  const facts = [countFact(page), ...(way ? wayFacts(page, way) : []), ...page.notes.map((text) => ["open", "To know", text])];
+  const facts = [countFact(page), ...(page.freedom ? [["note", sentence(page.freedom), ""]] : []), ...(way ? wayFacts(page, way) : []), ...page.notes.map((text) => ["open", "To know", text])];
   const items = facts.map(item);
   if (page.read.length) items.push(reading(page.read));
   document.getElementById("facts").replaceChildren(...items);
 }
 
 function countFact(page) {
+  if (page.busy && !page.ways.length) return ["note", "Looking for ways", ""];
   if (!page.ways.length) {
     const known = page.status === "proved";
     return [known ? "good" : "open", known ? "The answer: proved" : "The answer: undecided", own(page)];
@@ -37,6 +38,7 @@ function wayFacts(page, way) {
   if (way.status === "proved") facts.push(["good", `This ${noun}: proved`, way.reason]);
   else if (way.status === "refuted") facts.push(["good", "Proved: it starts to fold but does not truly fold", way.reason]);
   else facts.push(["open", `This ${noun}: ${way.status}`, way.reason]);
+  if (way.family) facts.push(["note", "One of infinitely many", `a family of dimension ${way.family.dimension}; the sliders choose others in floats, without contacts`]);
   if (way.multiplicity > 1) facts.push(["note", `Counted ${way.multiplicity} times`, "because flat vertices count double"]);
   if (way.motion) {
     const drawn = way.motion.said;

@@ -1,7 +1,6 @@
 // The list of the ways that agree with what is asked for; one of them is shown.
 
 import { agreeing, difference, seen } from "./choose.js";
-import { sentence } from "./facts.js";
 
 const NOUNS = { branches: ["branch", "branches"], panels: ["way", "ways"] };
 
@@ -14,7 +13,7 @@ export function createList(page, store) {
   let found = [];
 
   document.getElementById("list-title").textContent = page.kind === "branches" ? "Branches" : "Ways to fold";
-  search.placeholder = page.kind === "branches" ? "Search: + − +, or MVV" : "Search: mode 2, or MVV";
+  search.placeholder = page.kind === "branches" ? "Search: + − +, or MVV" : "Search: way 2, or MVV";
   search.setAttribute("aria-label", `Search the ${many}`);
 
   function refresh() {
@@ -24,9 +23,9 @@ export function createList(page, store) {
     const total = `${ways.length} ${ways.length === 1 ? one : many}`;
     count.textContent = narrowed ? `${found.length} of ${total} ${found.length === 1 ? "agrees" : "agree"}` : ways.length ? total : "";
     clear.hidden = !narrowed;
-    box.replaceChildren(...found.map(({ way, mirrored }) => row(ways[way], way, mirrored)));
+    box.replaceChildren(...found.map(({ way, mirrored }) => row(ways[way], way, mirrored, page.drawn)));
     search.hidden = !ways.length;
-    if (!found.length) box.append(paragraph(ways.length ? nothing() : `Nothing to list. ${sentence(page.answer.split(" - ")[0])}.`));
+    if (!found.length) box.append(paragraph(page.busy && !ways.length ? "Looking for ways to fold …" : ways.length ? nothing() : `No way to list: ${page.answer.split(" - ")[0]}.`));
     settle();
     mark();
   }
@@ -96,17 +95,19 @@ export function createList(page, store) {
   return { step };
 }
 
-function row(way, k, mirrored) {
+function row(way, k, mirrored, drawn) {
   const side = seen(way, mirrored);
   const node = document.createElement("div");
   node.className = "way";
   node.id = `way-${k}`;
   node.setAttribute("role", "option");
   node.setAttribute("aria-selected", "false");
-  const number = span("number", String(k + 1));
+  const number = span("number", way.number ? String(way.number) : "–");
   const signs = span(side.signs ? "signs" : "signs plain", side.signs ? side.signs.replaceAll("-", "−") : way.name);
   const notes = [];
   if (mirrored) notes.push("mirror image");
+  if (drawn?.way === k && way.name !== "letters of the file") notes.push("letters of the file");
+  if (way.family && !way.name.includes("family")) notes.push(`family of dimension ${way.family.dimension}`);
   if (way.status === "refuted") notes.push("does not fold on");
   else if (way.status !== "proved") notes.push(way.status);
   else if (way.why) notes.push("no motion drawn");

@@ -29,12 +29,13 @@ function drawLine(node, letter, share, scale = 1) {
 export function createPattern(holder, sheet, store, { onVertex, onHint, poppable }) {
   const picture = svg("svg", { role: "group", "aria-label": "Crease pattern" });
   holder.append(picture);
-  let folds = [], vertices = [], place = null, scale = 1;
+  let folds = [], vertices = [], place = null, scale = 1, held = false, after = null;
+  const over = svg("g", {});
 
   function layout() {
     const width = holder.clientWidth, height = holder.clientHeight;
     if (!width || !height) return;
-    place = fitted(sheet.points, width, height);
+    if (!held || !place) place = fitted(sheet.points, width, height);
     picture.setAttribute("viewBox", `0 0 ${width} ${height}`);
     const at = sheet.points.map(place);
     const d = (corners) => corners.map((v, k) => `${k ? "L" : "M"}${at[v][0]} ${at[v][1]}`).join("");
@@ -52,10 +53,12 @@ export function createPattern(holder, sheet, store, { onVertex, onHint, poppable
       svg("g", { role: "group", "aria-label": "Folds: ask for a mountain or a valley" }, ...folds),
       border,
       svg("g", { role: "group", "aria-label": "Vertices: pop one through" }, ...vertices),
+      over,
     );
     for (const nodes of [folds, vertices]) nodes.find((node) => node.hasAttribute("tabindex"))?.setAttribute("tabindex", 0);
     if (kept) picture.querySelector(`[data-${kept[0]}="${kept[1]}"]`)?.focus({ preventScroll: true });
     paint();
+    after?.();
   }
 
   function paint() {
@@ -126,6 +129,19 @@ export function createPattern(holder, sheet, store, { onVertex, onHint, poppable
   store.on(["way", "mirrored", "asks", "ways"], paint);
   new ResizeObserver(layout).observe(holder);
   layout();
+
+  return {
+    place: (point) => place(point),
+    back: (pixel) => place.back(pixel),
+    hold: (yes) => (held = yes),  // the scale is kept while a vertex moves
+    redraw: layout,
+    onLayout: (call) => (after = call),
+    overlay: (nodes) => over.replaceChildren(...nodes),
+    mark(marks) {
+      sheet.marks = new Map(marks.map((one) => [one.vertex, one]));
+      layout();
+    },
+  };
 }
 
 // The Tab key stops at only one node of a group; the arrow keys go to the others.
@@ -141,7 +157,9 @@ function fitted(points, width, height) {
   const low = [0, 1].map((c) => extreme(Math.min, c)), high = [0, 1].map((c) => extreme(Math.max, c));
   const scale = Math.min((width - 2 * MARGIN) / (high[0] - low[0]), (height - 2 * MARGIN) / (high[1] - low[1]));
   const left = (width - scale * (high[0] - low[0])) / 2, top = (height - scale * (high[1] - low[1])) / 2;
-  return ([x, y]) => [left + scale * (x - low[0]), height - top - scale * (y - low[1])].map((c) => Math.round(c * 100) / 100);
+  const there = ([x, y]) => [left + scale * (x - low[0]), height - top - scale * (y - low[1])].map((c) => Math.round(c * 100) / 100);
+  there.back = ([x, y]) => [low[0] + (x - left) / scale, low[1] + (height - top - y) / scale];
+  return there;
 }
 
 // The pixels between neighbouring vertices; they limit the size of lines and marks.

@@ -7,7 +7,7 @@ const TURNS = [0, 18, -18, 36, -36, 54, 72, 90, 108, 126, 144, 162, 180, 198, 21
 const FOLD = 1.3, FINEST = 0.3, ROOM = 14;  // pixels: widths of lines, and the distance for full width
 const FILLED = 0.9;  // the sheet fills this share of the picture
 
-export function createScene(canvas, sheet, flat, radius) {
+export function createScene(canvas, sheet, flat, radius, signal) {
   const renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
   const scene = new THREE.Scene();
   const camera = new THREE.PerspectiveCamera(VIEW, 1, radius / 50, radius * 60);
@@ -40,7 +40,8 @@ export function createScene(canvas, sheet, flat, radius) {
   // The border has the colour of text, so that it is visible on light and on dark ground.
   const dark = matchMedia("(prefers-color-scheme: dark)");
   const colour = () => outer.material.color.set(getComputedStyle(document.body).color);
-  dark.addEventListener("change", () => (colour(), want()));
+  dark.addEventListener("change", () => (colour(), want()), { signal });
+  signal.addEventListener("abort", () => (controls.dispose(), renderer.dispose(), renderer.forceContextLoss()));
   colour();
 
   let width = 0, height = 0, wanted = false, drawn = 0, fitted = [flat];
@@ -148,14 +149,22 @@ export function createScene(canvas, sheet, flat, radius) {
     want();
   }
 
+  // What is drawn of some positions, as a canvas that is right until the next picture.
+  function picture(positions) {
+    show(positions);
+    renderer.render(scene, camera);
+    return canvas;
+  }
+
   function want() {
-    if (wanted) return;
+    if (wanted || signal.aborted) return;
     wanted = true;
     requestAnimationFrame(draw);
   }
 
   function draw() {
     wanted = false;
+    if (signal.aborted) return;
     if (controls.enabled) controls.update();
     renderer.render(scene, camera);
     if (!drawn) performance.mark("first picture");
@@ -167,7 +176,7 @@ export function createScene(canvas, sheet, flat, radius) {
   canvas.addEventListener("webglcontextrestored", want);
   new ResizeObserver(resize).observe(canvas.parentElement);
   resize();
-  return { show, move, home, fit, drawn: () => drawn };
+  return { show, move, home, fit, picture, drawn: () => drawn };
 }
 
 // The normal of a triangle; its length is twice the area of the triangle.

@@ -17,9 +17,9 @@ export function createTransport(store) {
   let last = 0, forward = true;
 
   function step(now) {
-    const { playing, time } = store.get();
+    const { playing, time, speed } = store.get();
     if (!playing) return;
-    const by = Math.min((now - last) / 1000, 0.1) / SECONDS;
+    const by = (speed * Math.min((now - last) / 1000, 0.1)) / SECONDS;
     last = now;
     let next = time + (forward ? by : -by);
     if (next >= 1 || next <= 0) {
@@ -32,13 +32,14 @@ export function createTransport(store) {
 
   function toggle() {
     const { playing, time } = store.get();
-    if (play.disabled) return;
+    if (document.getElementById("transport").hidden) return;
     if (!playing) forward = time < 1;
     store.set({ playing: !playing });
   }
 
   slider.addEventListener("input", () => store.set({ time: slider.value / 1000, playing: false }));
   play.addEventListener("click", toggle);
+  document.getElementById("speed").addEventListener("change", ({ target }) => store.set({ speed: Number(target.value) }));
   store.on(["playing"], ({ playing }) => {
     paint(playing);
     if (!playing) return;
@@ -54,7 +55,8 @@ export function createTransport(store) {
   }
 
   function describe(motion) {
-    slider.disabled = play.disabled = !motion;
+    document.getElementById("transport").hidden = !motion;
+    if (!motion && store.get().playing) store.set({ playing: false });
     slider.value = motion ? Math.round(store.get().time * 1000) : 0;
     document.getElementById("ending").textContent = motion ? ENDINGS[motion.end] ?? motion.end : "";
     const ticks = (motion?.events ?? []).filter(({ time }) => time < motion.duration * 0.999).map(({ time }) => {

@@ -24,7 +24,7 @@ from exactfold.errors import (
     TooLargeError,
 )
 from exactfold.exact.numbers import shown
-from exactfold.pattern.drawing.drawing import LETTERS, Drawing, SvgReading
+from exactfold.pattern.drawing.drawing import LETTERS, Drawing, Loud, SvgReading
 from exactfold.pattern.drawing.formats.svg_path import check_chords
 from exactfold.pattern.drawing.formats.svg_strokes import Stroke, lettered
 from exactfold.pattern.drawing.segments import Place, drawing_of
@@ -292,8 +292,9 @@ def _letters(found: _Found, reading: SvgReading) -> tuple[list[str], list[str]]:
         strokes.append(stroke)
     letters, notes = lettered(strokes, replace(reading, colours=others or None))
     said = [
-        f"{counted(number, 'line')} of the layer {shown(layer)} "
-        + (f"read as {letter}" if letter else "left out")
+        f"{counted(number, 'line')} of the layer {shown(layer)} read as {letter}"
+        if letter
+        else Loud(f"{counted(number, 'line')} of the layer {shown(layer)} left out")
         for (layer, letter), number in remarks.items()
         if layer not in _OWN
     ]

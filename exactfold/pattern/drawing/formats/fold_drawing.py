@@ -17,7 +17,7 @@ from exactfold.errors import (
     TooLargeError,
 )
 from exactfold.exact.numbers import shown
-from exactfold.pattern.drawing.drawing import LETTERS, Drawing, Line, Point
+from exactfold.pattern.drawing.drawing import LETTERS, Drawing, Line, Loud, Point
 from exactfold.pattern.drawing.formats.fold_json import (
     components,
     exact_points,
@@ -160,7 +160,9 @@ def _drawing(frame: Mapping[str, Any], source: str, *, unfold: bool = False) -> 
         exact = surd_points(frame, points) or [*exact_points(frame, points)]
         check_unfolded(frame, points, faces)
     if _UNFOLDED in frame:
-        remarks.append(f"this is a folded state: its crease pattern is read from `{_UNFOLDED}`")
+        remarks.append(
+            Loud(f"this is a folded state: its crease pattern is read from `{_UNFOLDED}`")
+        )
     for k, edge in enumerate(edges):
         if len(edge) != 2:
             raise NotFoldError(f"edge {k} has {len(edge)} ends: {shown(edge)}")

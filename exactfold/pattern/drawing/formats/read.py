@@ -104,7 +104,8 @@ def _decoded(content: bytes, name: str) -> str:
     try:
         return content.decode(encoding)
     except (UnicodeDecodeError, LookupError):
-        raise UnknownFormatError(f"{name} is not text in {encoding}; {_NONE}") from None
+        known = "text" if encoding == "utf-8-sig" else f"text in {encoding}, as it says"
+        raise UnknownFormatError(f"{name} is not {known}; {_NONE}") from None
 
 
 def _utf8(content: bytes) -> bool:

@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 from exactfold._support.plurals import counted
 from exactfold.errors import MalformedDrawingError, NumberError, TooLargeError
 from exactfold.exact.numbers import parse_rational, shown
-from exactfold.pattern.drawing.drawing import Drawing, SvgReading
+from exactfold.pattern.drawing.drawing import Drawing, Loud, SvgReading
 from exactfold.pattern.drawing.formats.markup import xml_root
 from exactfold.pattern.drawing.formats.svg_path import NUMBER as NUMERAL
 from exactfold.pattern.drawing.formats.svg_path import (
@@ -144,8 +144,10 @@ def _curves(strokes: Sequence[Stroke], chords: int | None) -> list[str]:
         )
     check_chords(number, chords)
     remarks.append(
-        f"read {where} as {counted(chords, 'chord')} each: all answers are about the sheet with "
-        "these straight lines and rigid panels, not about the curved one"
+        Loud(
+            f"read {where} as {counted(chords, 'chord')} each: all answers are about the sheet "
+            "with these straight lines and rigid panels, not about the curved one"
+        )
     )
     return remarks
 

@@ -14,7 +14,7 @@ from typing import Final, TypeAlias
 from exactfold._support.plurals import counted
 from exactfold.errors import NumberError, UsageError
 from exactfold.exact.numbers import parse_rational, shown
-from exactfold.pattern.drawing.drawing import LETTERS, SvgReading
+from exactfold.pattern.drawing.drawing import LETTERS, Loud, SvgReading
 from exactfold.pattern.drawing.segments import Place
 
 RGB: TypeAlias = tuple[int, int, int]
@@ -111,8 +111,10 @@ def lettered(strokes: Sequence[Stroke], reading: SvgReading) -> tuple[list[str],
         if x and k not in sure
     )
     left = [
-        f"left out {counted(number, 'element')} of colour {shown(colour)} (`--colours` gives it a "
-        "letter)"
+        Loud(
+            f"left out {counted(number, 'element')} of colour {shown(colour)} (`--colours` gives "
+            "it a letter)"
+        )
         for colour, number in sorted(omitted.items())
     ]
     took = [
@@ -206,8 +208,11 @@ def _one_colour(strokes: Sequence[Stroke], guessed: bool) -> list[str]:
     if guessed:
         how = f"valleys where dashed, mountains where dash-dotted, else {how}"
     return [
-        f"no colour says which lines are mountains or valleys ({kinds}): all are read as {how}, "
-        "except the outermost, which are the boundary (`--colours` and `--dashes` give letters)"
+        Loud(
+            f"no colour says which lines are mountains or valleys ({kinds}): all are read as "
+            f"{how}, except the outermost, which are the boundary (`--colours` and `--dashes` give "
+            "letters)"
+        )
     ]
 
 

@@ -13,6 +13,7 @@ import numpy as np
 from exactfold._support.arrays import FloatArray
 from exactfold._support.plurals import counted
 from exactfold.errors import FoldedStateError
+from exactfold.pattern.drawing.drawing import Loud
 
 Point: TypeAlias = tuple[Fraction, Fraction]
 ComplexArray: TypeAlias = "np.ndarray[Any, np.dtype[np.complexfloating[Any, Any]]]"
@@ -67,7 +68,7 @@ def unfolded(places: Sequence[Space], faces: Sequence[tuple[int, ...]]) -> tuple
     points = [(Fraction(0), Fraction(0))] * len(places)
     for v, (x, y) in zip(used, flat.tolist(), strict=True):
         points[v] = (_rounded(x, digits), _rounded(y, digits))
-    return points, (
+    return points, Loud(
         f"this is a folded state: its {counted(len(faces), 'face')} are unfolded into a plane, "
         f"where they meet up to {max(misfit, _FINEST):.0e} of the size"
     )

@@ -48,6 +48,12 @@ class Accepted:
         left, value = self.system.rest(gathered(terms), self.drawn.turns(terms, parts))
         return not left and not value
 
+    def has(self, relation: Relation) -> bool:
+        """Whether a relation was accepted, perhaps as one of another kind with the same terms."""
+        terms = {frozenset((edge, sign * n) for edge, n in relation.terms) for sign in (1, -1)}
+        alike = any(frozenset(known.terms) in terms for known in self.relations)
+        return alike and self.is_implied(relation.terms, relation.parts)
+
     def add(self, relations: Iterable[Relation]) -> None:
         """Accepts relations."""
         for relation in relations:

@@ -99,10 +99,10 @@ class Directions:
         The angle must stand in the direction of the edge in the power 1 or -1.
         """
         x, y = self._without(edge, k)
-        quotient = _product(vector, (x, -y))
+        quotient = product(vector, (x, -y))
         if self.power(edge, k) < 0:
             quotient = quotient[0], -quotient[1]
-        self._fixed[k] = _short(quotient)
+        self._fixed[k] = with_a_one(quotient)
 
     def _without(self, edge: Edge, left_out: int | None) -> Vector:
         constant, terms = self.key(edge)
@@ -118,7 +118,7 @@ class Directions:
                 continue
             x, y = known
             for _ in range(abs(power)):
-                total = _product(total, (x, y if power > 0 else -y))
+                total = product(total, (x, y if power > 0 else -y))
         return _turned(total, whole)
 
     def _noise(self, k: int) -> float:
@@ -153,7 +153,7 @@ class Directions:
             self.field, angle = field, angle / 2
             # (x + length, y) has half the angle of (x, y), and (x - length, y) is at right angles
             half = [(x + length, field.number(y)), (x - length, field.number(y))]
-            vector = _short(min(half, key=lambda other: _off(other, angle)))
+            vector = with_a_one(min(half, key=lambda other: _off(other, angle)))
         self._short[k] = vector
 
     def _fraction(self, k: int) -> tuple[int, int]:
@@ -228,8 +228,8 @@ class _Grid:
             # modulo 1, the constant is the sum of share / q over all prime powers q of the grid
             share = steps * pow(self.parts // q, -1, q) % q
             for _ in range(share):
-                total = _product(total, factor)
-        return _short(total)
+                total = product(total, factor)
+        return with_a_one(total)
 
 
 def _with_root(field: SurdField, square: Number) -> tuple[SurdField, Surd]:
@@ -238,11 +238,12 @@ def _with_root(field: SurdField, square: Number) -> tuple[SurdField, Surd]:
     return field, field.root
 
 
-def _product(a: Vector, b: Vector) -> Vector:
+def product(a: Vector, b: Vector) -> Vector:
+    """The product of two vectors as complex numbers."""
     return a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]
 
 
-def _short(vector: Vector) -> Vector:
+def with_a_one(vector: Vector) -> Vector:
     """A multiple of a vector with a coordinate 1."""
     x, y = vector
     one = x.field.number(1)

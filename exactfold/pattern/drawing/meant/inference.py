@@ -6,6 +6,7 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from math import inf, pi
+from typing import Final
 
 from exactfold.errors import UsageError
 from exactfold.pattern.drawing.meant.accepted import Accepted
@@ -16,6 +17,9 @@ from exactfold.pattern.drawing.meant.naming import named, stated
 from exactfold.pattern.drawing.meant.noise import FINEST, last_digit, noise_level, stated_level
 from exactfold.pattern.drawing.meant.system import System
 from exactfold.pattern.drawing.meant.values import Angles, Edge, Relation
+
+_NAMED: Final = 3
+"""So many relations are named that contradict another one."""
 
 
 @dataclass(frozen=True)
@@ -106,17 +110,23 @@ def infer(
         chance=level.chance + accepted.chance,
         unit=None if grid is None else grid.unit,
     )
-    if accepted.contradicting:
-        return replace(plain, reason=_conflict(accepted, accepted.contradicting[0]))
-    deleted = named(accepted.relations, without)
+    found_all = [*accepted.relations, *accepted.contradicting]
+    deleted = named(found_all, without)
     if deleted or also:
         gone = {relation.name for relation in deleted}
-        kept = [relation for relation in accepted.relations if relation.name not in gone]
         accepted = Accepted(drawn, level.tolerance, floor)
-        accepted.add(kept)
-        accepted.add(stated(drawn, text, grid) for text in also)
+        accepted.add(relation for relation in found_all if relation.name not in gone)
+    if not accepted.contradicting:
+        for text in also:
+            relation = stated(drawn, text, grid)
+            if not accepted.has(relation):
+                accepted.add([relation])
         if accepted.contradicting:
             raise UsageError(_conflict(accepted, accepted.contradicting[0]))
+    if accepted.contradicting:
+        wrong = accepted.contradicting[0]
+        remedy = f"--without {wrong.name} leaves it out"
+        return replace(plain, reason=f"{_conflict(accepted, wrong)}; {remedy}")
     implied = [r for r in deleted if accepted.is_implied(r.terms, r.parts)]
     return replace(
         plain,
@@ -136,7 +146,8 @@ def _reasons(accepted: Accepted, implied: Sequence[Relation]) -> dict[str, tuple
 
 def _conflict(accepted: Accepted, relation: Relation) -> str:
     (others,) = accepted.reasons([relation])
-    return f"the relation {relation.name} contradicts {', '.join(others)}"
+    more = f" and {len(others) - _NAMED} more" if len(others) > _NAMED else ""
+    return f"the relation {relation.name} contradicts {', '.join(others[:_NAMED])}{more}"
 
 
 def _angles(drawn: Drawn, system: System[Edge]) -> Angles:

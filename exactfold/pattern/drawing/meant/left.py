@@ -6,7 +6,7 @@ of a proof.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import combinations
 from math import atan2, cos, exp, hypot, lcm, log, pi, sin
 from typing import TYPE_CHECKING, Final, Protocol
@@ -16,12 +16,13 @@ from exactfold.pattern.drawing.meant.values import Edge, Kind, Relation
 if TYPE_CHECKING:
     from exactfold.exact.surds import Number
 
-NEAREST: Final = 1e-3
+NEAREST: Final = 3e-3
 """No relation whose defect is larger is near."""
 _CHANCE: Final = 1e-3
 """Relations are near if random angles have so many as near with a lower probability."""
 _STEPS: Final = 30
-"""On a grid of so many steps across the sheet, no relation misses by less than `NEAREST`."""
+"""Points on a grid of so many steps across the sheet are not rounded; no relation there misses by
+less than 1e-3."""
 _TRUST: Final = 1e-9
 """Angles from floats are good to this; smaller defects are computed exactly."""
 
@@ -46,7 +47,7 @@ def left_relations(sheet: Sheet) -> tuple[Relation, ...]:
     """The relations that the sheet nearly has but does not have exactly, the nearest first.
 
     These are straight paths through a vertex, straight borders, and sums of Kawasaki at vertices
-    with four folds, with a defect of at most 1e-3. If k relations have at most the defect of the
+    with four folds, with a defect of at most 3e-3. If k relations have at most the defect of the
     k-th, and chance may bring k / 2 as near with a probability of at least 1e-3, these k are
     not near.
 
@@ -73,7 +74,7 @@ def left_relations(sheet: Sheet) -> tuple[Relation, ...]:
         if off * length / size >= NEAREST:
             continue
         if off < _TRUST:
-            off = _exact(sheet.vertices, terms)
+            off = _exact(sheet, terms)
         if off:
             near.append(Relation(kind, name, terms, 1, off * length / size))
     near.sort(key=lambda relation: relation.defect)
@@ -111,6 +112,11 @@ def nearly(relations: tuple[Relation, ...]) -> str:
     else:
         near = f"{len(relations)} relations nearly hold, such as {least.name}"
     return f"{near}, off by {least.defect:.1g} of the size"
+
+
+def off_by(relations: tuple[Relation, ...]) -> tuple[str, ...]:
+    """A line for each relation, with its defect."""
+    return tuple(f"{one.name} is off by {one.defect:.1e}" for one in relations)
 
 
 _Terms = tuple[tuple[Edge, int], ...]
@@ -157,17 +163,19 @@ def _test(
     return kind, name, tuple((_edge(v, w), sign) for w, sign in signs), off
 
 
-def _exact(vertices: Sequence[tuple[Number, Number]], terms: _Terms) -> float:
-    """The angle by which a sum misses a multiple of pi, from exact coordinates; 0 if it does not.
+def _exact(sheet: Sheet, terms: _Terms) -> float:
+    """The angle by which a sum misses a multiple of pi, from exact vectors; 0 if it does not.
 
     The product of the directions, conjugated where the sign is negative, is real if the sum is a
     multiple of pi.
     """
+    directions: Mapping[Edge, tuple[Number, Number]] = getattr(sheet, "directions", {})
     x: Number = 1
     y: Number = 0
-    for (i, j), sign in terms:
-        (ax, ay), (bx, by) = vertices[i], vertices[j]
-        u, w = bx - ax, (by - ay) * sign
+    for edge, sign in terms:
+        (ax, ay), (bx, by) = (sheet.vertices[v] for v in edge)
+        u, w = directions.get(edge, (bx - ax, by - ay))
+        w = w * sign
         x, y = x * u - y * w, x * w + y * u
     return abs(float(y / x)) if x else pi / 2
 

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from math import ceil, hypot, log10
-from typing import Final, TypeAlias
+from typing import Any, Final, Generic, TypeAlias, TypeVar
 
 import numpy as np
 
 from exactfold._support.arrays import FloatArray
-from exactfold.exact.surds import Number, Surd, SurdField
+from exactfold.exact.surds import Number, Surd
 from exactfold.pattern.drawing.meant.directions import Directions, Vector, cross
 from exactfold.pattern.drawing.meant.placing import Coordinate, Order, Step, placing_order
 from exactfold.pattern.drawing.meant.values import Angles, Edge
@@ -46,14 +46,16 @@ def placed_together(
     `NO_PLACES` or `TOO_LONG` if there are no such positions.
     """
     vectors = {line: directions.vector(edge) for line, edge in bound.items()}
-    units = {line: _unit(vector) for line, vector in vectors.items()}
+    units = {line: unit(vector) for line, vector in vectors.items()}
     order = placing_order(places, units, 100 * noise)
-    free = _free_values(written, places, order, noise)
+    free = free_values(written, places, order, noise)
     if free is None:
         return NO_PLACES
-    placed = _Placed(directions.field, vectors, free)
-    if not all(placed.place(step) for step in order.steps):
-        return TOO_LONG
+    placed = Placed(directions.field.number, vectors, free)
+    for step in order.steps:
+        placed.place(step)
+        if any(too_long(c) for form in placed.forms[step.vertex] for c in form.values()):
+            return TOO_LONG
     points = placed.points()
     off = any(cross(vector, _along(points, line)) for line, vector in vectors.items())
     return NO_PLACES if off else points
@@ -77,13 +79,14 @@ def bound_edges(angles: Angles) -> list[Edge]:
     return list(left)
 
 
-def _unit(vector: Vector) -> tuple[float, float]:
+def unit(vector: Vector) -> tuple[float, float]:
+    """The vector in floats, with length 1."""
     x, y = float(vector[0]), float(vector[1])
     length = hypot(x, y)
     return x / length, y / length
 
 
-def _free_values(
+def free_values(
     written: Written, places: FloatArray, order: Order, noise: float
 ) -> dict[Coordinate, Fraction] | None:
     """Short decimals for the free coordinates, with which all points are nearest to the drawing.
@@ -121,29 +124,33 @@ def decimals(step: float) -> int:
     return ceil(-log10(step))
 
 
-Form: TypeAlias = dict[Coordinate | None, Surd]
+Scalar = TypeVar("Scalar")
+Form: TypeAlias = dict[Coordinate | None, Any]
 """A sum of multiples of open coordinates; the constant stands at None."""
 
 
-class _Placed:
-    """Places the vertices exactly; free coordinates that follow from others are open at first."""
+class Placed(Generic[Scalar]):
+    """Places the vertices; free coordinates that follow from others are open at first.
+
+    All arithmetic is done with what `number` makes of exact numbers: these themselves, or balls.
+    """
 
     def __init__(
         self,
-        field: SurdField,
+        number: Callable[[Number], Scalar],
         vectors: Mapping[Edge, Vector],
         free: Mapping[Coordinate, Fraction],
     ) -> None:
-        self.field, self.vectors, self.free = field, vectors, free
+        self.number, self.exact, self.free = number, vectors, free
+        self.vectors: dict[Edge, tuple[Any, Any]] = {
+            line: (number(x), number(y)) for line, (x, y) in vectors.items()
+        }
         self.forms: dict[int, tuple[Form, Form]] = {}
         self.solved: dict[Coordinate, Form] = {}
-        self.inverses: dict[tuple[Vector, Vector], Surd] = {}
+        self.inverses: dict[tuple[Vector, Vector], Any] = {}
 
-    def place(self, step: Step) -> bool:
-        """Do one step; False if numbers become too long.
-
-        A condition that must hold anyway is checked later.
-        """
+    def place(self, step: Step) -> None:
+        """Do one step. A condition that must hold anyway is checked later."""
         v = step.vertex
         opened = [self._open(coordinate) for coordinate in step.free]
         if not step.lines:
@@ -159,7 +166,10 @@ class _Placed:
                 e, other = self.vectors[second], self._of(second[0] + second[1] - v)
                 apart = [_sum(other[k], start[k], -1) for k in (0, 1)]
                 along = _sum(
-                    _scaled(apart[1], e[0]), _scaled(apart[0], e[1]), -1, self._inverse(e, d)
+                    _scaled(apart[1], e[0]),
+                    _scaled(apart[0], e[1]),
+                    -1,
+                    self._inverse(second, first),
                 )
             self.forms[v] = (
                 _sum(start[0], along, d[0]),
@@ -168,11 +178,10 @@ class _Placed:
         for edge, open_one in step.checks:
             if open_one is not None:
                 self._solve(edge, open_one)
-        return not any(too_long(x) for form in self.forms[v] for x in form.values())
 
-    def points(self) -> list[Point]:
+    def points(self) -> list[tuple[Scalar, Scalar]]:
         """All points; a coordinate that is still open is set to 0."""
-        zero = self.field.number(0)
+        zero = self.number(0)
         for coordinate in reversed(self.solved):  # those that were solved last depend on no others
             self.solved[coordinate] = self._known(self.solved[coordinate])
         points = []
@@ -183,13 +192,15 @@ class _Placed:
 
     def _open(self, coordinate: Coordinate) -> Form:
         if coordinate in self.free:
-            return {None: self.field.number(self.free[coordinate])}
-        return {coordinate: self.field.number(1)}
+            return {None: self.number(self.free[coordinate])}
+        return {coordinate: self.number(1)}
 
-    def _inverse(self, e: Vector, d: Vector) -> Surd:
-        if (e, d) not in self.inverses:
-            self.inverses[e, d] = 1 / cross(e, d)
-        return self.inverses[e, d]
+    def _inverse(self, second: Edge, first: Edge) -> Any:
+        key = self.exact[second], self.exact[first]
+        if key not in self.inverses:
+            one: Any = self.number(1)
+            self.inverses[key] = one / self.number(cross(*key))
+        return self.inverses[key]
 
     def _of(self, v: int) -> tuple[Form, Form]:
         x, y = self.forms[v]
@@ -214,7 +225,7 @@ class _Placed:
             self.solved[open_one] = _scaled(off, -1 / factor)
 
 
-def _sum(a: Form, b: Form, factor: Number = 1, scale: Number = 1) -> Form:
+def _sum(a: Form, b: Form, factor: Any = 1, scale: Any = 1) -> Form:
     """(a + factor b) scale, without the coefficients that are 0."""
     total = dict(a)
     for key, value in b.items():
@@ -223,7 +234,7 @@ def _sum(a: Form, b: Form, factor: Number = 1, scale: Number = 1) -> Form:
     return {key: value * scale for key, value in total.items() if value}
 
 
-def _scaled(form: Form, scale: Number) -> Form:
+def _scaled(form: Form, scale: Any) -> Form:
     return {key: value * scale for key, value in form.items()} if scale else {}
 
 

@@ -18,6 +18,7 @@ _STEPS: Final = 30
 _CONVERGED: Final = 1e-14
 _CLOSE: Final = 1e-11
 """A sheet whose edges miss their lines by more, relative to the size, is not believed to exist."""
+_TIMES_NOISE: Final = (100, 10, 1)
 _LEAST: Final = 1e-9
 """Smaller singular values of the equations count as zero."""
 
@@ -44,12 +45,21 @@ def refined(places: FloatArray, angles: Angles, bound: Sequence[Edge], noise: fl
 
     Each step is nearly the shortest one that solves the linear equations. `noise` is the noise
     level of the drawing, relative to its larger side: equations that are dependent up to the noise
-    count as dependent.
+    count as dependent, and if no sheet is found, equations that are so up to less.
     """
+    for times in _TIMES_NOISE:
+        found = _refined(places, angles, bound, max(_LEAST, times * noise))
+        if found.exists:
+            break
+    return found
+
+
+def _refined(places: FloatArray, angles: Angles, bound: Sequence[Edge], least: float) -> Refined:
+    """Gauss-Newton; what belongs to singular values below `least` hardly counts."""
     low, size = places.min(axis=0), float(np.ptp(places, axis=0).max())
     now, free = (places - low) / size, np.array(angles.free, dtype=float)
     best, off = (now, free), np.inf
-    damping = max(_LEAST, 100 * noise) ** 2
+    damping = least**2
     for _ in range(_STEPS if bound else 0):
         missing, slopes = equations(now, free, angles, bound)
         before, off = off, float(abs(missing).max())

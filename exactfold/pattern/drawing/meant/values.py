@@ -17,7 +17,7 @@ Edge: TypeAlias = tuple[int, int]
 Kind: TypeAlias = Literal[
     "straight", "border", "kawasaki", "grid", "parallel", "mirrored", "sectors"
 ]
-Existence: TypeAlias = Literal["exact", "none"]
+Existence: TypeAlias = Literal["exact", "box", "none"]
 
 
 @dataclass(frozen=True)

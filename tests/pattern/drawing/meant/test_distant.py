@@ -105,8 +105,13 @@ def test_relations_that_contradict_each_other_are_named() -> None:
     assert inference.angles is None
     assert inference.relations == ()
     assert inference.reason == (
-        "the relation kawasaki@0 contradicts grid:0-1, grid:0-2, grid:0-3, grid:0-4"
+        "the relation kawasaki@0 contradicts grid:0-1, grid:0-2, grid:0-3 and 1 more; "
+        "--without kawasaki@0 leaves it out"
     )
+    without = infer(points, edges, edges[4:], noise=0.0024, unit=24, without=["kawasaki@0"])
+    assert without.reason == ""
+    assert without.angles is not None
+    assert {r.kind for r in without.relations} == {"grid"}
 
 
 def arrangement(count: int, seed: int) -> PanelPattern:

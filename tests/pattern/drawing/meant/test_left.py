@@ -90,3 +90,20 @@ def test_many_relations_are_near_even_if_each_alone_is_not():
     ]
     assert sorted(one.name for one in near if one.kind == "straight") == sorted(bent)
     assert len(bent) == 15
+
+
+def test_noise_of_a_thousandth_of_the_size_is_seen():
+    """The ends of parallel creases are moved by up to 1e-3 of the size in x and in y."""
+    rng = random.Random(3)
+    points = [
+        (Fraction(c + 12 * rng.uniform(-1e-3, 1e-3)) for c in (4 * i + j % 2, 4 * j))
+        for i in range(4)
+        for j in range(4)
+    ]
+    edges = [(4 * i + j, 4 * i + j + 1) for i in range(4) for j in range(3)]
+    edges += [(4 * i + j, 4 * i + j + 4) for i in range(3) for j in range(4)]
+    near = left_relations(PanelPattern(points, edges))
+    straight = {relation.name for relation in near if relation.kind == "straight"}
+    assert straight == {
+        f"straight@{4 * i + j}:{4 * i + j - 4}-{4 * i + j + 4}" for i in (1, 2) for j in (1, 2)
+    }

@@ -75,6 +75,17 @@ def test_a_stated_relation_holds() -> None:
     assert names(inference) > {"straight@5:4-6", "kawasaki@5"}, "exact relations are kept"
 
 
+def test_a_stated_relation_that_was_found_anyway_counts_once() -> None:
+    """Also if it is stated as one of another kind with the same edges, or twice."""
+    found = names(inferred())
+    assert "straight@5:4-6" in found
+    same = ["straight@5:4-6", "parallel:4-5,5-6", "grid:5-6,4-5", "kawasaki@5"]
+    assert names(inferred(also=same)) == found
+    new = "parallel:1-5,2-6"
+    assert new not in found
+    assert len(inferred(also=[new, new]).relations) == len(inferred().relations) + 1
+
+
 def test_a_stated_relation_that_contradicts_others_is_refused_by_name() -> None:
     flat = miura(rise=Fraction(1, 12))
     stated = ["grid:1-5", "sectors@5:6-1,1-4"]  # 1-5 is at 3 degrees, and at 0

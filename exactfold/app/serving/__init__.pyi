@@ -1,0 +1,1 @@
+from exactfold.app.serving.server import view_server as view_server

@@ -1,0 +1,67 @@
+"""Commands about one way of a drawing whose digits are in doubt: nothing is PROVED of the sheet."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from jsonschema import Draft202012Validator
+from running import PROVED, UNDECIDED, run
+
+import exactfold
+
+SAID = "UNDECIDED for the sheet that was meant; for the digits as written (--snap exact):"
+
+
+@pytest.fixture
+def drawing(tmp_path: Path) -> Path:
+    """Two diagonals and a ring round their crossing, whose corners are off by 2e-6 to 6e-4."""
+    corners = [[0, 0], [4, 0], [4, 4], [0, 4]]
+    inner = [[2.00001, 1.99997], [1.0003, 0.99992], [3.000007, 0.999998]]
+    inner += [[2.99988, 3.00005], [1.002, 2.9991]]
+    edges = [(0, 1), (1, 2), (2, 3), (0, 3)]
+    edges += [(4, 5), (4, 6), (4, 7), (4, 8), (5, 6), (6, 7), (7, 8), (5, 8)]
+    edges += [(0, 5), (1, 6), (2, 7), (3, 8), (0, 6), (1, 7), (2, 8), (3, 5)]
+    letters = ["B"] * 4 + ["U"] * 16
+    path = tmp_path / "diagonals.fold"
+    document: dict[str, Any] = {"vertices_coords": corners + inner, "edges_vertices": edges}
+    path.write_text(json.dumps({**document, "edges_assignment": letters}))
+    return path
+
+
+@pytest.mark.parametrize(
+    ("command", "options"),
+    [
+        ("branch", ["--up", "4"]),
+        ("actuate", ["--up", "4"]),
+        ("fold", ["--up", "4", "--until", "5deg"]),
+        ("export", ["--up", "4", "-o", "way.fold"]),
+    ],
+)
+def test_an_answer_about_digits_says_so_first(
+    command: str, options: list[str], drawing: Path, tmp_path: Path
+) -> None:
+    options = [str(tmp_path / x) if x == "way.fold" else x for x in options]
+    doubted = run(command, drawing, *options)
+    assert doubted.exit_code == UNDECIDED
+    assert doubted.stdout.startswith(SAID)
+    sure = run(command, drawing, *options, "--snap", "exact")
+    assert sure.exit_code == PROVED
+    assert SAID not in sure.stdout
+    data = json.loads(run(command, drawing, *options, "--json").stdout)
+    assert data["status"] == "undecided"
+    if command in ("branch", "actuate"):
+        Draft202012Validator(exactfold.schema(command)).validate(data)
+        assert "relations nearly hold" in data["reason"]
+        assert "; the digits as written: proved, " in data["reason"]
+
+
+def test_so_do_the_values_of_python(drawing: Path) -> None:
+    exact = exactfold.read(drawing, snap="exact")
+    for find in (exactfold.branch, exactfold.actuate):
+        found, sure = find(drawing, up=[4]), find(exact, up=[4])
+        assert (found.status, sure.status) == (exactfold.UNDECIDED, exactfold.PROVED)
+        assert found.reason.endswith(f"; the digits as written: proved, {sure.reason}")
+        assert "relations nearly hold" in found.reason
