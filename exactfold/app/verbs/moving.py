@@ -7,16 +7,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from exactfold._support.progress import Progress
-from exactfold.app.verbs.choosing import (
-    Choice,
-    ChosenBranch,
-    ChosenPanels,
-    Letters,
-    choose,
-    listed,
-    on_side,
-    panels_way,
-)
+from exactfold.app.verbs.choosing import choose, listed
+from exactfold.app.verbs.choosing_panels import panels_way
+from exactfold.app.verbs.chosen import Choice, ChosenBranch, ChosenPanels, Letters, on_side
 from exactfold.branches.counting.find import BoundaryHeights, Signs
 from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.result import BranchCount
