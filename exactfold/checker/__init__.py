@@ -25,8 +25,8 @@ the table of the eleven kinds:
              to fold with given letters (`panels`), both in docs/assignment.md; all assignments of
              a sheet with five corners (`assignments`, docs/circles.md);
   motion     the true motion along one branch (docs/motion.md); the loops of true motions through
-             the flat state (`loops`, docs/motions.md); the motion of rigid panels (`panels`,
-             docs/panel_motion.md).
+             the flat state (`loops`, docs/motion.md, 11); the motion of rigid panels (`panels`,
+             docs/motion.md, 18).
 
 `core/limits.py` says how much one file may ask for.
 

@@ -16,7 +16,8 @@ from exactfold.app.pictures.picture_files import checked_picture, write_picture
 from exactfold.app.shell.given import Given
 from exactfold.app.shell.patterns import in_doubt, read_any, tell_doubt, verdict
 from exactfold.app.shell.shell import EXIT, Bar, name_of, say
-from exactfold.app.verbs.choosing import ChosenBranch, ChosenPanels, choose
+from exactfold.app.verbs.choosing import choose
+from exactfold.app.verbs.chosen import ChosenBranch, ChosenPanels
 from exactfold.app.verbs.moving import along, along_panels, prove
 from exactfold.errors import UndecidedBranchError, UsageError
 from exactfold.motion.curves.motion import Motion

@@ -26,6 +26,7 @@ _FINER: Final = 3
 MOST_PICTURES: Final = 400
 MOST_PIXELS: Final = 2_000_000
 """Of one picture."""
+MOST_PIXELS_IN_ALL: Final = 200_000_000
 _COLOURS: Final = 192
 _FEW: Final = 6
 _LEAST_PAUSE: Final = 0.02
@@ -83,7 +84,11 @@ def filmed(pictures: Sequence[bytes], ending: str, seconds: float) -> str:
         raise UsageError(f"{len(pictures)} pictures: an animation has 2 to {MOST_PICTURES}")
     if not 0.1 <= seconds <= 600:
         raise UsageError(f"{seconds:g} seconds: an animation lasts 0.1 to 600")
-    opened = [_opened(data) for data in pictures]
+    opened: list[Image] = []
+    for data in pictures:
+        opened.append(_opened(data))
+        if opened[0].width * opened[0].height * len(pictures) > MOST_PIXELS_IN_ALL:
+            raise UsageError("the pictures of the animation are too large together")
     if len({picture.size for picture in opened}) != 1:
         raise UsageError("the pictures of an animation have one size")
     return base64.b64encode(film(opened, ending, seconds)).decode("ascii")

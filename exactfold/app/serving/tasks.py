@@ -121,7 +121,14 @@ class Session:
         }
         seconds = _LIVE_SECONDS if task.live else task.limit / 2
         listed = listed_ways(
-            opened, task.branches, None, task.frames, task.proving, None, limit=seconds
+            opened,
+            task.branches,
+            None,
+            task.frames,
+            task.proving,
+            None,
+            limit=seconds,
+            brief=task.live,
         )
         self.known, self._finders = Known(opened, name, listed), {}
         document = self.known.document([way for way, _ in listed.ways], served=True)

@@ -171,6 +171,8 @@ def test_a_form_of_another_page_cannot_post(server):
         ({"data": "%%%"}, 400, b"base64"),
         ({"data": 7}, 400, b"a text is not a text"),
         ({"fold": {}, "move": {}}, 400, b"vertex"),
+        ({"fold": "/etc/passwd"}, 400, b"a sheet of the page is a JSON object"),
+        ({"fold": 5}, 400, b"a sheet of the page is a JSON object"),
         ({"fold": {}, "move": {"vertex": True, "x": 0, "y": 0}}, 400, b"not a whole number"),
         (b'{"fold": {}, "move": {"vertex": 1, "x": Infinity, "y": 0}}', 400, b"not a number"),
     ],
@@ -220,6 +222,16 @@ def test_a_path_of_other_bytes_has_no_secret(server):
 def test_sizes_are_limited_before_anything_is_read(server, rows, status):
     answer = raw(server, head(server, *rows).encode())
     assert status in answer.split(b"\r\n")[0]
+
+
+def test_a_name_is_no_path(server, tmp_path):
+    """The name of a dropped file is only shown: no other file of the machine can be read by it."""
+    secret = tmp_path / "secret.cp"
+    secret.write_text("1 0 0 1 0\n", encoding="utf-8")
+    coded = base64.b64encode(b"nothing").decode()
+    for request in ({"name": str(secret), "data": coded}, {"name": str(secret)}):
+        first, *_ = lines(server, "open", {"session": "five"} | request)
+        assert first.get("name", "") == ("two-vertex" if "data" not in request else "")
 
 
 def test_who_sends_nothing_is_cut_off(server, monkeypatch):
