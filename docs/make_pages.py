@@ -1,7 +1,8 @@
 """The pages of the site that follow from the code, written into docs/generated as it is built.
 
 Public names by topic, with signatures and examples from their docstrings; every command with its
-options; the JSON Schema of all output. `python docs/make_pages.py` writes them without a site.
+options; the JSON Schema of all output; the viewer on the first page. `python docs/make_pages.py`
+writes them without a site.
 """
 
 from __future__ import annotations
@@ -24,6 +25,10 @@ from exactfold.app.cli import app
 from exactfold.app.schemas import DOCUMENTS, schema
 
 FOLDER: Final = Path(__file__).with_name("generated")
+LIVE: Final = FOLDER / "whole" / "live"
+"""Pages of the viewer, which the site has as they are."""
+SHOWN_LIVE: Final = ("pinwheel-base",)
+"""The shipped patterns that have such a page; the first is on the first page."""
 TOPICS: Final[Mapping[str, tuple[str, str, tuple[str, ...]]]] = {
     "verbs": (
         "The functions on top",
@@ -96,6 +101,9 @@ def write() -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         if not path.exists() or path.read_text(encoding="utf-8") != content:
             path.write_text(content, encoding="utf-8")
+    LIVE.mkdir(parents=True, exist_ok=True)
+    for name in SHOWN_LIVE:
+        exactfold.view(name, path=LIVE / f"{name}.html")
 
 
 # Public names

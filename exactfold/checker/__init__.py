@@ -17,7 +17,7 @@ A kind of certificate is one `Kind`, which stands beside the theory that checks 
 the table of the eleven kinds:
 
   branches   all branches in one object (`listing`, docs/certificate.md); all branches line by line
-             (`compact`, docs/compact-certificate.md); one branch (`branch`, docs/branch.md), which
+             (`compact`, docs/certificate.md); one branch (`branch`, docs/branch.md), which
              is checked by formulas of its own; the pieces of a sheet with more than four corners
              (`connected_components`, docs/any_border.md);
   panels     all motions of a sheet of rigid panels (docs/certificate.md);
