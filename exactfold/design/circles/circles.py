@@ -1,9 +1,9 @@
 """All mountain-valley assignments of a convex sheet with five boundary vertices, by circles.
 
 For each sign vector, the solutions up to a positive factor form a circle; the direction of the
-boundary heights is the angle on it (docs/any_border.md, Theorem 13). Along a circle the letters change
-only where a fold is flat. All such places are computed exactly, fold by fold, and sorted. Between
-two neighbouring places one branch is proved.
+boundary heights is the angle on it (docs/any_border.md, Theorem 13). Along a circle the letters
+change only where a fold is flat. All such places are computed exactly, fold by fold, and sorted.
+Between two neighbouring places one branch is proved.
 """
 
 from __future__ import annotations

@@ -89,7 +89,7 @@ def covering(pattern: CreasePattern, progress: Progress | None = None) -> Coveri
 
 
 def covering_document(pattern: CreasePattern, points: Covering) -> Document:
-    """The certificate of the list, not yet verified (docs/any_border.md, The certificate of all assignments)."""
+    """The certificate of the list, not yet verified (docs/any_border.md, Theorem 14)."""
     claims: AssignmentsClaims = {"assignments": list(points.assignments)}
     return {
         "format": ASSIGNMENTS.format,
