@@ -90,14 +90,17 @@ def mathematics(latex: str) -> str:
 def code_links(names: str) -> str:
     """Links to the files that define the names in exactfold. Raises `KeyError` if one is not."""
     where = definitions()
-    return ", ".join(f"[`{n}`](../{where[n.partition('.')[0]]})" for n in names.split(", "))
+    return ", ".join(
+        f"[`{n}`](../{where.get(n) or where[n.partition('.')[0]]})" for n in names.split(", ")
+    )
 
 
 @cache
 def definitions() -> dict[str, str]:
     """Path in the repository by name of a class, a function or a module of exactfold.
 
-    Dual spaces, which only proofs need, are in `proofs`.
+    A function also has an entry with its module before it, as modules may share a name. Dual
+    spaces, which only proofs need, are in `proofs`.
     """
     found: dict[str, str] = {}
     root = HERE.parent
@@ -105,24 +108,56 @@ def definitions() -> dict[str, str]:
         where = path.relative_to(HERE.parent).as_posix()
         names = re.findall(r"^(?:class|def) (\w+)", path.read_text(encoding="utf-8"), re.MULTILINE)
         found |= dict.fromkeys(names, where)
+        found |= dict.fromkeys((f"{path.stem}.{name}" for name in names), where)
         found.setdefault(path.stem, where)
     return found
 
 
 def entry(statement: Statement, proof: Proof) -> str:
-    """One statement with its ruling, correction, note and what it rests on."""
-    ruling = statement.ruling.value.capitalize()
-    lines = [f"**{statement.key}** ({where(statement)}). *{ruling}; {proof.kind(statement)}.*", ""]
-    lines += printed(statement)
-    if statement.corrected:
-        lines.append(f"- correct: {mathematics(statement.corrected)}")
-    if statement.note:
-        lines.append(f"- {' '.join(statement.note.split())}")
-    lines.append(f"- rests on: {proof.basis(statement)}")
-    script = f"[`python -m proofs {statement.key}`](../proofs/{proof.name}.py)"
-    code = f"; code: {code_links(statement.code)}" if statement.code else ""
-    lines.append(f"- steps: {script}{code}")
-    return "\n".join(wrapped(line) for line in lines) + "\n\n"
+    """One statement in a few lines: its place, what it says, and what shows it.
+
+    Of the note only the first sentence stands here; `python -m proofs KEY` prints all of it. What
+    does not hold as printed is on the page of errata, with the words of the paper.
+    """
+    script = f"[{proof.name}](../proofs/{proof.name}.py)"
+    code = f"; {code_links(statement.code)}" if statement.code else ""
+    shown = f"*{basis(statement, proof)}*: {script}{code}"
+    if statement.ruling is not Ruling.AS_PRINTED:
+        ruling = "corrected" if statement.corrected else "false"
+        says = f"**{ruling}**, see [errata](errata.md)."
+    else:
+        note = sentence(statement.note)
+        says = mathematics(statement.source) + (f" \u2014 {note}" if note else ".")
+    return f"{wrapped(f'- **{statement.key}**{place(statement)}: {says} {shown}')}\n"
+
+
+def sentence(note: str) -> str:
+    """The first sentence of a note, with the first letter as it is.
+
+    >>> sentence("for regular ones. The others are counted in docs/theorem.md, 4")
+    'for regular ones.'
+    """
+    text = re.split(r"(?<=[\w)])\. (?=[A-Z])", " ".join(note.split()))[0]
+    return f"{text}." if text else ""
+
+
+def place(statement: Statement) -> str:
+    """The place without its section, which stands in the heading."""
+    if statement.is_own:
+        return f" ({statement.place})"
+    text = re.sub(
+        r"^(Section [IVX]+( [A-D])?|Appendix [A-D]|Introduction),? ?", "", where(statement)
+    )
+    return f" ({text})" if text else ""
+
+
+def basis(statement: Statement, proof: Proof) -> str:
+    """What it rests on, without what is true of all that does not hold as printed."""
+    text = re.sub(r"proved for all \(\d+ steps?\)", "proved", proof.basis(statement))
+    return (
+        re.sub(r"(^|; )the printed form refuted by an example$", "", text)
+        or "refuted by an example"
+    )
 
 
 def where(statement: Statement) -> str:
@@ -148,7 +183,7 @@ def erratum(statement: Statement, proof: Proof) -> str:
         lines.append("- false, and not to be mended by a condition")
     lines.append(f"- why: {' '.join(statement.note.split())}")
     script = f"[`python -m proofs {statement.key}`](../proofs/{proof.name}.py)"
-    lines.append(f"- shown by: {script} ({proof.basis(statement)})")
+    lines[-1] += f" ({script}: {basis(statement, proof)})"
     text = "\n".join(wrapped(line) for line in lines) + "\n"
     for old, new in REPLACEMENTS[statement.key]:
         instead = [f"%   {row}" for row in rows(old, 92)]
@@ -166,9 +201,9 @@ def rows(latex: str, width: int) -> list[str]:
 def wrapped(line: str) -> str:
     """An item of a list in lines of at most 100 characters, where no formula or link is longer.
 
-    >>> print(wrapped("- printed: " + "a word, " * 12))
-    - printed: a word, a word, a word, a word, a word, a word, a word, a word, a word, a word, a
-      word, a word,
+    >>> print(wrapped("- a word, " + "one more, " * 11))
+    - a word, one more, one more, one more, one more, one more, one more, one more, one more, one
+      more, one more, one more,
     """
     kept = re.sub(r"\$`.+?`\$|`[^`]+`", lambda code: code[0].replace(" ", "\0"), line)
     kept = re.sub(r" ([-+*=|<>]) ", "\0\\1\0", kept)
@@ -204,15 +239,16 @@ def pages() -> dict[str, str]:
         "# The paper, statement by statement\n\n"
         'Chen & Santangelo, "Branches of triangulated origami near the unfolded state". '
         f"{len(papers)} statements of the paper: {summary}. {len(stated) - len(papers)} statements "
-        "of exactfold come last. Each says what it rests on, and its steps are run by a machine "
-        f"(`python -m proofs`, {len(steps)} steps; {tested} of them test exact cases rather than "
-        f"prove, and say so). What is given as printed is what the paper prints, word by word; "
-        'a formula that is put together from it follows after "that is". '
-        f"{formulas} statements are formulas that a step evaluates, and with one small mistake in "
-        f"them, {mutants} in all, they do not hold, but for a few that are true as well, each with "
-        "its reason in the tests; the others are in words. All other steps "
-        f"refuse at least one of {mistakes} deliberate mistakes each. Written by "
-        f"`python docs/make_statements.py`.\n\n{STANDARD}"
+        "of exactfold come last. In quotation marks or as a formula stands what the paper "
+        "prints, word by word, then a condition or a remark, then *what shows it*, the script, and "
+        "the code that uses it. *Proved* is proved for all, "
+        "*tested on cases* is evidence and no proof. `python -m proofs KEY` runs the steps of a "
+        "statement and prints its whole note; `python -m proofs` runs "
+        f"all {len(steps)} steps, {tested} of which test exact cases. {formulas} statements are "
+        f"formulas that a step evaluates; of {mutants} small mistakes in them all are "
+        "noticed but for a few that leave them true, each with its reason in the tests. The other "
+        f"statements are in words; their steps refuse at least one of {mistakes} deliberate "
+        f"mistakes each. Written by `python docs/make_statements.py`.\n\n{STANDARD}"
     )
     head = "\n".join(textwrap.fill(part, 100) for part in head.split("\n")) + "\n"
     wrong = [(s, p) for s, p in stated if s.ruling is not Ruling.AS_PRINTED]
@@ -247,28 +283,26 @@ MEANINGS = {
 
 STANDARD = (
     "**The standard.** A statement is judged as it is worded, for the patterns that its section "
-    "admits. If it says that it is about generic patterns, special ones that break it are named in "
-    "a note and do not count against it; if it does not say so, one exact counterexample does. "
-    "Where the paper draws a conclusion (\u201cwe have thus shown\u201d), the inference is judged "
-    "as well. What the paper calls conjectural is judged like the rest; a remark "
-    "that it makes with reserve is named as such. Reports of its computations are taken as "
-    "reported, and compared with samples of our own."
+    "admits. If it is about generic patterns, special ones that break it are named in a note and "
+    "do not count against it; otherwise one exact counterexample does. Inferences "
+    "(\u201cwe have thus shown\u201d) and conjectures are judged as well; a remark with reserve is "
+    "named as such. Reports of computations are taken as reported, and compared with samples of "
+    "our own."
 )
 
 
-ERRATA = f"""# Errata of the paper
+ERRATA = """# Errata of the paper
 
-What an author could act upon: every statement of Chen & Santangelo, "Branches of triangulated
-origami near the unfolded state", that does not hold as printed, with the correction and the script
-that checks it. None of them touches the paper's main observation, which is a theorem: all branches
-are real ([Theorem 2](theorem.md)), and on almost every sheet $`2^{{V_i - V_t}}`$ of them differ
-([Theorem 11](generic.md)). Written by `python docs/make_statements.py`.
+Every statement of Chen & Santangelo, "Branches of triangulated origami near the unfolded state",
+that does not hold as printed, with the correction and the script that checks it. For each an exact
+example refutes what is printed, or another place of the paper says otherwise. None touches the
+paper's main observation, which is a theorem: all branches are real ([Theorem 2](theorem.md)), and
+on almost every sheet $`2^{V_i - V_t}`$ of them differ ([Theorem 11](generic.md)). The
+[standard](statements.md) is that of all statements. Written by `python docs/make_statements.py`.
 
-The blocks of LaTeX can be pasted: below the passage of the paper's source that is meant, as a
-comment, stands what to put in its place. `python docs/read_paper.py PAPER.tex CORRECTED.tex` does
-it for all of them at once.
-
-{textwrap.fill(STANDARD, 100)}
+The blocks of LaTeX can be pasted: below the passage of the paper's source, as a comment, stands
+what to put in its place. `python docs/read_paper.py PAPER.tex CORRECTED.tex` does it for all of
+them.
 
 """
 

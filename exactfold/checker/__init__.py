@@ -17,7 +17,7 @@ A kind of certificate is one `Kind`, which stands beside the theory that checks 
 the table of the eleven kinds:
 
   branches   all branches in one object (`listing`, docs/certificate.md); all branches line by line
-             (`compact`, docs/compact-certificate.md); one branch (`branch`, docs/branch.md), which
+             (`compact`, docs/certificate.md); one branch (`branch`, docs/branch.md), which
              is checked by formulas of its own; the pieces of a sheet with more than four corners
              (`connected_components`, docs/any_border.md);
   panels     all motions of a sheet of rigid panels (docs/certificate.md);
@@ -25,8 +25,8 @@ the table of the eleven kinds:
              to fold with given letters (`panels`), both in docs/assignment.md; all assignments of
              a sheet with five corners (`assignments`, docs/any_border.md);
   motion     the true motion along one branch (docs/motion.md); the loops of true motions through
-             the flat state (`loops`, docs/motions.md); the motion of rigid panels (`panels`,
-             docs/panel_motion.md).
+             the flat state (`loops`, docs/motion.md, 11); the motion of rigid panels (`panels`,
+             docs/motion.md, 18).
 
 `core/limits.py` says how much one file may ask for.
 

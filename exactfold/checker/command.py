@@ -33,6 +33,7 @@ from .core.reading import (
 from .letters.assignments import ASSIGNMENTS
 from .letters.letters import LETTERS
 from .letters.panels import PANEL_LETTERS
+from .letters.panels_freedom import PANEL_FREEDOM
 from .letters.panels_listed import PANEL_ASSIGNMENTS
 from .motion.certificate import MOTION
 from .motion.loops import LOOPS
@@ -51,6 +52,7 @@ DOCUMENTS: tuple[DocumentKind[Any], ...] = (
     ASSIGNMENTS,
     PANEL_LETTERS,
     PANEL_ASSIGNMENTS,
+    PANEL_FREEDOM,
     MOTION,
     PANEL_MOTION,
     MEANT,

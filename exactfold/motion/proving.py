@@ -144,7 +144,7 @@ class MotionProof:
         """The certificate of the proved part, for `exactfold.check` and `write_certificate`.
 
         If a motion of a sheet with four corners is proved until its return, the certificate is a
-        file of loops with this one loop (docs/motions.md). Any other motion has a certificate of
+        file of loops with this one loop (docs/motion.md, 15). Any other motion has a certificate of
         its own for the part that is proved. It claims nothing about a contact that the motion
         passes.
 
@@ -232,9 +232,9 @@ def prove(motion: Motion, *, bits: int = BITS[0], progress: Progress | None = No
 
     From the flat state to the end of the motion, tubes enclose exactly one configuration for each
     parameter (docs/motion.md), and separating planes show which faces do not touch
-    (docs/contacts.md). If the motion ends at its first contact, this contact is proved; otherwise
+    (docs/motion.md, 16). If the motion ends at its first contact, this contact is proved; otherwise
     the proof says until when the motion is clear. If the motion passes through branch points, the
-    proof goes on along the same arc (docs/motions.md); if it ends at a branch point, it is proved
+    proof goes on along the same arc (docs/motion.md, 6); if it ends at a branch point, it is proved
     up to this point. The result has the frames of the proved curve, each enclosed in a box
     (`Motion.bounds`). All numbers in the tubes have `bits` binary digits after the point.
 

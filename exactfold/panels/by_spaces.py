@@ -25,9 +25,7 @@ from exactfold.panels.subspaces import Leaf, independent_parts, leaves, reduced
 from exactfold.panels.trees import tree_components
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
-MOST_DIMENSION = 16
-MOST_STEPS = 600_000
-MOST_STEPS_BEYOND = 30_000
+MOST_STEPS = 6_000_000
 MOST_REDUCTION = 3_000_000
 MOST_FOUND = 20_000_000
 
@@ -36,10 +34,10 @@ def by_spaces(pattern: PanelPattern, moving: Mapping[int, Star], clock: Clock = 
     """The motions of a part with vertices of any degree: linear spaces, and which of them fold.
 
     The dimension of the first-order motions is exact. The part is not decomposed if several forms
-    remain on a space and are not shown to be one component, if there are too many spaces, if the
-    dimension is too large, or if the clock has passed. Then the components are counted if the
-    vertices form a tree. Otherwise the result contains the components that were found, and the
-    folds that stay flat to second order.
+    remain on a space and are not shown to be one component, if splitting the spaces takes more than
+    `MOST_STEPS` steps, or if it takes more than half of the time of the clock. Then the components
+    are counted if the vertices form a tree. Otherwise the result contains the components that were
+    found, and the folds that stay flat to second order.
     """
     try:
         rows, size = first_order(moving, clock.share(1 / 2).at_least(QUICK))
@@ -49,30 +47,14 @@ def by_spaces(pattern: PanelPattern, moving: Mapping[int, Star], clock: Clock = 
     if left == 0:
         still = tuple(sorted({edge for star in moving.values() for edge in star.folds}))
         return Part(tuple(moving), "subspaces", {0: 1}, {0: 1}, dimension=size, still=still)
-    components: list[FoundComponent] | None = None
-    if size > MOST_DIMENSION:
-        reason = (
-            f"the first-order motions of {counted(len(moving), 'vertex')} round vertex "
-            f"{next(iter(moving))} have dimension {size}; they are decomposed only up to dimension "
-            f"{MOST_DIMENSION}"
-        )
-        components, ended = _found(pattern, moving, small, left, clock)
-        if not ended:
-            if clock.passed:
-                reason = f"{reason}; {clock.said}"
-            if (tree := by_tree(moving, size)) is not None:
-                return tree
-            return _partial(pattern, moving, (rows, size), (small, left), components, reason, clock)
     try:
-        most = MOST_STEPS if components is None else MOST_STEPS_BEYOND
-        return _complete(pattern, moving, (rows, size), (small, left), most, components, clock)
+        return _complete(pattern, moving, (rows, size), (small, left), clock)
     except TooManyModesError as error:
         if (tree := by_tree(moving, size)) is not None:
             return tree
-        if components is None:
-            where = f"the part of {counted(len(moving), 'vertex')} with vertex"
-            reason = f"{where} {next(iter(moving))}: {error}"
-            components, _ = _found(pattern, moving, small, left, clock)
+        where = f"the part of {counted(len(moving), 'vertex')} with vertex"
+        reason = f"{where} {next(iter(moving))}: {error}"
+        components, _ = _found(pattern, moving, small, left, clock)
         return _partial(pattern, moving, (rows, size), (small, left), components, reason, clock)
 
 
@@ -105,8 +87,6 @@ def _complete(
     moving: Mapping[int, Star],
     first: tuple[Rows, int],
     smaller: tuple[Rows, int],
-    most: int,
-    components: list[FoundComponent] | None,
     clock: Clock,
 ) -> Part:
     """All components; raises `TooManyModesError` if this is too much work or forms remain.
@@ -116,7 +96,7 @@ def _complete(
     """
     vertices = tuple(moving)
     (rows, size), (small, left) = first, smaller
-    spaces = leaves(moving, small, left, most, clock)
+    spaces = leaves(moving, small, left, MOST_STEPS, clock.share(1 / 2))
     counts: dict[int, int] = {}
     for leaf in spaces:
         clock.check()
@@ -133,9 +113,8 @@ def _complete(
     if len(spaces) == 1:
         alone = alone or is_one_family(moving, size, spaces[0].size, spaces[0].vertices)
     known = all(folding) and alone
-    if all(folding):
-        components = []
-    elif components is None:
+    components: list[FoundComponent] = []
+    if not all(folding):
         components, _ = _found(pattern, moving, small, left, clock)
     return Part(
         vertices,

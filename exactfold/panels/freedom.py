@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Final
 
 import numpy as np
@@ -65,11 +65,17 @@ def most_first_order(stars: Mapping[int, Star]) -> int | None:
 
 
 def _chosen(stars: Mapping[int, Star], rows: Rows) -> list[int]:
-    """Vertices whose local motions seem to combine freely, those with the fewest folds first."""
-    place = {edge: k for k, edge in enumerate(rows)}
-    if not place:
-        return []
-    basis = in_floats(rows.values())
+    """Vertices whose local motions seem to combine freely in the motions of a sheet."""
+    return combining(stars, list(rows), in_floats(rows.values())) if rows else []
+
+
+def combining(stars: Mapping[int, Star], edges: Sequence[Edge], basis: FloatArray) -> list[int]:
+    """Vertices whose local motions seem to combine freely in a space of motions.
+
+    The space is given by the densities of the folds on a basis. Those with the fewest folds come
+    first.
+    """
+    place = {edge: k for k, edge in enumerate(edges)}
     if basis.shape[1] <= _MOST_TURNED:
         basis = np.linalg.qr(basis)[0]
     best: list[int] = []

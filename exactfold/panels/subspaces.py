@@ -9,13 +9,13 @@ from fractions import Fraction
 from typing import Final, TypeAlias
 
 import networkx as nx
-from flint import fmpq
+from flint import arb, fmpq
 
 from exactfold._support.clock import UNLIMITED, Clock
 from exactfold._support.plurals import counted
 from exactfold.errors import TooManyModesError
 from exactfold.exact.joined_fields import joined
-from exactfold.exact.surds import Number, common_field, real_root, sign
+from exactfold.exact.surds import Number, ball, common_field, real_root, sign
 from exactfold.panels.kernel import Entry, Rows, entry, imposed, number
 from exactfold.panels.stars import Star
 from exactfold.pattern.panel_pattern import Edge
@@ -23,6 +23,7 @@ from exactfold.pattern.panel_pattern import Edge
 Vector: TypeAlias = list[Entry]
 Squares: TypeAlias = list[tuple[Entry, Vector]]
 MOST_ROOTS: Final = 5
+_BITS: Final = 53
 
 
 @dataclass(frozen=True)
@@ -80,13 +81,16 @@ class SubspaceSearch:
         self.stars = stars
         self.most = most
         self.clock = clock
-        self.work = 0
+        self.work = self._kept = 0
 
-    def solved(self, rows: Rows, size: int) -> list[Leaf]:
-        """The leaves of one space: the product of the leaves of its independent parts."""
+    def solved(self, rows: Rows, size: int, settled: frozenset[int] = frozenset()) -> list[Leaf]:
+        """The leaves of one space: the product of the leaves of its independent parts.
+
+        The forms of `settled` vertices are known to vanish on the space.
+        """
         total: list[Leaf] = [Leaf({}, 0, ())]
         for part, part_size in independent_parts(rows, size, self.stars):
-            part_leaves = _maximal(self._split(part, part_size))
+            part_leaves = _maximal(self._split(part, part_size, settled))
             total = [_sum(a, b) for a in total for b in part_leaves]
             self.count(len(total))
         return total
@@ -102,36 +106,89 @@ class SubspaceSearch:
                 "splitting its spaces of motions one by one takes more work than is allowed"
             )
 
-    def _split(self, rows: Rows, size: int) -> list[Leaf]:
-        rows, size, products, left = self.reduced(rows, size)
-        if not products:
-            return [made_leaf(rows, size, left)]
+    def _split(self, rows: Rows, size: int, settled: frozenset[int]) -> list[Leaf]:
+        """The leaves of a part, without some that lie in leaves found before.
+
+        The form of the chosen vertex has two linear factors. First the space on which one of them
+        vanishes is split. After that, motions on which the other vanishes are wanted only where the
+        first does not. So the first factor is kept as a row, the density of a fold that is not in
+        the sheet (`_is_kept`), and spaces on which it vanishes are left out.
+        """
+        kept = sum(map(_is_kept, rows))
+        rows, size, found = self._reduced(rows, size, settled)
+        if sum(map(_is_kept, rows)) < kept:
+            return []
+        if not found.products:
+            return [made_leaf(rows, size, found.left)]
+        v, (one, other) = self._chosen(found, rows)
+        now = found.settled | {v}
         solutions: list[Leaf] = []
-        for functional in factors(products, rows):
-            child, child_size = imposed(rows, size, functional)
-            solutions += self.solved(child, child_size)
+        child, child_size = imposed(rows, size, one)
+        if sum(map(_is_kept, child)) == kept:
+            solutions += self.solved(child, child_size, now)
+        self._kept += 1
+        child, child_size = imposed({**rows, (v, -self._kept): one}, size, other)
+        if sum(map(_is_kept, child)) == kept + 1:
+            solutions += self.solved(child, child_size, now)
         return solutions
+
+    def _chosen(self, found: _Forms, rows: Rows) -> tuple[int, tuple[Vector, Vector]]:
+        """The vertex whose form is split next, and the factors of its form.
+
+        It needs no new square root, if there is such a vertex, and it has the most neighbours that
+        are settled, so that loops close early.
+        """
+
+        def rank(v: int) -> tuple[int, int, int]:
+            folds = [edge for edge in self.stars[v].folds if edge in rows]
+            near = sum(u in found.settled for edge in folds for u in edge)
+            return -near, len(folds), v
+
+        order = sorted(found.products, key=rank)
+        k, both = _factored([found.products[v] for v in order], rows, MOST_ROOTS)
+        return order[k], both
 
     def reduced(self, rows: Rows, size: int) -> tuple[Rows, int, list[Squares], list[int]]:
         """The space after all semidefinite forms; the forms that split; the vertices with other
         forms.
         """
+        rows, size, found = self._reduced(rows, size, frozenset())
+        return rows, size, list(found.products.values()), found.left
+
+    def _reduced(self, rows: Rows, size: int, settled: frozenset[int]) -> tuple[Rows, int, _Forms]:
+        known = set(settled)
         while True:
-            products: list[Squares] = []
+            products: dict[int, Squares] = {}
             left: list[int] = []
             before = size
             weight = common_field(x for row in rows.values() for x in row).dimension ** 2
-            for v in sorted({v for edge in rows for v in edge if v in self.stars}):
+            for v in sorted({v for edge in rows for v in edge if v in self.stars} - known):
                 self.count(len(self.stars[v].folds) * size * weight)
                 squares = squares_of(self.stars[v], rows, size, self.clock)
                 if is_semidefinite(squares):
                     rows, size = imposed(rows, size, *(functional for _, functional in squares))
+                if not squares or is_semidefinite(squares):
+                    known.add(v)
                 elif len(squares) == 2:
-                    products.append(squares)
-                elif squares:
+                    products[v] = squares
+                else:
                     left.append(v)
             if size == before:
-                return rows, size, products, left
+                return rows, size, _Forms(products, left, frozenset(known))
+
+
+@dataclass(frozen=True)
+class _Forms:
+    """The forms of vertices on a space: those that split, those left, and those that vanish."""
+
+    products: dict[int, Squares]
+    left: list[int]
+    settled: frozenset[int]
+
+
+def _is_kept(edge: Edge) -> bool:
+    """Whether the row of this key is a factor that must not vanish; folds join two vertices."""
+    return edge[1] < 0
 
 
 def reduced(
@@ -161,24 +218,32 @@ def factors(
     needs no new square root is preferred. Raises `TooManyModesError` if a new root is needed and
     there are `most_roots` roots already.
     """
+    return _factored(products, rows, most_roots)[1]
+
+
+def _factored(
+    products: Sequence[Squares], rows: Rows, most_roots: int
+) -> tuple[int, tuple[Vector, Vector]]:
+    """The place of the form that is chosen by `factors`, and its factors."""
     field = common_field(x for row in rows.values() for x in row)
-    for squares in products:
-        square = -squares[1][0] / squares[0][0]
-        if field.square_root(field.number(square)) is not None:
-            break
-    else:
+    radicands = [-squares[1][0] / squares[0][0] for squares in products]
+    known = (k for k, x in enumerate(radicands) if field.square_root(field.number(x)) is not None)
+    k = next(known, None)
+    if k is None:
         if len(field.radicands) >= most_roots:
             raise TooManyModesError(
                 f"the spaces of motions need more than {most_roots} independent square roots"
             )
-    root = entry(real_root(square, field))
+        k = 0
+    root, squares = entry(real_root(radicands[k], field)), products[k]
     pairs = list(zip(squares[0][1], squares[1][1], strict=True))
-    return [x - root * y for x, y in pairs], [x + root * y for x, y in pairs]
+    return k, ([x - root * y for x, y in pairs], [x + root * y for x, y in pairs])
 
 
 def made_leaf(rows: Rows, size: int, left: Iterable[int]) -> Leaf:
     """A leaf of these rows; `left` are the vertices whose forms remain."""
-    numbers = {edge: tuple(number(x) for x in row) for edge, row in rows.items()}
+    folds = (edge for edge in rows if not _is_kept(edge))
+    numbers = {edge: tuple(number(x) for x in rows[edge]) for edge in folds}
     return Leaf(numbers, size, tuple(left))
 
 
@@ -289,9 +354,9 @@ def independent_parts(rows: Rows, size: int, stars: Mapping[int, Star]) -> list[
             graph.add_edges_from((edge, ("vertex", v)) for v in ends)
             graph.add_node(edge)
     groups = [
-        sorted(node for node in group if node[0] != "vertex")
+        sorted((node for node in group if node[0] != "vertex"), key=lambda e: (_is_kept(e), e))
         for group in nx.connected_components(graph)
-    ]
+    ]  # a kept factor depends on the folds of its vertex, so it is never in the basis below
     if len(groups) == 1 and len(groups[0]) == len(rows):
         return [(rows, size)]
     parts = []
@@ -313,9 +378,34 @@ def _maximal(candidates: Iterable[Leaf]) -> list[Leaf]:
     """The leaves that lie in no other leaf; among equal leaves, the first."""
     kept: list[Leaf] = []
     for leaf in sorted(candidates, key=lambda leaf: (-leaf.size, len(leaf.vertices))):
-        if not any(_inside(leaf, other) for other in kept):
+        one = {
+            edge: _value(row, map(arb, range(1, leaf.size + 1))) for edge, row in leaf.rows.items()
+        }
+        if not any(not _outside(one, other) and _inside(leaf, other) for other in kept):
             kept.append(leaf)
     return kept
+
+
+def _outside(motion: Mapping[Edge, arb], leaf: Leaf) -> bool:
+    """Whether balls show that a motion does not lie in the space of a leaf."""
+    places: dict[int, Edge] = {}  # a fold for each parameter, whose density it is
+    for edge, row in leaf.rows.items():
+        some = [k for k, x in enumerate(row) if x]
+        if len(some) == 1 and row[some[0]] == 1:
+            places.setdefault(some[0], edge)
+    if len(places) < leaf.size:
+        return False
+    zero = arb(0)
+    at = [motion.get(places[k], zero) for k in range(leaf.size)]
+    return any(
+        not (motion.get(edge, zero) - _value(row, at)).contains(0)
+        for edge, row in leaf.rows.items()
+    )
+
+
+def _value(row: Iterable[Number], at: Iterable[arb]) -> arb:
+    """The value of a linear function at a point, in balls."""
+    return sum((ball(x, _BITS) * y for x, y in zip(row, at, strict=True) if x), arb(0))
 
 
 def _inside(leaf: Leaf, other: Leaf) -> bool:

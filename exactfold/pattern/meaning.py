@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Final
 
 from exactfold._support.plurals import counted
 from exactfold.errors import FoldError, PatternError, TooLargeError, UsageError
-from exactfold.exact.surds import rational
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.drawing.drawing import Drawing, Line
 from exactfold.pattern.drawing.meant.left import left_relations, off_by
@@ -168,6 +167,7 @@ def proposals(found: Opened, seconds: float) -> list[tuple[float, Opened]]:
 
 
 def _levels(sheet: PanelPattern) -> list[float]:
+    from exactfold.exact.surds import rational
     from exactfold.pattern.drawing.meant.drawn import NEAR, Drawn
     from exactfold.pattern.drawing.meant.levels import proposed_levels
     from exactfold.pattern.drawing.meant.local import local_relations

@@ -1,7 +1,8 @@
 """True motions of random squares: loops through the flat state, and what ends each motion first.
 
 A row is one random square. All its rays are followed, with proof, until they come back to the flat
-state (docs/motions.md). All its branches are followed until two faces touch (docs/contacts.md).
+state (docs/motion.md, 11). All its branches are followed until two faces touch (docs/motion.md,
+16).
 """
 
 from __future__ import annotations

@@ -86,7 +86,7 @@ def test_the_report_says_what_was_found() -> None:
     text = printed(decompose(triangulated(4, 4)))
     assert "found to second order: at least 1 family of ways to start to fold, of dimension" in text
     assert "known to fold truly: at least 1 family of ways to fold, of dimension" in text
-    assert "first-order motions of 16 vertices" in text
+    assert "the part of 16 vertices with vertex 7: on a space of dimension 31" in text
 
 
 @pytest.mark.parametrize("shift", [-3, 1, 2])

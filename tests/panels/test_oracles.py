@@ -7,18 +7,21 @@ import random
 import shutil
 import subprocess
 from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import product
+from typing import Any
 
 import numpy as np
 import pytest
-from panel_sheets import mesh, miura, outlined, shifted_columns, tiling
+from panel_sheets import grid, mesh, miura, outlined, shifted_columns, tiling
 
 from exactfold._support.verdict import PROVED
+from exactfold.panels.by_spaces import by_spaces
 from exactfold.panels.decomposition import decompose
-from exactfold.panels.kernel import first_order
+from exactfold.panels.kernel import Rows, first_order, imposed
 from exactfold.panels.stars import bracket, stars
-from exactfold.panels.subspaces import Leaf, leaves
+from exactfold.panels.subspaces import Leaf, SubspaceSearch, factors, leaves
 from exactfold.pattern.families import single_vertex
 from exactfold.pattern.opening import panels
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
@@ -326,3 +329,46 @@ def test_a_tiling_with_one_vertex_moved_no_longer_folds() -> None:
     result = decompose(PanelPattern(moved, plain.edges))
     assert result.true == {0: 1}
     assert result.rigid is PROVED
+
+
+def plainly_split(search: SubspaceSearch, rows: Rows, size: int) -> Iterator[tuple[Rows, int]]:
+    """The spaces of a splitting that takes both factors of every form, without leaving any out."""
+    rows, size, products, _ = search.reduced(rows, size)
+    if not products:
+        yield rows, size
+        return
+    for functional in factors(products[:1], rows):
+        yield from plainly_split(search, *imposed(rows, size, functional))
+
+
+@pytest.mark.parametrize("name", sorted(SHEETS))
+def test_splitting_leaves_out_only_spaces_that_lie_in_others(name: str) -> None:
+    moving = stars(SHEETS[name])
+    rows, size = first_order(moving)
+    found = leaves(moving, rows, size, 10**6)
+    edges = sorted(rows)
+
+    def basis(some: Mapping[Edge, Sequence[Any]], dimension: int) -> np.ndarray:
+        return np.array([[float(x) for x in some.get(e, (0,) * dimension)] for e in edges])
+
+    bases = [basis(leaf.rows, leaf.size) for leaf in found]
+    sizes: Counter[int] = Counter()
+    for space, dimension in plainly_split(SubspaceSearch(moving, 10**8), rows, size):
+        if dimension:
+            inner = basis(space, dimension)
+            both = [(b, np.linalg.matrix_rank(np.hstack([b, inner]), 1e-8)) for b in bases]
+            around = [b for b, rank in both if rank == b.shape[1]]
+            assert around
+            sizes[dimension] += any(b.shape[1] == dimension for b in around)
+    assert all(sizes[leaf.size] for leaf in found)
+
+
+def test_a_grid_of_more_than_sixteen_dimensions_folds_along_rows_or_along_columns() -> None:
+    """Where a row crosses a column, one of the two is flat, so only all of one kind can fold."""
+    pattern = grid(10, 10, lambda i, j: (Fraction(i), Fraction(j)))
+    moving = stars(pattern)
+    part = by_spaces(pattern, moving)
+    assert (part.dimension, part.second_order, part.true) == (18, {9: 2}, None)
+    spaces = [set(leaf.rows) for leaf in part.spaces]
+    assert sorted(map(len, spaces)) == [90, 90]
+    assert not spaces[0] & spaces[1]

@@ -211,6 +211,7 @@ def test_no_public_function_that_takes_a_pattern_is_missing():
     made = {
         "branches.Branch",
         "branches.BranchCount",
+        "branches.BranchExport",
         "branches.StreamedCount",
         "pattern.FoldFile",
         "pattern.RandomSquare",

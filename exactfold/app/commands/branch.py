@@ -14,7 +14,8 @@ from exactfold.app.options.branches import BranchOptions
 from exactfold.app.shell.given import Given
 from exactfold.app.shell.patterns import in_doubt, read, tell_doubt
 from exactfold.app.shell.shell import Bar, name_of, say
-from exactfold.app.verbs.choosing import ChosenBranch, the_branch
+from exactfold.app.verbs.choosing import the_branch
+from exactfold.app.verbs.chosen import ChosenBranch
 from exactfold.branches.counting.find import BranchFinder
 from exactfold.branches.values.branch import Branch
 from exactfold.errors import UsageError

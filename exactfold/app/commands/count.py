@@ -186,11 +186,26 @@ class Asked(CountOptions):
         return written
 
     def _certified_panels(self, ways: Decomposition, file: Path) -> str | None:
+        from exactfold.design.panels.freedom_certificate import freedom_certificate
         from exactfold.panels.certificate import certificate_of_panels
 
         try:
             write_certificate(certificate_of_panels(ways), file)
         except NotApplicableError as error:
+            if ways.status is PROVED or ways.freedom is None:
+                say(f"no certificate was written: {error}")
+                return None
+        else:
+            return str(file)
+        try:
+            document = freedom_certificate(ways)
+        except NotApplicableError as error:
             say(f"no certificate was written: {error}")
             return None
+        write_certificate(document, file)
+        claims = document["claims"]
+        say(
+            "the certificate proves bounds of the degrees of freedom only: at least "
+            f"{claims['least']}, at most {claims['most']}"
+        )
         return str(file)

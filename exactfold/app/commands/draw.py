@@ -19,7 +19,8 @@ from exactfold.app.pictures.way_sheets import number_listed, sheet_of_ways, why_
 from exactfold.app.shell.given import Given
 from exactfold.app.shell.patterns import located, read_any, verdict
 from exactfold.app.shell.shell import EXIT, STDIN, Bar, apart, say, wrote
-from exactfold.app.verbs.choosing import ChosenBranch, ChosenPanels, choose
+from exactfold.app.verbs.choosing import choose
+from exactfold.app.verbs.chosen import ChosenBranch, ChosenPanels
 from exactfold.app.verbs.moving import along, along_panels
 from exactfold.app.verbs.showing import drawn_panels
 from exactfold.branches.counting.ways import count_opened, decompose_opened

@@ -11,18 +11,20 @@ from exactfold.app.commands.branch import also_found
 from exactfold.app.commands.driving import driven_angles
 from exactfold.app.commands.ways import choice_of
 from exactfold.app.options.motions import FoldOptions
+from exactfold.app.pictures.film import FILMS, checked_film, pillow, write_film
 from exactfold.app.pictures.picture_files import checked_picture, write_picture
 from exactfold.app.shell.given import Given
 from exactfold.app.shell.patterns import in_doubt, read_any, tell_doubt, verdict
 from exactfold.app.shell.shell import EXIT, Bar, name_of, say
-from exactfold.app.verbs.choosing import ChosenBranch, ChosenPanels, choose
+from exactfold.app.verbs.choosing import choose
+from exactfold.app.verbs.chosen import ChosenBranch, ChosenPanels
 from exactfold.app.verbs.moving import along, along_panels, prove
 from exactfold.errors import UndecidedBranchError, UsageError
 from exactfold.motion.curves.motion import Motion
 from exactfold.motion.following import Goal
-from exactfold.motion.writing import checked_ending, write_motion
+from exactfold.motion.writing import ENDINGS, write_motion
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.fold_writing import require_folder
+from exactfold.pattern.fold_writing import checked_target, require_folder
 from exactfold.pattern.opening import Opened, has_branches
 
 if TYPE_CHECKING:  # following branches does not need it
@@ -81,10 +83,19 @@ class Wanted(FoldOptions):
             return EXIT[motion.branch.status]
         return EXIT[verdict(opened, PROVED if proof is None else proof.status)]
 
+    @property
+    def _is_film(self) -> bool:
+        """Whether the output is a picture or an animation; checks its place then."""
+        path = self.output
+        return path is not None and path.suffix.lower() in FILMS and bool(checked_film(path))
+
     def _check_outputs(self) -> None:
         """Raise `UsageError` for a wrong ending, `UnwritableFileError` for a missing folder."""
         if self.output is not None:
-            checked_ending(self.output)
+            if not self._is_film:
+                checked_target(self.output, (*ENDINGS, *FILMS), "a motion")
+            else:
+                pillow()
         for drawn in (self.plot, self.picture):
             if drawn is not None:
                 checked_picture(drawn)
@@ -177,7 +188,10 @@ class Wanted(FoldOptions):
         from exactfold.app import report
 
         title, written = self._title or "", []
-        if self.output is not None:
+        if self.output is not None and self._is_film:
+            write_film(motion, self.output)
+            written = [str(self.output)]
+        elif self.output is not None:
             written = [str(f) for f in write_motion(motion, self.output, title=self._title)]
         if self.plot is not None:
             write_picture(report.angles_plot(motion, title), self.plot)

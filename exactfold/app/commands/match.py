@@ -13,7 +13,7 @@ from exactfold.app.commands.ways import given_letters
 from exactfold.app.options.branches import MatchOptions
 from exactfold.app.shell.patterns import read_any
 from exactfold.app.shell.shell import EXIT, Bar, name_of, say
-from exactfold.app.verbs.choosing import DRAWN
+from exactfold.app.verbs.chosen import DRAWN
 from exactfold.certificates.entries import write_certificate
 from exactfold.design.assignments.boundary_match import can_pop, match_boundary
 from exactfold.design.assignments.boundary_result import BoundaryMatch

@@ -33,7 +33,7 @@ class Wanted(ViewOptions):
         apart(output, self.file)
         checked_page(output)  # before the work
         with Bar("reading") as bar, interruptible():
-            opened = read_any(self.file, self.reading, verbose=self.verbose)
+            opened = read_any(self.file, self.reading, verbose=self.verbose, doubted=False)
             document = write_view(
                 opened,
                 output,

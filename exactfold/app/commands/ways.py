@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from exactfold._support.plurals import counted
 from exactfold.app.options.ways import WayOptions
 from exactfold.app.shell.given import Given
-from exactfold.app.verbs.choosing import DRAWN, Choice
+from exactfold.app.verbs.chosen import DRAWN, Choice
 from exactfold.errors import NumberError, UsageError
 from exactfold.exact.numbers import parse_whole
 from exactfold.pattern.crease_pattern import CreasePattern, Edge

@@ -63,9 +63,9 @@ class FoldOptions(WayOptions):
     output: Annotated[
         Path | None,
         written(
-            "Write the frames: to FILE.fold; as an animation to .glb or .gltf; each to a file of "
-            "its own, FILE_0000.obj and so on, for .obj and .stl; or the fold angles, a row for "
-            "each frame, to .csv.",
+            "Write the frames: to FILE.fold; as an animation to .glb, .gltf, .gif or .mp4; the end "
+            "as a picture to .png; each to a file of its own, FILE_0000.obj and so on, for .obj "
+            "and .stl; or the fold angles, a row for each frame, to .csv.",
             "FILE",
             "-o",
             "--output",

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
@@ -39,35 +40,73 @@ def motion_animation(
     >>> text.count('<g class="f'), text.count("@keyframes")
     (12, 12)
     """
-    places = np.linspace(0, len(motion.times) - 1, max(2, frames)).round().astype(int)
-    places = np.unique(places)
-    shapes = [levelled(motion.coords[k], motion.coords[0]) for k in places]
-    earlier = [levelled(motion.coords[max(k - 1, 0)], motion.coords[0]) for k in places]
+    places, shapes, earlier = _shapes(motion, frames)
     groups, height = _frames(motion, shapes, earlier)
     style = element("style", _style(len(places), seconds))
     heading = f"{title or motion.name}: the sheet folds and unfolds"
     return picture(_SIZE, height, [style, *groups], heading)
 
 
+def _shapes(
+    motion: SheetInMotion, frames: int
+) -> tuple[list[int], list[FloatArray], list[FloatArray]]:
+    """The places of so many frames, their shapes, and the shapes just before."""
+    places = np.unique(np.linspace(0, len(motion.times) - 1, max(2, frames)).round().astype(int))
+    shapes = [levelled(motion.coords[k], motion.coords[0]) for k in places]
+    earlier = [levelled(motion.coords[max(k - 1, 0)], motion.coords[0]) for k in places]
+    return places.tolist(), shapes, earlier
+
+
+class Seen(NamedTuple):
+    """A frame as it is drawn: the shape, where its vertices are in the picture, and its faces.
+
+    The faces are ordered from back to front.
+    """
+
+    shape: FloatArray
+    flat: FloatArray
+    faces: list[Sequence[int]]
+
+
+def seen_frames(motion: SheetInMotion, frames: int, size: float) -> tuple[list[Seen], float]:
+    """So many frames of a motion, all at one scale and place, and the height of the picture.
+
+    `size` is its width.
+    """
+    _, shapes, earlier = _shapes(motion, frames)
+    return _seen(motion, shapes, earlier, size)
+
+
+def _seen(
+    motion: SheetInMotion, shapes: list[FloatArray], earlier: list[FloatArray], size: float
+) -> tuple[list[Seen], float]:
+    margin = size * _MARGIN / _SIZE
+    views = [seen_from_above(shape) for shape in shapes]
+    low = np.min([view.min(axis=0) for view in views], axis=0)[:2]
+    high = np.max([view.max(axis=0) for view in views], axis=0)[:2]
+    scale = (size - 2 * margin) / float(max(*(high - low), 1e-12))
+    left = (size - float((high - low)[0]) * scale) / 2
+    pieces, faces = triangles_by_face(motion.pattern), faces_of(motion.pattern)
+    found = []
+    for shape, view, before in zip(shapes, views, earlier, strict=True):
+        order = back_to_front(seen_from_above((1 - _EARLIER) * shape + _EARLIER * before), pieces)
+        flat = np.column_stack(
+            [left + (view[:, 0] - low[0]) * scale, margin + (high[1] - view[:, 1]) * scale]
+        )
+        found.append(Seen(shape, flat, [faces[f] for f in order]))
+    return found, float((high - low)[1]) * scale + 2 * margin
+
+
 def _frames(
     motion: SheetInMotion, shapes: list[FloatArray], earlier: list[FloatArray]
 ) -> tuple[list[str], float]:
     """A group for each shape, all at one scale and place, and the height of the picture."""
-    seen = [seen_from_above(shape) for shape in shapes]
-    low = np.min([view.min(axis=0) for view in seen], axis=0)[:2]
-    high = np.max([view.max(axis=0) for view in seen], axis=0)[:2]
-    scale = (_SIZE - 2 * _MARGIN) / float(max(*(high - low), 1e-12))
-    left = (_SIZE - float((high - low)[0]) * scale) / 2
-    pieces, faces = triangles_by_face(motion.pattern), faces_of(motion.pattern)
-    groups = []
-    for k, (shape, view, before) in enumerate(zip(shapes, seen, earlier, strict=True)):
-        order = back_to_front(seen_from_above((1 - _EARLIER) * shape + _EARLIER * before), pieces)
-        flat = np.column_stack(
-            [left + (view[:, 0] - low[0]) * scale, _MARGIN + (high[1] - view[:, 1]) * scale]
-        )
-        drawn = shaded(shape, flat, [faces[f] for f in order])
-        groups.append(element("g", drawn, class_=f"f f{k}", stroke=INK))
-    return groups, float((high - low)[1]) * scale + 2 * _MARGIN
+    seen, height = _seen(motion, shapes, earlier, _SIZE)
+    groups = [
+        element("g", shaded(one.shape, one.flat, one.faces), class_=f"f f{k}", stroke=INK)
+        for k, one in enumerate(seen)
+    ]
+    return groups, height
 
 
 def _style(frames: int, seconds: float) -> str:

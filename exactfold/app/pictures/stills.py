@@ -130,9 +130,21 @@ def faces_of(pattern: CreasePattern | PanelPattern) -> Sequence[Sequence[int]]:
 
 def shaded(shape: FloatArray, flat: FloatArray, faces: Sequence[Sequence[int]]) -> str:
     """The faces in this order, each in the colour of its visible side."""
+    drawn = []
+    for face, parts in zip(faces, shades(shape, faces), strict=True):
+        colour = "#" + "".join(f"{part:02x}" for part in parts)
+        points = [(float(x), float(y)) for x, y in flat[list(face)]]
+        drawn.append(
+            path(points, closed=True, fill=colour, stroke_width=0.6, stroke_linejoin="round")
+        )
+    return "".join(drawn)
+
+
+def shades(shape: FloatArray, faces: Sequence[Sequence[int]]) -> list[tuple[int, int, int]]:
+    """The colour of the visible side of each face, from 0 to 255."""
     towards = seen_from_above(np.eye(3))[:, 2]
     light = np.array(_LIGHT) / np.linalg.norm(_LIGHT)
-    drawn = []
+    colours = []
     for face in faces:
         corners = list(face)
         ring = shape[corners] - shape[corners[0]]
@@ -140,12 +152,9 @@ def shaded(shape: FloatArray, flat: FloatArray, faces: Sequence[Sequence[int]]) 
         normal = normal / max(float(np.linalg.norm(normal)), 1e-300)
         upper = float(normal @ towards) >= 0
         shade = 0.5 + 0.5 * max(0.0, float((normal if upper else -normal) @ light))
-        colour = "#" + "".join(f"{round(shade * x):02x}" for x in (_UPPER if upper else _LOWER))
-        points = [(float(x), float(y)) for x, y in flat[corners]]
-        drawn.append(
-            path(points, closed=True, fill=colour, stroke_width=0.6, stroke_linejoin="round")
-        )
-    return "".join(drawn)
+        red, green, blue = (round(shade * x) for x in (_UPPER if upper else _LOWER))
+        colours.append((red, green, blue))
+    return colours
 
 
 def _largest(angles: FloatArray) -> float:

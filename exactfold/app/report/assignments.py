@@ -9,17 +9,15 @@ from rich.console import Group
 from rich.table import Table
 from rich.text import Text
 
-from exactfold._support.plurals import counted
 from exactfold._support.verdict import PROVED
-from exactfold.app.report.terminal import facts_table, letters_text, status_text
+from exactfold.app.report.terminal import facts_table, letters_text, more_text, status_text
+from exactfold.app.report.terminal import listed as how_many
 from exactfold.design.panels.panel_assignments import PanelAssignments
 
 if TYPE_CHECKING:
     from exactfold.design.circles.assignment_list import AllAssignments
     from exactfold.design.refutations.forcing import Forcing
     from exactfold.pattern.crease_pattern import Edge
-
-_MOST = 64
 
 
 def assignments_report(
@@ -92,16 +90,16 @@ def _forcing(forcing: Forcing) -> list[tuple[str, str | Text]]:
 
 def _texts(texts: Sequence[str], everything: bool) -> list[Table | Text]:
     """The letters in columns."""
-    shown = texts if everything else texts[:_MOST]
+    shown = texts[: how_many(len(texts), everything=everything)]
     table = Table(box=None, pad_edge=False, show_header=False)
     width = max(1, min(6, 72 // (len(texts[0]) + 2)))
+    for _ in range(width):
+        table.add_column(overflow="fold")
     for k in range(0, len(shown), width):
         table.add_row(*(letters_text(text) for text in shown[k : k + width]))
-    if len(shown) == len(texts):
-        return [table]
-    return [table, Text(f"and {counted(len(texts) - len(shown), 'assignment')} more: --all")]
+    return [table, *more_text(len(texts) - len(shown))]
 
 
 def _names(folds: Sequence[Edge]) -> str:
     names = [f"{i}-{j}" for i, j in folds]
-    return ", ".join(names if len(names) <= 12 else [*names[:11], "..."])
+    return ", ".join(names if len(names) <= 12 else [*names[:11], "... (--json lists all)"])

@@ -24,7 +24,7 @@ from math import isfinite
 from typing import Any, Final
 from urllib.parse import urlsplit
 
-from exactfold.app.serving.film import ENDINGS, MOST_PICTURES
+from exactfold.app.pictures.film import ENDINGS, MOST_PICTURES
 from exactfold.app.serving.tasks import FREE, Answer, Film, Follow, Move, Open, Task
 from exactfold.app.serving.worker import Worker
 from exactfold.app.viewer.document import FRAMES, MOST_FRAMES
@@ -345,6 +345,8 @@ def _open(request: dict[str, Any], start: Open) -> Open:
         data = _decoded(request["data"])
         return replace(fresh, name=name, data=data)
     if request.get("fold") is not None:
+        if not isinstance(request["fold"], dict):
+            raise UsageError("a sheet of the page is a JSON object")
         text = json.dumps(request["fold"])
         live = request.get("live") is True
         return replace(fresh, name=name, sheet=text, reading=PLAIN, move=move, live=live)

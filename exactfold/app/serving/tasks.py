@@ -12,7 +12,7 @@ from typing import Any, Final, TypeAlias
 
 from exactfold._support.clock import Clock
 from exactfold._support.plurals import counted, visible
-from exactfold.app.serving.film import filmed
+from exactfold.app.pictures.film import filmed
 from exactfold.app.viewer.document import FRAMES, Known, sheet_json
 from exactfold.app.viewer.listing import Listed, listed_ways
 from exactfold.app.viewer.ways import Following, branch_way, not_followed
@@ -121,7 +121,14 @@ class Session:
         }
         seconds = _LIVE_SECONDS if task.live else task.limit / 2
         listed = listed_ways(
-            opened, task.branches, None, task.frames, task.proving, None, limit=seconds
+            opened,
+            task.branches,
+            None,
+            task.frames,
+            task.proving,
+            None,
+            limit=seconds,
+            brief=task.live,
         )
         self.known, self._finders = Known(opened, name, listed), {}
         document = self.known.document([way for way, _ in listed.ways], served=True)

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Final, TypeGuard, cast, overload
 
 from exactfold._support.clock import LIMIT, Clock
 from exactfold._support.progress import Progress
-from exactfold.app.verbs.choosing import Choice, the_branch
+from exactfold.app.verbs.choosing import the_branch
+from exactfold.app.verbs.chosen import Choice
 from exactfold.branches.counting.batch import count_many
 from exactfold.branches.counting.doubted import doubted_branch
 from exactfold.branches.counting.find import BoundaryHeights, Deficits, Signs

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 from exactfold._support.clock import LIMIT, Clock
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, UNDECIDED
-from exactfold.app.verbs.choosing import Choice, Letters, asked_letters, the_branch
+from exactfold.app.verbs.choosing import the_branch
+from exactfold.app.verbs.chosen import Choice, Letters, asked_letters
 from exactfold.branches.counting.find import Signs
 from exactfold.design.actuation.actuate import actuate as actuate_branch
 from exactfold.design.assignments.boundary_match import can_pop, match_boundary

@@ -7,16 +7,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from exactfold._support.progress import Progress
-from exactfold.app.verbs.choosing import (
-    Choice,
-    ChosenBranch,
-    ChosenPanels,
-    Letters,
-    choose,
-    listed,
-    on_side,
-    panels_way,
-)
+from exactfold.app.verbs.choosing import choose, listed
+from exactfold.app.verbs.choosing_panels import panels_way
+from exactfold.app.verbs.chosen import Choice, ChosenBranch, ChosenPanels, Letters, on_side
 from exactfold.branches.counting.find import BoundaryHeights, Signs
 from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.result import BranchCount
@@ -221,9 +214,9 @@ def loops(
 ) -> Loops:
     """Find all motions of a triangulated sheet with four corners that return to the flat state.
 
-    Each motion is proved from end to end; contact is ignored (docs/motions.md). `sheet` is anything
-    that `read` takes. `workers` processes share the work. Each proof is written to the file
-    `certificate` as soon as it is found; with `resume`, an interrupted file is continued.
+    Each motion is proved from end to end; contact is ignored (docs/motion.md, 11). `sheet` is
+    anything that `read` takes. `workers` processes share the work. Each proof is written to the
+    file `certificate` as soon as it is found; with `resume`, an interrupted file is continued.
 
     Raises `NotCountedError` for larger panels, for a sheet that does not have four corners, and for
     a sheet whose branches are not proved, and the errors of `exactfold.motion.find_loops`.

@@ -13,15 +13,9 @@ from exactfold.app.pictures.drawn_ways import DrawnWay, branch_way, panel_way
 from exactfold.app.pictures.picture_files import write_picture
 from exactfold.app.pictures.stills import motion_stills
 from exactfold.app.pictures.way_sheets import sheet_of_ways
-from exactfold.app.verbs.choosing import (
-    Choice,
-    ChosenBranch,
-    ChosenPanels,
-    Letters,
-    choose,
-    listed,
-    panels_way,
-)
+from exactfold.app.verbs.choosing import choose, listed
+from exactfold.app.verbs.choosing_panels import panels_way
+from exactfold.app.verbs.chosen import Choice, ChosenBranch, ChosenPanels, Letters
 from exactfold.app.viewer.document import FRAMES, view_document
 from exactfold.app.viewer.page import checked_page, view_page
 from exactfold.branches.counting.find import Signs

@@ -109,11 +109,13 @@ def listed_ways(
     progress: Progress | None,
     *,
     limit: float = LIMIT,
+    brief: bool = False,
 ) -> Listed:
     """The ways of an open sheet; see `view_document` for the arguments and which ways these are.
 
     The search for motions of panels, and that for the letters of the file, end after `limit`
-    seconds each.
+    seconds each. With `brief`, the letters of the file are not searched for, and of a convex sheet
+    with more than four corners only one branch is found: the rest is known by a theorem.
     """
     pattern = opened.sheet
     popping = (
@@ -128,17 +130,21 @@ def listed_ways(
         )
     try:
         if popping and isinstance(pattern, CreasePattern):
+            if brief and not (
+                opened.doubt or has_branches(pattern) or not pattern.foldable_vertices
+            ):
+                return _by_theorem(pattern, Following(frames, proving, pattern.degrees_of_freedom))
             known = _branches(opened, pattern, branches, progress, Clock(limit))
             if known is not None:
                 follower = Following(frames, proving, known.dimension)
-                numbered = known.count is not None and bool(known.count.known)
+                numbered = known.count is not None and known.is_whole
                 ways = [
                     (branch_way(branch, k if numbered else None), branch)
                     for k, branch in enumerate(known.branches, 1)
                 ]
-                shown = _with_drawn_branch(opened, ways, add=branches is None)
+                shown = _with_drawn_branch(opened, ways, add=branches is None and not brief)
                 return Listed(*shown, _branch_facts(known), follower)
-        return _panels(opened, only, frames, proving, progress, limit)
+        return _panels(opened, only, frames, proving, progress, limit, brief)
     except (InputError, UsageError, WorkerDiedError):
         raise
     except ExactfoldError as error:
@@ -161,6 +167,13 @@ class _Branches:
     pattern: CreasePattern
     branches: tuple[Branch, ...]
     count: BranchCount | None
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether these are all branches, in the order of their numbers."""
+        if self.dimension > 1:
+            return bool(2 * len(self.branches) == 1 << len(self.pattern.foldable_vertices))
+        return self.count is not None and bool(self.count.known)
 
     @property
     def dimension(self) -> int:
@@ -207,22 +220,53 @@ def _branches(
     return _Branches(pattern, tuple(branches), count)
 
 
+def _by_theorem(pattern: CreasePattern, follower: Following) -> Listed:
+    """One branch of a convex sheet with more than four corners, and how many graphs there are.
+
+    For all boundary heights exactly one shape has given vertex signs (docs/any_border.md).
+    """
+    finder, foldable = branch_finder(pattern), pattern.foldable_vertices
+    branch = finder.find(finder.signs(None, foldable))
+    dimension = pattern.degrees_of_freedom
+    facts: Facts = {
+        "kind": "branches",
+        "answer": "infinitely many ways to start folding - PROVED; for all boundary heights "
+        f"there is exactly one shape for each of {counted(2 ** len(foldable), 'choice')} of the "
+        "vertices that pop up",
+        "status": str(PROVED),
+        "complete": False,
+        "reason": "the vertex signs and the boundary heights determine the shape",
+        "freedom": f"degrees of freedom: {dimension}",
+        "notes": [],
+    }
+    return Listed(((branch_way(branch), branch),), None, facts, follower)
+
+
+def _freedom(known_branches: _Branches) -> str:
+    """The degrees of freedom in words, if they are proved."""
+    count, dimension = known_branches.count, known_branches.pattern.degrees_of_freedom
+    if count is not None and (count.status is not PROVED or count.doubt):
+        return ""
+    if count is not None and dimension == 1 and not count.real:
+        dimension = 0  # no branch: the sheet is rigid
+    return f"degrees of freedom: {dimension}"
+
+
 def _branch_facts(known_branches: _Branches) -> Facts:
     if known_branches.count is not None:
         from exactfold.app.report.count import answer
 
         count = known_branches.count
-        shown = known_branches.branches
         whole = count.status is PROVED and len(count) == (count.real or 0)
         if known_branches.dimension > 1:
-            whole = 2 * len(shown) == 2 ** len(known_branches.pattern.foldable_vertices)
+            whole = known_branches.is_whole
         return {
             "kind": "branches",
             "answer": _SECONDS.sub("", answer(count).plain),
             "status": str(count.status),
             "complete": whole,
             "reason": count.reason,
-            "freedom": f"degrees of freedom: {known_branches.pattern.degrees_of_freedom}",
+            "freedom": _freedom(known_branches),
             "notes": [] if count.warning is None else [f"warning: {count.warning}"],
         }
     vertices = counted(len(known_branches.pattern.foldable_vertices), "foldable vertex")
@@ -235,7 +279,7 @@ def _branch_facts(known_branches: _Branches) -> Facts:
         "reason": "each branch was found by its vertex signs, and "
         f"{'all are' if proved else 'not all are'} proved; the branches of the sheet were not "
         "counted",
-        "freedom": f"degrees of freedom: {known_branches.pattern.degrees_of_freedom}",
+        "freedom": _freedom(known_branches) if proved else "",
         "notes": [],
     }
 
@@ -247,6 +291,7 @@ def _panels(
     proving: bool,
     progress: Progress | None,
     limit: float,
+    brief: bool,
 ) -> Listed:
     from exactfold.app.report.panels import panels_answer
     from exactfold.motion.panels.followable import panel_modes, why_nothing_follows
@@ -259,7 +304,7 @@ def _panels(
     shown = [way for way in known if only is None or way.number in only][:MOST_WAYS]
     listed = [(panel_way(ways, way), _job(way, ways, opened)) for way in shown]
     drawn = _drawn_in(opened, listed)
-    if only is None:
+    if only is None and not brief:
         listed, drawn = _with_drawn_motion(opened, ways, listed, min(limit, DRAWN_SECONDS))
     notes = [] if ways.warning is None else [f"warning: {ways.warning}"]
     if len(known) > len(shown):

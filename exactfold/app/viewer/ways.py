@@ -249,7 +249,7 @@ def _proof(motion: Motion) -> _Known:
 
 
 def _proof_of_panels(motion: PanelMotion, contacts: bool) -> _Known:
-    """What docs/panel_motion.md proves of a motion of panels, and of its first contact if asked."""
+    """What is proved of a motion of panels, and of its contact if asked (docs/motion.md, 18)."""
     if motion.closes is PROVED:
         said = (
             "every vertex closes exactly at all fold angles"

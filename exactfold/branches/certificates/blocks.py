@@ -1,6 +1,6 @@
 """Writes proved blocks as lines of a certificate that has one root for each sign vector.
 
-`docs/compact-certificate.md` describes every key.
+`docs/certificate.md` describes every key.
 """
 
 from __future__ import annotations

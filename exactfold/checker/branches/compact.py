@@ -1,4 +1,4 @@
-"""Compact certificates (docs/compact-certificate.md) are checked in one pass, block by block.
+"""Compact certificates (docs/certificate.md) are checked in one pass, block by block.
 
 In version 1 the memory that this takes does not grow with the file, and several processes may share
 the blocks. In version 2 all entries are kept.
@@ -134,4 +134,4 @@ COMPACT = LineKind(
     summary=summary,
     engine=INTEGERS,
 )
-"""All branches of a triangulated sheet, line by line (docs/compact-certificate.md)."""
+"""All branches of a triangulated sheet, line by line (docs/certificate.md)."""

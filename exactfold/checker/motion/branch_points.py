@@ -1,4 +1,4 @@
-"""Arcs through branch points, where the stars of some vertices are flat (docs/motions.md, Nodes).
+"""Arcs through branch points, where the stars of some vertices are flat (docs/motion.md, 12).
 
 Why it is a proof: let x* be a configuration with a flat patch, X_e its edge vectors, and w_v the
 wheel stresses of the flat vertices. They are in equilibrium in x*, as they are in the flat sheet.

@@ -1,4 +1,6 @@
-"""The first contact of a motion: until when no faces touch, and by when some do (docs/contacts.md).
+"""The first contact of a motion: until when no faces touch, and by when some do.
+
+The claims and the evidence are in docs/motion.md, 17.
 
 Two faces without a common vertex do not touch if a plane parts them. Two faces with one common
 vertex touch only there if a plane through this vertex parts them. Two faces at a fold touch only

@@ -1,4 +1,4 @@
-"""Pairs of faces of a sheet in motion, and the tests that they do not touch (docs/contacts.md, 1).
+"""Pairs of faces of a sheet in motion, and the tests that they do not touch (docs/motion.md, 16).
 
 Two faces without a common vertex do not touch if a plane parts them. Two faces with one common
 vertex touch only there if a plane through this vertex parts them. Two faces at a fold touch only

@@ -1,4 +1,4 @@
-"""Certificates of loops, line by line: motions from the flat state back to it (docs/motions.md).
+"""Certificates of loops, line by line: motions from the flat state back to it (docs/motion.md, 15).
 
 Why it is a proof: a loop leaves the flat state like any motion along a branch. It passes from tube
 to tube, and through branch points on arcs that are analytic there (`branch_points`). A point of the
@@ -217,4 +217,4 @@ LOOPS = LineKind(
     summary=summary,
     engine=BY_TUBES,
 )
-"""The loops of true motions through the flat state, line by line (docs/motions.md)."""
+"""The loops of true motions through the flat state, line by line (docs/motion.md, 15)."""

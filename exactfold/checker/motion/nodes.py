@@ -2,7 +2,7 @@
 
 At a branch point the stars of some vertices are flat, and other curves may cross the motion. The
 motion passes it on an arc of one analytic curve; a point of the arc lies on the tube before
-(docs/motions.md).
+(docs/motion.md, 12).
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
 Why it is a proof: three corners of the panel are its base, and all its other corners are affine
 combinations of these. A zero of the equations of the bars keeps the lengths of the sides of the
 base. So the affine map from the flat panel is an isometry, and all edges keep their lengths
-(docs/motions.md, Nodes).
+(docs/motion.md, 12).
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Motions that come back to the flat state along another ray (docs/motions.md).
+"""Motions that come back to the flat state along another ray (docs/motion.md, 6).
 
 A point of the start tube of the other ray, or of its mirror image, lies on the last tube, and the
 two tubes go in opposite directions there. So the motion ends in the flat state along this ray.

@@ -42,7 +42,7 @@ def starting_certificate(matched: PanelMatch) -> Document:
     moving = stars(matched.pattern, held(matched.letters))
     truly, evidence = matched.truly, dict[str, Any]()
     if matched.starts is PROVED:
-        evidence["motion"] = [_motion(matched, moving, part) for part in matched.parts]
+        evidence["motion"] = [motion_evidence(matched, moving, part) for part in matched.parts]
         if truly is REFUTED:
             part = next(part for part in matched.parts if part.truly is REFUTED)
             evidence |= {
@@ -200,7 +200,9 @@ def _pairs(folds: Iterable[Edge]) -> list[list[int]]:
 # --- motions -------------------------------------------------------------------------------------
 
 
-def _motion(matched: PanelMatch, moving: Mapping[int, Star], part: PartAnswer) -> Document | None:
+def motion_evidence(
+    matched: PanelMatch, moving: Mapping[int, Star], part: PartAnswer
+) -> Document | None:
     """The evidence of a part that moves: None if no letters are asked of it, signs, or densities.
 
     If all vertices have at most four folds, the signs of the folds are enough.

@@ -1,4 +1,4 @@
-"""The first contact in the certificate of a motion, for `exactfold.checker` (docs/contacts.md)."""
+"""The first contact in the certificate of a motion, for the checker (docs/motion.md, 17)."""
 
 from __future__ import annotations
 

@@ -11,8 +11,8 @@ def straight_fold(branch: Branch) -> tuple[int, ...]:
 
     The folds that are not proved flat have to form a straight path from boundary to boundary. Then
     all faces on either side of the path stay in one plane. Turning one side about the line moves
-    all faces rigidly, so there is exactly a motion for every angle (docs/motions.md). Coordinates
-    are compared exactly.
+    all faces rigidly, so there is exactly a motion for every angle (docs/motion.md, 13).
+    Coordinates are compared exactly.
 
     >>> from exactfold.branches.counting.find import find_branch
     >>> [straight_fold(find_branch("flat-vertex", signs)) for signs in ("+0", "-+")]

@@ -1,4 +1,4 @@
-"""Certificates of loops: a header, a line for each loop, then the claims (docs/motions.md)."""
+"""Certificates of loops: a header, a line for each loop, then the claims (docs/motion.md, 15)."""
 
 from __future__ import annotations
 

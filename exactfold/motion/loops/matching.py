@@ -149,7 +149,7 @@ def find_loops(
     all of it, because others would hardly have started before the end.
 
     The file `certificate` gets the proof of each loop as it is found, and finally the claims, for
-    `exactfold.checker` (docs/motions.md). With `resume`, a file left by an interrupted run is
+    `exactfold.checker` (docs/motion.md, 15). With `resume`, a file left by an interrupted run is
     continued: the loops that its digests show to be complete are taken over without being verified
     again. Otherwise the file is replaced, or refused if `replace` is false.
 

@@ -209,7 +209,7 @@ class LoopProof:
         return fold_ranges(framework, chain, names) or ()
 
     def line(self) -> str:
-        """The line of a loop that is proved to its end, for `exactfold.checker` (docs/motions.md).
+        """The line of a loop that is proved to its end, for the checker (docs/motion.md, 15).
 
         It claims a length slightly smaller than that of the loop, namely what straight chords show.
         Raises `NotCountedError` for a loop without a landing.

@@ -1,4 +1,4 @@
-"""The certificate of a motion of panels and of its first contact (docs/panel_motion.md, 6)."""
+"""The certificate of a motion of panels and of its first contact (docs/motion.md, 21)."""
 
 from __future__ import annotations
 

@@ -61,10 +61,10 @@ class PanelClearance:
 
 
 def prove_contacts(motion: PanelMotion) -> PanelClearance:
-    """The first contact of a motion of panels, proved (docs/panel_motion.md, 5).
+    """The first contact of a motion of panels, proved (docs/motion.md, 20).
 
     The positions of all vertices are enclosed over intervals of time, computed from the exact
-    motion. Planes are found that separate all panels (docs/contacts.md, Theorem 1). Panels touch
+    motion. Planes are found that separate all panels (docs/motion.md, Theorem 9). Panels touch
     where an edge runs through a panel, or at time pi, where all folds close.
 
     Raises `NotApplicableError` for a motion that is not proved to exist (`motion.exists`), and for

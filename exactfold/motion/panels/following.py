@@ -52,7 +52,7 @@ def follow_panels(
     folds that go from boundary to boundary (docs/panels.md, Which modes truly fold). If all
     vertices of a mode are linear in the half-angle tangents, all its folds stay in proportion, and
     this is proved (`PanelMotion.closes`). Other modes are followed in floats by the transmissions
-    of their vertices, until the first fold reaches 180 degrees (docs/panel_motion.md).
+    of their vertices, until the first fold reaches 180 degrees (docs/motion.md, 18 and 19).
 
     `sheet` is a decomposition, or a pattern to decompose. `way` is the number of the way in
     `panel_ways`, as `exactfold count` lists it, beginning with 1; by default it is the first, which
@@ -140,7 +140,10 @@ def goal_angle(until: str) -> float:
     except (ValueError, AttributeError):
         number = -1.0
     if not (isfinite(number) and 0 < number <= 180):
-        raise UsageError(f"until {until!r}: give contact, or an angle such as 90deg, up to 180deg")
+        angle = f"{until}deg" if str(until).isdecimal() else "90deg"
+        raise UsageError(
+            f"until {until!r}: give contact, or an angle such as {angle}, up to 180deg"
+        )
     return radians(number) if number < 180 else pi
 
 

@@ -87,7 +87,7 @@ class PanelMotion(SheetInMotion):
         """PROVED if this motion is proved to exist until a fold is at 180 degrees; else UNDECIDED.
 
         This is proved for modes that close exactly, and for modes that provably fold and have at
-        most four active folds at each vertex (docs/panel_motion.md, 1 and 2). Modes that share no
+        most four active folds at each vertex (docs/motion.md, 18 and 19). Modes that share no
         vertex move independently. Whether panels touch on the way is a different question.
         """
         known = all(isinstance(curve, LinearCurve) or _continues(curve) for curve in self.curves)
@@ -288,7 +288,7 @@ class PanelMotion(SheetInMotion):
 
 
 def _continues(curve: FollowedCurve) -> bool:
-    """Whether the theorem of docs/panel_motion.md, 2, applies to a mode."""
+    """Whether docs/motion.md, Theorem 12, applies to a mode."""
     mode = curve.mode
     return mode.extends.verdict is PROVED and all(len(star.folds) <= 4 for star in mode.stars)
 

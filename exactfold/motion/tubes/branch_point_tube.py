@@ -37,7 +37,7 @@ class BranchPointTube(Piece):
 
     The wheel stresses balance at x*. So the sum of w_v,e times the equations of the edges is s
     times the equation of v. Therefore these are N regular equations for s = 0, too
-    (docs/motions.md), and x* + s y(s) is an analytic curve that crosses the others at the branch
+    (docs/motion.md, 12), and x* + s y(s) is an analytic curve that crosses the others at the branch
     point.
     """
 

@@ -1,4 +1,4 @@
-"""Singular configurations that are no branch points, described in words (docs/motions.md)."""
+"""Singular configurations that are no branch points, described in words (docs/motion.md, 13)."""
 
 from __future__ import annotations
 

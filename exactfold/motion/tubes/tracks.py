@@ -53,7 +53,7 @@ class Track:
     `start` and `steps` contain pieces of one analytic curve of configurations, in the order of the
     curve. The exit of each piece lies on the next, and both go the same way there (docs/motion.md,
     Theorem 4). A step is a tube (`links`) or an arc through a branch point, a configuration in
-    which other curves cross; there the track goes straight on (docs/motions.md, Nodes). If
+    which other curves cross; there the track goes straight on (docs/motion.md, 12). If
     `branch_point` is not None, the track ends at a branch point, and the last step is the part of
     this passage up to the point.
 

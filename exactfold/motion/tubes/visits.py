@@ -55,7 +55,7 @@ class LocatedBranchPoint:
     patch. `lines` are boxes of directions; it is proved that none is a multiple of another, and
     that a curve belongs to each. If there are 2^|flat| lines, there are no others: the directions
     are zeros of |flat| quadrics in a projective space of this dimension, and these zeros are simple
-    (docs/motions.md, The graph).
+    (docs/motion.md, 12).
     """
 
     point: FlatPoint

@@ -295,8 +295,10 @@ def test_without_a_file_the_lines_are_printed() -> None:
     paths = [example_path(name) for name in names]
     result = run("count", *paths, "--json", "--jobs", 1)
     assert [json.loads(line)["name"] for line in result.stdout.splitlines()] == [*map(str, paths)]
-    table = run("count", *paths, "--jobs", 1).stdout
-    assert "2 patterns: 2 proved, 0 undecided, 0 failed" in table
+    table = run("count", *paths, "waterbomb", "--jobs", 1).stdout
+    assert "3 patterns: 3 proved, 0 undecided, 0 failed" in table
+    rows = [line.split()[:2] for line in table.splitlines()[:4]]
+    assert rows == [["ways", "status"], ["4", "PROVED"], ["2", "PROVED"], ["1", "PROVED"]]
 
 
 def test_the_line_of_progress_tells_of_what_is_not_proved(

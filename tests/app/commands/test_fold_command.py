@@ -115,7 +115,8 @@ def miura_file(folder):
 def test_a_drawing_folds_along_the_way_with_most_folds():
     result = run("fold", "zigzags")
     assert result.exit_code == OK
-    said = "no way is known with the mountains and valleys of the drawing, `match` says more"
+    said = "it is proved that the sheet does not start to fold with the mountains and valleys of "
+    said += "the drawing, `match` says why"
     assert f"{said}: this is way 1, the first of 3" in result.stderr
     lines = result.stdout.splitlines()
     assert lines[0] == "way              1"

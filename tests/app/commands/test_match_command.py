@@ -263,3 +263,12 @@ def test_count_says_nothing_of_letters_where_there_are_none_or_no_list(pattern):
     result = run("count", pattern, "--json")
     assert valid(result.stdout, "count")["letters"] is None
     assert "of the file" not in run("count", pattern).stdout
+
+
+def test_a_refutation_says_what_it_is_about() -> None:
+    meaning = "This is about rigid panels that all move together, from the flat sheet."
+    for more in (["pinwheel-base"], ["two-vertex", "--letters", "MMMMMMM"]):
+        text = " ".join(run("match", *more).stdout.split())
+        assert meaning in text
+        assert "`exactfold vertices` says at which vertices Maekawa's and Kawasaki's" in text
+    assert meaning not in " ".join(run("match", "miura").stdout.split())

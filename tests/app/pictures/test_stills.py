@@ -84,7 +84,7 @@ def test_panels_are_polygons_that_keep_their_corners():
     paths = faces_of(text)
     assert len(paths) == 3 * len(motion.pattern.faces)
     assert {path["d"].count("L") for path in paths} == {3}
-    assert "mode " in ElementTree.fromstring(text).find(f"{NAME}title").text
+    assert "way 1" in ElementTree.fromstring(text).find(f"{NAME}title").text
 
 
 def turned_to_the_eye(corners):

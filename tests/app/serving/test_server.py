@@ -171,6 +171,8 @@ def test_a_form_of_another_page_cannot_post(server):
         ({"data": "%%%"}, 400, b"base64"),
         ({"data": 7}, 400, b"a text is not a text"),
         ({"fold": {}, "move": {}}, 400, b"vertex"),
+        ({"fold": "/etc/passwd"}, 400, b"a sheet of the page is a JSON object"),
+        ({"fold": 5}, 400, b"a sheet of the page is a JSON object"),
         ({"fold": {}, "move": {"vertex": True, "x": 0, "y": 0}}, 400, b"not a whole number"),
         (b'{"fold": {}, "move": {"vertex": 1, "x": Infinity, "y": 0}}', 400, b"not a number"),
     ],
@@ -222,6 +224,16 @@ def test_sizes_are_limited_before_anything_is_read(server, rows, status):
     assert status in answer.split(b"\r\n")[0]
 
 
+def test_a_name_is_no_path(server, tmp_path):
+    """The name of a dropped file is only shown: no other file of the machine can be read by it."""
+    secret = tmp_path / "secret.cp"
+    secret.write_text("1 0 0 1 0\n", encoding="utf-8")
+    coded = base64.b64encode(b"nothing").decode()
+    for request in ({"name": str(secret), "data": coded}, {"name": str(secret)}):
+        first, *_ = lines(server, "open", {"session": "five"} | request)
+        assert first.get("name", "") == ("two-vertex" if "data" not in request else "")
+
+
 def test_who_sends_nothing_is_cut_off(server, monkeypatch):
     monkeypatch.setattr(module._Handler, "timeout", 0.3)
     began = time.monotonic()
@@ -257,6 +269,29 @@ def test_ports_and_frames_out_of_range_are_refused():
         view_server("two-vertex", port=65536)
     with pytest.raises(UsageError, match="1 frames"):
         view_server("two-vertex", frames=1)
+
+
+def test_who_leaves_ends_the_work_for_him():
+    """A page that is closed does not keep a process busy."""
+    with view_server("bird-base", limit=60) as found:
+        thread = threading.Thread(target=found.serve_forever, kwargs={"poll_interval": 0.02})
+        thread.start()
+        try:
+            before = {worker._process.pid for worker in found._listing}
+            body = b'{"session": "gone"}'
+            with socket.create_connection(("127.0.0.1", found.server_port), timeout=60) as wire:
+                rows = f"Content-Length: {len(body)}"
+                wire.sendall(head(found, rows).encode() + body)
+                assert b"200" in wire.recv(4096)
+            for _ in range(300):
+                if {worker._process.pid for worker in found._listing} != before:
+                    break
+                time.sleep(0.1)
+            assert len({worker._process.pid for worker in found._listing} - before) == 1
+            assert [worker for worker in found._listing if worker.session == "gone"] == []
+        finally:
+            found.shutdown()
+            thread.join()
 
 
 # --- answers -------------------------------------------------------------------------------------

@@ -42,6 +42,8 @@ def server(browser):
 @pytest.fixture
 def page(browser, server):
     """The empty page."""
+    size = {"width": 1280, "height": 800, "deviceScaleFactor": 1, "mobile": False}
+    browser.command("Emulation.setDeviceMetricsOverride", **size)
     browser.driver.get("about:blank")
     browser.driver.get(server.address)
     browser.until("document.body.classList.contains('waiting')")
@@ -54,6 +56,14 @@ def opened(page, path):
     page.driver.find_element("id", "file").send_keys(str(path))
     page.until(f"{READY} && exactfold.page.ways.length > 0")
     return page
+
+
+def handle_of(page, vertex):
+    """The handle of a vertex, once the page has its last layout."""
+    if page.run("document.getElementById('edit-tools').hidden"):
+        page.click("#edit")
+    time.sleep(0.5)
+    return page.driver.find_element("css selector", f"[data-handle='{vertex}']")
 
 
 def test_a_drawing_that_is_dropped_is_read_counted_and_listed(page):
@@ -90,12 +100,17 @@ def test_a_vertex_is_dragged_the_answer_changes_live_and_is_undone(page):
     from selenium.webdriver.common.action_chains import ActionChains
 
     opened(page, example_path("two-vertex"))
-    page.click("#edit")
-    handle = page.driver.find_element("css selector", "[data-handle='4']")
+    handle = handle_of(page, 4)
     before = page.run("exactfold.view.sheet.points[4]")
     ActionChains(page.driver).click_and_hold(handle).move_by_offset(30, -18).perform()
     page.until("document.getElementById('live').dataset.milliseconds !== undefined")
     assert page.text("#live").startswith("degrees of freedom: 1")
+    mark, handle = page.run(
+        "['[data-vertex=\"4\"] .mark', '[data-handle=\"4\"]'].map((one) =>"
+        " (({left, right}) => (left + right) / 2)"
+        "(document.querySelector(one).getBoundingClientRect()))"
+    )
+    assert abs(mark - handle) < 2  # the handle goes with its vertex
     assert "4 ways to start folding" in page.text("#answer")
     ActionChains(page.driver).release().perform()
     page.until("!document.getElementById('undo').disabled")
@@ -117,9 +132,7 @@ def test_a_vertex_that_cannot_go_somewhere_comes_back(page):
 
     opened(page, example_path("two-vertex"))
     before = page.run("exactfold.view.sheet.points")
-    if page.run("document.getElementById('edit-tools').hidden"):
-        page.click("#edit")
-    handle = page.driver.find_element("css selector", "[data-handle='4']")
+    handle = handle_of(page, 4)
     ActionChains(page.driver).click_and_hold(handle).move_by_offset(400, 0).release().perform()
     page.until("document.getElementById('message').className.includes('wrong')")
     page.until(f"JSON.stringify(exactfold.view.sheet.points) === {str(before).replace(' ', '')!r}")
@@ -127,8 +140,7 @@ def test_a_vertex_that_cannot_go_somewhere_comes_back(page):
 
 def test_vertices_are_moved_by_keys_too(page):
     opened(page, example_path("two-vertex"))
-    if page.run("document.getElementById('edit-tools').hidden"):
-        page.click("#edit")
+    handle_of(page, 5)
     before = page.run("exactfold.view.sheet.points[5]")
     page.run("document.querySelector(\"[data-handle='5']\").focus()")
     page.press("\ue013")  # up

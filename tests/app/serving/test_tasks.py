@@ -4,12 +4,15 @@ import base64
 import io
 from fractions import Fraction
 
+import numpy as np
 import pytest
+from scipy.spatial import Delaunay
 
-from exactfold.app.serving.film import filmed
+from exactfold.app.pictures.film import filmed
 from exactfold.app.serving.tasks import Film, Follow, Move, Open, Session, moved
 from exactfold.branches import count_branches
 from exactfold.errors import ExactfoldError, UsageError
+from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import single_vertex
 from exactfold.pattern.loading import open_sheet
 from exactfold.pattern.random_squares import random_square
@@ -58,8 +61,43 @@ def test_a_moved_sheet_is_counted_like_any_other():
     assert way["way"] == 0  # while it moves, only one motion is followed
 
 
+def convex(corners, inside, seed):
+    """A regular polygon with random points inside, triangulated."""
+    generator = np.random.default_rng(seed)
+    turns = np.arange(corners) * 2 * np.pi / corners
+    rim = np.column_stack([np.cos(turns), np.sin(turns)]) * 1000
+    points = np.vstack([rim.round(), generator.integers(-450, 450, (inside, 2))]).astype(int)
+    return CreasePattern(points.tolist(), Delaunay(points).simplices.tolist())
+
+
+@pytest.mark.parametrize("sheet", [convex(8, 4, 5), convex(5, 3, 1), convex(6, 2, 2)])
+def test_while_a_vertex_moves_a_theorem_says_how_many_graphs_there_are(sheet):
+    _, whole, *_ = answers(Open("x", sheet, frames=2, limit=20))
+    _, brief, way = answers(Open("x", sheet, frames=2, live=True))
+    whole, brief = whole["document"], brief["document"]
+    assert whole["answer"].startswith(f"{brief['answer']}; these ")
+    assert (whole["status"], whole["freedom"]) == (brief["status"], brief["freedom"])
+    assert way["found"]["family"]["dimension"] == sheet.Ve - 3
+    assert brief["ways"][0]["signs"] == "+" * len(sheet.interior)
+
+
+def test_degrees_of_freedom_are_told_if_they_are_proved():
+    for sheet, said in (
+        (single_vertex(3), "degrees of freedom: 0"),
+        (single_vertex(4), "degrees of freedom: 1"),
+        ("waterbomb", "degrees of freedom: 3"),
+        ("bird-base", "degrees of freedom: 5"),
+        ("miura", "degrees of freedom: 3"),
+    ):
+        _, listed, *_ = answers(Open("x", sheet, frames=2, live=True))
+        assert listed["document"]["freedom"] == said
+
+
+SMALL = ["two-vertex", "h1-4", "waterbomb", random_square(8, seed=1), convex(6, 6, 2)]
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("sheet", ["two-vertex", "h1-4", "waterbomb", random_square(8, seed=1)])
+@pytest.mark.parametrize("sheet", SMALL)
 def test_small_sheets_are_answered_in_time(sheet):
     """At most twelve vertices: the answer is there within 0.3 seconds while a vertex moves."""
     import time
@@ -120,6 +158,7 @@ def test_a_film_has_its_pictures_in_turn_for_so_many_seconds():
         ((*pictures("red"), *pictures("red", size=(3, 3))), 1.0, "one size"),
         (pictures("red", "red"), 1e9, "seconds"),
         (pictures("red", "red", size=(2000, 2000)), 1.0, "too large"),
+        (150 * pictures("red", size=(1400, 1000)), 1.0, "too large together"),
     ],
 )
 def test_what_is_no_film_is_refused(frames, seconds, said):

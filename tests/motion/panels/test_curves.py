@@ -93,7 +93,7 @@ def rational_turn(x):
     ],
 )
 def test_four_active_folds_stay_in_proportion_where_the_vertex_folds_flat(tips, linear):
-    """A straight crease that folds alone does so whatever Q is (docs/panel_motion.md, 1)."""
+    """A straight crease that folds alone does so whatever Q is (docs/motion.md, 18)."""
     ways = panel_ways(decompose(one_vertex(*tips)))
     found = {}
     for k, way in enumerate(ways, 1):

@@ -16,7 +16,7 @@ export function showFacts(page, way) {
 }
 
 function countFact(page) {
-  if (page.busy) return ["note", "Looking for ways", ""];
+  if (page.busy && !page.ways.length) return ["note", "Looking for ways", ""];
   if (!page.ways.length) {
     const known = page.status === "proved";
     return [known ? "good" : "open", known ? "The answer: proved" : "The answer: undecided", own(page)];

@@ -13,7 +13,7 @@ export function createList(page, store) {
   let found = [];
 
   document.getElementById("list-title").textContent = page.kind === "branches" ? "Branches" : "Ways to fold";
-  search.placeholder = page.kind === "branches" ? "Search: + − +, or MVV" : "Search: mode 2, or MVV";
+  search.placeholder = page.kind === "branches" ? "Search: + − +, or MVV" : "Search: way 2, or MVV";
   search.setAttribute("aria-label", `Search the ${many}`);
 
   function refresh() {
@@ -107,7 +107,7 @@ function row(way, k, mirrored, drawn) {
   const notes = [];
   if (mirrored) notes.push("mirror image");
   if (drawn?.way === k && way.name !== "letters of the file") notes.push("letters of the file");
-  if (way.family) notes.push(`family of dimension ${way.family.dimension}`);
+  if (way.family && !way.name.includes("family")) notes.push(`family of dimension ${way.family.dimension}`);
   if (way.status === "refuted") notes.push("does not fold on");
   else if (way.status !== "proved") notes.push(way.status);
   else if (way.why) notes.push("no motion drawn");

@@ -103,5 +103,5 @@ loadState().then(({ fold, name, begin }) => {
   if (data.sheet) show(data, begin);
   else if (fold) openSheet({ name, fold }, begin);
   else if (data.begins) openSheet({ name: data.name }, begin);
-  else showAnswer("exactfold", "Drop a drawing here: FOLD, SVG, CP, OPX, ORI, DXF, TMD5 or OBJ");
+  else showAnswer("exactfold", "FOLD, SVG, CP, OPX, ORI, DXF, TMD5 or OBJ: it is read, counted, and folded here");
 });

@@ -58,7 +58,7 @@ export function createPattern(holder, sheet, store, { onVertex, onHint, poppable
     for (const nodes of [folds, vertices]) nodes.find((node) => node.hasAttribute("tabindex"))?.setAttribute("tabindex", 0);
     if (kept) picture.querySelector(`[data-${kept[0]}="${kept[1]}"]`)?.focus({ preventScroll: true });
     paint();
-    if (!held) after?.();
+    after?.();
   }
 
   function paint() {

@@ -294,7 +294,7 @@ export function createView(page, { server, signal, begin = {}, changed }) {
     out.width = canvases.reduce((sum, { width }) => sum + width, 0);
     out.height = canvases[0].height;
     const pen = out.getContext("2d");
-    pen.fillStyle = getComputedStyle(byId("stage").parentElement).backgroundColor;
+    pen.fillStyle = getComputedStyle(byId("stage").closest(".pane")).backgroundColor;
     pen.fillRect(0, 0, out.width, out.height);
     let left = 0;
     for (const canvas of canvases) {

@@ -2,7 +2,7 @@
 
 All positions are analytic functions of a parameter x, which determines the time (`times`). The
 evidence proves that the panels fold (`folding`). `CLAIMS` lists the claims that a file may make
-about this motion, one class for each (docs/panel_motion.md, 5 and 6).
+about this motion, one class for each (docs/motion.md, 20 and 21).
 """
 
 from __future__ import annotations
@@ -68,4 +68,4 @@ PANEL_MOTION = DocumentKind(
     check=check,
     summary=summary,
 )
-"""A motion of rigid panels, and which panels touch first (docs/panel_motion.md)."""
+"""A motion of rigid panels, and which panels touch first (docs/motion.md, 21)."""

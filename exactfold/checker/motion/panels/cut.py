@@ -13,7 +13,7 @@ def cut(sheet: PanelSheet, panel: tuple[int, ...]) -> list[Triangle]:
 
     Ears are cut off one after the other. An ear is a corner that turns left, with its two
     neighbours, such that no other remaining corner lies inside this triangle or on its sides. Every
-    simple polygon has an ear (docs/panel_motion.md, 6).
+    simple polygon has an ear (docs/motion.md, Theorem 15).
     """
     require(len(set(panel)) == len(panel), f"the panel {panel} passes a corner twice")
     left, triangles = list(panel), []

@@ -5,7 +5,7 @@ first order. Let tau = tan(angle / 2) / length. A vertex closes if and only if t
 the product of the quaternions 1 + tau_j d_j is 0. If it is 0 for tau = T w and all T, at all
 vertices of a mode, the mode folds in this way until all its folds are closed. If the vertices of a
 mode have at most four active folds and its transmissions close all loops, the mode folds until its
-first fold is closed (docs/panel_motion.md, 1 and 2).
+first fold is closed (docs/motion.md, 18 and 19).
 """
 
 from __future__ import annotations

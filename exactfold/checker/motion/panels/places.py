@@ -2,7 +2,7 @@
 
 The panels are placed one after the other. Each panel is turned about the fold to the panel before
 it. Rotations have norm 1, so that the error of a product is at most the sum of the errors
-(docs/panel_motion.md, 6).
+(docs/motion.md, Theorem 14).
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""GIF and MP4 files of pictures in turn."""
+"""GIF and MP4 files of a sheet as it folds, or of pictures in turn."""
 
 from __future__ import annotations
 
@@ -9,19 +9,69 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from exactfold.app.pictures.animation import seen_frames
+from exactfold.app.pictures.stills import shades
+from exactfold.app.pictures.svg import INK
 from exactfold.errors import PackageMissingError, UsageError
+from exactfold.pattern.fold_writing import checked_target, write_bytes
 
 if TYPE_CHECKING:
     from PIL.Image import Image
 
+    from exactfold.motion.curves.in_motion import SheetInMotion
+
 ENDINGS: Final = (".gif", ".mp4")
+FILMS: Final = (*ENDINGS, ".png")
+_FINER: Final = 3
 MOST_PICTURES: Final = 400
 MOST_PIXELS: Final = 2_000_000
 """Of one picture."""
+MOST_PIXELS_IN_ALL: Final = 200_000_000
 _COLOURS: Final = 192
 _FEW: Final = 6
 _LEAST_PAUSE: Final = 0.02
 """Seconds for one picture of a GIF file: viewers slow down anything faster."""
+
+
+def write_film(
+    motion: SheetInMotion, path: Path, *, frames: int = 40, seconds: float = 6, size: int = 480
+) -> None:
+    """Write a motion from the flat sheet to its end and back as .gif or .mp4; as .png its end.
+
+    `frames` pictures are shown on the way there, and again on the way back, in `seconds`. `size` is
+    the width in pixels. Raises `UsageError` for another ending, `PackageMissingError`, and
+    `UnwritableFileError`.
+    """
+    ending = checked_film(path)
+    there = _drawn(motion, frames, size)
+    if ending == ".png":
+        target = io.BytesIO()
+        there[-1].save(target, "PNG")
+        write_bytes(path, target.getvalue())
+        return
+    write_bytes(path, film([*there, *there[-2:0:-1]], ending, seconds))
+
+
+def checked_film(path: Path) -> str:
+    """The ending of the path of a film; raises the errors of `checked_target`."""
+    return checked_target(path, FILMS, "an animation")
+
+
+def _drawn(motion: SheetInMotion, frames: int, size: int) -> list[Image]:
+    """Pictures of a motion, drawn at a larger scale first, so that lines are smooth."""
+    module, pen = pillow(), _pen()
+    large = _FINER * size
+    seen, height = seen_frames(motion, frames, large)
+    found = []
+    for one in seen:
+        picture = module.new("RGB", (large, round(height)), "white")
+        drawing = pen.Draw(picture)
+        for face, colour in zip(one.faces, shades(one.shape, one.faces), strict=True):
+            corners = [(float(x), float(y)) for x, y in one.flat[list(face)]]
+            drawing.polygon(corners, fill=colour)
+            drawing.line([*corners, corners[0]], fill=INK, width=_FINER, joint="curve")
+        found.append(picture.resize((size, round(height / _FINER)), module.Resampling.LANCZOS))
+    return found
 
 
 def filmed(pictures: Sequence[bytes], ending: str, seconds: float) -> str:
@@ -34,7 +84,11 @@ def filmed(pictures: Sequence[bytes], ending: str, seconds: float) -> str:
         raise UsageError(f"{len(pictures)} pictures: an animation has 2 to {MOST_PICTURES}")
     if not 0.1 <= seconds <= 600:
         raise UsageError(f"{seconds:g} seconds: an animation lasts 0.1 to 600")
-    opened = [_opened(data) for data in pictures]
+    opened: list[Image] = []
+    for data in pictures:
+        opened.append(_opened(data))
+        if opened[0].width * opened[0].height * len(pictures) > MOST_PIXELS_IN_ALL:
+            raise UsageError("the pictures of the animation are too large together")
     if len({picture.size for picture in opened}) != 1:
         raise UsageError("the pictures of an animation have one size")
     return base64.b64encode(film(opened, ending, seconds)).decode("ascii")
@@ -58,6 +112,12 @@ def pillow() -> Any:
             "animations need Pillow: pip install 'exactfold[animation]'"
         ) from None
     return Image
+
+
+def _pen() -> Any:
+    from PIL import ImageDraw
+
+    return ImageDraw
 
 
 def _opened(data: bytes) -> Image:
