@@ -332,6 +332,7 @@ def test_a_dropped_drawing_is_read_and_what_was_mended_is_told(server):
     answers = lines(server, "open", {"session": "three", "name": path.name, "data": data})
     assert answers[0]["name"] == path.name
     assert any("cut there" in line for line in answers[0]["read"])
+    assert "24 lines" in answers[0]["brief"]
     assert answers[1]["document"]["drawn"] == {"way": 0, "mirrored": False}
     assert answers[2]["way"] == 0
 
