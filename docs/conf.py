@@ -18,6 +18,8 @@ from latex2mathml.converter import convert
 from sphinx.application import Sphinx
 
 HERE = Path(__file__).parent
+# Sphinx looks for this folder before it is filled.
+(HERE / "generated" / "whole").mkdir(parents=True, exist_ok=True)
 sys.path.insert(0, str(HERE))
 
 import make_pages  # noqa: E402
@@ -41,6 +43,7 @@ smartquotes_action = "qe"  # "--signs" keeps both hyphens
 html_theme = "furo"
 html_title = "exactfold"
 html_static_path = ["_static"]
+html_extra_path = ["generated/whole"]
 html_css_files = ["site.css"]
 html_math_renderer = "mathml"
 html_copy_source = False

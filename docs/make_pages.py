@@ -1,7 +1,8 @@
 """The pages of the site that follow from the code, written into docs/generated as it is built.
 
 Public names by topic, with signatures and examples from their docstrings; every command with its
-options; the JSON Schema of all output. `python docs/make_pages.py` writes them without a site.
+options; the JSON Schema of all output; the viewer on the first page. `python docs/make_pages.py`
+writes them without a site.
 """
 
 from __future__ import annotations
@@ -24,60 +25,65 @@ from exactfold.app.cli import app
 from exactfold.app.schemas import DOCUMENTS, schema
 
 FOLDER: Final = Path(__file__).with_name("generated")
+LIVE: Final = FOLDER / "whole" / "live"
+"""Pages of the viewer, which the site has as they are."""
+SHOWN_LIVE: Final = ("pinwheel-base",)
+"""The shipped patterns that have such a page; the first is on the first page."""
 TOPICS: Final[Mapping[str, tuple[str, str, tuple[str, ...]]]] = {
-    "verbs": (
-        "The functions on top",
-        "Twelve verbs that take any sheet, and what they return. Most programs need no more.",
+    "top": (
+        "exactfold: read and the other verbs",
+        "`read` opens a drawing. The other verbs take what it returns, or what it takes.",
         ("",),
     ),
-    "counting": (
-        "Counting, branches, letters and torques",
-        "What is behind the verbs for triangulated sheets: branches, letters, torques.",
-        ("branches", "design"),
+    "branches": (
+        "branches",
+        "What is behind `count` and `branch` for triangulated sheets.",
+        ("branches",),
     ),
-    "patterns": (
-        "Crease patterns and drawings",
+    "design": (
+        "design",
+        "Letters, vertices one by one, and the torques that drive a branch.",
+        ("design",),
+    ),
+    "pattern": (
+        "pattern",
         "Sheets of triangles and of panels, families of them, and drawings in files.",
         ("pattern", "pattern.families", "pattern.data"),
     ),
-    "panels": ("Rigid panels", "All ways in which a sheet of panels folds.", ("panels",)),
-    "motions": (
-        "Motions",
-        "Follow a branch in space, and prove the motion.",
+    "panels": ("panels", "All ways in which a sheet of rigid panels folds.", ("panels",)),
+    "motion": (
+        "motion",
+        "Follow a branch in space up to the first contact (collision), and prove the motion.",
         ("motion",),
     ),
-    "studies": (
-        "Studies",
-        "Seeded ensembles of patterns: rows, tables and figures.",
-        ("studies",),
+    "studies": ("studies", "Seeded ensembles of patterns: rows, tables and figures.", ("studies",)),
+    "certificates": ("certificates", "Write a certificate and read it back.", ("certificates",)),
+    "checker": ("checker", "Verify a certificate, without the rest of exactfold.", ("checker",)),
+    "app": (
+        "app",
+        "What the command line prints and draws: tables, pictures, animations and the viewer.",
+        ("app.report", "app.viewer"),
     ),
-    "evidence": (
-        "Certificates",
-        "Write a certificate, read it back, and verify it.",
-        ("certificates", "checker"),
+    "interop": ("interop", "Sheets and equations for other programs.", ("interop",)),
+    "rigidity": (
+        "rigidity",
+        "Stresses, curvature forms, and the system of equations that is solved.",
+        ("rigidity",),
     ),
-    "output": (
-        "Tables, pictures and other programs",
-        "What the command line prints and draws, the viewer, and files for other programs.",
-        ("app.report", "app.viewer", "interop"),
-    ),
-    "equations": (
-        "Equations of a sheet",
-        "Exact numbers, stresses, curvature forms, and the system of equations that is solved.",
-        ("rigidity", "exact"),
-    ),
-    "solving": (
-        "Solving and proving",
+    "exact": ("exact", "Exact numbers and linear algebra.", ("exact",)),
+    "solve": (
+        "solve",
         "Solvers propose points; exact tests prove that there is a solution next to them.",
         ("solve",),
     ),
-    "errors": (
-        "Verdicts and errors",
-        "What is known, and what can go wrong.",
-        ("errors",),
-    ),
+    "errors": ("errors", "What can go wrong.", ("errors",)),
 }
 """Pages of public names: the title, a sentence, and the rooms; the empty name is the package."""
+FIRST: Final = (
+    *("read", "count", "branch", "match", "vertices", "decompose"),
+    *("follow", "prove", "loops", "draw", "view", "actuate", "check"),
+)
+"""What the first page begins with, in the order in which a program uses it."""
 
 
 def pages() -> dict[str, str]:
@@ -96,6 +102,9 @@ def write() -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         if not path.exists() or path.read_text(encoding="utf-8") != content:
             path.write_text(content, encoding="utf-8")
+    LIVE.mkdir(parents=True, exist_ok=True)
+    for name in SHOWN_LIVE:
+        exactfold.view(name, path=LIVE / f"{name}.html")
 
 
 # Public names
@@ -145,8 +154,10 @@ def _index() -> str:
     entries = "\n".join(TOPICS)
     return (
         "# Public names\n\n"
-        "Every public name, by topic. `help(name)` shows the same text in Python.\n\n"
-        f"| topic | what it is for |\n|---|---|\n{rows}\n\n"
+        "Every public name, one page a room. `help(name)` shows the same text in Python. "
+        "Begin with `read`:\n\n"
+        "```{eval-rst}\n.. autofunction:: exactfold.read\n   :no-index:\n```\n\n"
+        f"| room | what it is for |\n|---|---|\n{rows}\n\n"
         f"```{{toctree}}\n:hidden:\n\n{entries}\n```\n"
     )
 
@@ -162,9 +173,15 @@ def _topic(title: str, sentence: str, listed: tuple[str, ...]) -> str:
         if elsewhere:
             links = ", ".join(f"{{py:obj}}`{name} <{_shown(room, name)}>`" for name in elsewhere)
             text += f"Shown elsewhere: {links}.\n\n"
-        for name, value in sorted(homes()[room].items(), key=lambda item: item[0].lower()):
+        for name, value in sorted(homes()[room].items(), key=_place):
             text += f"```{{eval-rst}}\n{_directive(path, name, value)}```\n\n"
     return text.rstrip() + "\n"
+
+
+def _place(item: tuple[str, Any]) -> tuple[int, str]:
+    """Where a name stands on its page: verbs in the order of their use, others by the alphabet."""
+    name, _ = item
+    return FIRST.index(name) if name in FIRST else len(FIRST), name.lower()
 
 
 def _shown(room: str, name: str) -> str:

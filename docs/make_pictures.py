@@ -80,8 +80,6 @@ def drawings() -> dict[str, str]:
         "draw-branch.svg": draw(one, title="random-8"),
         "draw-folded.svg": folded(follow(one), Amount.of("60deg"), "random-8").text,
         "draw-all.svg": draw(count("flat-octahedron"), title="flat-octahedron"),
-        "draw-two-vertex.svg": draw(count("two-vertex"), title="two-vertex"),
-        "draw-modes.svg": draw(count("zigzags"), title="zigzags"),
     }
 
 

@@ -424,16 +424,19 @@ def check_gallery(name: str) -> Any:
     return card
 
 
-def test_the_lines_of_the_first_page_make_its_picture(
+def test_the_lines_of_the_first_page_make_the_viewer_on_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """The page that is written with the site has this name, and these lines write the same."""
     monkeypatch.chdir(tmp_path)
     page = (ROOT / "docs" / "index.md").read_text("utf-8")
     (lines,) = re.findall(r"(?ms)^```python\n(.+?)```$", page)
-    assert len([line for line in lines.splitlines() if line]) == 3
     exec(lines, {})
-    shown = (ROOT / "docs" / "pictures" / "folding.svg").read_text("utf-8")
-    assert (tmp_path / "folding.svg").read_text("utf-8") == shown
+    (written,) = tmp_path.iterdir()
+    made = script("make_pages")
+    assert re.findall(r'<iframe .*src="live/(\S+)"', page) == [written.name]
+    assert written.name == f"{made['SHOWN_LIVE'][0]}.html"
+    assert written.read_text("utf-8") == exactfold.view(made["SHOWN_LIVE"][0])
 
 
 @pytest.mark.slow

@@ -36,7 +36,7 @@ def branch_document(
 ) -> dict[str, Any]:
     """The FOLD 1.2 object of a branch: the flat sheet, and the sheet in space as frame 1.
 
-    See docs/export.md.
+    See docs/viewer.md, Export to other programs.
 
     The first frame is `fold_document(pattern, assignment, angles=angles)`, with angles in degrees.
     It has the custom keys `frame_exactfold:branch` (`facts`: what the branch is) and

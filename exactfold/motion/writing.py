@@ -107,7 +107,8 @@ def fold_motion(motion: SheetInMotion, *, title: str | None = None) -> dict[str,
 
     `edges_foldAngle` of the flat sheet has `motion.leading_angles`: the first-order angles of a
     branch, or the angles of a motion of panels when its driving folds have 30 degrees. With these
-    angles, a simulator that reads only this frame stays on the branch or mode (docs/export.md).
+    angles, a simulator that reads only this frame stays on the branch or mode (docs/viewer.md,
+    The file).
     """
     folds, bounds = motion.pattern.folds, motion.bounds
     frames = [

@@ -41,7 +41,7 @@ def piece_notes(result: BranchCount) -> list[str]:
     connected_components = result.connected_components
     if connected_components is None:
         return []
-    notes = []
+    notes = [_numbered(connected_components)]
     if connected_components.chord is not None:
         i, j = connected_components.chord
         notes.append(f"the fold {i}-{j} from boundary to boundary joins all graphs")
@@ -72,6 +72,24 @@ def piece_notes(result: BranchCount) -> list[str]:
     if result.warning is not None:
         notes.append(f"warning: {result.warning}")
     return notes
+
+
+def _numbered(connected_components: ConnectedComponents) -> str:
+    """How the graphs are numbered: by the signs of the vertices, the first of them up."""
+    vertices = connected_components.vertices
+    if not vertices:
+        return "way 1 is this graph: one family over all boundary heights"
+    number, rest = _power(len(vertices) - 1), len(vertices) - 1
+    if not rest:
+        return f"the graphs are mirror images: one family, way 1, with vertex {vertices[0]} up"
+    order = ""
+    if len(vertices) <= _SHOWN:
+        names = ", ".join(map(str, vertices))
+        order = f"; the vertices {names} are {'+' * len(vertices)}, {'+' * rest}-, and so on"
+    return (
+        f"each graph has another as its mirror image: so they are {number} families, ways 1 to "
+        f"{number}, each over all boundary heights, with vertex {vertices[0]} up{order}"
+    )
 
 
 def _many_joints(connected_components: ConnectedComponents) -> str:

@@ -116,6 +116,7 @@ class Session:
         yield {
             "kind": "read",
             "name": name,
+            "brief": "; ".join(filter(None, (", ".join(opened.brief), *opened.seen))),
             "read": list(opened.lines),
             "sheet": sheet_json(opened),
         }

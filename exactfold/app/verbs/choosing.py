@@ -20,7 +20,12 @@ from exactfold.app.verbs.chosen import (
     not_the_drawn,
     on_side,
 )
-from exactfold.branches.counting.find import BranchFinder
+from exactfold.branches.counting.find import (
+    BranchFinder,
+    branch_finder,
+    has_graphs,
+    signs_of_way,
+)
 from exactfold.branches.values.branch import Branch
 from exactfold.errors import ExactfoldError, NotCountedError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
@@ -50,6 +55,9 @@ def choose(
     sheet = opened.sheet
     if choice.of_branches or (isinstance(sheet, CreasePattern) and has_branches(sheet)):
         return _branch(opened, choice, progress)
+    numbered = isinstance(sheet, CreasePattern) and has_graphs(sheet)
+    if numbered and choice.way is not None:
+        return _branch(opened, choice, progress)
     if choice.way is None and isinstance(sheet, CreasePattern):
         letters = (
             opened.letters if choice.letters is None else asked_letters(opened, choice.letters)
@@ -57,6 +65,8 @@ def choose(
         over = _over_a_boundary(sheet, letters, choice, progress)
         if over is not None:
             return over
+        if numbered and not letters:
+            return _by_default(opened, sheet, choice, progress)
     return _panels(opened, choice, progress)
 
 
@@ -76,7 +86,7 @@ def the_branch(
     if not isinstance(pattern, CreasePattern):
         _require_branches(opened, needs)
     chosen = _branch(opened, choice, progress)
-    if chosen.number is None or not isinstance(pattern, CreasePattern):
+    if chosen.number is None or not isinstance(pattern, CreasePattern) or has_graphs(pattern):
         return chosen
     alone = BranchFinder(pattern).find(chosen.branch.vertex_signs, progress=progress)
     return replace(chosen, branch=alone) if alone.status is PROVED else chosen
@@ -105,6 +115,10 @@ def _branch(opened: Opened, choice: Choice, progress: Progress | None) -> Chosen
     side = choice.side or 1
     if choice.drive is not None:
         return _driven(pattern, choice, progress)
+    if choice.way is not None and has_graphs(pattern):
+        finder = choice.finder_of(pattern)
+        signs = finder.signs(signs_of_way(pattern, choice.way), None)
+        return ChosenBranch(finder.find(signs, progress=progress), side, choice.way)
     if choice.way is not None:
         from exactfold.branches.counting.collect import count_branches
 
@@ -150,23 +164,32 @@ def _driven(pattern: CreasePattern, choice: Choice, progress: Progress | None) -
 
 
 def _by_default(
-    opened: Opened, pattern: CreasePattern, choice: Choice, progress: Progress | None
+    opened: Opened,
+    pattern: CreasePattern,
+    choice: Choice,
+    progress: Progress | None,
+    none: str = "",
 ) -> ChosenBranch:
-    """The branch with the letters of the drawing, or the one on which all vertices pop up."""
+    """The branch with the letters of the drawing, or the one on which all vertices pop up.
+
+    `none` says that no way with these letters is known, if that has been tried.
+    """
     side, letters = choice.side or 1, opened.letters
     why = "no way was named, and the drawing has no mountains and valleys"
-    if letters and choice.finder is None and choice.boundary_heights is None:
+    if none:
+        why = none
+    elif letters and choice.finder is None and choice.boundary_heights is None:
         try:
-            rays, none = _rays(pattern, letters, progress, most=_FEW)
+            rays, reason = _rays(pattern, letters, progress, most=_FEW)
         except ExactfoldError as error:
-            rays, none = [], str(error)
+            rays, reason = [], str(error)
         if rays:
             branch, own = rays[0]
             first = f"the first of {len(rays)} that have" if len(rays) > 1 else "which has"
             turned = " on its other side" if own < 0 else ""
             text = f"branch {branch.sign_text}, {first} the mountains and valleys of the drawing"
             return ChosenBranch(branch, side * own, why=f"{text}{turned}")
-        why = not_the_drawn(none)
+        why = not_the_drawn(reason)
     elif letters:
         why = "no way was named"
     finder = choice.finder_of(pattern)
@@ -211,13 +234,10 @@ def _panels(opened: Opened, choice: Choice, progress: Progress | None) -> Chosen
         motion, none = begun(opened, answer, letters)
         if motion is not None:
             return on_side(motion, choice.side or 1)
-    chosen = panels_way(answer, choice.way, letters, drawn=opened.letters, none=none)
     sheet = opened.sheet
-    if chosen.way is None and not chosen.rates and isinstance(sheet, CreasePattern):
-        from exactfold.design.assignments.boundary_match import can_pop
-
-        if sheet.Ve > 4 and sheet.is_convex and can_pop(sheet):
-            return _by_default(opened, sheet, replace(choice, letters=None), progress)
+    if letters is None and isinstance(sheet, CreasePattern) and has_graphs(sheet):
+        return _by_default(opened, sheet, choice, progress, none or not_the_drawn(""))
+    chosen = panels_way(answer, choice.way, letters, drawn=opened.letters, none=none)
     return on_side(chosen, choice.side or 1)
 
 
@@ -229,6 +249,9 @@ def listed(result: BranchCount, way: int) -> Branch:
     """
     if 1 <= way <= len(result.branches):
         return result.branches[way - 1]
+    if has_graphs(result.pattern):
+        finder = branch_finder(result.pattern)
+        return finder.find(finder.signs(signs_of_way(result.pattern, way), None))
     if result.branches:
         more = "" if result.status is PROVED else f", undecided: {result.reason}"
         raise UsageError(f"there is no way {way}: `count` lists 1 to {len(result.branches)}{more}")

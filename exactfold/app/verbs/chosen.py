@@ -72,6 +72,11 @@ class Choice:
 
     def check(self) -> None:
         """Raise `UsageError` if what is given does not go together."""
+        if self.way is not None and not isinstance(self.way, int):
+            raise UsageError(
+                f"way {self.way!r} is not a number: modes that fold together are one way, "
+                "and letters choose among them"
+            )
         if len(self.names) > 1:
             raise UsageError(f"name the way by one of {ONE_OF}, not {' and '.join(self.names)}")
         shape = [name for name in self.of_branches if name not in ("signs", "up")]

@@ -54,7 +54,7 @@ class ViewDocument(Facts):
     """What the page shows of a sheet."""
 
     format: Literal["exactfold view result"]
-    version: Literal[1]
+    version: Literal[2]
     name: str
     sheet: FlatSheet
     read: list[str]
@@ -170,7 +170,7 @@ class Known:
         """The whole document; `served` means that the page can ask for missing motions."""
         return {
             "format": "exactfold view result",
-            "version": 1,
+            "version": 2,
             "name": self.name,
             "sheet": sheet_json(self.opened),
             "read": list(self.opened.lines),

@@ -137,7 +137,7 @@ def listed_ways(
             known = _branches(opened, pattern, branches, progress, Clock(limit))
             if known is not None:
                 follower = Following(frames, proving, known.dimension)
-                numbered = known.count is not None and bool(known.count.known)
+                numbered = known.count is not None and known.is_whole
                 ways = [
                     (branch_way(branch, k if numbered else None), branch)
                     for k, branch in enumerate(known.branches, 1)
@@ -167,6 +167,13 @@ class _Branches:
     pattern: CreasePattern
     branches: tuple[Branch, ...]
     count: BranchCount | None
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether these are all branches, in the order of their numbers."""
+        if self.dimension > 1:
+            return bool(2 * len(self.branches) == 1 << len(self.pattern.foldable_vertices))
+        return self.count is not None and bool(self.count.known)
 
     @property
     def dimension(self) -> int:
@@ -250,10 +257,9 @@ def _branch_facts(known_branches: _Branches) -> Facts:
         from exactfold.app.report.count import answer
 
         count = known_branches.count
-        shown = known_branches.branches
         whole = count.status is PROVED and len(count) == (count.real or 0)
         if known_branches.dimension > 1:
-            whole = 2 * len(shown) == 2 ** len(known_branches.pattern.foldable_vertices)
+            whole = known_branches.is_whole
         return {
             "kind": "branches",
             "answer": _SECONDS.sub("", answer(count).plain),

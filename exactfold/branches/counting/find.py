@@ -118,6 +118,35 @@ def neighbours(
     return finder.neighbours(finder.signs(signs, None), vertices, progress=progress)
 
 
+def has_graphs(pattern: CreasePattern) -> bool:
+    """Whether the ways of a sheet are graphs over the boundary heights, one for each sign vector.
+
+    >>> from exactfold.pattern.families import single_vertex, two_vertex
+    >>> has_graphs(single_vertex(5)), has_graphs(two_vertex())
+    (True, False)
+    """
+    return pattern.Ve > 4 and pattern.is_convex and bool(pattern.foldable_vertices)
+
+
+def signs_of_way(pattern: CreasePattern, way: int) -> dict[int, int]:
+    """The vertex signs of the graph with the number `way`, from 1, of a sheet that `has_graphs`.
+
+    The opposite signs belong to its mirror image. So the first vertex that can pop is up, and the
+    others are up or down in the order +++, ++-, +-+, and so on. Raises `UsageError` for a number
+    beyond the last.
+
+    >>> from exactfold.pattern.random_squares import random_square
+    >>> signs_of_way(random_square(3, seed=0), 3)
+    {4: 1, 5: -1, 6: 1}
+    """
+    first, *others = pattern.foldable_vertices
+    number = 1 << len(others)
+    if not 1 <= way <= number:
+        raise UsageError(f"there is no way {way}: this sheet has the ways 1 to {number}")
+    bits = f"{way - 1:0{len(others)}b}" if others else ""
+    return {first: 1, **{v: -1 if bit == "1" else 1 for v, bit in zip(others, bits, strict=True)}}
+
+
 def branch_finder(
     pattern: CreasePattern,
     boundary_heights: BoundaryHeights | None = None,

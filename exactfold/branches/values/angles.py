@@ -24,7 +24,8 @@ class FoldAngles:
     """Fold angles of the heights t h, to first order in the amplitude t.
 
     A fold e of length L_e, between faces of twice the areas c and c', bends by t f_e(h) L_e / (c
-    c') radians, positive for a valley (docs/branch.md, The forms on folds; docs/export.md).
+    c') radians, positive for a valley (docs/branch.md, The forms on folds; docs/viewer.md,
+    Fold angles).
     `densities` are proved bounds of f_e(h) / (c c'), exact rationals, by fold (i, j), i < j.
     `bends` are the bends at t = 1 in radians, rational approximations that prove nothing.
     """

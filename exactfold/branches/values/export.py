@@ -59,8 +59,8 @@ class BranchExport:
 
         ".fold" and ".json" are FOLD. ".dxf" is the crease pattern with the letters of the branch,
         ".obj" and ".stl" are the sheet in space, and ".csv" is a table of letters and angles by
-        fold (docs/export.md). Raises `UsageError` for any other ending, `UnwritableFileError`, and
-        `PackageMissingError`.
+        fold (docs/viewer.md, The file). Raises `UsageError` for any other ending,
+        `UnwritableFileError`, and `PackageMissingError`.
         """
         ending = checked_target(Path(path), ENDINGS, "a branch")
         if ending in FOLD_ENDINGS:
@@ -90,8 +90,8 @@ def export_branch(
 
     `edges_foldAngle` is proportional to the first-order fold angles f_e(h) L_e / (c c') of the
     branch (`fold_angles`), and the largest has the size of `amount` degrees. A second frame is the
-    sheet in space at that amplitude, to second order (docs/export.md). `title` names the pattern in
-    the file. Returns what was written.
+    sheet in space at that amplitude, to second order (docs/viewer.md, The file). `title` names
+    the pattern in the file. Returns what was written.
 
     Raises `UndecidedBranchError` for a branch that is not proved; `force` allows it if its heights
     are known. Raises `UsageError` unless 0 < amount <= 180, `NotApplicableError` for lengths that

@@ -101,10 +101,8 @@ def _part(spaces: Spaces, part: Space, evidence: Sequence[Any]) -> Found:
                 joints += found.joints
     closed = False
     if products:
-        split = [
-            solutions(spaces, spaces.vanishing(part, [values]), evidence)
-            for values in spaces.factors(products, part)
-        ]
+        _, *both = spaces.factors(dict(enumerate(products)), part)
+        split = [solutions(spaces, spaces.vanishing(part, [x]), evidence) for x in both]
         joints += [signs for found in split for signs in found.joints]
         closed = all(found.closed for found in split)
     return Found(joints, closed or _are_all(spaces, part, joints))

@@ -85,6 +85,7 @@ class Spaces:
     ) -> None:
         self.sheet, self.near, self.work = sheet, near, work or Work()
         self._known: dict[tuple[int, int | None], list[tuple[Edge, Edge, Any]]] = {}
+        self._kept = 0
         self.first_order = self._first_order()
 
     def leaves(self) -> list[Leaf]:
@@ -197,14 +198,26 @@ class Spaces:
         return parts
 
     def _split(self, space: Space) -> list[Leaf]:
-        """The leaves of a part."""
-        smaller, left = self.narrowed(space)
-        if smaller is None:
-            return [Leaf(space, left)]
-        leaves = []
-        for each in smaller:
-            leaves += self._leaves(each)
-            at_most(len(leaves), MOST_LEAVES, "the spaces of motions", "SPACE_LEAVES")
+        """The leaves of a part.
+
+        The zeros of the second factor of a form are wanted only where the first does not vanish,
+        because the others are zeros of the first. So the values of the first factor are kept as
+        densities of a fold (v, -n), which is not in the sheet.
+        """
+        kernel, products, left = self._forms(space)
+        if kernel:
+            return self._within(space, kernel)
+        if not products:
+            return [Leaf([_on_folds(motion) for motion in space], left)]
+        v, one, other = self.factors(products, space)
+        leaves = self._within(space, [one])
+        self._kept += 1
+        kept = [
+            motion if zero(x) else {**motion, (v, -self._kept): x}
+            for motion, x in zip(space, one, strict=True)
+        ]
+        leaves += self._within(kept, [other])
+        at_most(len(leaves), MOST_LEAVES, "the spaces of motions", "SPACE_LEAVES")
         return leaves
 
     def narrowed(self, part: Space) -> tuple[Iterator[Space] | None, tuple[int, ...]]:
@@ -212,20 +225,33 @@ class Spaces:
 
         A semidefinite form leaves its kernel, and one of inertia (1, 1) the zeros of its factors.
         """
-        products: list[Squares] = []
+        kernel, products, left = self._forms(part)
+        if kernel:
+            return iter([self.vanishing(part, kernel)]), ()
+        if not products:
+            return None, left
+        _, *both = self.factors(products, part)
+        return (self.vanishing(part, [values]) for values in both), ()
+
+    def _forms(self, part: Space) -> tuple[list[list[Number]], dict[int, Squares], tuple[int, ...]]:
+        """Functions that vanish with a semidefinite form; the forms that split; other vertices."""
+        products: dict[int, Squares] = {}
         left: list[int] = []
         for v in sorted({v for fold in folds_of(part) for v in fold if v in self.near}):
             squares = self.squares(v, part)
             signs = [d.sign() for d, _ in squares]
             if signs and abs(sum(signs)) == len(signs):
-                return iter([self.vanishing(part, [values for _, values in squares])]), ()
+                return [values for _, values in squares], {}, ()
             if len(signs) == 2:
-                products.append(squares)
+                products[v] = squares
             elif signs:
                 left.append(v)
-        if not products:
-            return None, tuple(left)
-        return (self.vanishing(part, [values]) for values in self.factors(products, part)), ()
+        return [], products, tuple(left)
+
+    def _within(self, space: Space, rows: Sequence[Sequence[Number]]) -> list[Leaf]:
+        """The leaves of the subspace on which linear functions vanish; none if a kept one does."""
+        smaller = self.vanishing(space, rows)
+        return self._leaves(smaller) if _kept(smaller) == _kept(space) else []
 
     def squares(self, v: int, space: Space) -> Squares:
         """The form of a vertex as sum d_k l_k^2; each l_k is given by its values on the basis."""
@@ -281,20 +307,32 @@ class Spaces:
             self._known[v, bits] = brackets
         return self._known[v, bits]
 
-    def factors(self, products: Sequence[Squares], space: Space) -> Iterator[list[Number]]:
-        """Yield the values on the basis of the two linear factors of one of the products.
+    def factors(
+        self, products: Mapping[int, Squares], space: Space
+    ) -> tuple[int, list[Number], list[Number]]:
+        """A vertex, and the values on the basis of the two linear factors of its form.
 
         If d and e have opposite signs, d l^2 + e m^2 = d (l - r m)(l + r m) with r^2 = -e / d. A
         product is preferred whose root r already lies in the field. The root is adjoined to a field
         that holds the whole space, because numbers of the space are multiplied by it later.
         """
         tower = tower_of(space)
-        best, fewest = None, None
-        for (d, first), (e, second) in products:
+        found = []
+        for v, ((d, first), (e, second)) in products.items():
             above, root = tower.adjoined(-(e / d))
-            if fewest is None or above.size < fewest:
-                best, fewest = (first, second, root), above.size
-        if best is not None:
-            first, second, root = best
-            for r in (root, -root):
-                yield [x + r * y for x, y in zip(first, second, strict=True)]
+            found.append((above.size, v, first, second, root))
+        _, v, first, second, root = min(found, key=lambda entry: entry[:2])
+        one, other = (
+            [x + r * y for x, y in zip(first, second, strict=True)] for r in (root, -root)
+        )
+        return v, one, other
+
+
+def _kept(space: Space) -> set[Edge]:
+    """The keys (v, -n) of the factors that do not vanish on a space."""
+    return {fold for motion in space for fold in motion if fold[1] < 0}
+
+
+def _on_folds(motion: Motion) -> Motion:
+    """The densities of the folds of the sheet, without those of kept factors."""
+    return {fold: value for fold, value in motion.items() if fold[1] >= 0}

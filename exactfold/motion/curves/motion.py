@@ -119,7 +119,10 @@ class Motion(SheetInMotion):
 
     @property
     def leading_angles(self) -> Mapping[Edge, float]:
-        """The first-order fold angles, scaled to a largest angle of 30 degrees (docs/export.md)."""
+        """The first-order fold angles, scaled to a largest angle of 30 degrees.
+
+        See docs/viewer.md, Fold angles.
+        """
         letters = self.assignment
         return {
             fold: self.side * angle if letters[fold] in "MV" else 0.0

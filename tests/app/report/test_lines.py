@@ -32,7 +32,7 @@ def test_signs_of_joints_are_listed_on_small_sheets_only() -> None:
             Joint({v: int(v < flat) for v in range(number)}, {}, "space", False) for flat in (1, 3)
         )
         known = replace(result.connected_components, vertices=tuple(range(number)), joints=joints)
-        return piece_notes(replace(result, connected_components=known))[0]
+        return piece_notes(replace(result, connected_components=known))[1]
 
     assert said(17) == (
         "graphs meet at 2 solutions on which 14 to 16 of the 17 stars are flat; --json has their "

@@ -271,6 +271,29 @@ def test_ports_and_frames_out_of_range_are_refused():
         view_server("two-vertex", frames=1)
 
 
+def test_who_leaves_ends_the_work_for_him():
+    """A page that is closed does not keep a process busy."""
+    with view_server("bird-base", limit=60) as found:
+        thread = threading.Thread(target=found.serve_forever, kwargs={"poll_interval": 0.02})
+        thread.start()
+        try:
+            before = {worker._process.pid for worker in found._listing}
+            body = b'{"session": "gone"}'
+            with socket.create_connection(("127.0.0.1", found.server_port), timeout=60) as wire:
+                rows = f"Content-Length: {len(body)}"
+                wire.sendall(head(found, rows).encode() + body)
+                assert b"200" in wire.recv(4096)
+            for _ in range(300):
+                if {worker._process.pid for worker in found._listing} != before:
+                    break
+                time.sleep(0.1)
+            assert len({worker._process.pid for worker in found._listing} - before) == 1
+            assert [worker for worker in found._listing if worker.session == "gone"] == []
+        finally:
+            found.shutdown()
+            thread.join()
+
+
 # --- answers -------------------------------------------------------------------------------------
 
 
@@ -309,6 +332,7 @@ def test_a_dropped_drawing_is_read_and_what_was_mended_is_told(server):
     answers = lines(server, "open", {"session": "three", "name": path.name, "data": data})
     assert answers[0]["name"] == path.name
     assert any("cut there" in line for line in answers[0]["read"])
+    assert "24 lines" in answers[0]["brief"]
     assert answers[1]["document"]["drawn"] == {"way": 0, "mirrored": False}
     assert answers[2]["way"] == 0
 

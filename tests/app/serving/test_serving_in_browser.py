@@ -78,7 +78,7 @@ def test_a_drawing_that_is_dropped_is_read_counted_and_listed(page):
     assert "16 families of ways to fold, each of dimension 5" in page.text("#answer")
     page.until("exactfold.store.get().ways[0].motion !== null")
     assert page.run("exactfold.store.get().time") == 0.55
-    assert "4 lines cut there" in page.text(".facts details")
+    assert "4 lines cut there" in page.text(".facts details[open]")
     page.until(READY)
     assert page.run("exactfold.store.get().ways.every((way) => way.motion || way.why)")
     assert page.complaints() == []

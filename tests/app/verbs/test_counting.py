@@ -176,12 +176,13 @@ def test_letters_that_no_branch_has():
         exactfold.branch("two-vertex", letters="drawn")
 
 
-def test_with_more_corners_letters_name_a_branch_and_numbers_do_not():
+def test_with_more_corners_letters_and_numbers_name_a_branch():
     sheet = families.single_vertex(5)
     found = exactfold.branch(sheet, letters="MMVMV")
     assert (found.status, found.assignment_text) == (exactfold.PROVED, "MMVMV")
-    with pytest.raises(NotCountedError, match="lists no single way of a sheet with 5 corners"):
-        exactfold.branch(sheet, way=1)
+    assert exactfold.branch(sheet, way=1) == exactfold.branch(sheet, "+")
+    with pytest.raises(UsageError, match="there is no way 2: this sheet has the ways 1 to 1"):
+        exactfold.branch(sheet, way=2)
     with pytest.raises(NotCountedError, match=r"^no branch has these letters"):
         exactfold.branch(sheet, letters="MMVVV")
 

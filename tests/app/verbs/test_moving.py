@@ -67,6 +67,11 @@ def test_ways_of_panels_are_followed_by_number_and_by_letters():
     assert (alone.way, alone.modes) == (3, (5,))
 
 
+def test_several_numbers_are_refused():
+    with pytest.raises(UsageError, match=r"way \[1, 5\] is not a number"):
+        exactfold.follow("zigzags", [1, 5])
+
+
 def test_without_a_name_the_letters_of_the_drawing_are_followed():
     motion = exactfold.follow("miura", **SHORT)
     assert dict(motion.assignment) == exactfold.read("miura").letters

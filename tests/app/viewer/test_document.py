@@ -12,8 +12,10 @@ import numpy as np
 import pytest
 from jsonschema import Draft202012Validator, ValidationError
 
-from exactfold import CreasePattern, Opened, PanelPattern, random_square, schema
+import exactfold
+from exactfold import CreasePattern, Opened, PanelPattern, delaunay, random_square, schema
 from exactfold.app.pictures import crease_style
+from exactfold.app.report.connected_components import piece_notes
 from exactfold.app.viewer import page as page_module
 from exactfold.app.viewer import view_document, view_page
 from exactfold.app.viewer.coding import coded_frames, decoded_frames, levelled
@@ -318,3 +320,18 @@ def _data(page):
 
 def _script(page):
     return re.search(r'<script type="module">(.*?)</script>', page, re.DOTALL)[1]
+
+
+def test_ways_have_the_same_numbers_in_the_page_in_fold_and_in_count():
+    corners = [(0, 0), (10, -3), (16, 5), (9, 14), (-2, 9)]
+    sheet = delaunay([*corners, (5, 4), (8, 7)])
+    document = view_document(sheet, frames=2)
+    numbers = [way["number"] for way in document["ways"]]
+    assert numbers == [*range(1, len(numbers) + 1)]
+    for way in document["ways"]:
+        assert exactfold.follow(sheet, way["number"], frames=2).branch.sign_text == way["signs"]
+    said = " ".join(str(line) for line in piece_notes(count_ways(sheet)))
+    assert f"ways 1 to {len(numbers)}, each over all boundary heights" in said
+    for name in ("two-vertex", "zigzags"):
+        listed = document_of(name)["ways"]
+        assert [way["number"] for way in listed] == [*range(1, len(listed) + 1)]

@@ -11,7 +11,7 @@ const ICONS = {
 export function showFacts(page, way) {
   const facts = [countFact(page), ...(page.freedom ? [["note", sentence(page.freedom), ""]] : []), ...(way ? wayFacts(page, way) : []), ...page.notes.map((text) => ["open", "To know", text])];
   const items = facts.map(item);
-  if (page.read.length) items.push(reading(page.read));
+  if (page.read.length) items.push(reading(page.read, page.served));
   document.getElementById("facts").replaceChildren(...items);
 }
 
@@ -53,10 +53,10 @@ function wayFacts(page, way) {
 }
 
 // How the drawing was read; it is the same for every way, and the user opens it.
-function reading(lines) {
+function reading(lines, open) {
   const node = item(["note", "", ""]);
   node.className = "wide";
-  const details = document.createElement("details");
+  const details = Object.assign(document.createElement("details"), { open });
   details.append(Object.assign(document.createElement("summary"), { textContent: "How the drawing was read" }));
   for (const line of lines) details.append(Object.assign(document.createElement("small"), { textContent: line }));
   node.lastChild.replaceChildren(details);

@@ -37,7 +37,10 @@ async function openSheet(request, begin = {}) {
   let whole = false;
   try {
     await server.lines("open", request, (line) => {
-      if (line.kind === "read") show({ ...unknown(line), busy: true }, { time: 0 });
+      if (line.kind === "read") {
+        show({ ...unknown(line), busy: true }, { time: 0 });
+        if (line.brief) say(`Read: ${line.brief}`);
+      }
       else if (line.kind === "listed") {
         whole = true;
         show({ ...line.document, busy: true }, begin);
