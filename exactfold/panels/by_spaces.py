@@ -21,7 +21,7 @@ from exactfold.panels.regular import (
 )
 from exactfold.panels.result import Part
 from exactfold.panels.stars import Star
-from exactfold.panels.subspaces import Leaf, independent_parts, leaves, reduced
+from exactfold.panels.subspaces import Leaf, SubspaceSearch, independent_parts, reduced
 from exactfold.panels.trees import tree_components
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
@@ -43,12 +43,12 @@ def by_spaces(pattern: PanelPattern, moving: Mapping[int, Star], clock: Clock = 
         rows, size = first_order(moving, clock.share(1 / 2).at_least(QUICK))
     except TooManyModesError as error:
         return _without_space(pattern, moving, str(error), clock)
-    small, left = reduced(moving, rows, size, MOST_REDUCTION, clock)
+    small, left, sums = reduced(moving, rows, size, MOST_REDUCTION, clock)
     if left == 0:
         still = tuple(sorted({edge for star in moving.values() for edge in star.folds}))
         return Part(tuple(moving), "subspaces", {0: 1}, {0: 1}, dimension=size, still=still)
     try:
-        return _complete(pattern, moving, (rows, size), (small, left), clock)
+        return _complete(pattern, moving, (rows, size), (small, left), sums, clock)
     except TooManyModesError as error:
         if (tree := by_tree(moving, size)) is not None:
             return tree
@@ -87,20 +87,23 @@ def _complete(
     moving: Mapping[int, Star],
     first: tuple[Rows, int],
     smaller: tuple[Rows, int],
+    sums: bool,
     clock: Clock,
 ) -> Part:
     """All components; raises `TooManyModesError` if this is too much work or forms remain.
 
     `first` are the first-order motions. `smaller` are those that remain after the semidefinite
-    forms.
+    forms; `sums` says whether one of these was a sum of several squares.
     """
     vertices = tuple(moving)
     (rows, size), (small, left) = first, smaller
-    spaces = leaves(moving, small, left, MOST_STEPS, clock.share(1 / 2))
+    search = SubspaceSearch(moving, MOST_STEPS, clock.share(1 / 2))
+    spaces = search.leaves(small, left)
+    together = 0
     counts: dict[int, int] = {}
     for leaf in spaces:
         clock.check()
-        _check_component(moving, leaf)
+        together = max(together, _check_component(moving, leaf))
         counts[leaf.dimension] = counts.get(leaf.dimension, 0) + 1
     still = _still(moving, (edge for leaf in spaces for edge in leaf.rows))
     if not counts:
@@ -113,6 +116,10 @@ def _complete(
     if len(spaces) == 1:
         alone = alone or is_one_family(moving, size, spaces[0].size, spaces[0].vertices)
     known = all(folding) and alone
+    # These are conditions under which no complex motion has more dimensions than a real one
+    # (docs/panels.md, Degrees of freedom).
+    real = not sums and not search.sums and together < 2
+    most = None if known else max(counts) if real else most_freedom(moving, rows, size)
     components: list[FoundComponent] = []
     if not all(folding):
         components, _ = _found(pattern, moving, small, left, clock)
@@ -124,22 +131,28 @@ def _complete(
         spaces=tuple(spaces),
         spaces_fold=tuple(folding),
         dimension=size,
-        most=None if known else most_freedom(moving, rows, size),
+        most=most,
         found=tuple(components),
         still=still,
         reason=_open(known, all(folding)),
     )
 
 
-def _check_component(moving: Mapping[int, Star], leaf: Leaf) -> None:
-    """Raise `TooManyModesError` unless the motions of a leaf are shown to be one component."""
+def _check_component(moving: Mapping[int, Star], leaf: Leaf) -> int:
+    """The largest number of forms that remain together on an independent part of a leaf.
+
+    Raises `TooManyModesError` unless the motions of the leaf are shown to be one component.
+    """
+    together = 0
     for rows, size in independent_parts(_entries(leaf), leaf.size, moving):
         cones = [v for v in leaf.vertices if set(moving[v].folds) & set(rows)]
+        together = max(together, len(cones))
         if len(cones) > 1 and cone_motion(moving, rows, size, cones) is None:
             raise TooManyModesError(
                 f"on a space of dimension {size} the second-order conditions of vertices "
                 f"{', '.join(map(str, cones))} remain, and exactfold could not solve them together"
             )
+    return together
 
 
 def _open(known: bool, fold: bool) -> str:

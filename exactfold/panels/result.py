@@ -333,14 +333,10 @@ class Part:
     def freest(self) -> int | None:
         """An upper bound for the dimension of true motions; None if nothing bounds it.
 
-        The tangent cone of the true motions has their dimension, and lies in the motions to second
-        order.
+        The dimension to second order is none: the tangent cone of real solutions may have a smaller
+        dimension than they have, as that of x^2 + y^2 = z^3.
         """
-        if self.true is not None:
-            return max(self.true)
-        if self.second_order is not None:
-            return max(self.second_order)
-        return self.most
+        return self.most if self.true is None else max(self.true)
 
     @property
     def least(self) -> int:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Final, TypeAlias
@@ -69,19 +68,26 @@ def leaves(
     times one dimension, times the square of the degree of the field. It also raises this error when
     the clock has passed.
     """
-    search = SubspaceSearch(stars, most, clock)
-    solutions = search.solved(dict(rows), size)
-    return [leaf for leaf in solutions if leaf.size]
+    return SubspaceSearch(stars, most, clock).leaves(rows, size)
 
 
 class SubspaceSearch:
-    """The splitting of spaces of motions, with a limit on its work; `TooManyModesError` beyond."""
+    """The splitting of spaces of motions, with a limit on its work; `TooManyModesError` beyond.
+
+    `sums` says whether a semidefinite form met was a sum of several squares. The complex zeros of
+    such a form have a larger dimension than its kernel.
+    """
 
     def __init__(self, stars: Mapping[int, Star], most: int, clock: Clock = UNLIMITED) -> None:
         self.stars = stars
         self.most = most
         self.clock = clock
         self.work = self._kept = 0
+        self.sums = False
+
+    def leaves(self, rows: Rows, size: int) -> list[Leaf]:
+        """The leaves of a space without the flat state."""
+        return [leaf for leaf in self.solved(dict(rows), size) if leaf.size]
 
     def solved(self, rows: Rows, size: int, settled: frozenset[int] = frozenset()) -> list[Leaf]:
         """The leaves of one space: the product of the leaves of its independent parts.
@@ -166,6 +172,7 @@ class SubspaceSearch:
                 self.count(len(self.stars[v].folds) * size * weight)
                 squares = squares_of(self.stars[v], rows, size, self.clock)
                 if is_semidefinite(squares):
+                    self.sums = self.sums or len(squares) > 1
                     rows, size = imposed(rows, size, *(functional for _, functional in squares))
                 if not squares or is_semidefinite(squares):
                     known.add(v)
@@ -193,14 +200,17 @@ def _is_kept(edge: Edge) -> bool:
 
 def reduced(
     stars: Mapping[int, Star], rows: Rows, size: int, most: int, clock: Clock = UNLIMITED
-) -> tuple[Rows, int]:
-    """The space after all semidefinite forms.
+) -> tuple[Rows, int, bool]:
+    """The space after all semidefinite forms, and whether one of these was a sum of squares.
 
     It is unchanged if that takes more than `most` steps, or if the clock has passed.
     """
-    with suppress(TooManyModesError):
-        rows, size, _, _ = SubspaceSearch(stars, most, clock).reduced(rows, size)
-    return rows, size
+    search = SubspaceSearch(stars, most, clock)
+    try:
+        rows, size, _, _ = search.reduced(rows, size)
+    except TooManyModesError:
+        return rows, size, False
+    return rows, size, search.sums
 
 
 def is_semidefinite(squares: Squares) -> bool:

@@ -1,5 +1,7 @@
 """Bounds of the degrees of freedom: known values, never too small, and refused without a proof."""
 
+from collections.abc import Sequence
+from fractions import Fraction
 from itertools import combinations
 
 import pytest
@@ -14,11 +16,12 @@ from exactfold.panels import by_spaces, freedom
 from exactfold.panels.decomposition import decompose
 from exactfold.panels.freedom import most_first_order, most_freedom
 from exactfold.panels.kernel import first_order
-from exactfold.panels.stars import stars
+from exactfold.panels.stars import Star, stars
+from exactfold.panels.subspaces import reduced
 from exactfold.pattern.families import single_vertex
 from exactfold.pattern.loading import open_sheet
 from exactfold.pattern.opening import panels
-from exactfold.pattern.panel_pattern import PanelPattern
+from exactfold.pattern.panel_pattern import PanelPattern, Point
 
 SHEETS = {
     "single": panels(single_vertex(7)),
@@ -115,3 +118,44 @@ def test_a_search_without_time_still_bounds_the_degrees_of_freedom() -> None:
         assert bounds.least <= known.least
         assert bounds.most >= known.most
         assert bounds.first_order == first_order(stars(pattern))[1]
+
+
+def sheet_on_grid(
+    columns: Sequence[int], rows: Sequence[int], more: Point, edges: str
+) -> PanelPattern:
+    """Vertices where lines cross, numbered along columns, and one more vertex."""
+    points = [(Fraction(x), Fraction(y)) for x in columns for y in rows]
+    pairs = (pair.split("-") for pair in edges.split())
+    return PanelPattern([*points, more], [(int(i), int(j)) for i, j in pairs])
+
+
+def test_dimensions_to_second_order_bound_only_motions_that_have_no_more_complex_ones() -> None:
+    """Where x^2 + y^2 vanishes to second order, x and y may be larger at a higher order."""
+    bounded = sheet_on_grid(
+        (0, 1, 2),
+        (0, 1, 2),
+        (Fraction(1, 2), Fraction(3, 2)),
+        "0-1 0-3 0-4 1-2 1-4 1-9 2-5 2-9 3-4 3-6 4-5 4-7 4-9 5-8 5-9 6-7 7-8",
+    )
+    with_squares = sheet_on_grid(
+        (0, 3, 6, 9),
+        (0, 2, 4),
+        (Fraction(8), Fraction(3)),
+        "0-1 0-3 1-2 1-4 1-5 2-5 3-4 3-6 4-5 4-7 4-8 5-8 6-7 6-9 7-8 7-10 7-12 8-11 8-12 9-10 "
+        "10-11 10-12 11-12",
+    )
+    for pattern, first, second, most in ((bounded, 5, {3: 2}, 3), (with_squares, 6, {3: 2}, 4)):
+        [part] = decompose(pattern).parts
+        assert (part.second_order, part.true) == (second, None)
+        assert (part.dimension, part.freest) == (first, most)
+        assert bound(pattern) == 4
+
+
+def test_forms_of_several_squares_are_noted() -> None:
+    """Three folds have a definite form: one square. Four with a sector above pi have two."""
+    square = Star(0, ((0, 1), (0, 2), (0, 3)), ((1, 0), (0, 1), (-1, -1)))
+    squares = Star(0, ((0, 1), (0, 2), (0, 3), (0, 4)), ((1, 0), (3, 1), (1, 1), (1, 3)))
+    for star, size, sums in ((square, 1, False), (squares, 2, True)):
+        rows, first = first_order({0: star})
+        assert first == size
+        assert reduced({0: star}, rows, size, 10**6) == ({}, 0, sums)

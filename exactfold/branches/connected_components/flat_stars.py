@@ -80,7 +80,7 @@ def flat_solutions(moving: Mapping[int, Star]) -> FlatSolutions:
             f"its first-order motions have dimension {size}, and at most {_MOST_DIMENSION} is "
             "solved",
         )
-    rows, size = reduced(moving, rows, size, _MOST_STEPS)
+    rows, size, _ = reduced(moving, rows, size, _MOST_STEPS)
     if not size:
         return FlatSolutions(())
     return _together(_part(moving, part) for part in _parts(moving, [made_leaf(rows, size, ())]))
