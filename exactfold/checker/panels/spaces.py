@@ -148,11 +148,14 @@ class Spaces:
                 motion_sum[fold] = total
         return motion_sum
 
-    def _leaves(self, space: Space) -> list[Leaf]:
-        """The leaves of a space: all sums of one leaf of each part."""
+    def _leaves(self, space: Space, settled: frozenset[int] = frozenset()) -> list[Leaf]:
+        """The leaves of a space: all sums of one leaf of each part.
+
+        The forms of `settled` vertices are known to vanish on the space.
+        """
         total = [Leaf([], ())]
         for part in self.parts(space):
-            leaves = self._maximal(self._split(part))
+            leaves = self._maximal(self._split(part, settled))
             number = len(total) * len(leaves)
             at_most(number, MOST_LEAVES, "the spaces of motions", "SPACE_LEAVES")
             total = [self._sum(a, b) for a in total for b in leaves]
@@ -197,26 +200,27 @@ class Spaces:
         require(sum(map(len, parts)) == len(space), "the parts of a space do not add up to it")
         return parts
 
-    def _split(self, space: Space) -> list[Leaf]:
+    def _split(self, space: Space, settled: frozenset[int]) -> list[Leaf]:
         """The leaves of a part.
 
         The zeros of the second factor of a form are wanted only where the first does not vanish,
         because the others are zeros of the first. So the values of the first factor are kept as
         densities of a fold (v, -n), which is not in the sheet.
         """
-        kernel, products, left = self._forms(space)
+        kernel, products, left, settled = self._forms(space, settled)
         if kernel:
-            return self._within(space, kernel)
+            return self._within(space, kernel, settled)
         if not products:
             return [Leaf([_on_folds(motion) for motion in space], left)]
-        v, one, other = self.factors(products, space)
-        leaves = self._within(space, [one])
+        v, one, other = self.factors(products, space, settled)
+        settled |= {v}
+        leaves = self._within(space, [one], settled)
         self._kept += 1
         kept = [
             motion if zero(x) else {**motion, (v, -self._kept): x}
             for motion, x in zip(space, one, strict=True)
         ]
-        leaves += self._within(kept, [other])
+        leaves += self._within(kept, [other], settled)
         at_most(len(leaves), MOST_LEAVES, "the spaces of motions", "SPACE_LEAVES")
         return leaves
 
@@ -225,7 +229,7 @@ class Spaces:
 
         A semidefinite form leaves its kernel, and one of inertia (1, 1) the zeros of its factors.
         """
-        kernel, products, left = self._forms(part)
+        kernel, products, left, _ = self._forms(part)
         if kernel:
             return iter([self.vanishing(part, kernel)]), ()
         if not products:
@@ -233,30 +237,43 @@ class Spaces:
         _, *both = self.factors(products, part)
         return (self.vanishing(part, [values]) for values in both), ()
 
-    def _forms(self, part: Space) -> tuple[list[list[Number]], dict[int, Squares], tuple[int, ...]]:
-        """Functions that vanish with a semidefinite form; the forms that split; other vertices."""
+    def _forms(
+        self, part: Space, settled: frozenset[int] = frozenset()
+    ) -> tuple[list[list[Number]], dict[int, Squares], tuple[int, ...], frozenset[int]]:
+        """Functions that vanish with a semidefinite form; the forms that split; the vertices of
+        other forms; and those of forms that vanish, also where the functions do.
+        """
         products: dict[int, Squares] = {}
         left: list[int] = []
-        for v in sorted({v for fold in folds_of(part) for v in fold if v in self.near}):
+        touched = {v for fold in folds_of(part) for v in fold if v in self.near}
+        for v in sorted(touched - settled):
             squares = self.squares(v, part)
             signs = [d.sign() for d, _ in squares]
             if signs and abs(sum(signs)) == len(signs):
-                return [values for _, values in squares], {}, ()
-            if len(signs) == 2:
+                return [values for _, values in squares], {}, (), settled | {v}
+            if not signs:
+                settled |= {v}
+            elif len(signs) == 2:
                 products[v] = squares
-            elif signs:
+            else:
                 left.append(v)
-        return [], products, tuple(left)
+        return [], products, tuple(left), settled
 
-    def _within(self, space: Space, rows: Sequence[Sequence[Number]]) -> list[Leaf]:
+    def _within(
+        self, space: Space, rows: Sequence[Sequence[Number]], settled: frozenset[int]
+    ) -> list[Leaf]:
         """The leaves of the subspace on which linear functions vanish; none if a kept one does."""
         smaller = self.vanishing(space, rows)
-        return self._leaves(smaller) if _kept(smaller) == _kept(space) else []
+        return self._leaves(smaller, settled) if _kept(smaller) == _kept(space) else []
 
     def squares(self, v: int, space: Space) -> Squares:
         """The form of a vertex as sum d_k l_k^2; each l_k is given by its values on the basis."""
-        gradients = [self.gradient(v, motion) for motion in space]
-        work = [[self._value(weights, motion) for motion in space] for weights in gradients]
+        folds = {pair(v, u) for u in self.near[v]}
+        touching = [k for k, motion in enumerate(space) if not folds.isdisjoint(motion)]
+        local = [{fold: x for fold, x in space[k].items() if fold in folds} for k in touching]
+        gradients = [self.gradient(v, motion) for motion in local]
+        work = [[self._value(weights, motion) for motion in local] for weights in gradients]
+        nothing = self.sheet.tower.number(0)
         result: Squares = []
         while True:
             k = next((k for k, row in enumerate(work) if not zero(row[k])), None)
@@ -270,7 +287,10 @@ class Spaces:
                 i, j = first
                 values = [x + y for x, y in zip(work[i], work[j], strict=True)]
                 value = work[i][j] + work[i][j]
-            result.append((self.sheet.tower.number(1) / value, values))
+            all_values = [nothing] * len(space)
+            for k, x in zip(touching, values, strict=True):
+                all_values[k] = x
+            result.append((self.sheet.tower.number(1) / value, all_values))
             self.work.count(len(work) ** 2, value)
             work = [
                 [x - a * b / value for x, b in zip(row, values, strict=True)]
@@ -308,20 +328,25 @@ class Spaces:
         return self._known[v, bits]
 
     def factors(
-        self, products: Mapping[int, Squares], space: Space
+        self,
+        products: Mapping[int, Squares],
+        space: Space,
+        settled: frozenset[int] = frozenset(),
     ) -> tuple[int, list[Number], list[Number]]:
         """A vertex, and the values on the basis of the two linear factors of its form.
 
         If d and e have opposite signs, d l^2 + e m^2 = d (l - r m)(l + r m) with r^2 = -e / d. A
-        product is preferred whose root r already lies in the field. The root is adjoined to a field
+        product is preferred whose root r already lies in the field, and then one of a vertex with
+        many settled neighbours, so that loops close early. The root is adjoined to a field
         that holds the whole space, because numbers of the space are multiplied by it later.
         """
-        tower = tower_of(space)
+        tower, folds = tower_of(space), {*folds_of(space)}
         found = []
         for v, ((d, first), (e, second)) in products.items():
             above, root = tower.adjoined(-(e / d))
-            found.append((above.size, v, first, second, root))
-        _, v, first, second, root = min(found, key=lambda entry: entry[:2])
+            near = sum(u in settled and pair(v, u) in folds for u in self.near.get(v, ()))
+            found.append((above.size, -near, v, first, second, root))
+        *_, v, first, second, root = min(found, key=lambda entry: entry[:3])
         one, other = (
             [x + r * y for x, y in zip(first, second, strict=True)] for r in (root, -root)
         )
