@@ -118,8 +118,12 @@ class Forms:
 
     def squares(self, v: int, space: Space) -> Squares:
         """The form of a vertex as sum d_k l_k^2; each l_k is given by its values on the basis."""
-        gradients = [self.gradient(v, motion) for motion in space]
-        work = [[self._value(weights, motion) for motion in space] for weights in gradients]
+        folds = {pair(v, u) for u in self.near[v]}
+        touching = [k for k, motion in enumerate(space) if not folds.isdisjoint(motion)]
+        local = [{fold: x for fold, x in space[k].items() if fold in folds} for k in touching]
+        gradients = [self.gradient(v, motion) for motion in local]
+        work = [[self._value(weights, motion) for motion in local] for weights in gradients]
+        nothing = self.sheet.tower.number(0)
         result: Squares = []
         while True:
             k = next((k for k, row in enumerate(work) if not zero(row[k])), None)
@@ -133,7 +137,10 @@ class Forms:
                 i, j = first
                 values = [x + y for x, y in zip(work[i], work[j], strict=True)]
                 value = work[i][j] + work[i][j]
-            result.append((self.sheet.tower.number(1) / value, values))
+            all_values = [nothing] * len(space)
+            for k, x in zip(touching, values, strict=True):
+                all_values[k] = x
+            result.append((self.sheet.tower.number(1) / value, all_values))
             self.work.count(len(work) ** 2, value)
             work = [
                 [x - a * b / value for x, b in zip(row, values, strict=True)]
@@ -171,20 +178,25 @@ class Forms:
         return self._known[v, bits]
 
     def factors(
-        self, products: Mapping[int, Squares], space: Space
+        self,
+        products: Mapping[int, Squares],
+        space: Space,
+        settled: frozenset[int] = frozenset(),
     ) -> tuple[int, list[Number], list[Number]]:
         """A vertex, and the values on the basis of the two linear factors of its form.
 
         If d and e have opposite signs, d l^2 + e m^2 = d (l - r m)(l + r m) with r^2 = -e / d. A
-        product is preferred whose root r already lies in the field. The root is adjoined to a field
+        product is preferred whose root r already lies in the field, and then one of a vertex with
+        many settled neighbours, so that loops close early. The root is adjoined to a field
         that holds the whole space, because numbers of the space are multiplied by it later.
         """
-        tower = tower_of(space)
+        tower, folds = tower_of(space), {*folds_of(space)}
         found = []
         for v, ((d, first), (e, second)) in products.items():
             above, root = tower.adjoined(-(e / d))
-            found.append((above.size, v, first, second, root))
-        _, v, first, second, root = min(found, key=lambda entry: entry[:2])
+            near = sum(u in settled and pair(v, u) in folds for u in self.near.get(v, ()))
+            found.append((above.size, -near, v, first, second, root))
+        *_, v, first, second, root = min(found, key=lambda entry: entry[:3])
         one, other = (
             [x + r * y for x, y in zip(first, second, strict=True)] for r in (root, -root)
         )

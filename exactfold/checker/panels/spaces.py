@@ -52,11 +52,14 @@ class Spaces(Forms):
         """All components of the motions; the flat state alone is not counted."""
         return [leaf for leaf in self._leaves(self.first_order) if leaf.basis]
 
-    def _leaves(self, space: Space) -> list[Leaf]:
-        """The leaves of a space: all sums of one leaf of each part."""
+    def _leaves(self, space: Space, settled: frozenset[int] = frozenset()) -> list[Leaf]:
+        """The leaves of a space: all sums of one leaf of each part.
+
+        The forms of `settled` vertices are known to vanish on the space.
+        """
         total = [Leaf([], ())]
         for part in self.parts(space):
-            leaves = self._maximal(self._split(part))
+            leaves = self._maximal(self._split(part, settled))
             number = len(total) * len(leaves)
             at_most(number, MOST_LEAVES, "the spaces of motions", "SPACE_LEAVES")
             total = [self._sum(a, b) for a in total for b in leaves]
@@ -101,26 +104,27 @@ class Spaces(Forms):
         require(sum(map(len, parts)) == len(space), "the parts of a space do not add up to it")
         return parts
 
-    def _split(self, space: Space) -> list[Leaf]:
+    def _split(self, space: Space, settled: frozenset[int]) -> list[Leaf]:
         """The leaves of a part.
 
         The zeros of the second factor of a form are wanted only where the first does not vanish,
         because the others are zeros of the first. So the values of the first factor are kept as
         densities of a fold (v, -n), which is not in the sheet.
         """
-        kernel, products, left = self._forms(space)
+        kernel, products, left, settled = self._forms(space, settled)
         if kernel:
-            return self._within(space, kernel)
+            return self._within(space, kernel, settled)
         if not products:
             return [Leaf([_on_folds(motion) for motion in space], left)]
-        v, one, other = self.factors(products, space)
-        leaves = self._within(space, [one])
+        v, one, other = self.factors(products, space, settled)
+        settled |= {v}
+        leaves = self._within(space, [one], settled)
         self._kept += 1
         kept = [
             motion if zero(x) else {**motion, (v, -self._kept): x}
             for motion, x in zip(space, one, strict=True)
         ]
-        leaves += self._within(kept, [other])
+        leaves += self._within(kept, [other], settled)
         at_most(len(leaves), MOST_LEAVES, "the spaces of motions", "SPACE_LEAVES")
         return leaves
 
@@ -129,7 +133,7 @@ class Spaces(Forms):
 
         A semidefinite form leaves its kernel, and one of inertia (1, 1) the zeros of its factors.
         """
-        kernel, products, left = self._forms(part)
+        kernel, products, left, _ = self._forms(part)
         if kernel:
             return iter([self.vanishing(part, kernel)]), ()
         if not products:
@@ -137,25 +141,34 @@ class Spaces(Forms):
         _, *both = self.factors(products, part)
         return (self.vanishing(part, [values]) for values in both), ()
 
-    def _forms(self, part: Space) -> tuple[list[list[Number]], dict[int, Squares], tuple[int, ...]]:
-        """Functions that vanish with a semidefinite form; the forms that split; other vertices."""
+    def _forms(
+        self, part: Space, settled: frozenset[int] = frozenset()
+    ) -> tuple[list[list[Number]], dict[int, Squares], tuple[int, ...], frozenset[int]]:
+        """Functions that vanish with a semidefinite form; the forms that split; the vertices of
+        other forms; and those of forms that vanish, also where the functions do.
+        """
         products: dict[int, Squares] = {}
         left: list[int] = []
-        for v in sorted({v for fold in folds_of(part) for v in fold if v in self.near}):
+        touched = {v for fold in folds_of(part) for v in fold if v in self.near}
+        for v in sorted(touched - settled):
             squares = self.squares(v, part)
             signs = [d.sign() for d, _ in squares]
             if signs and abs(sum(signs)) == len(signs):
-                return [values for _, values in squares], {}, ()
-            if len(signs) == 2:
+                return [values for _, values in squares], {}, (), settled | {v}
+            if not signs:
+                settled |= {v}
+            elif len(signs) == 2:
                 products[v] = squares
-            elif signs:
+            else:
                 left.append(v)
-        return [], products, tuple(left)
+        return [], products, tuple(left), settled
 
-    def _within(self, space: Space, rows: Sequence[Sequence[Number]]) -> list[Leaf]:
+    def _within(
+        self, space: Space, rows: Sequence[Sequence[Number]], settled: frozenset[int]
+    ) -> list[Leaf]:
         """The leaves of the subspace on which linear functions vanish; none if a kept one does."""
         smaller = self.vanishing(space, rows)
-        return self._leaves(smaller) if _kept(smaller) == _kept(space) else []
+        return self._leaves(smaller, settled) if _kept(smaller) == _kept(space) else []
 
 
 def _kept(space: Space) -> set[Edge]:

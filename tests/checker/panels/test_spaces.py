@@ -248,3 +248,31 @@ def test_spaces_that_are_no_sums_are_refused() -> None:
     one = number(1)
     with pytest.raises(CertificateError, match="the parts of a space do not add up"):
         found.parts([{(0, 2): one, (1, 3): one}])
+
+
+def test_squares_have_the_values_of_the_form_also_where_motions_leave_a_vertex_flat() -> None:
+    found = spaces(tiling(2, 2))
+    space = found.first_order
+    for v, around in found.near.items():
+        squares = found.squares(v, space)
+        assert all(len(values) == len(space) for _, values in squares)
+        for k, one in enumerate(space):
+            for j, other in enumerate(space):
+                total = number(0)
+                for d, values in squares:
+                    total = total + d * values[k] * values[j]
+                assert not (total - found.form(v, one, other)).sign()
+        touching = {
+            k for k, m in enumerate(space) if any((min(v, u), max(v, u)) in m for u in around)
+        }
+        assert {k for _, values in squares for k, x in enumerate(values) if x.sign()} <= touching
+
+
+def test_a_vertex_with_settled_neighbours_is_split_first() -> None:
+    found = spaces(tiling(2, 2))
+    _, products, _, settled = found._forms(found.first_order)
+    assert (sorted(products), settled) == (sorted(found.near), frozenset())
+    for v, around in found.near.items():
+        neighbours = {u for u in around if u in found.near}
+        left = {u: squares for u, squares in products.items() if u != v}
+        assert found.factors(left, found.first_order, frozenset({v}))[0] in neighbours
