@@ -79,8 +79,9 @@ def known_in_part(result: Line) -> list[str]:
     freedom, drawn = result.get("freedom") or {}, result.get("drawn") or {}
     if drawn.get("starts") in ("proved", "refuted"):
         known.append(f"drawn letters {drawn['starts']}")
-    if freedom and (freedom["least"] or not freedom["most"]):
-        known.append(f"{freedom['least']} to {freedom['most']} degrees of freedom")
+    if freedom and (freedom["least"] or not freedom["most"] or freedom.get("within")):
+        near = " on every sheet near" if freedom.get("within") else ""
+        known.append(f"{freedom['least']} to {freedom['most']} degrees of freedom{near}")
     found = result["components"] or {}
     ways = found.get("found_true") or found.get("found") or {}
     if ways:

@@ -32,6 +32,8 @@ class Worker:
     def __init__(self) -> None:
         self.lock = threading.Lock()
         self.session = ""
+        self._changing = threading.RLock()
+        self._closed = False
         self._start()
 
     def _start(self) -> None:
@@ -72,13 +74,20 @@ class Worker:
                 self.restart()
 
     def restart(self) -> None:
-        """End the process and start another one."""
-        self.close()
-        self.session = ""
-        self._start()
+        """End the process and start another one, unless the worker is closed."""
+        with self._changing:
+            self._end()
+            self.session = ""
+            if not self._closed:
+                self._start()
 
     def close(self) -> None:
-        """End the process."""
+        """End the process for good, also while another thread restarts it."""
+        with self._changing:
+            self._closed = True
+            self._end()
+
+    def _end(self) -> None:
         with suppress(OSError):
             self._connection.close()
         self._process.kill()

@@ -29,7 +29,7 @@ def proposed_levels(defects: Sequence[float], beyond: float) -> list[float]:
     `TOLERANCE` times itself.
 
     >>> proposed_levels([1e-6, 2e-6, 3e-6, 4e-6, 1e-3, 1.1e-3], 2e-3)
-    [6e-06, 7e-05, 0.0001]
+    [6e-06, 7e-05, 0.00015, 3e-07]
     """
     missed = sorted(defect for defect in defects if 0 < defect < beyond)
     gaps = []
