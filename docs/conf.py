@@ -87,6 +87,18 @@ def _formulas(_: Sphinx, __: str, source: list[str]) -> None:
     source[0] = re.sub(r"\$`(.+?)`\$", r"$\1$", source[0], flags=re.DOTALL)
 
 
+def _live(_: Sphinx, page: str, source: list[str]) -> None:
+    """Patterns of the gallery that have a page of the viewer lead to it."""
+    for name in make_pages.SHOWN_LIVE if page == "gallery" else ():
+        link = f'<a class="live" href="live/{name}.html">See it fold in the viewer</a>'
+        heading = f"### {name}\n"
+        if heading not in source[0]:
+            raise LookupError(f"{name} is not in the gallery")
+        source[0] = source[0].replace(
+            heading, f"{heading}\n```{{raw}} html\n<p>{link}</p>\n```\n", 1
+        )
+
+
 def _docstring(_: Sphinx, __: str, name: str, ___: Any, ____: Any, lines: list[str]) -> None:
     """Docstrings are plain text with code in single backticks, not reStructuredText."""
     text = "\n".join(lines)
@@ -115,6 +127,7 @@ def setup(app: Sphinx) -> None:
     app.add_html_math_renderer("mathml", (_inline, None), (_block, None))
     app.connect("builder-inited", _write, priority=1)
     app.connect("source-read", _formulas)
+    app.connect("source-read", _live)
     app.connect("autodoc-process-docstring", _docstring)
     app.connect("autodoc-process-signature", _signature)
     app.connect("missing-reference", make_pages.resolved)

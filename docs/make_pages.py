@@ -27,8 +27,11 @@ from exactfold.app.schemas import DOCUMENTS, schema
 FOLDER: Final = Path(__file__).with_name("generated")
 LIVE: Final = FOLDER / "whole" / "live"
 """Pages of the viewer, which the site has as they are."""
-SHOWN_LIVE: Final = ("pinwheel-base",)
-"""The shipped patterns that have such a page; the first is on the first page."""
+SHOWN_LIVE: Final = (
+    *("pinwheel-base", "zigzags", "miura", "yoshimura"),
+    *("two-vertex", "flat-octahedron", "waterbomb"),
+)
+"""The patterns of the gallery that have such a page; the first is on the first page."""
 TOPICS: Final[Mapping[str, tuple[str, str, tuple[str, ...]]]] = {
     "top": (
         "exactfold: read and the other verbs",

@@ -132,12 +132,18 @@ def entry(statement: Statement, proof: Proof) -> str:
 
 
 def sentence(note: str) -> str:
-    """The first sentence of a note, with the first letter as it is.
+    """The first sentence of a note; if it is long, only the condition that it begins with.
 
     >>> sentence("for regular ones. The others are counted in docs/theorem.md, 4")
     'for regular ones.'
+    >>> sentence("for every triangulated disk: " + "and so on, " * 10)
+    'for every triangulated disk.'
     """
     text = re.split(r"(?<=[\w)])\. (?=[A-Z])", " ".join(note.split()))[0]
+    for mark, most in (("; ", 20), (": ", 24)):
+        head = text.partition(mark)[0]
+        if len(text.split()) > most and len(head.split()) > 2:
+            text = head
     return f"{text}." if text else ""
 
 
@@ -154,10 +160,7 @@ def place(statement: Statement) -> str:
 def basis(statement: Statement, proof: Proof) -> str:
     """What it rests on, without what is true of all that does not hold as printed."""
     text = re.sub(r"proved for all \(\d+ steps?\)", "proved", proof.basis(statement))
-    return (
-        re.sub(r"(^|; )the printed form refuted by an example$", "", text)
-        or "refuted by an example"
-    )
+    return re.sub(r"(^|; )the printed form refuted by an example$", "", text) or "refuted"
 
 
 def where(statement: Statement) -> str:
@@ -186,8 +189,8 @@ def erratum(statement: Statement, proof: Proof) -> str:
     lines[-1] += f" ({script}: {basis(statement, proof)})"
     text = "\n".join(wrapped(line) for line in lines) + "\n"
     for old, new in REPLACEMENTS[statement.key]:
-        instead = [f"%   {row}" for row in rows(old, 92)]
-        block = "\n".join(["% in place of", *instead, *rows(new, 96)])
+        instead = [f"% {row}" for row in rows(old, 94)]
+        block = "\n".join([*instead, *rows(new, 96)])
         text += f"\n```latex\n{block}\n```\n"
     return f"{text}\n"
 
@@ -241,7 +244,7 @@ def pages() -> dict[str, str]:
         f"{len(papers)} statements of the paper: {summary}. {len(stated) - len(papers)} statements "
         "of exactfold come last. In quotation marks or as a formula stands what the paper "
         "prints, word by word, then a condition or a remark, then *what shows it*, the script, and "
-        "the code that uses it. *Proved* is proved for all, "
+        "the code that uses it. *Proved* is a step that holds for all, "
         "*tested on cases* is evidence and no proof. `python -m proofs KEY` runs the steps of a "
         "statement and prints its whole note; `python -m proofs` runs "
         f"all {len(steps)} steps, {tested} of which test exact cases. {formulas} statements are "
@@ -300,7 +303,7 @@ paper's main observation, which is a theorem: all branches are real ([Theorem 2]
 on almost every sheet $`2^{V_i - V_t}`$ of them differ ([Theorem 11](generic.md)). The
 [standard](statements.md) is that of all statements. Written by `python docs/make_statements.py`.
 
-The blocks of LaTeX can be pasted: below the passage of the paper's source, as a comment, stands
+The blocks of LaTeX can be pasted: below a passage of the paper's source, which is a comment, stands
 what to put in its place. `python docs/read_paper.py PAPER.tex CORRECTED.tex` does it for all of
 them.
 

@@ -95,7 +95,7 @@ def _round_cone(script: Script) -> None:
     )
     script.state(
         "T.21",
-        "docs/conventions.md, vertex signs",
+        "docs/mathematics.md, Signs of vertices",
         r"K_v(t)=\sum_j\tan(\alpha_{j,j+1}/2)>0\text{ for the round cone }t_j-t_v=-L_j",
         note="for every star with angles in (0, pi). Raising the hub alone has K = (1/2) sum_n "
         "A_n, negative for some stars: -49/48 for spokes (1,0), (3,4), (-2,-1), (8,-2)",

@@ -188,6 +188,16 @@ def test_the_glossary_is_alphabetical_and_linked() -> None:
         assert "glossary.md)" in (ROOT / page).read_text(encoding="utf-8"), page
 
 
+@pytest.mark.parametrize(
+    ("word", "page"),
+    [("collision", "glossary"), ("animation", "viewer"), ("gif", "viewer"), ("hinge", "glossary")],
+)
+def test_the_search_finds_words_of_other_people(word: str, page: str) -> None:
+    """The search of the site looks for whole words, of code as well."""
+    text = (ROOT / "docs" / f"{page}.md").read_text(encoding="utf-8")
+    assert word in re.findall(r"\w+", text.lower())
+
+
 def is_in_the_code(path: str) -> bool:
     """Whether a name of the glossary is public, or a module or its contents in a room."""
     value: object = exactfold

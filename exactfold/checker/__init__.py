@@ -23,7 +23,7 @@ the table of the eleven kinds:
   panels     all motions of a sheet of rigid panels (docs/certificate.md);
   letters    all rays with given mountains and valleys (`letters`), and whether rigid panels start
              to fold with given letters (`panels`), both in docs/assignment.md; all assignments of
-             a sheet with five corners (`assignments`, docs/circles.md);
+             a sheet with five corners (`assignments`, docs/any_border.md);
   motion     the true motion along one branch (docs/motion.md); the loops of true motions through
              the flat state (`loops`, docs/motion.md, 11); the motion of rigid panels (`panels`,
              docs/motion.md, 18).

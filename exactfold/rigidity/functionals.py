@@ -14,7 +14,7 @@ def vertex_sign_functional(pattern: CreasePattern, vertex: int) -> dict[int, int
     """The integer coefficients, by vertex, of h -> K_v(t, h) with t timelike and pointing up.
 
     On the null cone of K_v the sign of this functional is +1 if the vertex pops up, -1 if it pops
-    down, and 0 exactly if the star of the vertex is flat (docs/conventions.md, Signs of vertices).
+    down, and 0 exactly if the star of the vertex is flat (docs/mathematics.md, Signs of vertices).
     """
     return curvature_form(pattern, vertex).integer_functional(round_cone(pattern, vertex))
 

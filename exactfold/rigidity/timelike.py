@@ -20,8 +20,9 @@ def sqrt_approximation(value: Fraction, bits: int) -> Fraction:
 def round_cone(pattern: CreasePattern, vertex: int, bits: int = 16) -> dict[int, Fraction]:
     """A rational vector close to the round cone t_v = 0, t_j = -L_j; K_v(t) > 0 holds exactly.
 
-    The round cone points up and has K_v(t) = sum_j tan(a_j / 2) > 0 (docs/conventions.md). The
-    precision of the lengths L_j is doubled until the rational vector passes the exact test.
+    The round cone points up and has K_v(t) = sum_j tan(a_j / 2) > 0 (docs/mathematics.md, Signs of
+    vertices). The precision of the lengths L_j is doubled until the rational vector passes the
+    exact test.
     """
     return dict(_round_cone(pattern, vertex, bits))
 

@@ -1,4 +1,4 @@
-"""Certificates of all mountain-valley assignments of a sheet with five corners (docs/circles.md).
+"""Certificates of all mountain-valley assignments, five corners (docs/any_border.md).
 
 Why it is a proof: for each sign vector the solutions are a circle over the directions of the
 boundary heights (Theorem 1 there). The evidence goes round this circle by points; a point is a
@@ -166,4 +166,4 @@ ASSIGNMENTS = DocumentKind(
     check=check,
     summary=summary,
 )
-"""All mountain-valley assignments of a sheet with five corners (docs/circles.md)."""
+"""All mountain-valley assignments of a sheet with five corners (docs/any_border.md)."""

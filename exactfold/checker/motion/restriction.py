@@ -47,7 +47,7 @@ class Restriction:
 def saddle_of(sheet: Sheet) -> dict[int, Fraction]:
     """The boundary saddle: the functional of boundary heights that vanishes on planes.
 
-    Its scale is that of docs/conventions.md.
+    Its scale is that of docs/mathematics.md, The boundary saddle.
     """
     p, q, r, s = (sheet.points[v] for v in sheet.boundary)
     weights = (turn(q, r, s), -turn(p, r, s), turn(p, q, s), -turn(p, q, r))

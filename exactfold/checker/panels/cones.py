@@ -17,8 +17,9 @@ from ..core import limits
 from ..core.intervals import Interval
 from ..core.reading import at_most
 from ..sheets.panels import Edge
+from .forms import Space
 from .reduction import BITS, enclosed, reduced, rest_of
-from .spaces import Space, Spaces
+from .spaces import Spaces
 
 SHIFTS = 40
 DIRECTIONS = 24

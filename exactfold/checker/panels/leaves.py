@@ -12,10 +12,11 @@ from ..core.reading import integer, items, keys, keys_of, natural, require
 from ..sheets.panels import Edge, PanelSheet, pair
 from .claims import LeafClaim
 from .cones import Place, cone_motion
+from .forms import Motion, folds_of
 from .loops import Loops
 from .modes import Modes, Support
 from .reduction import BITS, enclosed, reduced
-from .spaces import Leaf, Motion, Spaces, folds_of
+from .spaces import Leaf, Spaces
 
 LeafKind = tuple[tuple[Edge, ...], int, tuple[int, ...]]
 

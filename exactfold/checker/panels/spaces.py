@@ -9,24 +9,17 @@ show that their common zeros are one component.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import combinations
-from typing import Any
 
 from ..core import limits
 from ..core.reading import at_most, require
-from ..core.towers import Number, Tower
-from ..sheets.panels import Edge, PanelSheet, cross, pair
-from .reduction import Vector, inside, reduced, zero
+from ..core.towers import Number
+from ..sheets.panels import Edge
+from .forms import Forms, Motion, Space, Squares, folds_of
+from .reduction import inside, reduced, zero
 
-MOST_STEPS = limits.SPACE_STEPS
 MOST_LEAVES = limits.SPACE_LEAVES
-
-Motion = dict[Edge, Number]
-"""A motion, as the densities of the folds; densities that are 0 are left out."""
-Space = list[Motion]
-Squares = list[tuple[Number, list[Number]]]
 
 
 @dataclass
@@ -50,103 +43,14 @@ class Leaf:
         return folds_of(self.basis)
 
 
-def folds_of(basis: Space) -> tuple[Edge, ...]:
-    """The folds that are not flat in all motions of a space."""
-    return tuple(sorted({fold for motion in basis for fold in motion}))
+class Spaces(Forms):
+    """The spaces of motions of a part of a sheet, and its components."""
 
-
-def tower_of(basis: Space) -> Tower:
-    """The largest field of the densities of a basis."""
-    towers = (value.tower for motion in basis for value in motion.values())
-    return max(towers, key=lambda tower: tower.size)
-
-
-class Work:
-    """Counts products of densities; a product of numbers with n coefficients counts n^2 steps."""
-
-    def __init__(self) -> None:
-        self.steps = 0
-
-    def count(self, products: int, value: Any) -> None:
-        """Count products with this number or interval; raises `LimitError` if they are too many."""
-        size = value.tower.size if isinstance(value, Number) else 1
-        self.steps += products * size * size
-        at_most(self.steps, MOST_STEPS, "the steps to the spaces of motions", "SPACE_STEPS")
-
-
-class Spaces:
-    """The spaces of motions of a part of a sheet.
-
-    `near` has for each vertex of the part its neighbours across folds that may fold.
-    """
-
-    def __init__(
-        self, sheet: PanelSheet, near: Mapping[int, list[int]], work: Work | None = None
-    ) -> None:
-        self.sheet, self.near, self.work = sheet, near, work or Work()
-        self._known: dict[tuple[int, int | None], list[tuple[Edge, Edge, Any]]] = {}
-        self._kept = 0
-        self.first_order = self._first_order()
+    _kept = 0
 
     def leaves(self) -> list[Leaf]:
         """All components of the motions; the flat state alone is not counted."""
         return [leaf for leaf in self._leaves(self.first_order) if leaf.basis]
-
-    def _first_order(self) -> Space:
-        """The space of all densities with sum_j w_j d_j = 0 at each vertex.
-
-        The conditions are imposed one after the other.
-        """
-        one = self.sheet.tower.number(1)
-        folds = sorted({pair(v, u) for v, around in self.near.items() for u in around})
-        space: Space = [{fold: one} for fold in folds]
-        for v, around in self.near.items():
-            for axis in (0, 1):
-                weights = {pair(v, u): self.sheet.vector(v, u)[axis] for u in around}
-                space = self.vanishing(space, [[self._value(weights, m) for m in space]])
-        return space
-
-    def _value(self, weights: Mapping[Edge, Number], motion: Motion) -> Number:
-        total = self.sheet.tower.number(0)
-        for fold in weights.keys() & motion.keys():
-            self.work.count(1, motion[fold])
-            total = total + weights[fold] * motion[fold]
-        return total
-
-    def vanishing(self, space: Space, rows: Sequence[Sequence[Number]]) -> Space:
-        """The subspace on which linear functions vanish; each row has the values of one function
-        on the basis."""
-        todo = [list(row) for row in rows]
-        for n, row in enumerate(todo):
-            active = [k for k, value in enumerate(row) if not zero(value)]
-            if not active:
-                continue
-            pivot = min(active, key=lambda k: len(space[k]))
-            changed = {k: -(row[k] / row[pivot]) for k in active if k != pivot}
-            space = [
-                self.plus(motion, changed[k], space[pivot]) if k in changed else motion
-                for k, motion in enumerate(space)
-                if k != pivot
-            ]
-            for later in todo[n + 1 :]:
-                for k, weight in changed.items():
-                    later[k] = later[k] + weight * later[pivot]
-                del later[pivot]
-        return space
-
-    def plus(self, motion: Motion, weight: Number, other: Motion) -> Motion:
-        """The sum of a motion and a multiple of another."""
-        motion_sum = dict(motion)
-        self.work.count(len(other), weight)
-        for fold, value in other.items():
-            total = weight * value
-            if fold in motion_sum:
-                total = motion_sum[fold] + total
-            if zero(total):
-                del motion_sum[fold]
-            else:
-                motion_sum[fold] = total
-        return motion_sum
 
     def _leaves(self, space: Space, settled: frozenset[int] = frozenset()) -> list[Leaf]:
         """The leaves of a space: all sums of one leaf of each part.
@@ -265,92 +169,6 @@ class Spaces:
         """The leaves of the subspace on which linear functions vanish; none if a kept one does."""
         smaller = self.vanishing(space, rows)
         return self._leaves(smaller, settled) if _kept(smaller) == _kept(space) else []
-
-    def squares(self, v: int, space: Space) -> Squares:
-        """The form of a vertex as sum d_k l_k^2; each l_k is given by its values on the basis."""
-        folds = {pair(v, u) for u in self.near[v]}
-        touching = [k for k, motion in enumerate(space) if not folds.isdisjoint(motion)]
-        local = [{fold: x for fold, x in space[k].items() if fold in folds} for k in touching]
-        gradients = [self.gradient(v, motion) for motion in local]
-        work = [[self._value(weights, motion) for motion in local] for weights in gradients]
-        nothing = self.sheet.tower.number(0)
-        result: Squares = []
-        while True:
-            k = next((k for k, row in enumerate(work) if not zero(row[k])), None)
-            if k is not None:
-                values, value = work[k], work[k][k]
-            else:
-                pairs = ((i, j) for i, row in enumerate(work) for j in range(i))
-                first = next(((i, j) for i, j in pairs if not zero(work[i][j])), None)
-                if first is None:
-                    return result
-                i, j = first
-                values = [x + y for x, y in zip(work[i], work[j], strict=True)]
-                value = work[i][j] + work[i][j]
-            all_values = [nothing] * len(space)
-            for k, x in zip(touching, values, strict=True):
-                all_values[k] = x
-            result.append((self.sheet.tower.number(1) / value, all_values))
-            self.work.count(len(work) ** 2, value)
-            work = [
-                [x - a * b / value for x, b in zip(row, values, strict=True)]
-                for row, a in zip(work, values, strict=True)
-            ]
-
-    def gradient(self, v: int, motion: Vector, bits: int | None = None) -> dict[Edge, Any]:
-        """The derivatives of sum_{k<j} w_k w_j [d_k, d_j] by each density, at a motion.
-
-        The motion has numbers as densities or, if `bits` is given, intervals.
-        """
-        slopes: dict[Edge, Any] = {}
-        for start, end, bracket in self._brackets(v, bits):
-            for fold, other in ((start, end), (end, start)):
-                if other in motion:
-                    self.work.count(1, motion[other])
-                    term = bracket * motion[other]
-                    slopes[fold] = slopes[fold] + term if fold in slopes else term
-        return slopes
-
-    def form(self, v: int, a: Motion, b: Motion) -> Number:
-        """The bilinear form B with B(w, w) = 2 sum_{k<j} w_k w_j [d_k, d_j]."""
-        return self._value(self.gradient(v, a), b)
-
-    def _brackets(self, v: int, bits: int | None) -> list[tuple[Edge, Edge, Any]]:
-        if (v, bits) not in self._known:
-            spokes = [(pair(v, u), self.sheet.vector(v, u)) for u in self.near[v]]
-            pairs = combinations(spokes, 2)
-            brackets: list[tuple[Edge, Edge, Any]] = [
-                (f, g, cross(c, d)) for (f, c), (g, d) in pairs
-            ]
-            if bits is not None:
-                brackets = [(f, g, bracket.enclosed(bits)) for f, g, bracket in brackets]
-            self._known[v, bits] = brackets
-        return self._known[v, bits]
-
-    def factors(
-        self,
-        products: Mapping[int, Squares],
-        space: Space,
-        settled: frozenset[int] = frozenset(),
-    ) -> tuple[int, list[Number], list[Number]]:
-        """A vertex, and the values on the basis of the two linear factors of its form.
-
-        If d and e have opposite signs, d l^2 + e m^2 = d (l - r m)(l + r m) with r^2 = -e / d. A
-        product is preferred whose root r already lies in the field, and then one of a vertex with
-        many settled neighbours, so that loops close early. The root is adjoined to a field
-        that holds the whole space, because numbers of the space are multiplied by it later.
-        """
-        tower, folds = tower_of(space), {*folds_of(space)}
-        found = []
-        for v, ((d, first), (e, second)) in products.items():
-            above, root = tower.adjoined(-(e / d))
-            near = sum(u in settled and pair(v, u) in folds for u in self.near.get(v, ()))
-            found.append((above.size, -near, v, first, second, root))
-        *_, v, first, second, root = min(found, key=lambda entry: entry[:3])
-        one, other = (
-            [x + r * y for x, y in zip(first, second, strict=True)] for r in (root, -root)
-        )
-        return v, one, other
 
 
 def _kept(space: Space) -> set[Edge]:

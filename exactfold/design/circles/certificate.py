@@ -13,9 +13,10 @@ from exactfold.errors import NotApplicableError
 def assignments_certificate(
     listed: AllAssignments, *, progress: Progress | None = None
 ) -> Document:
-    """The proof of a list of all assignments, as a JSON object (docs/circles.md, The certificate).
+    """The proof of a list of all assignments, as a JSON object.
 
-    The proof consists of points all round the circles. It is found independently of the list and
+    The proof consists of points all round the circles (docs/any_border.md, The certificate of all
+    assignments). It is found independently of the list and
     has to show the same list. Raises `NotApplicableError` for a list that is not proved, and if no
     such points are found.
 

@@ -1,9 +1,9 @@
 """All mountain-valley assignments of a convex sheet with five boundary vertices, by circles.
 
 For each sign vector, the solutions up to a positive factor form a circle; the direction of the
-boundary heights is the angle on it (docs/circles.md, Theorem 1). Along a circle the letters change
-only where a fold is flat. All such places are computed exactly, fold by fold, and sorted. Between
-two neighbouring places one branch is proved.
+boundary heights is the angle on it (docs/any_border.md, Theorem 13). Along a circle the letters
+change only where a fold is flat. All such places are computed exactly, fold by fold, and sorted.
+Between two neighbouring places one branch is proved.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ def all_assignments(pattern: PatternLike, *, progress: Progress | None = None) -
     For each fold f the system {K_v = 0 for all v, f flat} is solved exactly in projective space.
     All its zeros are found, because their number with multiplicity is 2^n. The real zeros are
     sorted along the circles. Between two neighbours no fold is flat, so that one branch there shows
-    the letters (docs/circles.md, Theorem 1).
+    the letters (docs/any_border.md, Theorem 13).
 
     Where folds are flat along whole arcs, or more than five vertices can pop, the circles are
     covered by points instead, and the stand-alone checker verifies that the points show all

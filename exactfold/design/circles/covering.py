@@ -2,7 +2,7 @@
 
 Such points prove a list of all assignments without algebra. Where some letters are unknown between
 two points, every completion of the letters that agrees with the signs of the vertices has to occur
-elsewhere (docs/circles.md, Theorem 2). Newton's method proposes the points. The code of the
+elsewhere (docs/any_border.md, Theorem 14). Newton's method proposes the points. The code of the
 stand-alone checker says what they show.
 """
 
@@ -89,7 +89,7 @@ def covering(pattern: CreasePattern, progress: Progress | None = None) -> Coveri
 
 
 def covering_document(pattern: CreasePattern, points: Covering) -> Document:
-    """The certificate of the list, not yet verified (docs/circles.md, The certificate)."""
+    """The certificate of the list, not yet verified (docs/any_border.md, Theorem 14)."""
     claims: AssignmentsClaims = {"assignments": list(points.assignments)}
     return {
         "format": ASSIGNMENTS.format,

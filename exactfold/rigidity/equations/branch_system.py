@@ -131,7 +131,7 @@ class Chart:
 
     The equation functional = 1 expresses the height of the vertex `eliminated` by the others.
     `variables` are the remaining unknowns, and `system` holds the Vi affine quadrics in them
-    (docs/conventions.md, Heights). Zeros at infinity of the chart are the branches on which the
+    (docs/mathematics.md, Heights). Zeros at infinity of the chart are the branches on which the
     functional vanishes.
     """
 

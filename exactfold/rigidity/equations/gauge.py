@@ -20,7 +20,7 @@ SADDLE, CORNER, RIM = "saddle", "corner", "rim"
 class Gauge:
     """The given boundary heights of `sheet`, and the given curvatures of its vertices.
 
-    `kind` is one of three (docs/conventions.md, Heights):
+    `kind` is one of three (docs/mathematics.md, Heights):
 
     - "saddle": a convex quadrilateral. One boundary vertex has height 1, the others have height 0,
       so that the boundary saddle (`saddle_functional`) is +1.

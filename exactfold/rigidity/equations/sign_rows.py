@@ -21,7 +21,7 @@ Row = tuple[int, ...]
 
 @dataclass(frozen=True)
 class Functionals:
-    """The sign functionals of a chart, for every interior vertex and fold (docs/conventions.md).
+    """The sign functionals of a chart, for interior vertices and folds (docs/mathematics.md, 9).
 
     A row (c_1, ..., c_n, c_0) has the value c . x + c_0 at the point x of the chart.
     """

@@ -207,7 +207,8 @@ def test_what_is_not_decided_gives_bounds_and_is_named(monkeypatch):
     assert set(connected_components.open) == set(whole.complete) == {6, 7}
     assert "have dimension" in connected_components.open[6]
     result = count_branches(pattern)
-    assert (result.status, len(result.open_questions)) == (PROVED, 2)
+    assert (result.status, len(result.open_questions)) == (PROVED, 1)
+    assert "vertices 6, 7" in result.open_questions[0]
     monkeypatch.setattr(joining, "_MOST_WHOLE", 2)
     assert "only if at most 2 can pop" in find_connected_components(pattern).open[6]
 

@@ -130,7 +130,7 @@ def test_keys_of_the_json_are_fixed():
     more = {"format", "version", "by", "why", "open_questions", "settings", "warnings"}
     more |= {"theory", "rigid", "components", "modes_count", "modes", "flat_folds", "free_folds"}
     more |= {"exceptional_vertices", "freedom", "drawn"}
-    more |= {"letters", "near_misses", "read", "still_folds", "meant", "as_written"}
+    more |= {"letters", "near_misses", "read", "still_folds", "meant", "as_written", "proposal"}
     assert set(data) - KEYS == more
     assert set(data["pattern"]) == {
         *("name", "interior", "boundary", "folds", "degrees_of_freedom", "sha256", "snapped"),

@@ -14,6 +14,7 @@ from exactfold.checker import check, load
 from exactfold.checker.core.intervals import Interval
 from exactfold.checker.core.reading import CertificateError, LimitError
 from exactfold.checker.core.towers import Number, Tower
+from exactfold.checker.panels import forms as panel_forms
 from exactfold.checker.panels import reduction as panel_reduction
 from exactfold.checker.panels import spaces as panel_spaces
 from exactfold.checker.panels.cones import cone_motion
@@ -162,12 +163,12 @@ def test_bounds_are_kept_at_their_last_value(monkeypatch: pytest.MonkeyPatch) ->
     assert len(found.leaves()) == 8
     used = found.work.steps
     monkeypatch.setattr(panel_spaces, "MOST_LEAVES", 8)
-    monkeypatch.setattr(panel_spaces, "MOST_STEPS", used)
+    monkeypatch.setattr(panel_forms, "MOST_STEPS", used)
     assert len(spaces(triangle()).leaves()) == 8
-    monkeypatch.setattr(panel_spaces, "MOST_STEPS", used - 1)
+    monkeypatch.setattr(panel_forms, "MOST_STEPS", used - 1)
     with pytest.raises(LimitError, match=f"steps to the spaces of motions, {used}, are more than"):
         spaces(triangle()).leaves()
-    monkeypatch.setattr(panel_spaces, "MOST_STEPS", used)
+    monkeypatch.setattr(panel_forms, "MOST_STEPS", used)
     monkeypatch.setattr(panel_spaces, "MOST_LEAVES", 7)
     with pytest.raises(LimitError, match="the spaces of motions, 8, are more than the limit, 7"):
         spaces(triangle()).leaves()

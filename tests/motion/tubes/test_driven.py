@@ -306,7 +306,7 @@ def test_at_one_vertex_the_solutions_are_those_of_a_quadratic_equation(seed: int
     way = null.T @ np.linalg.svd(bends)[2][0]
 
     def form(h: np.ndarray) -> float:
-        """K, from the turns of unit normals (docs/conventions.md): a spherical polygon's area."""
+        """K, from the turns of unit normals: a spherical polygon's area (docs/mathematics.md)."""
         tiny = 1e-4
         normals = [
             np.cross([*a, tiny * x], [*b, tiny * y])
