@@ -4,7 +4,7 @@ python tests/benchmarks/real_files.py FOLDER [--against COMMIT] [--only TEXT] [-
 
 Every file is a process of its own, ended after 60 seconds. The answers are kept below `--keep`, one
 file of JSON lines a program, so that an interrupted run goes on where it stopped. The tables at the
-end are those of docs/panels.md, section 7.
+end are those of docs/real_files.md.
 """
 
 from __future__ import annotations
@@ -115,7 +115,10 @@ def kind_of(line: Line) -> tuple[str, str]:
         if result["distinct"] is not None:
             return KINDS[0], counted(result["distinct"], "branch")
         if result["pieces"]:
-            graphs = counted(result["pieces"]["graphs"], "graph")
+            number = int(result["pieces"]["graphs"])
+            power = number.bit_length() - 1
+            short = f"2^{power}" if number == 1 << power and power > 20 else number
+            graphs = counted(short, "graph")
             return KINDS[0], f"{graphs} of dimension {result['dimension']}"
         spaces = components["true"] or components["second_order"]
         said = ", ".join(f"{number} of dimension {k}" for k, number in spaces.items())

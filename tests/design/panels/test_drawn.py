@@ -55,6 +55,7 @@ def test_all_valleys_are_refuted_and_the_bounds_are_those_of_the_sheet() -> None
     assert (data["drawn"] or {})["starts"] == "refuted"
 
 
+@pytest.mark.slow
 def test_a_way_that_was_found_is_proved_as_drawn() -> None:
     """The letters of a mode that truly folds; all other folds are drawn as flat."""
     mode = counted(by_letter("U")).modes[0]

@@ -57,6 +57,7 @@ def test_each_line_of_the_list_is_found_by_its_letters(crane):
         assert all(sign(motion.get(f, 0)) == side for f, side in line.items())
 
 
+@pytest.mark.slow
 def test_random_letters_are_found_or_refuted_as_the_list_says(crane):
     sheet, moving, lines = crane
     rng, answers = random.Random(29), set()

@@ -125,6 +125,7 @@ def test_one_crossing_more_than_is_read(monkeypatch):
         splitting.crossing_pairs(places, drawing.lines)
 
 
+@pytest.mark.slow
 def test_lines_above_one_another():
     text = "\n".join(f"2 0 {k} 100000 {k}" for k in range(50_000))
     drawing = parse_drawing(text, "a.cp")
