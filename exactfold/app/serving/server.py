@@ -110,7 +110,7 @@ class ViewServer(ThreadingHTTPServer):
     def __init__(self, start: Open, port: int) -> None:
         self.start, self.limit = start, start.limit
         self.key = secrets.token_urlsafe(18)
-        self._room = threading.BoundedSemaphore(MOST_REQUESTS)
+        self._room = threading.Semaphore(MOST_REQUESTS)
         super().__init__((_LOOPBACK, port), _Handler)
         try:
             self._listing, self._live = [Worker(), Worker()], [Worker()]
@@ -148,6 +148,7 @@ class ViewServer(ThreadingHTTPServer):
         try:
             super().process_request(request, client_address)
         except BaseException:
+            # Ctrl-C may come when the thread has begun, which makes room as well: the server ends.
             self._room.release()
             raise
 
