@@ -11,7 +11,7 @@ from exactfold.app.commands.branch import also_found
 from exactfold.app.commands.driving import driven_angles
 from exactfold.app.commands.ways import choice_of
 from exactfold.app.options.motions import FoldOptions
-from exactfold.app.pictures.film import FILMS, checked_film, pillow, write_film
+from exactfold.app.pictures.film import FILMS, checked_encoder, checked_film, write_film
 from exactfold.app.pictures.picture_files import checked_picture, write_picture
 from exactfold.app.shell.given import Given
 from exactfold.app.shell.patterns import in_doubt, read_any, tell_doubt, verdict
@@ -95,7 +95,7 @@ class Wanted(FoldOptions):
             if not self._is_film:
                 checked_target(self.output, (*ENDINGS, *FILMS), "a motion")
             else:
-                pillow()
+                checked_encoder(self.output.suffix.lower())
         for drawn in (self.plot, self.picture):
             if drawn is not None:
                 checked_picture(drawn)
