@@ -336,8 +336,8 @@ def random_(
     ] = None,
 ) -> None:
     """Sample the paper's random squares: a Delaunay triangulation of random points."""
-    from exactfold.pattern.fold_writing import checked_target, fold_text, write_text
-    from exactfold.pattern.random_squares import sample_random_square
+    from exactfold.pattern.triangulating.random_squares import sample_random_square
+    from exactfold.pattern.writing.fold_writing import checked_target, fold_text, write_text
 
     if output is not None and str(output) != "-":
         checked_target(output, (".fold", ".json"), "a sheet")

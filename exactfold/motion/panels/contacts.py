@@ -13,7 +13,7 @@ import numpy as np
 from exactfold._support.arrays import FloatArray
 from exactfold.motion.curves.crossings import Crossing, Crossings
 from exactfold.pattern.panel_pattern import PanelPattern
-from exactfold.pattern.triangulating import cut_panels
+from exactfold.pattern.triangulating.panels import cut_panels
 
 if TYPE_CHECKING:
     from exactfold.motion.curves.framework import Framework

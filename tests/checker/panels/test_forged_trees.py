@@ -12,8 +12,8 @@ from exactfold import checker
 from exactfold.checker.core.towers import Tower
 from exactfold.checker.panels import trees
 from exactfold.checker.sheets.panels import Near, PanelSheet, Vector, connected, read_panels
-from exactfold.panels.stars import Star
-from exactfold.panels.trees import tree_components
+from exactfold.panels.modes.trees import tree_components
+from exactfold.panels.vertex.stars import Star
 
 
 class Stars(PanelSheet):
