@@ -52,7 +52,7 @@ DOCUMENTS: Final = {
     ),
     "match": ("exactfold match --json", "design.assignments.result:MatchDocument"),
     "starting": ("exactfold match --json of rigid panels", "design.panels.match:StartingDocument"),
-    "vertices": ("exactfold vertices --json", "design.panels.vertices:VerticesDocument"),
+    "vertices": ("exactfold vertices --json", "design.panels.vertex.vertices:VerticesDocument"),
     "certify": ("exactfold certify --json", "app.commands.certify:CertifyDocument"),
     "export": ("exactfold export --json", "app.commands.export:ExportDocument"),
     "motion": (
