@@ -56,7 +56,8 @@ fold it, up to twelve, drawn on the crease pattern, and one of them folded in sp
 fold in families have no such list. Of panels round vertices with more than four folds, only the
 ways are drawn on which the tangents of half the fold angles stay in proportion.
 """
-READING: Final = f"""Every number is proved. Where nothing follows it but the number with multiplicity, in which flat
+READING: Final = f"""\
+Every number is proved. Where nothing follows it but the number with multiplicity, in which flat
 vertices count double, all branches are real, and each continues to a true motion. The dimension of
 a family is the number of folds that can be folded independently.
 
