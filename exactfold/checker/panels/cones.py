@@ -16,8 +16,11 @@ from itertools import chain, combinations, islice
 from ..core import limits
 from ..core.intervals import Interval
 from ..core.reading import at_most
+from ..core.towers import Number
 from ..sheets.panels import Edge
-from .forms import Space
+from .forms import Space, Squares, modulo_a_prime
+from .modular import one_component
+from .proposed import near_zeros
 from .reduction import BITS, enclosed, reduced, rest_of
 from .spaces import Spaces
 
@@ -37,14 +40,32 @@ def cone_motion(spaces: Spaces, space: Space, vertices: Sequence[int]) -> Place 
     The proof shows that the common zeros of the forms are one component. One form is added after
     the other, and its zeros are found on lines along u. A step along u keeps the earlier forms at
     0. At the new zero the derivative along u is not 0, so that at the end all derivatives are
-    independent. The zeros of the first form are one component if its rank is 3 or more.
+    independent. The zeros of the first form are one component if its rank is 3 or more. If a
+    discriminant has one sign only, a proof modulo a prime is tried.
     """
     at_most(len(vertices), MOST_FORMS, "the vertices whose forms one space has", "CONE_FORMS")
-    places: list[Place] = [{}]
+    ordered = _ordered(spaces, space, vertices)
+    rooms: list[Space] = []
     room = space
-    for number, v in enumerate(_ordered(spaces, space, vertices)):
-        if number == 0 and len(spaces.squares(v, space)) < 3:
-            return None
+    for v in ordered:
+        rooms.append(room)
+        room = spaces.vanishing(room, [[spaces.form(v, b, m) for m in room] for b in space])
+    forms = [spaces.squares(v, space) for v in ordered]
+    if len(forms[0]) < 3:
+        return None
+    place = _by_signs(spaces, ordered, rooms)
+    if place is None:
+        reduced = modulo_a_prime(forms)
+        if reduced is not None and one_component(*reduced):
+            placed = list(zip(ordered, rooms, forms, strict=True))
+            return next(_regular_zeros(spaces, space, placed), None)
+    return place
+
+
+def _by_signs(spaces: Spaces, ordered: Sequence[int], rooms: Sequence[Space]) -> Place | None:
+    """A common zero of the forms, if each discriminant is shown to have both signs."""
+    places: list[Place] = [{}]
+    for number, (v, room) in enumerate(zip(ordered, rooms, strict=True)):
         vectors = [enclosed(motion) for motion in room]
         for u in islice(_directions(spaces, v, vectors), DIRECTIONS):
             above, below = _sides(spaces, v, places, vectors, u)
@@ -53,8 +74,64 @@ def cone_motion(spaces: Spaces, space: Space, vertices: Sequence[int]) -> Place 
                 break
         else:
             return None
-        room = spaces.vanishing(room, [[spaces.form(v, b, m) for m in room] for b in space])
     return places[0]
+
+
+def _regular_zeros(
+    spaces: Spaces, space: Space, ordered: Sequence[tuple[int, Space, Squares]]
+) -> Iterator[Place]:
+    """Common zeros of the forms, near places that floating point proposes.
+
+    One form after the other is solved along a vector on which no earlier form depends.
+    """
+    for near in near_zeros([_in_floats(form) for _, _, form in ordered]):
+        place: Place | None = {}
+        for x, motion in zip(near, space, strict=True):
+            place = _plus(place or {}, Interval.of(Fraction(x), BITS), enclosed(motion))
+        for v, room, _ in ordered:
+            if place is not None:
+                place = _next_zero(spaces, v, room, place)
+        if place is not None:
+            yield place
+
+
+def _next_zero(spaces: Spaces, v: int, room: Space, w: Place) -> Place | None:
+    """The nearest zero of a form on a line through a place, where its derivative is not 0.
+
+    If the form vanishes at u, it is linear on the lines along u.
+    """
+    flat = not spaces.squares(v, room)
+    vectors = [enclosed(motion) for motion in room]
+    first = _value(spaces.gradient(v, w, BITS), w)
+    for u in vectors if flat else islice(_directions(spaces, v, vectors), DIRECTIONS):
+        slopes = spaces.gradient(v, u, BITS)
+        middle = _value(slopes, w)
+        if not middle.sign():
+            continue
+        if flat:
+            return _plus(w, -first / (middle + middle), u)
+        last = _value(slopes, u)
+        square = middle * middle - first * last
+        if square.sign() > 0:
+            root = square.root() if middle.sign() > 0 else -square.root()
+            return _plus(w, (root - middle) / last, u)
+    return None
+
+
+def _in_floats(form: Squares) -> list[list[float]]:
+    size = len(form[0][1])
+    total = [[0.0] * size for _ in range(size)]
+    for weight, values in form:
+        d, row = _float(weight), [_float(x) for x in values]
+        for j, x in enumerate(row):
+            for k, y in enumerate(row):
+                total[j][k] += d * x * y
+    return total
+
+
+def _float(x: Number) -> float:
+    interval = x.enclosed(BITS)
+    return float(Fraction(interval.low + interval.high, 2 << BITS))
 
 
 def _ordered(spaces: Spaces, space: Space, vertices: Sequence[int]) -> list[int]:

@@ -13,6 +13,7 @@ from ..core import limits
 from ..core.reading import at_most
 from ..core.towers import Number, Tower
 from ..sheets.panels import Edge, PanelSheet, cross, pair
+from .modular import MOST_VARIABLES, Matrix, only_zero, reduced_forms
 from .reduction import Vector, zero
 
 MOST_STEPS = limits.SPACE_STEPS
@@ -176,6 +177,16 @@ class Forms:
                     return found
         return []
 
+    def vanish_only_at_zero(self, forms: Mapping[int, Squares], size: int) -> bool:
+        """Whether the forms are shown to vanish together only at 0.
+
+        There must be at least as many forms as the space has dimensions.
+        """
+        if not 1 < size <= min(len(forms), MOST_VARIABLES):
+            return False
+        reduced = modulo_a_prime(list(forms.values()))
+        return reduced is not None and only_zero(*reduced)
+
     def _added(self, forms: Sequence[tuple[int, Squares]], size: int) -> list[list[Number]]:
         """The matrix of a sum of forms with signs, on a basis of so many motions."""
         nothing = self.sheet.tower.number(0)
@@ -244,3 +255,14 @@ class Forms:
             [x + r * y for x, y in zip(first, second, strict=True)] for r in (root, -root)
         )
         return v, one, other
+
+
+def modulo_a_prime(forms: Sequence[Squares]) -> tuple[list[Matrix], int] | None:
+    """The matrices of forms modulo a prime, and the prime; None if no prime is found."""
+    towers = [x.tower for form in forms for d, row in form for x in (d, *row)]
+    tower = max(towers, key=lambda tower: tower.size)
+    weighted = [
+        [(tower.number(d).parts, [tower.number(x).parts for x in row]) for d, row in form]
+        for form in forms
+    ]
+    return reduced_forms(weighted, tower.radicands)

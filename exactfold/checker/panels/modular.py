@@ -2,7 +2,8 @@
 
 The forms have coefficients in a field of square roots, in which a prime p splits: all roots have
 values modulo p. If the forms modulo p have no common zero but 0, or if they generate a prime ideal
-whose zeros have the expected dimension, the same holds over the complex numbers (docs/panels.md, 5).
+whose zeros have the expected dimension, the same holds over the complex numbers
+(docs/panels.md, 5).
 """
 
 from __future__ import annotations
@@ -131,9 +132,7 @@ def one_component(forms: Sequence[Matrix], p: int) -> bool:
         moved = [_shifted(point, room, generator, p) for point in points]
         points, classes = _zeros(form, slopes, last, u, moved, p)
         if number and (
-            len(classes) < 2
-            if last
-            else not _apart(forms[:number], form, slopes, u, generator, p)
+            len(classes) < 2 if last else not _apart(forms[:number], form, slopes, u, generator, p)
         ):
             return False
         room = _kernel(form, room, p)

@@ -17,7 +17,7 @@ from exactfold.exact.surds import Number, exact, sign, simple
 from exactfold.panels.modes.densities import Density, Roots
 from exactfold.panels.modes.extension import Extension, extension
 from exactfold.panels.result import Decomposition, Part
-from exactfold.panels.spaces.subspaces import Leaf
+from exactfold.panels.spaces.subspaces import Leaf, maximal
 from exactfold.panels.vertex.local import LocalMode
 from exactfold.panels.vertex.stars import Star, stars
 from exactfold.pattern.panel_pattern import Edge, PanelPattern, Point
@@ -191,11 +191,8 @@ def _examples(part: Part) -> Iterable[tuple[LocalMode, ...]]:
 
 def _lines(part: Part) -> list[Leaf]:
     """The components of dimension one of a part with more than four folds at a vertex."""
-    lines: list[Leaf] = []
-    for leaf in (*part.spaces, *(one.leaf for one in part.found)):
-        if leaf.size == 1 and not leaf.vertices and leaf not in lines:
-            lines.append(leaf)
-    return lines
+    both = (*part.spaces, *(one.leaf for one in part.found))
+    return maximal(leaf for leaf in both if leaf.size == 1 and not leaf.vertices)
 
 
 def _letters(choice: Sequence[LocalMode]) -> dict[Edge, str]:

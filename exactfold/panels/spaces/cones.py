@@ -45,7 +45,7 @@ def cone_motion(
 
     None decides nothing. More than 64 forms are not tried.
     """
-    if len(vertices) > _MOST_FORMS:
+    if not vertices or len(vertices) > _MOST_FORMS:
         return None
     before = ctx.prec
     ctx.prec = BITS
