@@ -208,8 +208,8 @@ that of the chart *boundary saddle = 1*, `Vi` quadrics in `Vi` unknowns with int
 and the same for everybody. Every program is a process of its own with one thread. The machine was
 shared with other work, so what counts is **processor time**, not the clock. Another machine or run
 gives other seconds: compare only the numbers of this page with each other. Starting Python and
-loading every library used here takes {start} s. What a program loads is most of the time of exactfold
-at small sizes, and is included.
+loading every library used here takes {start} s. What a program loads is included; it is most of the
+time of exactfold at small sizes.
 
 ## All solutions
 
