@@ -118,6 +118,13 @@ def _signature(
     return given, returned and short.sub("", returned).replace("~", "")
 
 
+def _options(_: Sphinx, __: str, ___: str, context: dict[str, Any], ____: Any) -> None:
+    """Options in code have a class, so that no line ends behind one of their hyphens."""
+    found = r'<span class="pre">(--?\w[\w-]*)</span>'
+    if "body" in context:
+        context["body"] = re.sub(found, r'<span class="pre option">\1</span>', context["body"])
+
+
 def _write(_: Sphinx) -> None:
     make_pages.write()
 
@@ -131,3 +138,4 @@ def setup(app: Sphinx) -> None:
     app.connect("autodoc-process-docstring", _docstring)
     app.connect("autodoc-process-signature", _signature)
     app.connect("missing-reference", make_pages.resolved)
+    app.connect("html-page-context", _options)
