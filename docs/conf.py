@@ -45,6 +45,7 @@ html_title = "exactfold"
 html_static_path = ["_static"]
 html_extra_path = ["generated/whole"]
 html_css_files = ["site.css"]
+html_search_scorer = str(HERE / "_static" / "scorer.js")
 html_math_renderer = "mathml"
 html_copy_source = False
 html_show_sourcelink = False
