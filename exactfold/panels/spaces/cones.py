@@ -12,8 +12,8 @@ from scipy.linalg import null_space
 
 from exactfold.exact.surds import ball
 from exactfold.panels.spaces.kernel import Entry, Rows, imposed
+from exactfold.panels.spaces.quadratics import squares_of
 from exactfold.panels.spaces.regular import BITS, Balls, Forms
-from exactfold.panels.spaces.subspaces import squares_of
 from exactfold.panels.vertex.stars import Star
 
 _SHIFTS: Final = 40
