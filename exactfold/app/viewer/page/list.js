@@ -4,7 +4,7 @@ import { agreeing, difference, seen } from "./choose.js";
 
 const NOUNS = { branches: ["branch", "branches"], panels: ["way", "ways"] };
 
-export function createList(page, store) {
+export function createList(page, store, { onAsk }) {
   const box = document.getElementById("ways");
   const search = document.getElementById("search");
   const count = document.getElementById("count");
@@ -86,7 +86,7 @@ export function createList(page, store) {
   search.addEventListener("input", () => store.set({ search: search.value }));
   clear.addEventListener("click", () => {
     search.value = "";
-    store.set({ search: "", asks: new Map() });
+    onAsk({ search: "", asks: new Map() });
     search.focus();
   });
   store.on(["ways", "asks", "search"], refresh);
