@@ -1,24 +1,26 @@
-"""The page with the engine behind it, in a real browser: drop, list, move, undo, and save."""
+"""The page in a real browser: it opens, folds, is clicked, typed at, and saves a file."""
 
-import threading
+import json
 import time
+from itertools import pairwise
 
 import numpy as np
 import pytest
 from browser import chromium
+from test_document import CORNER_AND_CENTRE
 
-from exactfold.app.serving import view_server
-from exactfold.branches import count_branches, find_branch
-from exactfold.pattern import load
-from exactfold.pattern.data import example_path
+from exactfold.app.pictures.crease_style import COLOUR
+from exactfold.app.viewer import write_view
+from exactfold.branches import count_branches
+from exactfold.motion import follow
+from exactfold.pattern import load, open_pattern
 
 pytestmark = pytest.mark.slow
-READY = "window.exactfold && exactfold.view && !exactfold.view.page.busy"
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    found = tmp_path_factory.mktemp("serving")
+    found = tmp_path_factory.mktemp("viewer")
     (found / "downloads").mkdir()
     return found
 
@@ -30,193 +32,488 @@ def browser(folder):
 
 
 @pytest.fixture(scope="module")
-def server(browser):
-    with view_server(frames=6) as found:
-        thread = threading.Thread(target=found.serve_forever, kwargs={"poll_interval": 0.05})
-        thread.start()
-        yield found
-        found.shutdown()
-        thread.join()
+def pages(folder, browser):
+    """Addresses of the pages of three sheets, written once there is a browser."""
+    for name in ("h1-4", "zigzags", "waterbomb"):
+        write_view(name, folder / f"{name}.html", name=name)
+    write_view(CORNER_AND_CENTRE, folder / "free-corner.html", frames=4)
+    return {path.stem: path.as_uri() for path in folder.glob("*.html")}
 
 
-@pytest.fixture
-def page(browser, server):
-    """The empty page."""
-    size = {"width": 1280, "height": 800, "deviceScaleFactor": 1, "mobile": False}
-    browser.command("Emulation.setDeviceMetricsOverride", **size)
-    browser.driver.get("about:blank")
-    browser.driver.get(server.address)
-    browser.until("document.body.classList.contains('waiting')")
-    return browser
+def test_it_opens_without_a_complaint_and_asks_nothing_of_a_network(browser, pages):
+    for name, address in pages.items():
+        browser.open(address)
+        assert browser.complaints() == [], name
+        asked = browser.run("performance.getEntriesByType('resource').map((e) => e.name)")
+        assert [one for one in asked if not one.startswith("data:")] == []
+    browser.open(pages["waterbomb"])
+    assert browser.run("document.title") == "waterbomb - exactfold"
+    assert "one family of dimension 3" in browser.text("#answer")
 
 
-def opened(page, path):
-    """The page after a file was chosen, and all its ways were followed."""
-    page.run("document.getElementById('file').style = ''")
-    page.driver.find_element("id", "file").send_keys(str(path))
-    page.until(f"{READY} && exactfold.page.ways.length > 0")
-    return page
-
-
-def handle_of(page, vertex):
-    """The handle of a vertex, once the page has its last layout."""
-    if page.run("document.getElementById('edit-tools').hidden"):
-        page.click("#edit")
-    time.sleep(0.5)
-    return page.driver.find_element("css selector", f"[data-handle='{vertex}']")
-
-
-def test_a_drawing_that_is_dropped_is_read_counted_and_listed(page):
-    path = example_path("bird-base")
-    page.driver.execute_script(
-        "const data = new DataTransfer();"
-        f"data.items.add(new File([arguments[0]], {path.name!r}));"
-        "document.body.dispatchEvent(new DragEvent('drop', {dataTransfer: data, bubbles: true}))",
-        path.read_text("utf-8"),
+def test_sliders_choose_another_way_of_a_family_and_play_goes_on(browser, pages):
+    browser.open(pages["waterbomb"])
+    sheet = load("waterbomb")
+    i, j = np.array(sheet.edges).T
+    at = [browser.run(f"exactfold.store.get().ways[0].family.drivers[{k}]") for k in range(3)]
+    names = browser.run(
+        "Array.from(document.querySelectorAll('#family label span'), (n) => n.textContent)"
     )
-    page.until("window.exactfold.page && exactfold.page.ways.length > 0")
-    assert "16 families of ways to fold, each of dimension 5" in page.text("#answer")
-    page.until("exactfold.store.get().ways[0].motion !== null")
-    assert page.run("exactfold.store.get().time") == 0.55
-    assert "4 lines cut there" in page.text(".facts details[open]")
-    page.until(READY)
-    assert page.run("exactfold.store.get().ways.every((way) => way.motion || way.why)")
-    assert page.complaints() == []
-
-
-def test_a_file_that_is_no_drawing_gets_a_sentence_and_the_page_goes_on(page, tmp_path):
-    wrong = tmp_path / "wrong.svg"
-    wrong.write_text("<svg", encoding="utf-8")
-    page.run("document.getElementById('file').style = ''")
-    page.driver.find_element("id", "file").send_keys(str(wrong))
-    page.until("document.getElementById('message').className.includes('wrong')")
-    assert "wrong.svg" in page.text("#message")
-    opened(page, example_path("two-vertex"))
-    assert page.text("#name") == example_path("two-vertex").name
-    assert page.run("exactfold.page.ways.length") == 4
-
-
-def test_a_vertex_is_dragged_the_answer_changes_live_and_is_undone(page):
-    from selenium.webdriver.common.action_chains import ActionChains
-
-    opened(page, example_path("two-vertex"))
-    handle = handle_of(page, 4)
-    before = page.run("exactfold.view.sheet.points[4]")
-    ActionChains(page.driver).click_and_hold(handle).move_by_offset(30, -18).perform()
-    page.until("document.getElementById('live').dataset.milliseconds !== undefined")
-    assert page.text("#live").startswith("degrees of freedom: 1")
-    mark, handle = page.run(
-        "['[data-vertex=\"4\"] .mark', '[data-handle=\"4\"]'].map((one) =>"
-        " (({left, right}) => (left + right) / 2)"
-        "(document.querySelector(one).getBoundingClientRect()))"
+    assert names == ["Fold {}–{}".format(*sheet.folds[k]) for k in at]
+    before = browser.run("exactfold.angles()")
+    wish = round(before[at[0]]) + 25
+    browser.run(
+        "(() => { const slider = document.querySelector('#family input');"
+        f" slider.value = {wish}; slider.dispatchEvent(new Event('input')) }})()"
     )
-    assert abs(mark - handle) < 2  # the handle goes with its vertex
-    assert "4 ways to start folding" in page.text("#answer")
-    ActionChains(page.driver).release().perform()
-    page.until("!document.getElementById('undo').hidden")
-    page.until(f"{READY} && exactfold.page.ways.length > 0")
-    after = page.run("exactfold.view.sheet.points[4]")
-    assert after != before
-    steps = np.array(after) * 16  # the sheet is the unit square
-    assert np.allclose(steps, steps.round())
-    page.driver.execute_script("delete document.getElementById('live').dataset.milliseconds")
-    page.click("#undo")
-    page.until(f"{READY} && exactfold.view.sheet.points[4][0] === {before[0]}")
-    assert page.run("exactfold.view.sheet.points[4]") == before
-    assert page.run("document.getElementById('undo').hidden")
-    assert page.complaints() == []
+    after = browser.run("exactfold.angles()")
+    assert after[at[0]] == pytest.approx(wish, abs=1e-3)
+    assert [after[k] for k in at[1:]] == pytest.approx([before[k] for k in at[1:]], abs=1e-3)
+    shape = np.array(browser.run("exactfold.positions()")).reshape(-1, 3)
+    flat = np.array([[float(x), float(y)] for x, y in sheet.vertices])
+    lengths = [np.linalg.norm(c[i] - c[j], axis=1) for c in (shape, flat)]
+    assert np.allclose(*lengths, atol=1e-6)
+    browser.click("#play")
+    browser.until("exactfold.store.get().time !== 0.55")
+    assert browser.complaints() == []
 
 
-def test_letters_stay_asked_for_as_a_vertex_moves_and_both_are_undone(page):
-    opened(page, example_path("two-vertex"))
-    page.click('[data-fold="4-5"] .reach')
-    asked = "JSON.stringify([...exactfold.store.get().asks])"
-    assert page.run(asked) == '[[6,"M"]]'
-    before = page.run("exactfold.view.sheet.points[5]")
-    handle_of(page, 5)
-    page.run("document.querySelector(\"[data-handle='5']\").focus()")
-    page.press("\ue013")  # up
-    page.until(f"{READY} && exactfold.view.sheet.points[5][1] > {before[1]}")
-    assert page.run(asked) == '[[6,"M"]]'
-    page.click("#edit")
-    page.click('[data-fold="4-5"] .reach')
-    assert page.run(asked) == '[[6,"V"]]'
-    page.press_with_control("z")  # first the letter
-    assert page.run(asked) == '[[6,"M"]]'
-    page.press_with_control("z")  # then the vertex
-    page.until(f"{READY} && exactfold.view.sheet.points[5][1] === {before[1]}")
-    assert page.run(asked) == '[[6,"M"]]'
+def test_an_empty_list_is_no_listbox(browser, pages):
+    role = "document.getElementById('ways').getAttribute('role')"
+    browser.open(pages["h1-4"])
+    assert browser.run(role) == "listbox"
+    browser.click("#search")
+    browser.press("#99")
+    assert browser.text("#ways").startswith("No branch of this sheet agrees with the search")
+    assert browser.run(role) == "group"
+    browser.click("#clear")
+    assert browser.run(role) == "listbox"
 
 
-def test_a_vertex_that_cannot_go_somewhere_comes_back(page):
-    from selenium.webdriver.common.action_chains import ActionChains
-
-    opened(page, example_path("two-vertex"))
-    before = page.run("exactfold.view.sheet.points")
-    handle = handle_of(page, 4)
-    ActionChains(page.driver).click_and_hold(handle).move_by_offset(400, 0).release().perform()
-    page.until("document.getElementById('message').className.includes('wrong')")
-    page.until(f"JSON.stringify(exactfold.view.sheet.points) === {str(before).replace(' ', '')!r}")
+def test_without_a_motion_there_is_nothing_to_play(browser, pages):
+    browser.open(pages["zigzags"])
+    browser.click(".way:last-child")
+    assert browser.run("document.getElementById('transport').hidden")
+    browser.click(".way:first-child")
+    assert not browser.run("document.getElementById('transport').hidden")
 
 
-def test_vertices_are_moved_by_keys_too(page):
-    opened(page, example_path("two-vertex"))
-    handle_of(page, 5)
-    before = page.run("exactfold.view.sheet.points[5]")
-    page.run("document.querySelector(\"[data-handle='5']\").focus()")
-    page.press("\ue013")  # up
-    page.until(f"{READY} && exactfold.view.sheet.points[5][1] > {before[1]}")
+def test_the_slider_folds_the_sheet(browser, pages):
+    browser.open(pages["h1-4"])
+    spans = []
+    for value in (0, 500, 1000):
+        browser.slide(value)
+        z = np.array(browser.run("exactfold.positions()")).reshape(-1, 3)
+        spans.append(float(np.ptp(z[:, 2])))
+    assert spans[0] == 0
+    assert spans[1] > 0.05
+    assert spans[2] > 0.05
+    assert spans[2] != spans[1]
+    before = _pixels(browser)
+    browser.run("exactfold.store.set({time: 0.2})")
+    assert _pixels(browser) != before
 
 
-def test_the_address_holds_the_sheet(page, server):
-    opened(page, example_path("two-vertex"))
-    page.run("exactfold.store.set({way: 2, time: 0.375})")
-    page.until("location.hash.includes('sheet=') && location.hash.includes('t=0.375')")
-    address = page.run("location.href")
-    points = page.run("exactfold.view.sheet.points")
-    page.driver.get("about:blank")
-    page.driver.get(address)
-    page.until(f"{READY} && exactfold.page.ways.length === 4")
-    assert page.run("exactfold.view.sheet.points") == points
-    assert page.run("[exactfold.store.get().way, exactfold.store.get().time]") == [2, 0.375]
+def test_vertices_to_look_at_have_a_ring_and_say_why(browser, pages):
+    browser.open(pages["zigzags"])
+    ring = "[data-vertex='9'] .ring.refuted"
+    assert browser.run('document.querySelectorAll("#pattern .ring").length') == 4
+    assert browser.run(f'document.querySelector("{ring}") !== null')
+    label = browser.run("document.querySelector(\"[data-vertex='9']\").getAttribute('aria-label')")
+    assert "It cannot start to fold with the letters of the file: its mountains 9-13, 4-9" in label
+    assert "vertex that cannot start to fold" in browser.text("#legend")
+    browser.open(pages["h1-4"])
+    assert browser.run('document.querySelectorAll("#pattern .ring").length') == 0
 
 
-def test_other_branches_of_a_large_sheet_come_as_they_are_asked_for(browser):
-    with view_server("h1-4", branches=["++++"], frames=4) as server:
-        thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.05})
-        thread.start()
-        try:
-            browser.driver.get(server.address)
-            browser.until(f"{READY} && exactfold.store.get().ways[0].motion !== null")
-            vertex = load("h1-4").interior[1]
-            browser.click(f'[data-vertex="{vertex}"] .reach')
-            browser.until("exactfold.store.get().ways.length === 2")
-            assert browser.shown() == ("+-++", find_branch("h1-4", "+-++").assignment_text, False)
-            browser.click("#search")
-            browser.press("++x", "\ue007")
-            browser.until("document.getElementById('message').className.includes('wrong')")
-            assert "'x' is not a vertex sign" in browser.text("#message")
-            assert browser.complaints() == []
-        finally:
-            server.shutdown()
-            thread.join()
+def _pixels(browser):
+    """A picture of the page, once what was asked for is drawn."""
+    browser.run("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    return browser.command("Page.captureScreenshot")["data"]
 
 
-def test_an_animation_is_saved(page, folder):
-    image = pytest.importorskip("PIL.Image")
-    opened(page, example_path("two-vertex"))
-    assert len(count_branches("two-vertex")) == 4
-    page.run(
+def test_play_moves_and_pause_stops(browser, pages):
+    browser.open(pages["h1-4"])
+    before = browser.run("exactfold.store.get().time")
+    browser.click("#play")
+    browser.until(f"Math.abs(exactfold.store.get().time - {before}) > 0.02")
+    assert browser.run("document.getElementById('play').getAttribute('aria-label')") == "Pause"
+    browser.click("#play")
+    stopped = browser.run("exactfold.store.get().time")
+    time.sleep(0.3)
+    assert browser.run("exactfold.store.get().time") == stopped
+
+
+def test_a_click_on_a_vertex_pops_it_through(browser, pages):
+    browser.open(pages["h1-4"])
+    count = count_branches("h1-4")
+    signs, letters, _ = browser.shown()
+    vertex = count.pattern.interior[2]
+    browser.click(f'[data-vertex="{vertex}"] .reach')
+    flipped = signs[:2] + ("+" if signs[2] == "-" else "-") + signs[3:]
+    assert browser.shown() == (flipped, count[flipped].assignment_text, False)
+    browser.click(f'[data-vertex="{vertex}"] .reach')
+    assert browser.shown() == (signs, letters, False)
+    assert f"Vertex {vertex} popped through" in browser.text("#message")
+
+
+def test_clicks_on_folds_ask_for_letters_and_the_list_shrinks(browser, pages):
+    browser.open(pages["h1-4"])
+    count = count_branches("h1-4")
+    folds = count.pattern.folds
+    i, j = folds[-1]
+    selector = f'[data-fold="{i}-{j}"] .reach'
+
+    total = len(count)
+    for letter in "MV":  # of the two mirror images of a branch one agrees
+        browser.click(selector)
+        sides = sum(branch.assignment[i, j] in "MV" for branch in count)
+        assert browser.text("#count") == f"{sides} of {total} branches {_agree(sides)}"
+        _, letters, mirrored = browser.shown()
+        shown = letters.translate(str.maketrans("MV", "VM")) if mirrored else letters
+        assert shown[-1] == letter
+    k, m = folds[0]
+    browser.click(f'[data-fold="{k}-{m}"] .reach')  # M there, V at the last
+    both = sum(
+        (branch.assignment[k, m], branch.assignment[i, j]) in (("M", "V"), ("V", "M"))
+        for branch in count
+    )
+    assert 0 < both < total
+    assert browser.text("#count") == f"{both} of {total} branches {_agree(both)}"
+    assert browser.run("document.querySelectorAll('.way').length") == both
+    browser.click(f'[data-fold="{k}-{m}"] .reach')
+    browser.click(f'[data-fold="{k}-{m}"] .reach')
+    browser.click(selector)  # any
+    assert browser.text("#count") == f"{total} branches"
+
+
+def _agree(number):
+    return "agrees" if number == 1 else "agree"
+
+
+def test_what_was_asked_is_undone_step_by_step(browser, pages):
+    browser.open(pages["h1-4"])
+    (i, j), (k, m) = (load("h1-4").folds[at] for at in (-1, 0))
+    hidden = "document.getElementById('undo').hidden"
+    asked = "[...exactfold.store.get().asks.values()].join('')"
+    assert browser.run(hidden)
+    way = browser.run("exactfold.store.get().way")
+    for edge in (f"{i}-{j}", f"{i}-{j}", f"{k}-{m}"):
+        browser.click(f'[data-fold="{edge}"] .reach')
+    assert browser.run(asked) == "VM"
+    browser.click("#undo")
+    assert browser.run(asked) == "V"
+    browser.press_with_control("z")
+    assert browser.run(asked) == "M"
+    browser.click("#undo")
+    assert (browser.run(asked), browser.run(hidden)) == ("", True)
+    assert browser.run("exactfold.store.get().way") == way
+    assert browser.run("document.activeElement.closest('#pattern') !== null")
+    browser.click(f'[data-fold="{i}-{j}"] .reach')
+    browser.click("#search")
+    browser.press("#1")
+    browser.click("#clear")
+    assert browser.run("document.getElementById('search').value") == ""
+    browser.click("#undo")  # what "Clear" took away comes back
+    assert browser.run("document.getElementById('search').value") == "#1"
+    assert browser.run(asked) == "M"
+
+
+def test_the_hint_says_what_a_click_does(browser, pages):
+    browser.open(pages["h1-4"])
+    count = count_branches("h1-4")
+    signs, letters, _ = browser.shown()
+    vertex, (i, j) = count.pattern.interior[1], count.pattern.folds[-1]
+    browser.run(f"document.querySelector('[data-vertex=\"{vertex}\"]').focus()")
+    way, back = ("down", "up") if signs[1] == "-" else ("up", "down")
+    browser.says("#pattern-hint", f"Vertex {vertex}: popped {way}. Click: pop it {back}.")
+    browser.run(f"document.querySelector('[data-fold=\"{i}-{j}\"]').focus()")
+    name = {"M": "mountain", "V": "valley"}[letters[-1]]
+    browser.says("#pattern-hint", f"Fold {i}–{j}: {name}. Click: ask for a mountain.")
+    browser.run("document.activeElement.blur()")
+    browser.says("#pattern-hint", "Click a vertex or a fold")
+
+
+def test_lines_have_the_colours_of_pictures(browser, pages):
+    browser.open(pages["h1-4"])
+    shown = browser.run(
+        "Array.from(document.querySelectorAll('.fold .line'), (n) => getComputedStyle(n).stroke)"
+    )
+    _, letters, _ = browser.shown()
+    colours = [tuple(int(COLOUR[letter][k : k + 2], 16) for k in (1, 3, 5)) for letter in letters]
+    assert shown == [f"rgb{colour}" for colour in colours]
+
+
+def test_everything_is_reached_by_keys(browser, pages):
+    from selenium.webdriver.common.keys import Keys
+
+    browser.open(pages["h1-4"])
+    reached = []
+    while "download" not in reached:
+        assert len(reached) < 20
+        browser.press(Keys.TAB)
+        reached.append(
+            browser.run(
+                "(document.activeElement.id || Object.keys(document.activeElement.dataset)[0])"
+            )
+        )
+        ring = browser.run(
+            "(() => { const a = document.activeElement;"
+            " const n = a.querySelector?.('.reach') ?? a; const s = getComputedStyle(n);"
+            " return a === document.body || s.outlineStyle !== 'none' || +s.strokeOpacity < 1"
+            " || +s.fillOpacity < 1 })()"
+        )
+        assert ring, reached
+    wanted = ["fold", "vertex", "mirror", "home", "canvas", "play", "time", "search", "ways"]
+    assert [name for name in reached if name in wanted] == wanted
+
+    browser.open(pages["h1-4"])
+    signs, _, _ = browser.shown()
+    browser.press(Keys.TAB, Keys.TAB, Keys.ARROW_RIGHT, Keys.ENTER)  # the second vertex
+    assert browser.shown()[0] == signs[0] + ("+" if signs[1] == "-" else "-") + signs[2:]
+    browser.run("document.activeElement.blur()")
+    browser.press(Keys.ARROW_DOWN)
+    assert browser.run("exactfold.store.get().way") == 1 + count_branches("h1-4").branches.index(
+        count_branches("h1-4")[signs[0] + ("+" if signs[1] == "-" else "-") + signs[2:]]
+    )
+    before = browser.run("exactfold.store.get().time")
+    browser.press(Keys.ARROW_LEFT)
+    assert browser.run("exactfold.store.get().time") < before
+    browser.press(Keys.SPACE)
+    assert browser.run("exactfold.store.get().playing")
+    browser.press(Keys.SPACE, "m")
+    assert browser.run("[exactfold.store.get().playing, exactfold.store.get().mirrored]") == [
+        False,
+        True,
+    ]
+
+
+def test_the_list_is_searched_by_signs_and_letters(browser, pages):
+    browser.open(pages["h1-4"])
+    count = count_branches("h1-4")
+    browser.click("#search")
+    browser.press("+-?+")
+    wanted = sorted({branch.sign_text for branch in count if _fits(branch.sign_text, "+-?+")})
+    mirrored = {branch.sign_text for branch in count if _fits(_turned(branch.sign_text), "+-?+")}
+    rows = browser.run("document.querySelectorAll('.way').length")
+    assert rows == len(set(wanted) | mirrored)
+    browser.press("??")  # more signs than vertices
+    assert browser.text("#ways") == (
+        'No branch of this sheet agrees with the search. "Clear" shows all again.'
+    )
+    browser.click("#clear")
+    assert browser.text("#count") == f"{len(count)} branches"
+
+
+def _fits(text, wanted):
+    return all(w in ("?", c) for c, w in zip(text, wanted, strict=True))
+
+
+def _turned(signs):
+    return signs.translate(str.maketrans("+-", "-+"))
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_a_branch_is_saved_as_fold(browser, pages, folder, mirrored):
+    browser.open(pages["h1-4"])
+    for kept in (folder / "downloads").iterdir():
+        kept.unlink()
+    browser.run(f"exactfold.store.set({{way: 5, mirrored: {str(mirrored).lower()}}})")
+    branch = count_branches("h1-4").branches[5]
+    browser.click("#download")
+    signs = _turned(branch.sign_text) if mirrored else branch.sign_text
+    path = folder / "downloads" / f"h1-4_branch_{signs}.fold"
+    for _ in range(200):
+        if path.exists():
+            break
+        time.sleep(0.05)
+    document = json.loads(path.read_text("utf-8"))
+    assert load(path).sha256 == branch.pattern.sha256  # the exact sheet
+    assert open_pattern(path).assignment == dict(
+        follow(branch, side=-1 if mirrored else 1).assignment
+    ) | {edge: "B" for edge in branch.pattern.edges if edge not in branch.pattern.folds}
+    motion = follow(branch, side=-1 if mirrored else 1, frames=32)
+    frames = document["file_frames"]
+    assert len(frames) == 32
+    at = [branch.pattern.edges.index(fold) for fold in branch.pattern.folds]
+    for frame, time_, angles, coords in zip(
+        frames, motion.times, motion.angles, motion.coords, strict=True
+    ):
+        assert frame["frame_exactfold:time"] == pytest.approx(time_, abs=1e-9)
+        found = np.array(frame["edges_foldAngle"])[at]
+        assert np.abs(found - np.degrees(angles)).max() < 1e-3
+        i, j = np.array(branch.pattern.edges).T
+        shape = np.array(frame["vertices_coords"])
+        lengths = [np.linalg.norm(c[i] - c[j], axis=1) for c in (shape, coords)]
+        assert np.allclose(*lengths, atol=1e-6)
+
+
+def test_dark_and_light_are_those_of_the_reader(browser, pages):
+    grounds = {}
+    for dark in (False, True):
+        browser.open(pages["h1-4"], dark=dark)
+        found = browser.run("getComputedStyle(document.body).backgroundColor")
+        grounds[dark] = sum(int(part) for part in found[4:-1].split(","))
+    assert grounds[True] < 150 < 600 < grounds[False]
+
+
+def test_panes_stack_on_a_phone(browser, pages):
+    browser.open(pages["h1-4"], width=360, height=740)
+    assert browser.run("document.documentElement.scrollWidth") <= 360
+    boxes = browser.run(
+        "Array.from(document.querySelectorAll('main > .pane, .side > .pane'), (node) => {"
+        " const b = node.getBoundingClientRect(); return [b.left, b.top, b.right, b.bottom] })"
+    )
+    assert len(boxes) == 4
+    for (_, _, right, bottom), (left, top, _, _) in pairwise(boxes):
+        assert left < 20
+        assert right > 340
+        assert top >= bottom
+    small = browser.run(
+        "Array.from(document.querySelectorAll('#play, #mirror, #home, #download'),"
+        " (node) => node.getBoundingClientRect().height)"
+    )
+    assert min(small) >= 32
+
+
+def test_panels_are_followed_or_have_a_reason(browser, pages):
+    browser.open(pages["zigzags"])
+    names = browser.run(
+        "Array.from(document.querySelectorAll('.way .signs'), (n) => n.textContent)"
+    )
+    assert names[-1] == "way 4does not fold on"
+    browser.click(".way:last-child")
+    assert "does not close" in browser.text("#empty")
+    assert browser.run("document.getElementById('transport').hidden")
+    browser.click(".way:first-child")
+    assert browser.run("document.getElementById('empty').hidden")
+    assert not browser.run("document.getElementById('transport').hidden")
+    assert browser.complaints() == []
+
+
+def test_two_ways_fold_side_by_side_and_faster(browser, pages):
+    browser.open(pages["h1-4"])
+    browser.click("#beside")
+    assert not browser.run("document.getElementById('stage2').hidden")
+    first = browser.text("#beside-name")
+    browser.press("\ue015", "\ue015")  # two ways down the list
+    browser.until("exactfold.store.get().way === 2")
+    assert browser.text("#beside-name") == first
+    assert browser.run("exactfold.store.get().beside.way") == 0
+    browser.run("exactfold.store.set({time: 0.3})")
+    before = _pixels(browser)
+    browser.run("exactfold.store.set({time: 0.9})")
+    assert _pixels(browser) != before
+    browser.run(
         "(() => { const box = document.getElementById('speed'); box.value = '4';"
         " box.dispatchEvent(new Event('change')) })()"
     )
-    page.click("#gif")
-    for _ in range(400):
-        found = list((folder / "downloads").glob("*.gif"))
+    assert browser.run("exactfold.store.get().speed") == 4
+    browser.click("#beside")
+    assert browser.run("document.getElementById('stage2').hidden")
+    assert browser.complaints() == []
+
+
+def test_the_letters_of_the_file_are_asked_for_at_once(browser, pages, folder):
+    write_view("miura", folder / "miura.html", name="miura", frames=4)
+    browser.open((folder / "miura.html").as_uri())
+    drawn = browser.run("exactfold.page.drawn")
+    assert browser.run("exactfold.store.get().way") == drawn["way"]
+    browser.click(".way:last-child")
+    browser.click("#as-drawn")
+    assert browser.run("exactfold.store.get().way") == drawn["way"]
+    assert browser.run("exactfold.store.get().asks.size") == 24
+    assert browser.text("#count") == "1 of 8 ways agrees"
+
+
+def test_the_picture_that_is_shown_is_saved(browser, pages, folder):
+    image = pytest.importorskip("PIL.Image")
+    browser.open(pages["h1-4"])
+    browser.click("#png")
+    [path] = _saved(folder, ".png")
+    picture = image.open(path).convert("RGB")
+    assert picture.size == tuple(
+        browser.run("[exactfold.view.picture().width, exactfold.view.picture().height]")
+    )
+    colours = {colour for _, colour in picture.getcolors(1 << 20)}
+    assert (255, 255, 255) in colours  # the ground of the page, not black
+    assert len(colours) > 20
+    assert browser.run("document.getElementById('gif').hidden")  # it needs the server
+
+
+def _saved(folder, ending):
+    """The files with an ending that were downloaded."""
+    for _ in range(200):
+        found = list((folder / "downloads").glob(f"*{ending}"))
         if found:
-            break
+            return found
         time.sleep(0.05)
-    gif = image.open(found[0])
-    assert gif.n_frames > 10
-    seconds = gif.n_frames * gif.info["duration"] / 1000
-    assert seconds == pytest.approx(1.6, rel=0.2)
+    return []
+
+
+def test_the_address_holds_the_state(browser, pages):
+    browser.open(pages["h1-4"])
+    browser.run("exactfold.store.set({way: 3, mirrored: true, time: 0.25})")
+    browser.run("exactfold.store.set({asks: new Map([[1, 'M']])})")
+    way, mirrored = browser.run("[exactfold.store.get().way, exactfold.store.get().mirrored]")
+    browser.until("location.hash.includes('asks=1M')")
+    address = browser.run("location.href")
+    browser.driver.get("about:blank")
+    browser.open(address)
+    state = browser.run(
+        "(({way, mirrored, time, asks}) => [way, mirrored, time, [...asks]])(exactfold.store.get())"
+    )
+    assert state == [way, mirrored, 0.25, [[1, "M"]]]
+
+
+CONTRAST = """(() => {
+  const rgb = (text) => (text.match(/[\\d.]+/g) ?? []).map(Number);
+  const light = ([r, g, b]) => [r, g, b].map((c) => c / 255)
+    .map((c) => (c <= 0.03928 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4))
+    .reduce((sum, c, k) => sum + c * [0.2126, 0.7152, 0.0722][k], 0);
+  const ground = (node) => {
+    for (let at = node; at; at = at.parentElement) {
+      const found = rgb(getComputedStyle(at).backgroundColor);
+      if (found.length === 3 || found[3] > 0.99) return found;
+    }
+    return [255, 255, 255];
+  };
+  const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  const bad = [];
+  while (walker.nextNode()) {
+    const node = walker.currentNode.parentElement;
+    const text = walker.currentNode.data.trim();
+    if (!text || node.closest("script, svg title, .message, option")) continue;
+    if (!node.getClientRects().length) continue;
+    const style = getComputedStyle(node);
+    const ink = rgb(node.closest("svg") ? style.fill : style.color);
+    const pair = [light(ink), light(ground(node))].sort((a, b) => b - a);
+    const ratio = (pair[0] + 0.05) / (pair[1] + 0.05);
+    if (ratio < 4.5) bad.push(`${ratio.toFixed(2)} ${node.className} ${text}`);
+  }
+  return bad;
+})()"""
+
+
+@pytest.mark.parametrize("dark", [False, True])
+@pytest.mark.parametrize("name", ["h1-4", "zigzags", "waterbomb"])
+def test_all_text_has_enough_contrast(browser, pages, name, dark):
+    browser.open(pages[name], dark=dark)
+    browser.run("document.querySelectorAll('details').forEach((one) => (one.open = true))")
+    assert browser.run(CONTRAST) == []
+    last = "document.querySelector('.way:last-child')"
+    browser.run(f"{last}.click()")
+    assert browser.run(CONTRAST) == []
+
+
+def test_on_a_phone_the_sheet_stays_in_sight_while_a_way_is_chosen(browser, pages):
+    browser.open(pages["h1-4"], width=390, height=844)
+    browser.run("document.querySelector('.way:last-child').scrollIntoView({block: 'end'})")
+    browser.run("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    box = "document.getElementById('stage').getBoundingClientRect()"
+    top, bottom = browser.run(f"[{box}.top, {box}.bottom]")
+    assert 0 <= top < bottom <= 844
+    assert bottom - top > 150
+    low = browser.run("document.querySelector('.way:last-child').getBoundingClientRect().bottom")
+    assert low > bottom  # the way is below the sheet, not behind it
+    assert low <= browser.run("innerHeight") + 1
