@@ -17,7 +17,7 @@ from exactfold.branches.values.export import AMOUNT
 from exactfold.errors import ExactfoldError, WorkerDiedError
 from exactfold.motion.following import follow
 from exactfold.motion.proving import prove
-from exactfold.panels.extension import FOREST, LINEAR
+from exactfold.panels.modes.extension import FOREST, LINEAR
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.opening import panels
 
