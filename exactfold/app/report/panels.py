@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from exactfold.motion.panels.listing import PanelWay
-    from exactfold.panels.extension import Extension
+    from exactfold.panels.modes.extension import Extension
     from exactfold.panels.partial import Drawn
     from exactfold.panels.result import Decomposition
     from exactfold.pattern.panel_pattern import Edge
@@ -267,7 +267,7 @@ def _because(way: PanelWay) -> str:
 
 
 def _of_mode(extends: Extension) -> str:
-    from exactfold.panels.extension import FOREST, LINEAR
+    from exactfold.panels.modes.extension import FOREST, LINEAR
 
     if extends.by == FOREST:
         return "no loop of folds"
