@@ -19,10 +19,10 @@ from exactfold.interop.sheet_files import ENDINGS, FOLD_ENDINGS, write_sheet
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import PanelsDocument, PatternDocument, described, described_panels
 from exactfold.pattern.drawing.drawing import Steps
-from exactfold.pattern.fold_writing import checked_target, document_text, write_text
 from exactfold.pattern.meant import MeantDocument
 from exactfold.pattern.opening import Opened, ReadDocument, open_pattern
-from exactfold.pattern.panel_writing import Converted, converted
+from exactfold.pattern.writing.fold_writing import checked_target, document_text, write_text
+from exactfold.pattern.writing.panel_writing import Converted, converted
 
 
 class Conversion(ConvertOptions):

@@ -24,8 +24,8 @@ from exactfold.motion.curves.motion import Motion
 from exactfold.motion.following import Goal
 from exactfold.motion.writing import ENDINGS, write_motion
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.fold_writing import checked_target, require_folder
 from exactfold.pattern.opening import Opened, has_branches
+from exactfold.pattern.writing.fold_writing import checked_target, require_folder
 
 if TYPE_CHECKING:  # following branches does not need it
     from exactfold.motion.panels.families import FamilyMotion

@@ -13,7 +13,7 @@ from exactfold.app.pictures.animation import seen_frames
 from exactfold.app.pictures.stills import shades
 from exactfold.app.pictures.svg import INK
 from exactfold.errors import PackageMissingError, UsageError
-from exactfold.pattern.fold_writing import checked_target, write_bytes
+from exactfold.pattern.writing.fold_writing import checked_target, write_bytes
 
 if TYPE_CHECKING:
     from PIL.Image import Image

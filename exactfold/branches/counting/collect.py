@@ -224,7 +224,10 @@ def _single(pattern: CreasePattern, branches: list[Branch]) -> list[bool]:
     if not branches:
         return []
     from exactfold.branches.connected_components.flat_stars import flat_solutions
-    from exactfold.panels.stars import edge_of, stars  # imported here: most counts do not need it
+    from exactfold.panels.vertex.stars import (  # imported here: most counts do not need it
+        edge_of,
+        stars,
+    )
     from exactfold.pattern.opening import panels
 
     sheet, labels = pattern.without_rigid_parts()

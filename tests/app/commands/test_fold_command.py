@@ -19,7 +19,7 @@ from exactfold.motion import follow, follow_panels
 from exactfold.pattern import write_fold
 from exactfold.pattern.degenerate import ringed_square
 from exactfold.pattern.opening import Opened
-from exactfold.pattern.panel_writing import converted
+from exactfold.pattern.writing.panel_writing import converted
 
 OK = 0
 
