@@ -99,11 +99,10 @@ def checked_sheet(path: Path) -> str:
 
 
 def _lines(opened: Opened, name: str) -> list[str]:
-    if opened.lines:
-        doubt = [f"warning: {opened.doubt}"] if opened.doubt else []
-        return [*opened.lines, *doubt]
     moved = f"; largest move {float(opened.snapped):.1g}" if opened.snapped else ""
-    return [f"read {name}: FOLD, triangulated, as it stands{moved}"]
+    lines = opened.lines or (f"read {name}: FOLD, triangulated, as it stands{moved}",)
+    doubt = [f"warning: {opened.doubt}"] if opened.doubt else []
+    return [*lines, *doubt]
 
 
 def _written(made: Converted, output: str, exact: bool) -> str:

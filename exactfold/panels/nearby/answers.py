@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Final
 
-from exactfold._support.plurals import counted
+from exactfold._support.plurals import agreeing, counted
 from exactfold._support.verdict import REFUTED, UNDECIDED
 from exactfold.panels.nearby.box import Box, box_of
 from exactfold.panels.nearby.freedom import nearby_freedom
@@ -49,8 +49,10 @@ def drawn_nearby(
         reason = f"{which} {named}{more} cannot have {have} letters on any of these sheets"
         return Drawn(REFUTED, REFUTED, (reason,), within=within)
     sure = sum(fan.must_fold([letters.get(f, "U") for f in fan.folds]) for fan in fans.values())
-    reason = (
-        f"by itself, each of {sure} of {counted(len(fans), 'vertex')} starts to fold with its "
-        "letters - PROVED"
-    )
+    if sure == len(fans):
+        said = f"each of the {counted(sure, 'vertex')} starts to fold with its letters"
+    else:
+        start = agreeing(sure, "starts")
+        said = f"{sure} of {counted(len(fans), 'vertex')} {start} to fold with their letters"
+    reason = f"by itself, {said} - PROVED"
     return Drawn(UNDECIDED, UNDECIDED, (reason,), within=within)
