@@ -265,9 +265,8 @@ def _reflex(script: Script) -> None:
         r"\text{``when the faces around }v_2\text{ are unfolded \dots\ we can only attach the "
         r"butterfly "
         r"in its unfolded state''}",
-        note="delta = 0 is then a double root; if v1, v2, v3 are collinear the unfolded butterfly "
-        "can "
-        "still turn about that line",
+        note="Remark: delta = 0 is then a double root; if v1, v2, v3 are collinear the unfolded "
+        "butterfly can still turn about that line",
     )
 
 

@@ -100,7 +100,7 @@ def _freedom(script: Script) -> None:
         "Section II C, after Eq. (Dcount)",
         r"\text{``recovers the count for the degrees of freedom for a generic (folded) "
         r"triangulated origami derived from a linear analysis''}",
-        note="3V - 6 - E = Ve - 3 with E = 3Vi + 2Ve - 3",
+        note="Remark: 3V - 6 - E = Ve - 3 with E = 3Vi + 2Ve - 3",
     )
     state(
         "IIC.3",
@@ -321,8 +321,8 @@ def _chambers(script: Script) -> None:
         "Section III A, after Eq. (B distinct)",
         r"\text{``the branches must lie in a lower-dimensional "
         r"}\mathbb{R}^{V_i-V_t+1}\text{''}",
-        note="each of the Vt inner heights is the value of the plane through the triangle's "
-        "corners",
+        note="Remark: each of the Vt inner heights is the value of the plane through the "
+        "triangle's corners",
         code="CreasePattern.without_rigid_parts",
         rests="IIC.7",
     )
@@ -332,8 +332,8 @@ def _chambers(script: Script) -> None:
         r"\text{``there are therefore }2^{V_i-V_t}\text{ choices of vertex sign patterns'' \dots\ "
         r"``we are left with only }2^{V_i-V_t-1}\text{ equivalence classes''}",
         at=[{**names, "values": (2 * names["signs"], names["signs"])} for names in chambers],
-        note="a vertex of degree 4 has one class and two branches. Here counted as those of "
-        "branches: every sign vector occurs",
+        note="Remark: a vertex of degree 4 has one class and two branches. Here counted as those "
+        "of branches: every sign vector occurs",
         code="BranchCount.sign_vectors",
     )
     script.formula(

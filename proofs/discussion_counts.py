@@ -135,9 +135,9 @@ def _rigid_folds(script: Script) -> None:
         "Section V, non-triangulated origami",
         r"\text{``triangulate the origami, then add additional quadratic constraints to rigidify "
         r"certain folds''}",
-        note="a bar across the fold: with it the two faces carry one self stress, whose equation "
-        "(compat) is the square of the bend. The linear equation, bend = 0, says the same and "
-        "counts no solution twice",
+        note="Remark: a bar across the fold: with it the two faces carry one self stress, whose "
+        "equation (compat) is the square of the bend. The linear equation, bend = 0, says the same "
+        "and counts no solution twice",
         code="fold_functional",
     )
     *ends, h1, h2, h3, h4 = sympy.symbols("x1 y1 x2 y2 x3 y3 x4 y4 h1:5")
@@ -235,7 +235,7 @@ def _orthogonality(script: Script) -> None:
         "Section V",
         r"\sum_{i=1}^{N_F}\frac{\partial E}{\partial\theta_i}\cdot\Delta\theta_i\ge0\text{ "
         r"\dots\ ``must then be perpendicular to all undesired branches''}",
-        note="x >= 0 and -x >= 0 give x = 0",
+        note="Remark: x >= 0 and -x >= 0 give x = 0",
         equation="12",
         words="x >= 0 and -x >= 0",
     )
@@ -270,7 +270,8 @@ def _orthogonality(script: Script) -> None:
         "V.6",
         "Section V, first displayed formula",
         r"E[x]=\frac12\sum_{(n,m)}k_{(n,m)}(\theta_{(n,m)}-\bar\theta_{(n,m)})^2",
-        note="a definition: a weighted squared distance, with gradient -k theta-bar when unfolded",
+        note="Remark: a definition: a weighted squared distance, with gradient -k theta-bar when "
+        "unfolded",
         equation="11",
     )
     state(

@@ -208,7 +208,7 @@ def _matrix(script: Script) -> None:
         r"\sum_{n,m}Q_{nm}h_n h_m=0\text{ \dots\ ``}Q_{nm}\text{ be the symmetric matrix "
         r"corresponding to }\bm{\sigma}\text{ so that the quadratic form in Eq. "
         r"(\ref{eq:compat}) is written in terms of the vector of vertical displacements''}",
-        note="Q_nm = -sigma_(n,m)/|U_n - U_m| for n != m, and the rows add up to 0",
+        note="Remark: Q_nm = -sigma_(n,m)/|U_n - U_m| for n != m, and the rows add up to 0",
         code="stress_form",
         equation="8",
     )

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from fractions import Fraction
 
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.delaunay_sheets import delaunay
+from exactfold.pattern.triangulating.delaunay_sheets import delaunay
 from exactfold.rigidity.curvature import curvature_form
 
 Heights = Mapping[int, Fraction]

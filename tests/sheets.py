@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import collinear_folds
-from exactfold.pattern.random_squares import random_square
+from exactfold.pattern.triangulating.random_squares import random_square
 
 Point = tuple[Fraction, Fraction]
 Triangle = tuple[int, int, int]

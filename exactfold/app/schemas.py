@@ -52,7 +52,7 @@ DOCUMENTS: Final = {
     ),
     "match": ("exactfold match --json", "design.assignments.result:MatchDocument"),
     "starting": ("exactfold match --json of rigid panels", "design.panels.match:StartingDocument"),
-    "vertices": ("exactfold vertices --json", "design.panels.vertices:VerticesDocument"),
+    "vertices": ("exactfold vertices --json", "design.panels.vertex.vertices:VerticesDocument"),
     "certify": ("exactfold certify --json", "app.commands.certify:CertifyDocument"),
     "export": ("exactfold export --json", "app.commands.export:ExportDocument"),
     "motion": (
@@ -76,7 +76,7 @@ DOCUMENTS: Final = {
     ),
     "convert": ("exactfold convert --json", "app.commands.convert:ConvertDocument"),
     "check": ("exactfold check --json", "app.verbs.check_document:CheckDocument"),
-    "examples": ("exactfold examples --json", "app.cli:ExamplesDocument"),
+    "examples": ("exactfold examples --json", "app.commands.examples:ExamplesDocument"),
     "study": ("exactfold study NAME --json", "app.commands.study:StudyDocument"),
     "study-row": ("exactfold study NAME --row ID --json", "app.commands.study:StudyRowDocument"),
     "studies": ("exactfold study --json", "app.commands.study:StudiesDocument"),

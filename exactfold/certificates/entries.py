@@ -11,7 +11,7 @@ from exactfold._support.plurals import counted
 from exactfold.checker.core.lines import chained
 from exactfold.exact.numbers import format_integer, format_rational
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.fold_writing import write_text
+from exactfold.pattern.writing.fold_writing import write_text
 from exactfold.rigidity.equations.branch_system import Chart
 from exactfold.rigidity.equations.flat_sheets import FlatSheets
 from exactfold.rigidity.rigid_triangles import RigidTriangle

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
-from exactfold.pattern.fold_writing import fold_document
 from exactfold.pattern.opening import Opened
+from exactfold.pattern.writing.fold_writing import fold_document
 
 if TYPE_CHECKING:
     from exactfold.pattern.panel_pattern import PanelPattern
@@ -143,7 +143,9 @@ def _panels_document(
     pattern: PanelPattern, assignment: Mapping[Edge, str], angles: Mapping[Edge, float], title: str
 ) -> dict[str, Any]:
     """The FOLD object of a flat sheet of panels, with the given angles."""
-    from exactfold.pattern.panel_writing import converted  # here, as branches do not need it
+    from exactfold.pattern.writing.panel_writing import (
+        converted,  # here, as branches do not need it
+    )
 
     flat = converted(Opened(pattern, assignment)).document(title)
     flat["edges_foldAngle"] = [float(angles.get(edge, 0)) for edge in pattern.edges]

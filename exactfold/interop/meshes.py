@@ -11,7 +11,7 @@ from exactfold.errors import UsageError
 from exactfold.interop.packages import optional
 from exactfold.pattern.loading import PatternLike, as_pattern
 from exactfold.pattern.panel_pattern import PanelPattern
-from exactfold.pattern.triangulating import triangles_of
+from exactfold.pattern.triangulating.panels import triangles_of
 
 if TYPE_CHECKING:
     import trimesh

@@ -13,8 +13,8 @@ import numpy as np
 from exactfold._support.arrays import FloatArray
 from exactfold.interop.meshes import obj_text, stl_bytes
 from exactfold.interop.packages import optional
-from exactfold.pattern.fold_writing import checked_target, write_bytes, write_text
-from exactfold.pattern.triangulating import triangles_of
+from exactfold.pattern.triangulating.panels import triangles_of
+from exactfold.pattern.writing.fold_writing import checked_target, write_bytes, write_text
 
 if TYPE_CHECKING:
     from exactfold.pattern.crease_pattern import CreasePattern, Edge

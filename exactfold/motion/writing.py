@@ -16,8 +16,13 @@ from exactfold.interop.fold_frames import MotionFrame, motion_document
 from exactfold.interop.meshes import animated_gltf, gltf_bytes, obj_text, stl_bytes
 from exactfold.motion.curves.events import RETURN
 from exactfold.motion.curves.in_motion import SheetInMotion
-from exactfold.pattern.fold_writing import checked_target, document_text, write_bytes, write_text
-from exactfold.pattern.triangulating import triangles_of
+from exactfold.pattern.triangulating.panels import triangles_of
+from exactfold.pattern.writing.fold_writing import (
+    checked_target,
+    document_text,
+    write_bytes,
+    write_text,
+)
 
 ENDINGS = (".fold", ".glb", ".gltf", ".obj", ".stl", ".csv")
 

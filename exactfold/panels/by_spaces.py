@@ -7,22 +7,22 @@ from collections.abc import Iterable, Mapping
 from exactfold._support.clock import QUICK, UNLIMITED, Clock
 from exactfold._support.plurals import counted
 from exactfold.errors import TooManyModesError
-from exactfold.panels.cones import cone_motion, is_one_family
 from exactfold.panels.folding_modes import folding_mode, folding_modes
-from exactfold.panels.found import FoundComponent, found_components
-from exactfold.panels.freedom import most_first_order, most_freedom
-from exactfold.panels.kernel import Rows, entry, first_order
-from exactfold.panels.regular import (
+from exactfold.panels.modes.trees import tree_components
+from exactfold.panels.result import Part
+from exactfold.panels.spaces.cones import cone_motion, is_one_family
+from exactfold.panels.spaces.found import FoundComponent, found_components
+from exactfold.panels.spaces.freedom import most_first_order, most_freedom
+from exactfold.panels.spaces.kernel import Rows, entry, first_order
+from exactfold.panels.spaces.regular import (
     Forms,
     in_balls,
     is_component,
     point,
     truly_folds,
 )
-from exactfold.panels.result import Part
-from exactfold.panels.stars import Star
-from exactfold.panels.subspaces import Leaf, SubspaceSearch, independent_parts, reduced
-from exactfold.panels.trees import tree_components
+from exactfold.panels.spaces.subspaces import Leaf, SubspaceSearch, independent_parts, reduced
+from exactfold.panels.vertex.stars import Star
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
 MOST_STEPS = 6_000_000

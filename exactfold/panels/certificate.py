@@ -19,11 +19,11 @@ from exactfold.checker.panels.claims import (
 )
 from exactfold.errors import NotApplicableError, TooManyModesError
 from exactfold.panels.decomposition import MOST_LISTED
-from exactfold.panels.elementary import ModeSearch, Support
-from exactfold.panels.extension import Loops, extension
-from exactfold.panels.local import LocalMode, local_modes
+from exactfold.panels.modes.elementary import ModeSearch, Support
+from exactfold.panels.modes.extension import Loops, extension
 from exactfold.panels.result import Counts, Decomposition, Mode, Part
-from exactfold.panels.stars import Star, stars
+from exactfold.panels.vertex.local import LocalMode, local_modes
+from exactfold.panels.vertex.stars import Star, stars
 from exactfold.pattern.panel_entries import panels_document
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 

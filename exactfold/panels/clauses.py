@@ -11,11 +11,11 @@ import networkx as nx
 
 from exactfold._support.clock import UNLIMITED, Clock
 from exactfold._support.verdict import PROVED
-from exactfold.panels.densities import Density, Roots, UndecidedDensityError
-from exactfold.panels.extension import extension
-from exactfold.panels.local import LocalMode, local_modes
+from exactfold.panels.modes.densities import Density, Roots, UndecidedDensityError
+from exactfold.panels.modes.extension import extension
 from exactfold.panels.result import Mode
-from exactfold.panels.stars import Star
+from exactfold.panels.vertex.local import LocalMode, local_modes
+from exactfold.panels.vertex.stars import Star
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
 _MOST_FOLDS: Final = 8

@@ -14,7 +14,7 @@ from exactfold._support.documents import (
     VerdictText,
     VertexText,
 )
-from exactfold.panels.near_misses import NearMissDocument
+from exactfold.panels.modes.near_misses import NearMissDocument
 from exactfold.panels.partial import DrawnDocument, FreedomDocument
 from exactfold.pattern.described import PanelsDocument
 from exactfold.pattern.meant import MeantDocument

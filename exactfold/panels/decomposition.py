@@ -16,13 +16,13 @@ from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.errors import TooManyModesError
 from exactfold.panels.by_spaces import by_spaces, by_tree
-from exactfold.panels.densities import UndecidedDensityError
-from exactfold.panels.elementary import ElementaryMode, ModeSearch, Support
-from exactfold.panels.extension import Extension, Loops, extend_together, extension
-from exactfold.panels.freedom import most_first_order, most_freedom
-from exactfold.panels.kernel import first_order
+from exactfold.panels.modes.densities import UndecidedDensityError
+from exactfold.panels.modes.elementary import ElementaryMode, ModeSearch, Support
+from exactfold.panels.modes.extension import Extension, Loops, extend_together, extension
 from exactfold.panels.result import Decomposition, Mode, Part, product
-from exactfold.panels.stars import Star, stars
+from exactfold.panels.spaces.freedom import most_first_order, most_freedom
+from exactfold.panels.spaces.kernel import first_order
+from exactfold.panels.vertex.stars import Star, stars
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
 MOST_SUPPORTS = 20_000

@@ -10,15 +10,15 @@ from exactfold._support.clock import UNLIMITED, Clock
 from exactfold._support.verdict import PROVED
 from exactfold.exact.surds import exact, sign, simple
 from exactfold.panels.clauses import ModeClauses, has_solver
-from exactfold.panels.extension import extension
-from exactfold.panels.found import exact_leaf
-from exactfold.panels.kernel import Rows, entry, number
-from exactfold.panels.local import LocalMode
-from exactfold.panels.proposals import Proposals, is_too_large
+from exactfold.panels.modes.extension import extension
 from exactfold.panels.result import Mode
-from exactfold.panels.stars import Star
-from exactfold.panels.straight import straight_creases
-from exactfold.panels.subspaces import independent_parts
+from exactfold.panels.spaces.found import exact_leaf
+from exactfold.panels.spaces.kernel import Rows, entry, number
+from exactfold.panels.spaces.proposals import Proposals, is_too_large
+from exactfold.panels.spaces.straight import straight_creases
+from exactfold.panels.spaces.subspaces import independent_parts
+from exactfold.panels.vertex.local import LocalMode
+from exactfold.panels.vertex.stars import Star
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
 MOST_MODES: Final = 12

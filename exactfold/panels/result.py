@@ -21,13 +21,13 @@ from exactfold.panels.count_document import (
     PanelCountKeys,
     ProposalDocument,
 )
-from exactfold.panels.elementary import Support
-from exactfold.panels.extension import Extension
-from exactfold.panels.found import FoundComponent
-from exactfold.panels.local import LocalMode
-from exactfold.panels.near_misses import NearMiss, near_limit
+from exactfold.panels.modes.elementary import Support
+from exactfold.panels.modes.extension import Extension
+from exactfold.panels.modes.near_misses import NearMiss, near_limit
 from exactfold.panels.partial import Drawn, Freedom
-from exactfold.panels.subspaces import Leaf
+from exactfold.panels.spaces.found import FoundComponent
+from exactfold.panels.spaces.subspaces import Leaf
+from exactfold.panels.vertex.local import LocalMode
 from exactfold.pattern.described import described_panels
 from exactfold.pattern.meant import Meant
 from exactfold.pattern.opening import ReadDocument

@@ -7,7 +7,6 @@ from exactfold.pattern.data import EXAMPLES as EXAMPLES
 from exactfold.pattern.data import SHEETS as SHEETS
 from exactfold.pattern.data import example_path as example_path
 from exactfold.pattern.data import examples as examples
-from exactfold.pattern.delaunay_sheets import delaunay as delaunay
 from exactfold.pattern.drawing.coordinates import Exact as Exact
 from exactfold.pattern.drawing.coordinates import exact_coordinates as exact_coordinates
 from exactfold.pattern.drawing.drawing import Drawing as Drawing
@@ -22,7 +21,6 @@ from exactfold.pattern.drawing.repair import repaired as repaired
 from exactfold.pattern.fold import FoldFile as FoldFile
 from exactfold.pattern.fold import load_fold as load_fold
 from exactfold.pattern.fold import read_fold as read_fold
-from exactfold.pattern.fold_writing import write_fold as write_fold
 from exactfold.pattern.loading import load as load
 from exactfold.pattern.meant import Meant as Meant
 from exactfold.pattern.near_degeneracy import NearDegeneracy as NearDegeneracy
@@ -31,9 +29,13 @@ from exactfold.pattern.opening import Opened as Opened
 from exactfold.pattern.opening import from_drawing as from_drawing
 from exactfold.pattern.opening import open_pattern as open_pattern
 from exactfold.pattern.panel_pattern import PanelPattern as PanelPattern
-from exactfold.pattern.panel_writing import Converted as Converted
-from exactfold.pattern.panel_writing import converted as converted
-from exactfold.pattern.random_squares import RandomSquare as RandomSquare
-from exactfold.pattern.random_squares import random_square as random_square
-from exactfold.pattern.random_squares import sample_random_square as sample_random_square
-from exactfold.pattern.triangulating import triangulating_edges as triangulating_edges
+from exactfold.pattern.triangulating.delaunay_sheets import delaunay as delaunay
+from exactfold.pattern.triangulating.panels import triangulating_edges as triangulating_edges
+from exactfold.pattern.triangulating.random_squares import RandomSquare as RandomSquare
+from exactfold.pattern.triangulating.random_squares import random_square as random_square
+from exactfold.pattern.triangulating.random_squares import (
+    sample_random_square as sample_random_square,
+)
+from exactfold.pattern.writing.fold_writing import write_fold as write_fold
+from exactfold.pattern.writing.panel_writing import Converted as Converted
+from exactfold.pattern.writing.panel_writing import converted as converted

@@ -16,8 +16,8 @@ from typing import Final
 from exactfold.errors import UsageError
 from exactfold.exact.numbers import RationalLike
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.delaunay_sheets import delaunay
 from exactfold.pattern.families import flat_vertex_square, hypar
+from exactfold.pattern.triangulating.delaunay_sheets import delaunay
 
 _CORNERS: Final = ((0, 0), (1, 0), (1, 1), (0, 1))
 

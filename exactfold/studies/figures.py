@@ -17,7 +17,7 @@ from exactfold.branches.counting.collect import count_branches
 from exactfold.motion.following import follow
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import single_vertex, two_vertex
-from exactfold.pattern.random_squares import random_square
+from exactfold.pattern.triangulating.random_squares import random_square
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.functionals import vertex_sign_functional
 from exactfold.studies.running.lines import Lines

@@ -71,7 +71,7 @@ def nearest_exception(count: BranchCount) -> Nearest | None:
     no such sheet, and a nearer one than the result is not excluded.
 
     >>> from exactfold.branches.counting.collect import count_branches
-    >>> from exactfold.pattern.random_squares import random_square
+    >>> from exactfold.pattern.triangulating.random_squares import random_square
     >>> nearest = nearest_exception(count_branches(random_square(5, seed=4)))
     >>> nearest.cycle, round(nearest.distance, 6), nearest.straight
     ((4, 5, 2, 3), 0.000402, False)

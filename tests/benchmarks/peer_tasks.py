@@ -28,8 +28,8 @@ from exactfold.branches.values.roots import BoxRoot
 from exactfold.certificates import write_certificate
 from exactfold.interop.export import to_msolve
 from exactfold.pattern.fold import read_fold
-from exactfold.pattern.fold_writing import write_fold
-from exactfold.pattern.random_squares import sample_random_square
+from exactfold.pattern.triangulating.random_squares import sample_random_square
+from exactfold.pattern.writing.fold_writing import write_fold
 from exactfold.rigidity.equations.branch_system import BranchSystem
 from exactfold.rigidity.equations.quadratic import QuadraticSystem
 from exactfold.solve.algebraic.from_roots import parametrisation_from_roots

@@ -25,7 +25,7 @@ from exactfold.design import match_panels
 from exactfold.design.panels.candidates import MotionSearch
 from exactfold.design.panels.first_order_program import FirstOrderProgram
 from exactfold.design.panels.parts import _found
-from exactfold.panels.stars import stars
+from exactfold.panels.vertex.stars import stars
 
 
 def main() -> None:

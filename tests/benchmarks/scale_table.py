@@ -24,7 +24,7 @@ from typing import Any
 
 COUNT = """
 import json, sys
-from exactfold.pattern.random_squares import random_square
+from exactfold.pattern.triangulating.random_squares import random_square
 from exactfold.branches.counting.stream import stream_branches
 if __name__ == "__main__":
     n, seed, workers = map(int, sys.argv[2:])

@@ -9,7 +9,7 @@ import pytest
 from exactfold import random_square
 from exactfold.branches import find_branch, find_branches
 from exactfold.motion import follow
-from exactfold.pattern.random_squares import sample_random_square
+from exactfold.pattern.triangulating.random_squares import sample_random_square
 
 
 @pytest.mark.survey

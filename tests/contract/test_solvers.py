@@ -39,7 +39,7 @@ from exactfold.pattern.families import (
     single_vertex,
     two_vertex,
 )
-from exactfold.pattern.random_squares import random_square
+from exactfold.pattern.triangulating.random_squares import random_square
 from exactfold.rigidity.equations.branch_system import BranchSystem, Chart, chamber_chart
 from exactfold.rigidity.equations.quadratic import QuadraticSystem
 from exactfold.solve.algebraic.groebner_bases import groebner

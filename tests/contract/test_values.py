@@ -18,8 +18,8 @@ from exactfold import errors
 from exactfold.motion.loops.loops import LoopFinder
 from exactfold.pattern.families import H1Triangulation, sample_h1_sequence, single_vertex
 from exactfold.pattern.opening import panels
-from exactfold.pattern.panel_writing import converted
-from exactfold.pattern.random_squares import sample_random_square
+from exactfold.pattern.triangulating.random_squares import sample_random_square
+from exactfold.pattern.writing.panel_writing import converted
 from exactfold.rigidity.equations.problem import Problem
 from exactfold.rigidity.equations.sheet import VertexEquations
 from exactfold.rigidity.kapovich_millson import kapovich_millson

@@ -33,7 +33,7 @@ from exactfold.pattern.data import example_path
 from exactfold.pattern.drawing.drawing import Drawing, Line
 from exactfold.pattern.families import single_vertex, two_vertex
 from exactfold.pattern.opening import from_drawing
-from exactfold.pattern.random_squares import random_square
+from exactfold.pattern.triangulating.random_squares import random_square
 from exactfold.rigidity.all_real import decide_all_branches_real
 from exactfold.rigidity.curvature import curvature_form, wheel_stress
 from exactfold.rigidity.equations.branch_system import BranchSystem

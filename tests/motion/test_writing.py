@@ -21,7 +21,7 @@ from exactfold.errors import PackageMissingError, UnwritableFileError, UsageErro
 from exactfold.interop import packages
 from exactfold.motion import follow, follow_panels, write_motion
 from exactfold.pattern import PanelPattern, load_fold, open_pattern
-from exactfold.pattern.triangulating import triangles_by_face, triangles_of
+from exactfold.pattern.triangulating.panels import triangles_by_face, triangles_of
 
 PATTERN = random_square(4, seed=1)
 BRANCH = find_branch(PATTERN, "+-++")

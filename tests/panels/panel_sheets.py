@@ -9,7 +9,7 @@ from itertools import pairwise
 from math import atan2
 
 from exactfold.exact.surds import RATIONALS, Number
-from exactfold.panels.stars import Star, star_at
+from exactfold.panels.vertex.stars import Star, star_at
 from exactfold.pattern.panel_pattern import Edge, PanelPattern, Point
 
 Place = Callable[[int, int], tuple[Number, Number]]

@@ -6,7 +6,7 @@ from math import atan2
 
 import networkx as nx
 
-from exactfold.panels.stars import Star
+from exactfold.panels.vertex.stars import Star
 from exactfold.pattern.panel_pattern import Edge
 
 

@@ -10,7 +10,7 @@ from exactfold._support.clock import Clock
 from exactfold._support.verdict import PROVED
 from exactfold.panels.clauses import ModeClauses, has_solver
 from exactfold.panels.decomposition import decompose
-from exactfold.panels.stars import stars
+from exactfold.panels.vertex.stars import stars
 from exactfold.pattern.loading import open_sheet
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 

@@ -11,11 +11,11 @@ from panel_sheets import grid, mesh, miura, outlined, tiling
 
 from exactfold._support.verdict import PROVED, REFUTED
 from exactfold.panels.decomposition import decompose
-from exactfold.panels.elementary import ModeSearch
-from exactfold.panels.extension import cycle_basis
-from exactfold.panels.kernel import first_order
-from exactfold.panels.stars import stars
-from exactfold.panels.subspaces import leaves
+from exactfold.panels.modes.elementary import ModeSearch
+from exactfold.panels.modes.extension import cycle_basis
+from exactfold.panels.spaces.kernel import first_order
+from exactfold.panels.spaces.subspaces import leaves
+from exactfold.panels.vertex.stars import stars
 from exactfold.pattern.families import single_vertex
 from exactfold.pattern.opening import panels
 from exactfold.pattern.panel_pattern import PanelPattern

@@ -15,9 +15,9 @@ from exactfold.panels import by_spaces
 from exactfold.panels import folding_modes as by_modes
 from exactfold.panels.decomposition import decompose
 from exactfold.panels.folding_modes import MOST_MODES, folding_modes
-from exactfold.panels.kernel import first_order
 from exactfold.panels.result import Decomposition
-from exactfold.panels.stars import stars
+from exactfold.panels.spaces.kernel import first_order
+from exactfold.panels.vertex.stars import stars
 from exactfold.pattern.panel_pattern import PanelPattern
 
 

@@ -19,9 +19,9 @@ from panel_sheets import grid, mesh, miura, outlined, shifted_columns, tiling
 from exactfold._support.verdict import PROVED
 from exactfold.panels.by_spaces import by_spaces
 from exactfold.panels.decomposition import decompose
-from exactfold.panels.kernel import Rows, first_order, imposed
-from exactfold.panels.stars import bracket, stars
-from exactfold.panels.subspaces import Leaf, SubspaceSearch, factors, leaves
+from exactfold.panels.spaces.kernel import Rows, first_order, imposed
+from exactfold.panels.spaces.subspaces import Leaf, SubspaceSearch, factors, leaves
+from exactfold.panels.vertex.stars import bracket, stars
 from exactfold.pattern.families import single_vertex
 from exactfold.pattern.opening import panels
 from exactfold.pattern.panel_pattern import Edge, PanelPattern

@@ -6,7 +6,7 @@ from hypothesis import settings
 from hypothesis import strategies as st
 
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.delaunay_sheets import delaunay
+from exactfold.pattern.triangulating.delaunay_sheets import delaunay
 
 quick = settings(max_examples=40, deadline=None)
 

@@ -19,7 +19,7 @@ from exactfold.pattern.families import (
     waterbomb,
 )
 from exactfold.pattern.fold import read_fold
-from exactfold.pattern.random_squares import random_square
+from exactfold.pattern.triangulating.random_squares import random_square
 
 
 @pytest.mark.parametrize("folds", range(3, 41))

@@ -23,9 +23,9 @@ from exactfold.errors import (
 from exactfold.pattern.data import BY_OTHERS, DRAWINGS, EXAMPLES, SHEETS, example_path, examples
 from exactfold.pattern.families import two_vertex
 from exactfold.pattern.fold import load_fold, read_fold
-from exactfold.pattern.fold_writing import write_fold
 from exactfold.pattern.loading import as_pattern, load, open_sheet
 from exactfold.pattern.opening import open_pattern
+from exactfold.pattern.writing.fold_writing import write_fold
 
 
 @pytest.fixture

@@ -12,7 +12,7 @@ from exactfold.pattern.degenerate import DEGENERATE
 from exactfold.pattern.families import collinear_folds
 from exactfold.pattern.loading import load
 from exactfold.pattern.near_degeneracy import near_degenerate
-from exactfold.pattern.random_squares import sample_random_square
+from exactfold.pattern.triangulating.random_squares import sample_random_square
 
 SQUARE = [(0, 0), (1, 0), (1, 1), (0, 1)]
 FAN = [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)]

@@ -26,12 +26,12 @@ from exactfold.exact.surds import RATIONALS
 from exactfold.pattern.data import example_path
 from exactfold.pattern.drawing.formats.read import parse_drawing
 from exactfold.pattern.fold import load_fold
-from exactfold.pattern.fold_writing import document_text
 from exactfold.pattern.opening import Opened, from_drawing, open_pattern, opened
 from exactfold.pattern.panel_pattern import PanelPattern
-from exactfold.pattern.panel_writing import converted
 from exactfold.pattern.reading import Reading
-from exactfold.pattern.triangulating import triangulating_edges
+from exactfold.pattern.triangulating.panels import triangulating_edges
+from exactfold.pattern.writing.fold_writing import document_text
+from exactfold.pattern.writing.panel_writing import converted
 
 CROSSED = [
     *SQUARE[:4],

@@ -19,7 +19,7 @@ from exactfold.pattern import load
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.data import EXAMPLES, example_path
 from exactfold.pattern.opening import open_pattern, triangles
-from exactfold.pattern.random_squares import random_square
+from exactfold.pattern.triangulating.random_squares import random_square
 from exactfold.rigidity.curvature import curvature_form
 
 ROOT = Path(__file__).parent.parent.parent

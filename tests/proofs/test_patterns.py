@@ -7,7 +7,7 @@ import pytest
 from exactfold import PROVED
 from exactfold.branches import count_branches
 from exactfold.errors import NotApplicableError
-from exactfold.pattern.delaunay_sheets import delaunay
+from exactfold.pattern.triangulating.delaunay_sheets import delaunay
 from exactfold.rigidity import curvature_form
 from proofs.chambers import Solutions, corner_sign, jacobian, solve, vertex_signs
 from proofs.patterns import (

@@ -8,8 +8,8 @@ from math import atan2, gcd
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from exactfold.panels.stars import Star, bracket, dot
-from exactfold.panels.vertex_motions import vertex_motion
+from exactfold.panels.vertex.stars import Star, bracket, dot
+from exactfold.panels.vertex.vertex_motions import vertex_motion
 from exactfold.pattern.panel_pattern import Point
 
 GRID = [(x, y) for x in range(-4, 5) for y in range(-4, 5) if gcd(x, y) == 1]

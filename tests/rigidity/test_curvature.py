@@ -23,7 +23,7 @@ from sheets import (
 from exactfold.errors import UsageError
 from exactfold.exact.linalg import inertia_by_elimination
 from exactfold.pattern.families import flat_vertex_square, hypar, waterbomb
-from exactfold.pattern.random_squares import random_square
+from exactfold.pattern.triangulating.random_squares import random_square
 from exactfold.rigidity.curvature import curvature_form, stress_form, wheel_stress
 
 PATTERNS = {

@@ -6,7 +6,7 @@ from sheets import HEXAGON, SQUARE, TRIANGLE, dart, nested_triangles, scrambled,
 from exactfold.exact.linalg import inertia, inertia_by_elimination
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import flat_octahedron_in_square, hypar, waterbomb
-from exactfold.pattern.random_squares import random_square
+from exactfold.pattern.triangulating.random_squares import random_square
 from exactfold.rigidity.curvature import curvature_form, stress_form, wheel_stress
 from exactfold.rigidity.definite_stresses import (
     combined_form,

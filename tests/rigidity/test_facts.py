@@ -17,7 +17,7 @@ from sheets import (
 from exactfold.interop.graphs import to_networkx
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import hypar, waterbomb
-from exactfold.pattern.random_squares import random_square, sample_random_square
+from exactfold.pattern.triangulating.random_squares import random_square, sample_random_square
 from exactfold.rigidity.facts import pattern_facts
 
 PATTERNS = {

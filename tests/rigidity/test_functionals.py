@@ -20,7 +20,7 @@ from sheets import (
 
 from exactfold.exact.linalg import nullspace
 from exactfold.pattern.families import single_vertex
-from exactfold.pattern.random_squares import random_square
+from exactfold.pattern.triangulating.random_squares import random_square
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.functionals import (
     fold_functional,

@@ -18,9 +18,9 @@ from sheets import (
 
 from exactfold.exact.linalg import rank
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.delaunay_sheets import delaunay
 from exactfold.pattern.families import flat_vertex_square, hypar, waterbomb
-from exactfold.pattern.random_squares import random_square
+from exactfold.pattern.triangulating.delaunay_sheets import delaunay
+from exactfold.pattern.triangulating.random_squares import random_square
 from exactfold.rigidity.curvature import wheel_stress
 from exactfold.rigidity.self_stress import rigidity_matrix, self_stresses
 

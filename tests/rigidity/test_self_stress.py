@@ -14,7 +14,7 @@ from sheets import (
 from exactfold.exact.linalg import rank
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import hypar, waterbomb
-from exactfold.pattern.random_squares import random_square, sample_random_square
+from exactfold.pattern.triangulating.random_squares import random_square, sample_random_square
 from exactfold.rigidity import self_stress
 from exactfold.rigidity.self_stress import rigidity_matrix, rigidity_rank
 

@@ -19,7 +19,7 @@ from sheets import with_point
 from exactfold.errors import UsageError
 from exactfold.exact.linalg import from_fmpq, inertia, inertia_by_elimination
 from exactfold.pattern import families
-from exactfold.pattern.random_squares import random_square
+from exactfold.pattern.triangulating.random_squares import random_square
 from exactfold.rigidity.equations.branch_system import BranchSystem
 from exactfold.rigidity.equations.quadratic import QuadraticSystem
 from exactfold.rigidity.functionals import vertex_sign_functional

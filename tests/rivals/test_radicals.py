@@ -13,7 +13,7 @@ from sheets import wheel, with_point
 from exactfold.errors import NotApplicableError, SolverError, UsageError
 from exactfold.pattern import families
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.random_squares import random_square
+from exactfold.pattern.triangulating.random_squares import random_square
 from exactfold.rigidity.equations.branch_system import BranchSystem
 from exactfold.solve.algebraic.groebner_bases import groebner, root_classes
 from exactfold.solve.numeric.popping import popping

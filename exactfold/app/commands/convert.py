@@ -19,10 +19,10 @@ from exactfold.interop.sheet_files import ENDINGS, FOLD_ENDINGS, write_sheet
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import PanelsDocument, PatternDocument, described, described_panels
 from exactfold.pattern.drawing.drawing import Steps
-from exactfold.pattern.fold_writing import checked_target, document_text, write_text
 from exactfold.pattern.meant import MeantDocument
 from exactfold.pattern.opening import Opened, ReadDocument, open_pattern
-from exactfold.pattern.panel_writing import Converted, converted
+from exactfold.pattern.writing.fold_writing import checked_target, document_text, write_text
+from exactfold.pattern.writing.panel_writing import Converted, converted
 
 
 class Conversion(ConvertOptions):
@@ -99,11 +99,10 @@ def checked_sheet(path: Path) -> str:
 
 
 def _lines(opened: Opened, name: str) -> list[str]:
-    if opened.lines:
-        doubt = [f"warning: {opened.doubt}"] if opened.doubt else []
-        return [*opened.lines, *doubt]
     moved = f"; largest move {float(opened.snapped):.1g}" if opened.snapped else ""
-    return [f"read {name}: FOLD, triangulated, as it stands{moved}"]
+    lines = opened.lines or (f"read {name}: FOLD, triangulated, as it stands{moved}",)
+    doubt = [f"warning: {opened.doubt}"] if opened.doubt else []
+    return [*lines, *doubt]
 
 
 def _written(made: Converted, output: str, exact: bool) -> str:

@@ -76,7 +76,7 @@ class Asked(CountOptions):
             report.show(shown)
             self._of_digits(result)
         if opened is not None and result.status is UNDECIDED and not self.as_json:
-            from exactfold.design.panels.vertices import vertices
+            from exactfold.design.panels.vertex.vertices import vertices
 
             report.show(report.vertices_line(vertices(opened)))
         if not isinstance(result, BranchCount) and result.proposal and not self.as_json:

@@ -35,9 +35,9 @@ from exactfold.branches.values.export import AMOUNT, ENDINGS, BranchExport, expo
 from exactfold.errors import NotApplicableError, UndecidedBranchError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import PatternDocument, described
-from exactfold.pattern.fold_writing import checked_target, write_text
 from exactfold.pattern.near_degeneracy import WarningDocument, warnings
 from exactfold.pattern.opening import Opened
+from exactfold.pattern.writing.fold_writing import checked_target, write_text
 
 
 class Wanted(ExportOptions):

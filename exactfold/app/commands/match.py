@@ -22,7 +22,7 @@ from exactfold.design.assignments.nearest import nearest_branches
 from exactfold.design.assignments.result import Match
 from exactfold.design.assignments.search import match
 from exactfold.design.panels.match import PanelMatch, match_panels
-from exactfold.design.panels.vertices import open_vertices
+from exactfold.design.panels.vertex.vertices import open_vertices
 from exactfold.errors import (
     NotApplicableError,
     NotCountedError,

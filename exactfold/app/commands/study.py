@@ -28,7 +28,7 @@ from exactfold.errors import (
     UsageError,
     WorkerDiedError,
 )
-from exactfold.pattern.fold_writing import checked_target, write_bytes, write_text
+from exactfold.pattern.writing.fold_writing import checked_target, write_bytes, write_text
 from exactfold.studies import all_studies, recompute_row, run_study, study_named
 from exactfold.studies.running.runner import StudyRun
 from exactfold.studies.running.study import Study, TableDocument

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from exactfold.app.options.branches import VerticesOptions
 from exactfold.app.shell.patterns import read_any
 from exactfold.app.shell.shell import EXIT, Bar, name_of
-from exactfold.design.panels.vertices import vertices
+from exactfold.design.panels.vertex.vertices import vertices
 from exactfold.pattern.crease_pattern import Edge
 from exactfold.pattern.opening import Opened
 

@@ -11,7 +11,7 @@ from exactfold._support.arrays import FloatArray
 from exactfold.app.pictures.painting import back_to_front
 from exactfold.app.pictures.stills import faces_of, levelled, seen_from_above, shaded
 from exactfold.app.pictures.svg import INK, element, number, picture
-from exactfold.pattern.triangulating import triangles_by_face
+from exactfold.pattern.triangulating.panels import triangles_by_face
 
 if TYPE_CHECKING:
     from exactfold.motion.curves.in_motion import SheetInMotion

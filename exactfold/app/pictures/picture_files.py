@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Final
 
 from exactfold.errors import PackageMissingError
-from exactfold.pattern.fold_writing import checked_target, write_bytes
+from exactfold.pattern.writing.fold_writing import checked_target, write_bytes
 
 ENDINGS: Final = (".svg", ".png", ".pdf")
 _SCALE: Final = 2.0

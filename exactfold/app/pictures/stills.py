@@ -12,7 +12,7 @@ from exactfold._support.arrays import FloatArray
 from exactfold.app.pictures.painting import back_to_front
 from exactfold.app.pictures.svg import INK, element, path, picture, text
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.triangulating import triangles_by_face
+from exactfold.pattern.triangulating.panels import triangles_by_face
 
 if TYPE_CHECKING:
     from exactfold.motion.curves.in_motion import SheetInMotion

@@ -16,7 +16,7 @@ from exactfold.exact.numbers import decimal_near, format_rational, parse_rationa
 
 if TYPE_CHECKING:
     from exactfold.branches.counting.motion_facts import PanelFacts
-    from exactfold.design.panels.vertices import Vertices
+    from exactfold.design.panels.vertex.vertices import Vertices
     from exactfold.rigidity.facts import PatternFacts
 
 DIGITS = 6

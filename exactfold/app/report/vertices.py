@@ -16,9 +16,9 @@ from exactfold.design.assignments.why import fold_text
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from exactfold.design.panels.vertex_facts import VertexFacts
-    from exactfold.design.panels.vertex_repair import Repair
-    from exactfold.design.panels.vertices import Vertices
+    from exactfold.design.panels.vertex.facts import VertexFacts
+    from exactfold.design.panels.vertex.repair import Repair
+    from exactfold.design.panels.vertex.vertices import Vertices
 
 FIRST = 10
 """At most this many vertices have a line of their own, unless all are asked for."""
@@ -95,7 +95,7 @@ def vertices_line(found: Vertices) -> Text:
 def advice(found: Vertices, facts: VertexFacts) -> list[str]:
     """Why a vertex is listed and what would mend it, one text for each cause.
 
-    >>> from exactfold.design.panels.vertices import vertices
+    >>> from exactfold.design.panels.vertex.vertices import vertices
     >>> found = vertices("zigzags")
     >>> print(*advice(found, found.facts[1]), sep="; ")
     its mountains 10-14, 6-10 lie on one side of a line, and so do its valleys 9-10, 10-11: exchange

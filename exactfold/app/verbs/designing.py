@@ -16,8 +16,8 @@ from exactfold.design.actuation.actuate import actuate as actuate_branch
 from exactfold.design.assignments.boundary_match import can_pop, match_boundary
 from exactfold.design.assignments.search import match as match_branches
 from exactfold.design.panels.match import match_panels
-from exactfold.design.panels.vertices import open_vertices
-from exactfold.design.panels.vertices import vertices as vertices_of
+from exactfold.design.panels.vertex.vertices import open_vertices
+from exactfold.design.panels.vertex.vertices import vertices as vertices_of
 from exactfold.design.refutations.asked import by_fold
 from exactfold.errors import NotCountedError
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from exactfold.design.assignments.boundary_result import BoundaryMatch
     from exactfold.design.assignments.result import Match
     from exactfold.design.panels.match import PanelMatch
-    from exactfold.design.panels.vertices import Vertices
+    from exactfold.design.panels.vertex.vertices import Vertices
     from exactfold.exact.numbers import RationalLike
 
 

@@ -25,8 +25,8 @@ from exactfold.errors import NotCountedError, UsageError
 from exactfold.motion.curves.in_motion import SheetInMotion
 from exactfold.panels.result import Decomposition
 from exactfold.pattern.drawing.drawing import Drawing
-from exactfold.pattern.fold_writing import write_text
 from exactfold.pattern.loading import PatternLike, open_sheet
+from exactfold.pattern.writing.fold_writing import write_text
 
 Shown: TypeAlias = "PatternLike | Branch | BranchCount | Decomposition | SheetInMotion"
 """What can be drawn."""

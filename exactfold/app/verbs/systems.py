@@ -25,7 +25,7 @@ from exactfold.interop.export import (
     to_singular,
     to_sympy_script,
 )
-from exactfold.panels.stars import bracket, stars
+from exactfold.panels.vertex.stars import bracket, stars
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.loading import PatternLike, open_sheet
 from exactfold.pattern.panel_pattern import PanelPattern

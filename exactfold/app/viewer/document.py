@@ -17,10 +17,10 @@ from exactfold.app.viewer.ways import Followed, Letters, Way
 from exactfold.branches.counting.pools import Pool, process_pool
 from exactfold.errors import UsageError, WorkerDiedError
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.fold_writing import fold_document
 from exactfold.pattern.loading import PatternLike, open_sheet
 from exactfold.pattern.opening import Opened, has_branches
-from exactfold.pattern.triangulating import triangles_of
+from exactfold.pattern.triangulating.panels import triangles_of
+from exactfold.pattern.writing.fold_writing import fold_document
 
 if TYPE_CHECKING:
     from exactfold.branches.values.branch import Branch
@@ -216,7 +216,7 @@ def sheet_json(opened: Opened) -> FlatSheet:
         fold = fold_document(pattern)
         foldable = pattern.foldable_vertices if has_branches(pattern) else ()
     else:
-        from exactfold.pattern.panel_writing import converted
+        from exactfold.pattern.writing.panel_writing import converted
 
         fold, foldable = converted(Opened(pattern)).document(None), ()
     return {

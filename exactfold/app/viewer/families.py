@@ -15,8 +15,8 @@ from exactfold.app.pictures.drawn_ways import first_rates
 from exactfold.branches.values.letters import UPSIDE_DOWN
 from exactfold.motion.panels.listing import PanelWay
 from exactfold.panels.result import Decomposition
-from exactfold.panels.stars import Star, stars
-from exactfold.panels.subspaces import Leaf
+from exactfold.panels.spaces.subspaces import Leaf
+from exactfold.panels.vertex.stars import Star, stars
 from exactfold.pattern.opening import Opened
 from exactfold.pattern.panel_pattern import Edge
 

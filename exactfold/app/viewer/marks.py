@@ -7,7 +7,7 @@ from typing import Literal, TypedDict
 from exactfold._support.documents import Natural
 from exactfold._support.verdict import REFUTED, UNDECIDED
 from exactfold.app.report.vertices import advice
-from exactfold.design.panels.vertices import vertices
+from exactfold.design.panels.vertex.vertices import vertices
 from exactfold.pattern.opening import Opened
 
 

@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, Any, Final
 from exactfold._support.progress import Progress
 from exactfold.app.pictures import crease_style
 from exactfold.app.viewer.document import FRAMES, ViewDocument, view_document
-from exactfold.pattern.fold_writing import checked_target, write_text
 from exactfold.pattern.loading import PatternLike
+from exactfold.pattern.writing.fold_writing import checked_target, write_text
 
 if TYPE_CHECKING:
     from exactfold.branches.values.branch import Branch

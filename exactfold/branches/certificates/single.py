@@ -24,7 +24,7 @@ def branch_certificate(branch: Branch) -> dict[str, Any]:
 
     >>> from exactfold import checker
     >>> from exactfold.branches.counting.find import find_branch
-    >>> from exactfold.pattern.random_squares import random_square
+    >>> from exactfold.pattern.triangulating.random_squares import random_square
     >>> certificate = branch_certificate(find_branch(random_square(3, seed=0), "+-+"))
     >>> checker.check(certificate)["vertex_signs"]
     [1, -1, 1]

@@ -19,8 +19,8 @@ from exactfold.branches.connected_components.result import Joint, PartProof, Reg
 from exactfold.errors import TooManyModesError
 from exactfold.exact.linalg import from_fmpq
 from exactfold.exact.surds import Surd, ball
-from exactfold.panels.kernel import Entry, Rows, entry, first_order
-from exactfold.panels.regular import (
+from exactfold.panels.spaces.kernel import Entry, Rows, entry, first_order
+from exactfold.panels.spaces.regular import (
     BITS,
     Balls,
     Forms,
@@ -28,8 +28,7 @@ from exactfold.panels.regular import (
     regular_point,
     truly_folds,
 )
-from exactfold.panels.stars import Star
-from exactfold.panels.subspaces import (
+from exactfold.panels.spaces.subspaces import (
     Leaf,
     independent_parts,
     leaves,
@@ -37,6 +36,7 @@ from exactfold.panels.subspaces import (
     reduced,
     squares_of,
 )
+from exactfold.panels.vertex.stars import Star
 from exactfold.pattern.panel_pattern import Edge
 from exactfold.rigidity.equations.quadratic import QuadraticSystem
 from exactfold.solve.certify.isolation import isolate

@@ -11,7 +11,7 @@ from exactfold.branches.connected_components.cubes import Cube, components
 from exactfold.branches.connected_components.flat_stars import FlatSolutions, flat_solutions
 from exactfold.branches.connected_components.result import ConnectedComponents, FlatStars, Joint
 from exactfold.errors import NotApplicableError
-from exactfold.panels.stars import Star, edge_of, stars
+from exactfold.panels.vertex.stars import Star, edge_of, stars
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.loading import PatternLike, as_pattern
 from exactfold.pattern.opening import panels

@@ -57,7 +57,7 @@ class BranchBlocks:
 
         Raises `NotApplicableError` unless D = 1 and some vertex is foldable, 40 at most.
 
-        >>> from exactfold.pattern.random_squares import random_square
+        >>> from exactfold.pattern.triangulating.random_squares import random_square
         >>> branch_blocks = BranchBlocks.of(random_square(3, seed=0))
         >>> block = branch_blocks.prove(0)
         >>> bool(block.boxes.proved.all()), len(block.open)

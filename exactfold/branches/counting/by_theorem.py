@@ -31,7 +31,7 @@ def too_many(pattern: CreasePattern) -> BranchCount:
     real, and none at infinity. How many of them are distinct depends on which vertices are flat,
     so the count is UNDECIDED.
 
-    >>> from exactfold.pattern.random_squares import sample_random_square
+    >>> from exactfold.pattern.triangulating.random_squares import sample_random_square
     >>> result = too_many(sample_random_square(50, seed=1, redraw=True).pattern)
     >>> str(result.status), result.by, result.distinct, result.with_multiplicity == 2**50
     ('undecided', 'theorem', None, True)

@@ -187,7 +187,7 @@ def not_convex(pattern: CreasePattern) -> str:
         f"the sheet has {pattern.Ve} boundary vertices, so it has {pattern.degrees_of_freedom} "
         f"degrees of freedom, and a reflex corner, vertex {pattern.reflex_corner}{chords}: for "
         "such a sheet, shapes with given boundary heights need not be real, and no theorem gives "
-        "their number (docs/any_border.md, A border that is not convex)"
+        "their number (docs/any_border.md, A boundary that is not convex)"
     )
 
 
@@ -224,7 +224,10 @@ def _single(pattern: CreasePattern, branches: list[Branch]) -> list[bool]:
     if not branches:
         return []
     from exactfold.branches.connected_components.flat_stars import flat_solutions
-    from exactfold.panels.stars import edge_of, stars  # imported here: most counts do not need it
+    from exactfold.panels.vertex.stars import (  # imported here: most counts do not need it
+        edge_of,
+        stars,
+    )
     from exactfold.pattern.opening import panels
 
     sheet, labels = pattern.without_rigid_parts()

@@ -67,7 +67,7 @@ def find_branch(
     convex; `NotCountedError` if signs name no branch or no vertex can pop. UNDECIDED does not mean
     that the branch does not exist.
 
-    >>> from exactfold.pattern.random_squares import random_square
+    >>> from exactfold.pattern.triangulating.random_squares import random_square
     >>> branch = find_branch(random_square(8, seed=1), "+-++--+-")
     >>> branch.status, branch.assignment_text, float(branch.radius) < 1e-9
     (<Verdict.PROVED: 'proved'>, 'MMMVMVVMMVVMMVMVMMVVMVVVM', True)
@@ -86,7 +86,7 @@ def find_branches(
 ) -> Iterator[Branch]:
     """`find_branch` for many sign vectors, one after the other; the setup is done once.
 
-    >>> from exactfold.pattern.random_squares import random_square
+    >>> from exactfold.pattern.triangulating.random_squares import random_square
     >>> [b.sign_text for b in find_branches(random_square(3, seed=0), ["+-+", "---"])]
     ['+-+', '---']
     """
@@ -110,7 +110,7 @@ def neighbours(
     branch with `signs` are the start of the search. `vertices` are by default all vertices that can
     pop. Raises the errors of `find_branch`.
 
-    >>> from exactfold.pattern.random_squares import random_square
+    >>> from exactfold.pattern.triangulating.random_squares import random_square
     >>> {v: b.sign_text for v, b in neighbours(random_square(3, seed=0), "+-+").items()}
     {4: '--+', 5: '+++', 6: '+--'}
     """
@@ -135,7 +135,7 @@ def signs_of_way(pattern: CreasePattern, way: int) -> dict[int, int]:
     others are up or down in the order +++, ++-, +-+, and so on. Raises `UsageError` for a number
     beyond the last.
 
-    >>> from exactfold.pattern.random_squares import random_square
+    >>> from exactfold.pattern.triangulating.random_squares import random_square
     >>> signs_of_way(random_square(3, seed=0), 3)
     {4: 1, 5: -1, 6: 1}
     """

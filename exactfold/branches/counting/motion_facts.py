@@ -16,7 +16,7 @@ from exactfold._support.documents import (
     VertexText,
 )
 from exactfold._support.plurals import agreeing, counted
-from exactfold.panels.stars import stars
+from exactfold.panels.vertex.stars import stars
 from exactfold.pattern.described import PanelsDocument, described_panels
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 from exactfold.rigidity.facts import PatternFactsDocument

@@ -142,7 +142,7 @@ def stream_branches(
     be resumed. UNDECIDED does not mean that the count is unusual.
 
     >>> import os, tempfile
-    >>> from exactfold.pattern.random_squares import random_square
+    >>> from exactfold.pattern.triangulating.random_squares import random_square
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     result = stream_branches(random_square(4, seed=0), os.path.join(folder, "c.txt"))
     >>> result.status, result.distinct, result.unproved

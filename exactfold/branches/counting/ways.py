@@ -98,7 +98,7 @@ def _is_fast(pattern: PanelPattern) -> bool:
     That is so if at most 100 vertices may fold, each with at most four folds, or at most 30
     vertices with any number of folds.
     """
-    from exactfold.panels.stars import stars
+    from exactfold.panels.vertex.stars import stars
 
     moving = stars(pattern)
     few = _MOST_MODES if all(len(star.folds) <= 4 for star in moving.values()) else _MOST_SPACES

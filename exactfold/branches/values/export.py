@@ -21,7 +21,7 @@ from exactfold.interop.fold_frames import branch_document
 from exactfold.interop.sheet_files import ENDINGS as SHEET_ENDINGS
 from exactfold.interop.sheet_files import FOLD_ENDINGS, write_sheet
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
-from exactfold.pattern.fold_writing import checked_target, document_text, write_text
+from exactfold.pattern.writing.fold_writing import checked_target, document_text, write_text
 
 AMOUNT = 30.0
 """The largest fold angle in degrees: visible, and still close to the unfolded state."""

@@ -103,7 +103,7 @@ def nearest_branches(
     as near as one that is proved to be nearest. Rays that are not proved to be nearest have status
     UNDECIDED. Raises the errors of `count_branches`.
 
-    >>> from exactfold.pattern.random_squares import random_square
+    >>> from exactfold.pattern.triangulating.random_squares import random_square
     >>> none = match(random_square(8, seed=1), "VMMVMVVMMVVMMVMVMMVVMVVVM")
     >>> near = nearest_branches(none)
     >>> near

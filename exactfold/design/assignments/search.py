@@ -37,7 +37,7 @@ def match(
     Raises `UsageError` for letters that do not fit, and the errors of `find_branch`, for example if
     a chord is the only fold that moves, so that no vertex can pop.
 
-    >>> from exactfold.pattern.random_squares import random_square
+    >>> from exactfold.pattern.triangulating.random_squares import random_square
     >>> from exactfold.branches.counting.find import find_branch
     >>> branch = find_branch(random_square(8, seed=1), "+-++--+-")
     >>> matched = match(branch.pattern, branch.assignment)

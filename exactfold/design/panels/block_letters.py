@@ -17,10 +17,10 @@ from exactfold.design.panels.parts import block_answer
 from exactfold.design.panels.regular_motion import regular_motion
 from exactfold.errors import TooManyModesError
 from exactfold.exact.surds import sign
-from exactfold.panels.kernel import Rows, entry, first_order
-from exactfold.panels.stars import Star
-from exactfold.panels.subspaces import Leaf, leaves
-from exactfold.panels.vertex_motions import Fan
+from exactfold.panels.spaces.kernel import Rows, entry, first_order
+from exactfold.panels.spaces.subspaces import Leaf, leaves
+from exactfold.panels.vertex.stars import Star
+from exactfold.panels.vertex.vertex_motions import Fan
 from exactfold.pattern.panel_pattern import PanelPattern
 
 MOST_FOLDS: Final = 20

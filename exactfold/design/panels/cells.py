@@ -11,9 +11,9 @@ import networkx as nx
 from exactfold.design.refutations.refutation import Letters
 from exactfold.errors import TooManyModesError
 from exactfold.exact.surds import SurdField, sign
-from exactfold.panels.densities import Density, Roots
-from exactfold.panels.local import LocalMode, local_modes
-from exactfold.panels.stars import Star
+from exactfold.panels.modes.densities import Density, Roots
+from exactfold.panels.vertex.local import LocalMode, local_modes
+from exactfold.panels.vertex.stars import Star
 from exactfold.pattern.panel_pattern import Edge
 
 Steps: TypeAlias = list[tuple[str, Any]]

@@ -21,8 +21,8 @@ from exactfold.design.panels.refutation import PanelRefutation, held
 from exactfold.design.panels.regular_motion import regular_motion
 from exactfold.errors import NotApplicableError
 from exactfold.exact.surds import Number, exact
-from exactfold.panels.extension import Loops, extension
-from exactfold.panels.stars import Star, bracket, stars
+from exactfold.panels.modes.extension import Loops, extension
+from exactfold.panels.vertex.stars import Star, bracket, stars
 from exactfold.pattern.panel_entries import number_document, panels_document
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 

@@ -16,7 +16,7 @@ from exactfold.panels.clauses import ModeClauses, has_solver
 from exactfold.panels.nearby.answers import with_nearby
 from exactfold.panels.partial import Drawn
 from exactfold.panels.result import Decomposition
-from exactfold.panels.stars import stars
+from exactfold.panels.vertex.stars import stars
 from exactfold.pattern.opening import Opened
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 

@@ -21,8 +21,8 @@ from exactfold._support.clock import UNLIMITED, Clock
 from exactfold.design.panels.refutation import PanelRefutation
 from exactfold.design.refutations.refutation import Letters
 from exactfold.exact.surds import Surd
-from exactfold.panels.kernel import Entry, Key, entry, increase, number
-from exactfold.panels.stars import Star
+from exactfold.panels.spaces.kernel import Entry, Key, entry, increase, number
+from exactfold.panels.vertex.stars import Star
 from exactfold.pattern.panel_pattern import Edge, Point
 
 _TIGHT = 1e-7

@@ -18,9 +18,9 @@ from exactfold.design.panels.certificate import motion_evidence
 from exactfold.design.panels.match import PanelMatch
 from exactfold.design.panels.parts import PartAnswer
 from exactfold.errors import NotApplicableError
-from exactfold.panels.freedom import combining
 from exactfold.panels.result import Decomposition, Part
-from exactfold.panels.stars import Star, stars
+from exactfold.panels.spaces.freedom import combining
+from exactfold.panels.vertex.stars import Star, stars
 from exactfold.pattern.panel_entries import panels_document
 from exactfold.pattern.panel_pattern import Edge
 

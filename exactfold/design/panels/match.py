@@ -27,12 +27,12 @@ from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.design.panels.parts import PartAnswer, answered
 from exactfold.design.panels.refutation import PanelRefutation, held
 from exactfold.design.panels.together import Together, going_together
-from exactfold.design.panels.vertices import open_vertices
+from exactfold.design.panels.vertex.vertices import open_vertices
 from exactfold.design.refutations.asked import by_fold
 from exactfold.design.refutations.refutation import Letters
 from exactfold.panels.decomposition import groups_of
-from exactfold.panels.near_misses import near_limit
-from exactfold.panels.stars import Star, stars
+from exactfold.panels.modes.near_misses import near_limit
+from exactfold.panels.vertex.stars import Star, stars
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import PanelsDocument, described_panels
 from exactfold.pattern.loading import PatternLike, open_sheet

@@ -18,7 +18,7 @@ from exactfold.design.panels.refutation import PanelRefutation, bends
 from exactfold.design.refutations.cone_program import settings
 from exactfold.design.refutations.refutation import Letters
 from exactfold.exact.surds import Number
-from exactfold.panels.stars import Star
+from exactfold.panels.vertex.stars import Star
 from exactfold.pattern.panel_pattern import Edge
 
 _MOST_CASES: Final = 128

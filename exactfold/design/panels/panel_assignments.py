@@ -26,7 +26,7 @@ from exactfold.design.panels.parts import blocks_of
 from exactfold.design.refutations.forcing import Forcing, ForcingDocument
 from exactfold.errors import TooManyModesError
 from exactfold.panels.decomposition import groups_of
-from exactfold.panels.stars import Star, stars
+from exactfold.panels.vertex.stars import Star, stars
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.described import PanelsDocument, described_panels
 from exactfold.pattern.loading import PatternLike, open_sheet

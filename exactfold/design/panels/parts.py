@@ -19,15 +19,15 @@ from exactfold.design.panels.lettered_spaces import LetteredSpaces, truly_begin
 from exactfold.design.panels.nappe_program import NappeCases
 from exactfold.design.panels.proof import ProvedMotion, proved_motion
 from exactfold.design.panels.refutation import PanelRefutation
-from exactfold.design.panels.vertex_reasons import VertexReason, vertex_reason
-from exactfold.design.panels.vertex_witness import vertex_witness
+from exactfold.design.panels.vertex.reasons import VertexReason, vertex_reason
+from exactfold.design.panels.vertex.witness import vertex_witness
 from exactfold.design.refutations.refutation import Letters
 from exactfold.errors import TooManyModesError
 from exactfold.exact.surds import Number
-from exactfold.panels.densities import UndecidedDensityError
-from exactfold.panels.extension import Loops, extension
-from exactfold.panels.stars import Star, edge_of
-from exactfold.panels.vertex_motions import vertex_motion
+from exactfold.panels.modes.densities import UndecidedDensityError
+from exactfold.panels.modes.extension import Loops, extension
+from exactfold.panels.vertex.stars import Star, edge_of
+from exactfold.panels.vertex.vertex_motions import vertex_motion
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
 _MOST_CELLS: Final = 64

@@ -13,10 +13,16 @@ from exactfold.design.panels.first_order_program import SIDES
 from exactfold.design.panels.regular_motion import regular_motion
 from exactfold.design.refutations.refutation import Letters
 from exactfold.errors import TooManyModesError
-from exactfold.panels.kernel import Entry, Rows, first_order, imposed
-from exactfold.panels.regular import Balls, Forms, parameter_folds, regular_point, truly_folds
-from exactfold.panels.stars import Star
-from exactfold.panels.subspaces import Leaf, factors, is_semidefinite, made_leaf, squares_of
+from exactfold.panels.spaces.kernel import Entry, Rows, first_order, imposed
+from exactfold.panels.spaces.regular import (
+    Balls,
+    Forms,
+    parameter_folds,
+    regular_point,
+    truly_folds,
+)
+from exactfold.panels.spaces.subspaces import Leaf, factors, is_semidefinite, made_leaf, squares_of
+from exactfold.panels.vertex.stars import Star
 from exactfold.pattern.panel_pattern import Edge
 
 _NEAR: Final = 1e-6

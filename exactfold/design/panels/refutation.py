@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from exactfold.design.refutations.refutation import Letters
 from exactfold.exact.surds import Number, Surd, exact, sign
-from exactfold.panels.stars import Star, bracket, stars
+from exactfold.panels.vertex.stars import Star, bracket, stars
 from exactfold.pattern.panel_pattern import PanelPattern, Point
 
 

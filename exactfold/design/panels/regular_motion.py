@@ -13,8 +13,8 @@ from scipy.linalg import qr
 
 from exactfold._support.arrays import FloatArray
 from exactfold.exact.surds import ball
-from exactfold.panels.regular import BITS
-from exactfold.panels.stars import Star, bracket
+from exactfold.panels.spaces.regular import BITS
+from exactfold.panels.vertex.stars import Star, bracket
 from exactfold.pattern.panel_pattern import Edge
 
 _MOST_CONDITIONS: Final = 1_500

@@ -10,8 +10,8 @@ from exactfold._support.clock import UNLIMITED, Clock
 from exactfold.design.panels.first_order_program import SIDES, FirstOrderProgram, solved
 from exactfold.design.refutations.refutation import Letters
 from exactfold.exact.surds import Number, sign
-from exactfold.panels.kernel import entry, number
-from exactfold.panels.stars import Star
+from exactfold.panels.spaces.kernel import entry, number
+from exactfold.panels.vertex.stars import Star
 from exactfold.pattern.panel_pattern import Edge, Point
 
 Planes = Mapping[int, Point]

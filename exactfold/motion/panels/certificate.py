@@ -16,8 +16,8 @@ from exactfold.motion.claims import Claim, joined
 from exactfold.motion.curves.events import CONTACT, Event
 from exactfold.motion.panels.clearance import PanelClearance
 from exactfold.motion.panels.motion import PanelMotion
-from exactfold.panels.densities import split
-from exactfold.panels.local import LocalMode
+from exactfold.panels.modes.densities import split
+from exactfold.panels.vertex.local import LocalMode
 from exactfold.pattern.panel_entries import number_document, panels_document
 from exactfold.pattern.panel_pattern import Edge
 

@@ -21,7 +21,7 @@ from exactfold.motion.panels.contacts import PanelContacts
 from exactfold.motion.panels.curves import LinearCurve
 from exactfold.motion.panels.motion import PanelMotion
 from exactfold.motion.panels.pieces import PanelPieces
-from exactfold.panels.stars import dot
+from exactfold.panels.vertex.stars import dot
 
 Panel = tuple[int, ...]
 

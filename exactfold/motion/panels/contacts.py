@@ -6,14 +6,15 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Final, NamedTuple, cast
+from typing import TYPE_CHECKING, Final, cast
 
 import numpy as np
 
 from exactfold._support.arrays import FloatArray
 from exactfold.motion.curves.crossings import Crossing, Crossings
+from exactfold.motion.curves.events import CONTACT, Event
 from exactfold.pattern.panel_pattern import PanelPattern
-from exactfold.pattern.triangulating import cut_panels
+from exactfold.pattern.triangulating.panels import cut_panels
 
 if TYPE_CHECKING:
     from exactfold.motion.curves.framework import Framework
@@ -21,17 +22,6 @@ if TYPE_CHECKING:
 _CHUNK: Final = 16
 _CLOSE: Final = 1e-13
 """The time of a contact is bounded to within this, in radians."""
-
-
-class Contact(NamedTuple):
-    """Two panels, by their numbers, that meet between the times `low` and `high`; `kind`
-    says how.
-    """
-
-    low: float
-    high: float
-    panels: tuple[int, int]
-    kind: str
 
 
 @dataclass(frozen=True)
@@ -89,7 +79,7 @@ class PanelContacts:
 
     def first(
         self, times: Sequence[float], places: Callable[[FloatArray], FloatArray]
-    ) -> Contact | None:
+    ) -> Event | None:
         """The first contact among these times, then bounded by bisection; or None.
 
         `places` gives the positions at many times, shape (times, V, 3). Panels that only touch, or
@@ -104,7 +94,7 @@ class PanelContacts:
 
     def _enclosed(
         self, low: float, high: float, places: Callable[[FloatArray], FloatArray]
-    ) -> Contact:
+    ) -> Event:
         def place(time: float) -> FloatArray:
             return np.asarray(places(np.array([time]))[0] / self.unit)
 
@@ -115,7 +105,9 @@ class PanelContacts:
                 low = middle
         there = place(high)
         crossing = self.crossings.named(self.crossings.pairs(there)[0])
-        return Contact(low, high, self.who(crossing), self.crossings.kind(crossing, there))
+        faces = tuple(self.pattern.faces[panel] for panel in self.who(crossing))
+        kind = self.crossings.kind(crossing, there)
+        return Event(CONTACT, (low, high), faces=faces, detail=kind)
 
     def who(self, crossing: Crossing) -> tuple[int, int]:
         """The two panels of a crossing.

@@ -17,9 +17,9 @@ from exactfold._support.arrays import FloatArray
 from exactfold.errors import NotApplicableError
 from exactfold.exact.surds import Number, ball, simple
 from exactfold.motion.panels.followable import PanelMode
-from exactfold.panels.local import LocalMode
-from exactfold.panels.stars import Star, dot
-from exactfold.panels.transmission import Transmission
+from exactfold.panels.vertex.local import LocalMode
+from exactfold.panels.vertex.stars import Star, dot
+from exactfold.panels.vertex.transmission import Transmission
 from exactfold.pattern.panel_pattern import Edge
 
 CLOSED: Final = float(np.tan(pi / 2))

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import time as clock
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
 from math import pi
 from types import MappingProxyType
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
@@ -26,14 +25,12 @@ from exactfold.motion.curves.events import (
     SINGULAR,
     Event,
 )
-from exactfold.motion.curves.in_motion import SheetInMotion
-from exactfold.motion.curves.motion_document import PanelMotionDocument
 from exactfold.motion.curves.zeros import zero_of
 from exactfold.motion.panels.closing import Closing
 from exactfold.motion.panels.contacts import PanelContacts
 from exactfold.motion.panels.following import goal_angle
+from exactfold.motion.panels.in_motion import PanelsInMotion
 from exactfold.motion.panels.places import Placing
-from exactfold.pattern.described import described_panels
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
 _START: Final = 0.03
@@ -51,7 +48,7 @@ _STILL: Final = 1e-3
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class FamilyMotion(SheetInMotion):
+class FamilyMotion(PanelsInMotion):
     """One motion of a family of motions of rigid panels, followed in floats.
 
     It leaves the flat sheet in the direction `densities` (fold angle / length, by fold). From then
@@ -86,21 +83,11 @@ class FamilyMotion(SheetInMotion):
         return UNDECIDED
 
     @property
-    def bounds(self) -> None:
-        """None: frames are not enclosed."""
-        return None
-
-    @property
     def reason(self) -> str:
         """What is known about the motion, in words."""
         if self.dimension > 1:
             return "one of infinitely many motions of a family; its angles were followed in floats"
         return "true motions start in its first direction; its angles were followed in floats"
-
-    @property
-    def pinned(self) -> tuple[int, ...]:
-        """The corners of the panel that is held."""
-        return self.pattern.faces[self.held]
 
     @property
     def assignment(self) -> Mapping[Edge, str]:
@@ -135,43 +122,22 @@ class FamilyMotion(SheetInMotion):
         return "the fold angles near the beginning of the motion"
 
     @property
-    def facts(self) -> dict[str, Any]:
-        """The facts about the motion that files contain, as JSON."""
-        drivers = [f"{i}-{j}" for i, j in self.drivers]
-        return {"modes": [], "way": self.way, "free_folds": drivers, **self.facts_of_frames()}
+    def modes(self) -> tuple[int, ...]:
+        """None: the motion is that of a direction, not of elementary modes."""
+        return ()
 
-    def to_dict(self, name: str | None = None, written: Sequence[str] = ()) -> PanelMotionDocument:
-        """The object printed by `exactfold fold --json`: `schema("motion")`."""
-        return {
-            "format": "exactfold motion result",
-            "version": 3,
-            "pattern": described_panels(self.pattern, name),
-            "theory": "modes",
-            "vertex_signs": None,
-            "assignment": {f"{i}-{j}": letter for (i, j), letter in self.assignment.items()},
-            "side": None,
-            "rim": None,
-            "drive": None,
-            "modes": [],
-            "way": self.way,
-            **self.frames_reported(written),
-            "warnings": [],
-            "seconds": round(self.seconds, 3),
-            "proof": None,
-        }
+    @property
+    def free_folds(self) -> tuple[Edge, ...]:
+        """The `drivers`."""
+        return self.drivers
 
-    @cached_property
-    def _placing(self) -> Placing:
-        return Placing(self.pattern, self.held)
+    def angles_at(self, times: FloatArray) -> FloatArray:
+        """All fold angles in radians at the given times, shape (times, folds).
 
-    def _angles_at(self, time: float) -> FloatArray:
-        """The fold angles at a time: between two frames, corrected so that all vertices close."""
-        row = np.array([np.interp(time, self.times, column) for column in self.angles.T])
-        corrected = Closing(self.pattern).corrected(row)
-        return row if corrected is None else corrected
-
-    def _positions(self, time: float) -> FloatArray:
-        return np.asarray(self._placing.positions(self._angles_at(time)[None])[0][0])
+        Between two frames they are interpolated, then corrected so that all vertices close.
+        """
+        rows = np.array([np.interp(times, self.times, column) for column in self.angles.T]).T
+        return _closed(Closing(self.pattern), rows)
 
     def sampled(self, least: int = 200) -> tuple[FloatArray, FloatArray]:
         """Times and all fold angles in radians at `least` points or more, for plots."""
@@ -237,11 +203,9 @@ def follow_family(
     events = [] if end == LENGTH else [Event(end, (duration, duration), folds=folds)]
     contact = PanelContacts(pattern).first(marks.tolist(), places)
     if contact is not None:
-        faces = tuple(pattern.faces[panel] for panel in contact.panels)
-        touching = Event(CONTACT, (contact.low, contact.high), faces=faces, detail=contact.kind)
         if until == CONTACT:
-            duration, end, events = contact.high, CONTACT, []
-        events.insert(0, touching)
+            duration, end, events = contact.time[1], CONTACT, []
+        events.insert(0, contact)
     changes = [one for one in _changes(pattern, path, marks) if one.time[1] < duration]
     events = sorted([*changes, *events], key=lambda event: event.time)
     times = np.linspace(0.0, duration, frames)

@@ -104,11 +104,9 @@ def follow_panels(
     samples = sampled_times(angles_at, duration, _LEAST_SAMPLES)
     contact = PanelContacts(pattern).first(samples.tolist(), places)
     if contact is not None:
-        faces = tuple(pattern.faces[panel] for panel in contact.panels)
-        event = Event(CONTACT, (contact.low, contact.high), faces=faces, detail=contact.kind)
         if until == CONTACT:
-            duration, end, events = contact.high, CONTACT, []
-        events.insert(0, event)
+            duration, end, events = contact.time[1], CONTACT, []
+        events.insert(0, contact)
     times = np.linspace(0.0, duration, frames)
     if by is not None:
         times = _at_equal_angles(pattern, angles_at, by, times)

@@ -19,8 +19,8 @@ from exactfold.motion.panels.followable import (
     panel_modes,
 )
 from exactfold.panels.result import Decomposition, Part
-from exactfold.panels.stars import stars
-from exactfold.panels.subspaces import Leaf
+from exactfold.panels.spaces.subspaces import Leaf
+from exactfold.panels.vertex.stars import stars
 from exactfold.pattern.panel_pattern import Edge
 
 MOST_WAYS: Final = 4096

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import inf, pi, radians
 from types import MappingProxyType
-from typing import Any, Final, TypeAlias
+from typing import Final, TypeAlias
 
 import numpy as np
 
@@ -17,11 +17,9 @@ from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.errors import NotApplicableError, UsageError
 from exactfold.exact.surds import Number, exact
 from exactfold.motion.curves.events import Event
-from exactfold.motion.curves.in_motion import SheetInMotion
-from exactfold.motion.curves.motion_document import PanelMotionDocument
 from exactfold.motion.panels.curves import FollowedCurve, LinearCurve
-from exactfold.motion.panels.places import Placing, Spot, Turn
-from exactfold.pattern.described import described_panels
+from exactfold.motion.panels.in_motion import PanelsInMotion
+from exactfold.motion.panels.places import Spot, Turn
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
 Parameter: TypeAlias = "Number | float"
@@ -35,7 +33,7 @@ _NAMED: Final = 8
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class PanelMotion(SheetInMotion):
+class PanelMotion(PanelsInMotion):
     """A sheet of rigid panels that folds along one way, a set of its finite motions.
 
     Each of the `curves` belongs to one elementary mode and has a driver, the fold of the mode that
@@ -99,16 +97,6 @@ class PanelMotion(SheetInMotion):
         return self.closes
 
     @property
-    def bounds(self) -> None:
-        """None: frames of panels are not enclosed; `exactly` gives exact positions."""
-        return None
-
-    @property
-    def pinned(self) -> tuple[int, ...]:
-        """The corners of the panel that is held."""
-        return self.pattern.faces[self.held]
-
-    @property
     def assignment(self) -> Mapping[Edge, str]:
         """The letter M or V of each fold that folds, and F of the others, on the followed side."""
         signs = np.sign(self.angles[-1]).astype(int)
@@ -162,45 +150,9 @@ class PanelMotion(SheetInMotion):
         return "each mode provably folds; its angles were followed in floats"
 
     @property
-    def facts(self) -> dict[str, Any]:
-        """The facts about the motion that files contain, as JSON."""
-        return {
-            "modes": list(self.modes),
-            "way": self.way,
-            "free_folds": [f"{i}-{j}" for i, j in self.free_rates],
-            **self.facts_of_frames(),
-        }
-
-    def to_dict(self, name: str | None = None, written: Sequence[str] = ()) -> PanelMotionDocument:
-        """The object printed by `exactfold fold --json`: `schema("motion")`.
-
-        `name` is the name of the pattern, and `written` lists the files that hold the motion. Keys
-        for branches of triangulated sheets are null.
-        """
-        return {
-            "format": "exactfold motion result",
-            "version": 3,
-            "pattern": described_panels(self.pattern, name),
-            "theory": "modes",
-            "vertex_signs": None,
-            "assignment": {f"{i}-{j}": letter for (i, j), letter in self.assignment.items()},
-            "side": None,
-            "rim": None,
-            "drive": None,
-            "modes": list(self.modes),
-            "way": self.way,
-            **self.frames_reported(written),
-            "warnings": [],
-            "seconds": round(self.seconds, 3),
-            "proof": None,
-        }
-
-    @cached_property
-    def _placing(self) -> Placing:
-        return Placing(self.pattern, self.held)
-
-    def _positions(self, time: float) -> FloatArray:
-        return np.asarray(self._placing.positions(self.angles_at(np.array([time])))[0][0])
+    def free_folds(self) -> tuple[Edge, ...]:
+        """The free folds that fold."""
+        return tuple(self.free_rates)
 
     def angles_at(self, times: FloatArray) -> FloatArray:
         """All fold angles in radians at the given times, shape (times, folds)."""

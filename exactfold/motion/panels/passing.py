@@ -8,8 +8,8 @@ from flint import arb, arb_series, ctx
 
 from exactfold.exact.surds import ball
 from exactfold.motion.panels.followable import PanelMode
-from exactfold.panels.stars import dot
-from exactfold.panels.transmission import Transmission
+from exactfold.panels.vertex.stars import dot
+from exactfold.panels.vertex.transmission import Transmission
 from exactfold.pattern.panel_pattern import Edge
 
 Tangent = tuple[arb_series, arb_series]

@@ -33,7 +33,7 @@ from exactfold.motion.panels.curves import LinearCurve
 from exactfold.motion.panels.motion import PanelMotion
 from exactfold.motion.panels.passing import Passed, Tangent, passes_of, spread
 from exactfold.motion.panels.places import Placing
-from exactfold.panels.stars import dot
+from exactfold.panels.vertex.stars import dot
 from exactfold.pattern.panel_pattern import Edge
 
 ORDER = 12

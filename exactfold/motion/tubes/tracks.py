@@ -163,7 +163,7 @@ class Track:
 
         >>> from exactfold import checker
         >>> from exactfold.branches.counting.find import find_branch
-        >>> from exactfold.pattern.random_squares import random_square
+        >>> from exactfold.pattern.triangulating.random_squares import random_square
         >>> track = follow_proved(find_branch(random_square(1, seed=0), "+"), until=0.3)
         >>> checker.check(track.certificate())["vertex_signs"]
         [1]
@@ -301,7 +301,7 @@ def follow_proved(
     another configuration where several curves meet, or after `most` tubes.
 
     >>> from exactfold.branches.counting.find import find_branch
-    >>> from exactfold.pattern.random_squares import random_square
+    >>> from exactfold.pattern.triangulating.random_squares import random_square
     >>> track = follow_proved(find_branch(random_square(2, seed=0), "+-"), until=0.5)
     >>> track.status, track.vertex_signs, track.side
     (<Verdict.PROVED: 'proved'>, {4: 1, 5: -1}, 1)

@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import Final
 
 from exactfold.panels.nearby.box import Box
-from exactfold.panels.stars import edge_of
+from exactfold.panels.vertex.stars import edge_of
 from exactfold.pattern.panel_pattern import Edge
 
 _LETTERS: Final = "MV"

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 
 from exactfold.errors import UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.random_squares import random_square
+from exactfold.pattern.triangulating.random_squares import random_square
 from exactfold.studies.running.study import Recipe
 
 DENOMINATOR = 1024

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from exactfold.errors import PackageMissingError
-from exactfold.pattern.fold_writing import checked_target, write_bytes
+from exactfold.pattern.writing.fold_writing import checked_target, write_bytes
 from exactfold.studies.running.study import Row, canonical
 
 _INSTALL = "pip install 'exactfold[study]'"

@@ -13,7 +13,7 @@ from exactfold.branches.counting.find import BranchFinder, find_branch
 from exactfold.pattern.data import example_path
 from exactfold.pattern.degenerate import ringed_square
 from exactfold.pattern.fold import read_fold
-from exactfold.pattern.fold_writing import fold_text
+from exactfold.pattern.writing.fold_writing import fold_text
 
 TWO = example_path("two-vertex")
 KEYS = {

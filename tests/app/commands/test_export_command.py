@@ -19,7 +19,7 @@ from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.data import example_path
 from exactfold.pattern.degenerate import ringed_square
 from exactfold.pattern.families import two_vertex
-from exactfold.pattern.fold_writing import fold_text
+from exactfold.pattern.writing.fold_writing import fold_text
 
 OK, USAGE, BAD_INPUT, UNDECIDED = 0, 2, 3, 4
 TWO = example_path("two-vertex")

@@ -20,7 +20,7 @@ from exactfold.branches.counting import by_theorem
 from exactfold.branches.counting.by_theorem import too_many
 from exactfold.pattern import families, write_fold
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.random_squares import sample_random_square
+from exactfold.pattern.triangulating.random_squares import sample_random_square
 
 
 @pytest.fixture(scope="module")

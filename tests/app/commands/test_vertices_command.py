@@ -13,9 +13,9 @@ from running import BAD_INPUT, INVALID, PROVED, UNDECIDED, USAGE, run
 
 import exactfold
 from exactfold.pattern import PanelPattern
-from exactfold.pattern.fold_writing import document_text
 from exactfold.pattern.opening import Opened
-from exactfold.pattern.panel_writing import converted
+from exactfold.pattern.writing.fold_writing import document_text
+from exactfold.pattern.writing.panel_writing import converted
 
 NEAR = "0.000000001"
 

@@ -15,7 +15,7 @@ from exactfold.errors import ExactfoldError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import single_vertex
 from exactfold.pattern.loading import open_sheet
-from exactfold.pattern.random_squares import random_square
+from exactfold.pattern.triangulating.random_squares import random_square
 
 Image = pytest.importorskip("PIL.Image")
 

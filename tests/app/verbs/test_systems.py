@@ -16,8 +16,8 @@ import exactfold
 from exactfold.app.verbs.systems import PROGRAMS, SheetSystem, certify_points, sheet_system
 from exactfold.errors import NotApplicableError, NotCountedError, UsageError
 from exactfold.exact.surds import SurdField
-from exactfold.panels.local import local_modes
-from exactfold.panels.stars import stars
+from exactfold.panels.vertex.local import local_modes
+from exactfold.panels.vertex.stars import stars
 from exactfold.pattern.families import single_vertex
 from exactfold.pattern.panel_pattern import PanelPattern
 from exactfold.solve.certify.box import IsolatingBox

@@ -22,12 +22,12 @@ from exactfold.branches.counting import lines
 from exactfold.branches.counting.collect import with_true_bounds
 from exactfold.errors import NotApplicableError
 from exactfold.motion import follow_proved
-from exactfold.panels.stars import Star, edge_of, stars
+from exactfold.panels.vertex.stars import Star, edge_of, stars
 from exactfold.pattern import write_fold
 from exactfold.pattern.degenerate import DEGENERATE
 from exactfold.pattern.families import flat_vertex_square, single_vertex, waterbomb
 from exactfold.pattern.opening import panels
-from exactfold.pattern.random_squares import sample_random_square
+from exactfold.pattern.triangulating.random_squares import sample_random_square
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.functionals import saddle_functional
 

@@ -12,12 +12,12 @@ from noise_put_back import SHEETS, answer, noisy, turned
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.branches.counting.ways import count_ways
 from exactfold.panels.result import Decomposition
-from exactfold.pattern.delaunay_sheets import delaunay
 from exactfold.pattern.drawing.drawing import Drawing, Line
 from exactfold.pattern.loading import open_sheet
 from exactfold.pattern.opening import from_drawing
 from exactfold.pattern.panel_pattern import PanelPattern
 from exactfold.pattern.reading import Reading
+from exactfold.pattern.triangulating.delaunay_sheets import delaunay
 
 NOISE = (1e-12, 1e-10, 1e-8, 1e-6)
 QUICK = ("miura", "two-vertex", "flat-vertex", "map-fold", "straight-path", "tiling")

@@ -26,7 +26,7 @@ from exactfold.pattern import families, read_fold
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.data import example_path
 from exactfold.pattern.degenerate import straight_path
-from exactfold.pattern.random_squares import sample_random_square
+from exactfold.pattern.triangulating.random_squares import sample_random_square
 
 
 def gap(tiny: Fraction) -> CreasePattern:

@@ -39,7 +39,7 @@ from exactfold.pattern import families, read_fold
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.data import example_path
 from exactfold.pattern.degenerate import gridded_square, ringed_square
-from exactfold.pattern.fold_writing import fold_text
+from exactfold.pattern.writing.fold_writing import fold_text
 
 Document = dict[str, Any]
 PATTERNS = {

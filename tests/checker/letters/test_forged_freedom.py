@@ -14,9 +14,9 @@ from exactfold.checker.sheets.panels import read_panels
 from exactfold.design.panels.freedom_certificate import freedom_certificate
 from exactfold.errors import NotApplicableError
 from exactfold.panels.decomposition import decompose
-from exactfold.panels.freedom import most_freedom
-from exactfold.panels.kernel import first_order
-from exactfold.panels.stars import stars
+from exactfold.panels.spaces.freedom import most_freedom
+from exactfold.panels.spaces.kernel import first_order
+from exactfold.panels.vertex.stars import stars
 from exactfold.pattern.panel_pattern import PanelPattern
 
 SHEETS = {

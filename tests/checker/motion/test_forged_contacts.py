@@ -24,7 +24,7 @@ from exactfold.checker.motion.contacts import check_contacts
 from exactfold.checker.motion.lengths import GRID, ONE, Path
 from exactfold.motion.contacts.claims import certificate_with_contact
 from exactfold.motion.contacts.contacts import first_contact
-from exactfold.pattern.random_squares import random_square
+from exactfold.pattern.triangulating.random_squares import random_square
 
 BRANCHES = {
     "contact": (2, 2, "++"),

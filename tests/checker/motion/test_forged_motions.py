@@ -26,7 +26,7 @@ from exactfold.checker.motion.tubes import Ball, Start, Tube
 from exactfold.checker.sheets.sheet import read_sheet
 from exactfold.motion.tubes.tracks import follow_proved
 from exactfold.pattern.families import two_vertex
-from exactfold.pattern.random_squares import random_square
+from exactfold.pattern.triangulating.random_squares import random_square
 
 SHEETS = {
     "convex": (two_vertex(), "+-", 5),

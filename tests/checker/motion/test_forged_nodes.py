@@ -23,7 +23,7 @@ from exactfold.checker.motion.tubes import Ball
 from exactfold.motion.contacts.claims import certificate_with_contact
 from exactfold.motion.contacts.contacts import first_contact
 from exactfold.motion.tubes.tracks import follow_proved
-from exactfold.pattern.random_squares import random_square
+from exactfold.pattern.triangulating.random_squares import random_square
 
 SIGNS, FLAT = "-+--+", 6
 MAY_TOUCH = r"^the (faces|faces at) .* may touch where the motion is claimed to be clear$"

@@ -5,15 +5,15 @@ from __future__ import annotations
 import random
 
 import pytest
-from forge import Document, beyond, given, refused, verified, with_one_key_more, without
+from forge import beyond, given, refused, stopped, verified, with_one_key_more, without
 from random_trees import closed, random_tree
 
 from exactfold import checker
 from exactfold.checker.core.towers import Tower
 from exactfold.checker.panels import trees
 from exactfold.checker.sheets.panels import Near, PanelSheet, Vector, connected, read_panels
-from exactfold.panels.stars import Star
-from exactfold.panels.trees import tree_components
+from exactfold.panels.modes.trees import tree_components
+from exactfold.panels.vertex.stars import Star
 
 
 class Stars(PanelSheet):
@@ -42,13 +42,6 @@ def test_random_trees_as_the_package_counts_them(seed: int) -> None:
         near: Near = {v: [sum(e) - v for e in made[v].folds] for v in sorted(made)}
         assert trees.tree_components(Stars(made), near) == expected
         compared += 1
-
-
-def stopped(document: Document, message: str) -> None:
-    """Refused with this message, and accepted without that line."""
-    with without(message):
-        verified(document)
-    refused(document, message)
 
 
 def test_what_is_said() -> None:

@@ -10,7 +10,7 @@ from bar_hinge import Model
 from scipy.optimize import linprog
 
 from exactfold import Branch, CreasePattern
-from exactfold.pattern.fold_writing import fold_text
+from exactfold.pattern.writing.fold_writing import fold_text
 
 
 def model_of(pattern: CreasePattern) -> Model:

@@ -19,10 +19,10 @@ from exactfold.design import PanelRefutation, match_certificate, match_panels
 from exactfold.design.panels.first_order_program import FirstOrderProgram
 from exactfold.design.panels.regular_motion import _System, regular_motion
 from exactfold.design.panels.together import going_together
-from exactfold.design.panels.vertex_reasons import vertex_reason
+from exactfold.design.panels.vertex.reasons import vertex_reason
 from exactfold.errors import UsageError
 from exactfold.panels import decompose
-from exactfold.panels.stars import Star, stars
+from exactfold.panels.vertex.stars import Star, stars
 from exactfold.pattern.panel_pattern import PanelPattern
 
 TURNED = str.maketrans("MV", "VM")

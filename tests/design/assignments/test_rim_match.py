@@ -19,7 +19,7 @@ from exactfold.design.refutations.refutation import Refutation
 from exactfold.errors import NotApplicableError, NotCountedError, UsageError
 from exactfold.pattern import write_fold
 from exactfold.pattern.families import single_vertex
-from exactfold.pattern.random_squares import random_square
+from exactfold.pattern.triangulating.random_squares import random_square
 
 TURNED = {"M": "V", "V": "M"}
 CORNERS = [(0, 0), (10, -3), (16, 5), (9, 14), (-2, 9)]

@@ -8,7 +8,7 @@ import random
 import numpy as np
 
 from exactfold.exact.surds import RATIONALS
-from exactfold.panels.stars import Star
+from exactfold.panels.vertex.stars import Star
 from exactfold.pattern.panel_pattern import PanelPattern
 
 

@@ -10,10 +10,10 @@ from exactfold import checker
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED
 from exactfold.design import match_certificate, match_panels
 from exactfold.design.panels.lettered_spaces import LetteredSpaces, truly_begin
-from exactfold.design.panels.vertex_reasons import vertex_reason
+from exactfold.design.panels.vertex.reasons import vertex_reason
 from exactfold.exact.surds import sign
 from exactfold.panels import decompose
-from exactfold.panels.stars import stars
+from exactfold.panels.vertex.stars import stars
 
 
 @pytest.fixture(scope="module")

@@ -12,9 +12,9 @@ from exactfold.design.panels.block_letters import BlockLetters
 from exactfold.design.panels.nappe_program import NappeCases, _cone
 from exactfold.design.panels.refutation import PanelRefutation, in_nappe
 from exactfold.design.refutations.asked import by_fold
-from exactfold.panels.kernel import first_order
-from exactfold.panels.stars import stars
-from exactfold.panels.vertex_motions import Fan
+from exactfold.panels.spaces.kernel import first_order
+from exactfold.panels.vertex.stars import stars
+from exactfold.panels.vertex.vertex_motions import Fan
 from exactfold.pattern.panel_pattern import PanelPattern
 
 POINTS = [(0, 0), (4, 0), (2, 3), (-3, -2), (2, -3), (7, -2), (6, 3), (2, 7), (-2, 4)]

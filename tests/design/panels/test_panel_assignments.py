@@ -12,8 +12,8 @@ from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.design import all_assignments, match_panels, panel_assignments
 from exactfold.exact.surds import sign
 from exactfold.panels import decompose
-from exactfold.panels.stars import stars
-from exactfold.panels.vertex_motions import Fan
+from exactfold.panels.vertex.stars import stars
+from exactfold.panels.vertex.vertex_motions import Fan
 from exactfold.pattern.families import hypar
 
 TURNED = str.maketrans("MV", "VM")

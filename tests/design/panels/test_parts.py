@@ -10,8 +10,8 @@ from exactfold.checker import check
 from exactfold.design import match_certificate, match_panels
 from exactfold.design.panels.first_order_program import FirstOrderProgram
 from exactfold.design.panels.parts import _found
-from exactfold.panels.stars import stars
-from exactfold.panels.vertex_motions import Fan
+from exactfold.panels.vertex.stars import stars
+from exactfold.panels.vertex.vertex_motions import Fan
 from exactfold.pattern.panel_pattern import PanelPattern
 
 HARD = [

@@ -21,7 +21,7 @@ from exactfold.motion.following import follow
 from exactfold.motion.tubes.piece import PARAMETER_BITS
 from exactfold.motion.tubes.tracks import follow_proved
 from exactfold.motion.tubes.tube import sharpened
-from exactfold.pattern.random_squares import random_square
+from exactfold.pattern.triangulating.random_squares import random_square
 
 
 def signs(n, seed):

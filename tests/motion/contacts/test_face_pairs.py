@@ -9,7 +9,7 @@ from sheets import nested_triangles, reflex_corners, star_in
 
 from exactfold.motion.contacts.face_pairs import FacePairs
 from exactfold.motion.curves.framework import Framework
-from exactfold.pattern.random_squares import random_square
+from exactfold.pattern.triangulating.random_squares import random_square
 
 SHEETS = pytest.mark.parametrize(
     "pattern",

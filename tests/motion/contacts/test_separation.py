@@ -18,7 +18,7 @@ from exactfold.motion.contacts.separation import (
     through,
 )
 from exactfold.motion.curves.framework import Framework
-from exactfold.pattern.random_squares import random_square
+from exactfold.pattern.triangulating.random_squares import random_square
 
 NONE = np.zeros((0, 2), dtype=np.intp)
 

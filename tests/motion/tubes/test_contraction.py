@@ -23,7 +23,7 @@ from exactfold.motion.tubes.contraction import (
 from exactfold.motion.tubes.length_equations import LengthEquations, squared
 from exactfold.motion.tubes.tracks import follow_proved, ray
 from exactfold.motion.tubes.tube import _bounds, _residuals
-from exactfold.pattern.random_squares import random_square
+from exactfold.pattern.triangulating.random_squares import random_square
 
 
 def exact_bounds(equations, curve, row, weights, inverse):  # type: ignore[no-untyped-def]

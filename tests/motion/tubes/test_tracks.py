@@ -27,7 +27,7 @@ from exactfold.motion.tubes.tube import prove_tube, sharpened
 from exactfold.motion.tubes.tube_start import ROOT_BITS
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import flat_vertex_square, single_vertex
-from exactfold.pattern.random_squares import random_square
+from exactfold.pattern.triangulating.random_squares import random_square
 
 
 def signs(n: int, seed: int) -> str:

@@ -13,17 +13,17 @@ from exactfold._support.clock import Clock
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.app.schemas import schema
 from exactfold.app.verbs.counting import counted_with_letters
-from exactfold.design.panels.vertices import vertices
+from exactfold.design.panels.vertex.vertices import vertices
 from exactfold.errors import FoldError, NotADiskError, PatternError
 from exactfold.panels.decomposition import decompose
-from exactfold.panels.kernel import first_order
 from exactfold.panels.nearby.box import Box, box_of
 from exactfold.panels.nearby.freedom import nearby_freedom
 from exactfold.panels.nearby.letters import NearbyFan, refuted_vertices, still_folds
 from exactfold.panels.nearby.rank import UNIT, keeps_full_rank
 from exactfold.panels.result import Decomposition
-from exactfold.panels.stars import star_at, stars
-from exactfold.panels.vertex_motions import Fan
+from exactfold.panels.spaces.kernel import first_order
+from exactfold.panels.vertex.stars import star_at, stars
+from exactfold.panels.vertex.vertex_motions import Fan
 from exactfold.pattern.drawing.meant.values import Relation
 from exactfold.pattern.loading import open_sheet
 from exactfold.pattern.meant import Meant

@@ -9,7 +9,7 @@ from exactfold.pattern.drawing.drawing import Drawing, Line
 from exactfold.pattern.drawing.inexactness import clear_distances
 from exactfold.pattern.drawing.repair import exact_sheets
 from exactfold.pattern.panel_pattern import PanelPattern
-from exactfold.pattern.triangulating import triangulating_edges
+from exactfold.pattern.triangulating.panels import triangulating_edges
 
 CORNERS = ((0, 0), (10, 0), (10, 10), (0, 10))
 RIM = ((0, 1, "B"), (1, 2, "B"), (2, 3, "B"), (3, 0, "B"))

@@ -13,7 +13,7 @@ from symmetric_groups import symmetric_group_primes
 from exactfold.errors import SolverError
 from exactfold.exact.factors import factor_degrees, modular_degrees
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.random_squares import random_square
+from exactfold.pattern.triangulating.random_squares import random_square
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.equations.branch_system import BranchSystem
 from exactfold.rigidity.equations.quadratic import QuadraticSystem

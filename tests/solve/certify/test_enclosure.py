@@ -12,7 +12,7 @@ from independent import big_square, curvature, dirichlet, signs_of
 from sheets import SQUARE, dart, reflex_corners, scrambled
 
 from exactfold.branches.counting.find import BranchFinder
-from exactfold.pattern.random_squares import random_square
+from exactfold.pattern.triangulating.random_squares import random_square
 from exactfold.rigidity.equations.gauge import Gauge
 from exactfold.rigidity.equations.problem import Problem
 from exactfold.rigidity.equations.sheet import VertexEquations

@@ -3,7 +3,7 @@
 import pytest
 
 from exactfold.pattern.families import two_vertex
-from exactfold.pattern.random_squares import random_square
+from exactfold.pattern.triangulating.random_squares import random_square
 from exactfold.rigidity.equations.branch_system import BranchSystem
 from exactfold.rigidity.equations.quadratic import QuadraticSystem
 from exactfold.solve.algebraic.groebner_bases import groebner

@@ -7,7 +7,7 @@ import pytest
 
 from exactfold.errors import UsageError
 from exactfold.pattern.families import flat_vertex_square
-from exactfold.pattern.random_squares import random_square
+from exactfold.pattern.triangulating.random_squares import random_square
 from exactfold.rigidity.equations.branch_system import BranchSystem
 from exactfold.rigidity.equations.quadratic import QuadraticSystem
 from exactfold.solve.certify.box import IsolatingBox

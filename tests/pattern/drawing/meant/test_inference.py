@@ -10,7 +10,7 @@ import pytest
 
 from exactfold.pattern.drawing.meant.inference import Inference, infer
 from exactfold.pattern.panel_pattern import PanelPattern
-from exactfold.pattern.random_squares import sample_random_square
+from exactfold.pattern.triangulating.random_squares import sample_random_square
 
 Points = list[tuple[Fraction, Fraction]]
 

@@ -1,0 +1,1 @@
+"""Elementary modes: motions of parts whose vertices have at most four folds."""

@@ -1,0 +1,191 @@
+"""Several forms that remain on a space: whether their common zeros are one component."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import chain, combinations, islice
+from typing import Any, Final
+
+import numpy as np
+from flint import arb, ctx
+from scipy.linalg import null_space
+
+from exactfold.exact.surds import ball
+from exactfold.panels.spaces.kernel import Entry, Rows, imposed
+from exactfold.panels.spaces.regular import BITS, Balls, Forms
+from exactfold.panels.spaces.subspaces import squares_of
+from exactfold.panels.vertex.stars import Star
+
+_SHIFTS: Final = 40
+_DIRECTIONS: Final = 24
+_SWEEPS: Final = 3
+_KEPT: Final = 4
+_MOST_FORMS: Final = 16
+
+
+def cone_motion(
+    stars: Mapping[int, Star], rows: Rows, size: int, vertices: Sequence[int]
+) -> Balls | None:
+    """A motion of a space at which the forms of these vertices vanish, if they are one component.
+
+    The theorem is in docs/panels.md, Double covers. The forms are ordered. For each form there is a
+    direction u at which the form is not 0 and on which no earlier form depends. The line along u
+    through a point w meets the zeros of the form at the two roots of a quadratic polynomial, which
+    are real if the discriminant D(w) is positive. If D takes both signs at regular zeros of the
+    earlier forms, D is no square, and the zeros of this form and the earlier ones are one
+    component. The first form has rank at least 3 and needs no discriminant. The motion is enclosed
+    in balls, and the derivatives of the forms are independent there.
+
+    None decides nothing. More than 16 forms are not tried.
+    """
+    if len(vertices) > _MOST_FORMS:
+        return None
+    before = ctx.prec
+    ctx.prec = BITS
+    try:
+        forms = Forms(stars)
+        points: list[Balls] = [{edge: arb(0) for edge in rows}]
+        for number, (v, room) in enumerate(_ordered(stars, rows, size, vertices)):
+            if number == 0 and len(squares_of(stars[v], rows, size)) < 3:
+                return None
+            for u in islice(_directions(forms, v, room), _DIRECTIONS):
+                above, below = _sides(forms, v, points, room, u)
+                if above and (below or number == 0):
+                    points = above
+                    break
+            else:
+                return None
+        return points[0] if vertices else None
+    finally:
+        ctx.prec = before
+
+
+def _ordered(
+    stars: Mapping[int, Star], rows: Rows, size: int, vertices: Sequence[int]
+) -> list[tuple[int, list[Balls]]]:
+    """The ordered vertices, each with a basis of the space on which no earlier form depends.
+
+    The last vertex is one whose form has the highest rank there; the others follow in the same way.
+    Floating point may choose, because every order is correct.
+    """
+    squares = {v: squares_of(stars[v], rows, size) for v in vertices}
+    functionals = {v: [functional for _, functional in squares[v]] for v in vertices}
+    floats = {v: np.array([[float(x) for x in f] for f in functionals[v]]) for v in vertices}
+    weights = {v: np.array([float(d) for d, _ in squares[v]]) for v in vertices}
+    for v in vertices:
+        lengths = np.linalg.norm(floats[v], axis=1)
+        floats[v] /= lengths[:, None]
+        weights[v] *= lengths**2 / np.abs(weights[v] * lengths**2).max()
+    waiting = list(vertices)
+    order: list[int] = []
+    while waiting:
+        ranks = {}
+        for v in waiting:
+            others = [floats[u] for u in waiting if u != v]
+            room = null_space(np.vstack(others)) if others else np.eye(size)
+            inner = floats[v] @ room
+            ranks[v] = int(np.linalg.matrix_rank(inner.T @ (weights[v][:, None] * inner), 1e-9))
+        order.insert(0, max(waiting, key=ranks.__getitem__))
+        waiting.remove(order[0])
+    bases = []
+    before: list[Sequence[Entry]] = []
+    for v in order:
+        bases.append((v, _basis(*imposed(rows, size, *before))))
+        before += functionals[v]
+    return bases
+
+
+def _basis(rows: Rows, size: int) -> list[Balls]:
+    return [{e: ball(row[k], BITS) for e, row in rows.items() if row[k]} for k in range(size)]
+
+
+def _directions(forms: Forms, v: int, room: Sequence[Balls]) -> Iterator[Balls]:
+    """Vectors at which the form is not 0: first those of the basis, then sums and differences of
+    two.
+    """
+    pairs = list(combinations([u for u in room if forms.gradient(v, u)], 2))
+    sums = (_plus(a, arb(sign), b) for a, b in pairs for sign in (1, -1))
+    for u in chain(room, sums):
+        if not forms.value(v, u).contains(0):
+            yield u
+
+
+def _sides(
+    forms: Forms, v: int, points: Sequence[Balls], room: Sequence[Balls], u: Balls
+) -> tuple[list[Balls], bool]:
+    """Zeros of the form on lines along u, and whether the discriminant is negative somewhere.
+
+    The lines go through the given points, shifted by vectors of `room`, which keep them zeros of
+    the earlier forms. Afterwards the points are moved towards critical points of the discriminant,
+    and shifted again.
+    """
+    last = forms.value(v, u)
+    zeros: list[Balls] = []
+    below = False
+    slopes = forms.gradient(v, u)
+    for point in [*points, *(_centred(forms, v, point, room, u) for point in points)]:
+        for number in range(_SHIFTS):
+            w = point
+            for k, motion in enumerate(room):
+                w = _plus(w, _shift(number, k), motion)
+            middle = _product(slopes, w) / 2
+            square = middle * middle - forms.value(v, w) * last
+            if square > 0 and len(zeros) < _KEPT:
+                zeros.append(_plus(w, (square.sqrt() - middle) / last, u))
+            below = below or bool(square < 0)
+            if below and len(zeros) == _KEPT:
+                return zeros, below
+    return zeros, below
+
+
+def _centred(forms: Forms, v: int, w: Balls, room: Sequence[Balls], u: Balls) -> Balls:
+    """A point moved by the vectors of `room`, one after the other, until D is nearly critical."""
+    last = 2 * forms.value(v, u)
+    slopes = forms.gradient(v, u)
+    bends = [forms.gradient(v, b) for b in room]
+    for _ in range(_SWEEPS):
+        for b, bend in zip(room, bends, strict=True):
+            across = _product(slopes, b)
+            square = across * across - _product(bend, b) * last
+            if not square.contains(0):
+                mixed = _product(slopes, w) * across - _product(bend, w) * last
+                w = _plus(w, (-mixed / square).mid(), b)
+    return w
+
+
+def _product(weights: Balls, w: Balls) -> Any:
+    return sum((x * w[e] for e, x in weights.items() if e in w), arb(0))
+
+
+def _shift(number: int, k: int) -> Any:
+    """The weight of vector `k` of a basis in shift `number`; the weights vary from small
+    to large.
+    """
+    return (pow(31 * number + k + 2, 5, 101) % 7 - 3) * arb(8) ** (number % 5 - 1)
+
+
+def _plus(w: Balls, weight: Any, u: Balls) -> Balls:
+    total = dict(w)
+    for edge, x in u.items():
+        total[edge] = total.get(edge, arb(0)) + weight * x
+    return total
+
+
+def is_one_family(
+    stars: Mapping[int, Star], size: int, leaf_size: int, vertices: Sequence[int]
+) -> bool:
+    """Whether the true motions near the flat state are one family, if their leaf is one component.
+
+    They are if the leaf consists of all first-order motions, a space of dimension `size`, if the
+    form of each vertex with more than two folds remains on it, and if the first-order conditions
+    are independent: two for each of these vertices and one for each straight pair (docs/panels.md,
+    Vertices with more folds).
+
+    >>> right = Star(0, ((0, 1), (0, 2), (0, 3), (0, 4)), ((1, 0), (0, 1), (-1, 0), (0, -1)))
+    >>> is_one_family({0: right}, 2, 2, [0]), is_one_family({0: right}, 2, 1, [0])
+    (True, False)
+    """
+    full = [v for v, star in stars.items() if len(star.folds) != 2]
+    folds = {edge for star in stars.values() for edge in star.folds}
+    independent = size == len(folds) - len(stars) - len(full)
+    return independent and leaf_size == size and sorted(vertices) == sorted(full)

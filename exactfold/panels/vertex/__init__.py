@@ -1,0 +1,1 @@
+"""One vertex of a sheet of panels: its folds, its motions, and its letters."""

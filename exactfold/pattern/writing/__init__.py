@@ -1,0 +1,1 @@
+"""Writes FOLD files that keep exact coordinates."""
