@@ -74,8 +74,8 @@ def answered(path: Path, source: Path, *options: str) -> Line:
         "result": results[0] if results else None,
         "error": done.stderr.strip(),
     }
-    if "all" in options:  # a line for each sheet, and a last one for all of them
-        codes = Counter(one["exit_code"] for one in results[:-1])
+    if "all" in options:  # a line for each sheet
+        codes = Counter(one["exit_code"] for one in results)
         line["sheets"] = {str(code): number for code, number in sorted(codes.items())}
     return line
 
@@ -197,10 +197,9 @@ def print_summary(programs: dict[str, dict[str, Line]]) -> None:
     *_, now = programs.values()
     kinds_helped = Counter(helped(line) for line in now.values())
     tried = sum(number for kind, number in kinds_helped.items() if kind)
-    print(
-        f"\nOf the refused files, {tried} were counted again with the options that their messages"
-    )
-    print(f"name: {kinds_helped[KINDS[0]]} are then complete, {kinds_helped[KINDS[1]]} in part.")
+    complete, partly = kinds_helped[KINDS[0]], kinds_helped[KINDS[1]]
+    print(f"\n{tried} refused files were counted again with the options that the message names:")
+    print(f"{complete} are then complete, {partly} in part.")
     if len(programs) == 2:
         before, now = programs.values()
         noise = sum(withdrawn(before[name], now[name]) for name in now)
@@ -211,7 +210,7 @@ def print_summary(programs: dict[str, dict[str, Line]]) -> None:
 def print_files(programs: dict[str, dict[str, Line]]) -> None:
     """Print a row for each file."""
     print(f"\n| file | {' | '.join(programs)} |\n|---|{'---|' * len(programs)}")
-    first, *_, now = programs.values()
+    first, now = next(iter(programs.values())), [*programs.values()][-1]
     for name in now:
         cells = []
         for lines in programs.values():
