@@ -24,6 +24,7 @@ export function createList(page, store, { onAsk }) {
     count.textContent = narrowed ? `${found.length} of ${total} ${found.length === 1 ? "agrees" : "agree"}` : ways.length ? total : "";
     clear.hidden = !narrowed;
     box.replaceChildren(...found.map(({ way, mirrored }) => row(ways[way], way, mirrored, page.drawn)));
+    box.setAttribute("role", found.length ? "listbox" : "group");  // a listbox has options
     search.hidden = !ways.length;
     if (!found.length) box.append(paragraph(page.busy && !ways.length ? "Looking for ways to fold …" : ways.length ? nothing() : `No way to list: ${page.answer.split(" - ")[0]}.`));
     settle();
