@@ -85,7 +85,7 @@ def test_a_drawing_that_is_dropped_is_read_counted_and_listed(page):
 
 
 def test_the_empty_page_has_its_landmark_and_hides_its_parts(page):
-    """A screen reader finds the main part; what has nothing to show yet is neither seen nor read."""
+    """A screen reader finds the main part; parts with nothing to show are neither seen nor read."""
     seen = "(one) => getComputedStyle(document.querySelector(one)).visibility"
     assert page.run(f"['main', '#ways', '#play'].map({seen})") == ["visible", "hidden", "hidden"]
 
