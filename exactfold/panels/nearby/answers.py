@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Final
 
-from exactfold._support.plurals import agreeing, counted
+from exactfold._support.plurals import counted
 from exactfold._support.verdict import REFUTED, UNDECIDED
 from exactfold.panels.nearby.box import Box, box_of
 from exactfold.panels.nearby.freedom import nearby_freedom
@@ -52,7 +52,7 @@ def drawn_nearby(
     if sure == len(fans):
         said = f"each of the {counted(sure, 'vertex')} starts to fold with its letters"
     else:
-        start = agreeing(sure, "starts")
-        said = f"{sure} of {counted(len(fans), 'vertex')} {start} to fold with their letters"
+        start = "starts to fold with its" if sure == 1 else "start to fold with their"
+        said = f"{sure} of {counted(len(fans), 'vertex')} {start} letters"
     reason = f"by itself, {said} - PROVED"
     return Drawn(UNDECIDED, UNDECIDED, (reason,), within=within)
