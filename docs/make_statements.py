@@ -6,7 +6,7 @@ import re
 import sys
 import textwrap
 from functools import cache
-from itertools import groupby
+from itertools import groupby, takewhile
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
@@ -224,12 +224,23 @@ def erratum(statement: Statement, proof: Proof) -> str:
         f"{script}: {basis(statement, proof)}.{code}",
         "",
         f"- printed: {mathematics(statement.source)}",
-        f"- correct: {mathematics(statement.corrected)}"
+        f"- correct: {changed(mathematics(statement.source), mathematics(statement.corrected))}"
         if statement.corrected
         else "- false, and not to be mended by a condition",
-        f"- why: {' '.join(statement.note.split())}",
+        f"- why: {' '.join(statement.note.partition(' Remark: ')[0].split())}",
     ]
     return "\n".join(wrapped(numbered(line)) for line in lines) + "\n\n"
+
+
+def changed(printed: str, corrected: str) -> str:
+    """The correction without the words with which the printed passage begins as well.
+
+    >>> changed("\u201cthe number of the folds is $`3`$\u201d", "the number of the folds is $`4`$")
+    '\u2026 is $`4`$'
+    """
+    old, new = printed.lstrip("\u201c").split(), corrected.split()
+    same = len(list(takewhile(lambda k: old[k : k + 1] == new[k : k + 1], range(len(new)))))
+    return f"\u2026 {' '.join(new[same - 1 :])}" if same > 3 else corrected
 
 
 def wrapped(line: str) -> str:

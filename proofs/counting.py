@@ -259,8 +259,9 @@ def _folds(script: Script) -> None:
         at=shares,
         note="2^n branches over the 2^(3n) assignments of IIIA.4, n = Vi - Vt, where all have "
         "different assignments, as in the two-vertex square: 4 of 64; the printed count of "
-        "folds would give (1/4)^(n + 1). As a bound (1/4)^(n - 1) is true and an overestimate, but "
-        "not because of the constraints: these do not lower the number of branches",
+        "folds would give (1/4)^(n + 1). Remark: as a bound (1/4)^(n - 1) is true and an "
+        "overestimate, but not because of the constraints: these do not lower the number of "
+        "branches",
         code="BranchCount.repeated_assignments",
         severity=Severity.CONSTANT,
         rests="IIIA.4",

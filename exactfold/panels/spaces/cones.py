@@ -12,15 +12,15 @@ from scipy.linalg import null_space
 
 from exactfold.exact.surds import ball
 from exactfold.panels.spaces.kernel import Entry, Rows, imposed
+from exactfold.panels.spaces.quadratics import squares_of
 from exactfold.panels.spaces.regular import BITS, Balls, Forms
-from exactfold.panels.spaces.subspaces import squares_of
 from exactfold.panels.vertex.stars import Star
 
 _SHIFTS: Final = 40
 _DIRECTIONS: Final = 24
 _SWEEPS: Final = 3
 _KEPT: Final = 4
-_MOST_FORMS: Final = 16
+_MOST_FORMS: Final = 64
 
 
 def cone_motion(
@@ -36,7 +36,7 @@ def cone_motion(
     component. The first form has rank at least 3 and needs no discriminant. The motion is enclosed
     in balls, and the derivatives of the forms are independent there.
 
-    None decides nothing. More than 16 forms are not tried.
+    None decides nothing. More than 64 forms are not tried.
     """
     if len(vertices) > _MOST_FORMS:
         return None

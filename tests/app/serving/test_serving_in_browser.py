@@ -99,7 +99,7 @@ def test_a_vertex_is_dragged_the_answer_changes_live_and_is_undone(page):
     assert abs(mark - handle) < 2  # the handle goes with its vertex
     assert "4 ways to start folding" in page.text("#answer")
     ActionChains(page.driver).release().perform()
-    page.until("!document.getElementById('undo').disabled")
+    page.until("!document.getElementById('undo').hidden")
     page.until(f"{READY} && exactfold.page.ways.length > 0")
     after = page.run("exactfold.view.sheet.points[4]")
     assert after != before
@@ -109,8 +109,29 @@ def test_a_vertex_is_dragged_the_answer_changes_live_and_is_undone(page):
     page.click("#undo")
     page.until(f"{READY} && exactfold.view.sheet.points[4][0] === {before[0]}")
     assert page.run("exactfold.view.sheet.points[4]") == before
-    assert page.run("document.getElementById('undo').disabled")
+    assert page.run("document.getElementById('undo').hidden")
     assert page.complaints() == []
+
+
+def test_letters_stay_asked_for_as_a_vertex_moves_and_both_are_undone(page):
+    opened(page, example_path("two-vertex"))
+    page.click('[data-fold="4-5"] .reach')
+    asked = "JSON.stringify([...exactfold.store.get().asks])"
+    assert page.run(asked) == '[[6,"M"]]'
+    before = page.run("exactfold.view.sheet.points[5]")
+    handle_of(page, 5)
+    page.run("document.querySelector(\"[data-handle='5']\").focus()")
+    page.press("\ue013")  # up
+    page.until(f"{READY} && exactfold.view.sheet.points[5][1] > {before[1]}")
+    assert page.run(asked) == '[[6,"M"]]'
+    page.click("#edit")
+    page.click('[data-fold="4-5"] .reach')
+    assert page.run(asked) == '[[6,"V"]]'
+    page.press_with_control("z")  # first the letter
+    assert page.run(asked) == '[[6,"M"]]'
+    page.press_with_control("z")  # then the vertex
+    page.until(f"{READY} && exactfold.view.sheet.points[5][1] === {before[1]}")
+    assert page.run(asked) == '[[6,"M"]]'
 
 
 def test_a_vertex_that_cannot_go_somewhere_comes_back(page):

@@ -165,6 +165,34 @@ def _agree(number):
     return "agrees" if number == 1 else "agree"
 
 
+def test_what_was_asked_is_undone_step_by_step(browser, pages):
+    browser.open(pages["h1-4"])
+    (i, j), (k, m) = (load("h1-4").folds[at] for at in (-1, 0))
+    hidden = "document.getElementById('undo').hidden"
+    asked = "[...exactfold.store.get().asks.values()].join('')"
+    assert browser.run(hidden)
+    way = browser.run("exactfold.store.get().way")
+    for edge in (f"{i}-{j}", f"{i}-{j}", f"{k}-{m}"):
+        browser.click(f'[data-fold="{edge}"] .reach')
+    assert browser.run(asked) == "VM"
+    browser.click("#undo")
+    assert browser.run(asked) == "V"
+    browser.press_with_control("z")
+    assert browser.run(asked) == "M"
+    browser.click("#undo")
+    assert (browser.run(asked), browser.run(hidden)) == ("", True)
+    assert browser.run("exactfold.store.get().way") == way
+    assert browser.run("document.activeElement.closest('#pattern') !== null")
+    browser.click(f'[data-fold="{i}-{j}"] .reach')
+    browser.click("#search")
+    browser.press("#1")
+    browser.click("#clear")
+    assert browser.run("document.getElementById('search').value") == ""
+    browser.click("#undo")  # what "Clear" took away comes back
+    assert browser.run("document.getElementById('search').value") == "#1"
+    assert browser.run(asked) == "M"
+
+
 def test_the_hint_says_what_a_click_does(browser, pages):
     browser.open(pages["h1-4"])
     count = count_branches("h1-4")

@@ -4,7 +4,7 @@ import { agreeing, difference, seen } from "./choose.js";
 
 const NOUNS = { branches: ["branch", "branches"], panels: ["way", "ways"] };
 
-export function createList(page, store) {
+export function createList(page, store, { onAsk }) {
   const box = document.getElementById("ways");
   const search = document.getElementById("search");
   const count = document.getElementById("count");
@@ -24,6 +24,7 @@ export function createList(page, store) {
     count.textContent = narrowed ? `${found.length} of ${total} ${found.length === 1 ? "agrees" : "agree"}` : ways.length ? total : "";
     clear.hidden = !narrowed;
     box.replaceChildren(...found.map(({ way, mirrored }) => row(ways[way], way, mirrored, page.drawn)));
+    box.setAttribute("role", found.length ? "listbox" : "group");  // a listbox has options
     search.hidden = !ways.length;
     if (!found.length) box.append(paragraph(page.busy && !ways.length ? "Looking for ways to fold …" : ways.length ? nothing() : `No way to list: ${page.answer.split(" - ")[0]}.`));
     settle();
@@ -86,7 +87,7 @@ export function createList(page, store) {
   search.addEventListener("input", () => store.set({ search: search.value }));
   clear.addEventListener("click", () => {
     search.value = "";
-    store.set({ search: "", asks: new Map() });
+    onAsk({ search: "", asks: new Map() });
     search.focus();
   });
   store.on(["ways", "asks", "search"], refresh);
