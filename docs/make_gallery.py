@@ -88,8 +88,8 @@ motion = exactfold.follow(found, 4)
 ```
 """
 ROWS: Final = """\
-Small sheets with an exception: a vertex that stays flat, a straight crease, a reflex corner. Each is
-`DEGENERATE[NAME]()` in the lines above, and is shown folded along one of its ways.
+Small sheets with an exception: a vertex that stays flat, a straight crease, a reflex corner. Each
+is `DEGENERATE[NAME]()` in the lines above, and is shown folded along one of its ways.
 
 | | sheet | ways to start folding | what it is |
 |---|---|---|---|
