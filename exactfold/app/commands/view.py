@@ -42,6 +42,7 @@ class Wanted(ViewOptions):
                 frames=self.frames,
                 proving=self.proving,
                 workers=self.workers or available_cores(),
+                limit=self.limit,
                 progress=bar,
             )
         show(Text(document["answer"]))
@@ -89,11 +90,12 @@ def _contents(document: Mapping[str, Any]) -> str:
     ways = document["ways"]
     if not ways:
         return "the pattern only: no single way to fold is known"
-    if document["kind"] == "branches":
-        return counted(len(ways), "branch")
     folding = sum(way["motion"] is not None for way in ways)
     left = len(ways) - folding
+    if document["kind"] == "branches":
+        text = counted(len(ways), "branch")
+        return f"{text}, {left} not followed (the page says why)" if left else text
     text = counted(folding, "way") + " to fold"
     if not left and document["status"] == str(PROVED) and not document["complete"]:
         return f"{text}, those of which a motion is known"
-    return f"{text}, and {counted(left, 'mode')} not followed" if left else text
+    return f"{text}, and {counted(left, 'way')} not followed (the page says why)" if left else text

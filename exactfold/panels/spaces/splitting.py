@@ -9,7 +9,7 @@ from flint import fmpq
 
 from exactfold._support.clock import UNLIMITED, Clock
 from exactfold.errors import TooManyModesError
-from exactfold.exact.surds import Surd, common_field, sign
+from exactfold.exact.surds import Surd, SurdField, common_field, sign
 from exactfold.panels.spaces.kernel import Entry, Rows, entry, increase
 from exactfold.panels.spaces.quadratics import MOST_ROOTS
 from exactfold.panels.spaces.sparse import (
@@ -29,6 +29,7 @@ from exactfold.panels.spaces.subspaces import (
     made_leaf,
     maximal,
 )
+from exactfold.panels.spaces.together import narrowing_sum, vanish_only_at_zero
 from exactfold.panels.vertex.stars import Star
 from exactfold.pattern.panel_pattern import Edge
 
@@ -128,10 +129,21 @@ class Splitting:
         if found is None:
             return []
         space, settled, products, left = found
-        if not products:
-            return [_leaf(space, left)]
-        v, one, other = self._chosen(space, settled, products)
-        now = settled | {v}
+        now = settled
+        if products:
+            v, one, other = self._chosen(space, settled, products)
+            now = settled | {v}
+        else:
+            total = narrowing_sum(space.forms, left)
+            if total is None:
+                if vanish_only_at_zero(space.forms, left, len(space.parameters)):
+                    return [] if any(map(is_kept, space.rows)) else [Leaf({}, 0, ())]
+                return [_leaf(space, left)]
+            if len({sign(d) for d, _ in total}) == 1:
+                self.sums = True
+                smaller = self._imposed(space, [row for _, row in total])
+                return [] if smaller is None else self._solved(smaller, settled)
+            v, (one, other) = left[0], self._factors(total, self._field_of(space))
         solutions: list[Leaf] = []
         child = self._imposed(space, [one])
         if child is not None:
@@ -152,9 +164,7 @@ class Splitting:
         one does, and nothing is split. Otherwise the vertex has the most neighbours that are
         settled, so that loops close early.
         """
-        field = common_field(x for row in space.rows.values() for x in row.values())
-        if field.dimension < self._field.dimension:
-            field = self._field
+        field = self._field_of(space)
         for v in products:
             kept = [space.rows[key] for key in space.rows if is_kept(key)]
             (_, first), (_, second) = space.forms[v]
@@ -172,12 +182,19 @@ class Splitting:
             return -near, len(folds), v
 
         v = min(products, key=rank)
-        factors = factors_of(space.forms[v], field, MOST_ROOTS)
+        return v, *self._factors(space.forms[v], field)
+
+    def _field_of(self, space: _Space) -> SurdField:
+        field = common_field(x for row in space.rows.values() for x in row.values())
+        return self._field if field.dimension < self._field.dimension else field
+
+    def _factors(self, form: Form, field: SurdField) -> tuple[Row, Row]:
+        factors = factors_of(form, field, MOST_ROOTS)
         if factors is None:
             raise TooManyModesError(
                 f"the spaces of motions need more than {MOST_ROOTS} independent square roots"
             )
-        return v, *factors
+        return factors
 
     def _reduced(
         self, space: _Space, settled: frozenset[int]
@@ -270,9 +287,10 @@ class Splitting:
     def _parts(self, space: _Space) -> list[_Space]:
         """The space as a direct sum over the parts of the sheet that active folds connect.
 
-        Every parameter is the density of a fold. A motion whose densities at the folds of a part
-        are kept, all others being 0, belongs to the space, too. So the rows of a part depend only
-        on the parameters that are densities of its folds.
+        Every parameter is the density of a fold. Where every condition that was imposed belongs
+        to a single vertex, the rows of a part depend only on the parameters that are densities of
+        its folds. A sum of the forms of several vertices may join parts; then they are kept
+        together.
         """
         group: dict[int, int] = {}
 
@@ -287,7 +305,8 @@ class Splitting:
         parts: dict[int, dict[Edge, Row]] = {}
         for edge, row in space.rows.items():
             parts.setdefault(of(edge[edge[0] not in self.stars]), {})[edge] = row
-        if len(parts) == 1:
+        used = [{k for row in part.values() for k in row} for part in parts.values()]
+        if sum(map(len, used)) > len(set().union(*used)):
             return [space]
         together = []
         for part in parts.values():

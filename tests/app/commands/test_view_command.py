@@ -39,7 +39,9 @@ def test_a_drawing_with_panels_is_shown_by_its_modes(tmp_path):
     result = run("view", "zigzags", "-o", target, "--frames", "2")
     assert result.exit_code == OK
     assert result.stdout.startswith("3 families of ways to fold")
-    assert result.stdout.endswith(f"wrote {target}: 3 ways to fold, and 1 mode not followed\n")
+    assert result.stdout.endswith(
+        f"wrote {target}: 3 ways to fold, and 1 way not followed (the page says why)\n"
+    )
     assert "read zigzags: 12 lines, exact in Q" in result.stderr
 
 

@@ -64,6 +64,18 @@ def test_sliders_choose_another_way_of_a_family_and_play_goes_on(browser, pages)
     assert browser.complaints() == []
 
 
+def test_an_empty_list_is_no_listbox(browser, pages):
+    role = "document.getElementById('ways').getAttribute('role')"
+    browser.open(pages["h1-4"])
+    assert browser.run(role) == "listbox"
+    browser.click("#search")
+    browser.press("#99")
+    assert browser.text("#ways").startswith("No branch of this sheet agrees with the search")
+    assert browser.run(role) == "group"
+    browser.click("#clear")
+    assert browser.run(role) == "listbox"
+
+
 def test_without_a_motion_there_is_nothing_to_play(browser, pages):
     browser.open(pages["zigzags"])
     browser.click(".way:last-child")
