@@ -91,8 +91,8 @@ ROWS: Final = """\
 Small sheets with an exception: a vertex that stays flat, a straight crease, a reflex corner. Each
 is `DEGENERATE[NAME]()` in the lines above, and is shown folded along one of its ways.
 
-| | sheet | ways to start folding | what it is |
-|---|---|---|---|
+| | sheet, and ways to start folding | what it is |
+|---|---|---|
 """
 FOOT: Final = """## Where they come from
 
@@ -193,7 +193,7 @@ class Card:
         number, more = self.answer
         small = image(f"{self.name}-small", f"{self.name}, folded along way {self.way}", SMALL)
         count = f"{number}{more}".replace(" to start folding", "")
-        return f"| {small} | {self.name} | {count} | {self.what} |\n"
+        return f"| {small} | {self.name}<br>{count} | {self.what} |\n"
 
     @property
     def section(self) -> str:
