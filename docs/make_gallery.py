@@ -57,9 +57,9 @@ fold in families have no such list. Of panels round vertices with more than four
 ways are drawn on which the tangents of half the fold angles stay in proportion.
 """
 READING: Final = f"""\
-Every number is proved. Where nothing follows it but the number with multiplicity, in which flat
-vertices count double, all branches are real, and each continues to a true motion. The dimension of
-a family is the number of folds that can be folded independently.
+Every number is proved. Where no more is said of a triangulated sheet, all branches are real, and
+each continues to a true motion. In numbers with multiplicity flat vertices count double. The
+dimension of a family is the number of folds that can be folded independently.
 
 Mountains are red, valleys blue and dashed, folds that stay flat grey. Triangles mark vertices that
 pop up or down. The width of a line grows with the fold angle. Ways with the same letters are framed
