@@ -98,7 +98,7 @@ def _single_vertex(script: Script) -> None:
         "IIIA.10",
         "Section III A",
         r"\text{``3-fold vertices \dots\ are always rigid''}",
-        note="the form of a vertex with N = 3 is definite modulo planes",
+        note="Remark: the form of a vertex with N = 3 is definite modulo planes",
     )
     schematic = count_branches(families.two_vertex())
     halved = script.alter("one branch for each pair of sign patterns", 0, 1)

@@ -71,7 +71,7 @@ def _stresses(script: Script) -> None:
         *differences,
         of="IIB.4 B.1 B.2",
     )
-    code, read = "wheel_stress", "read off A.8: coefficient of (h_i - h_j)^2 / (2 length)"
+    code, read = "wheel_stress", "Remark: read off A.8: coefficient of (h_i - h_j)^2 / (2 length)"
     script.formula(
         "IIB.4",
         "Section II B, Eq. (wheelstress)",
@@ -110,7 +110,8 @@ def _stresses(script: Script) -> None:
         r"\bm{\sigma}^T\cdot\mathbf{C}=\mathbf{0}^T\text{ \dots\ ``self stresses are "
         r"assignments of tensions and compressions to edges that preserve force balance at "
         r"each vertex''}",
-        note="the columns of vertex n give the sum over its edges of sigma times the unit vector",
+        note="Remark: the columns of vertex n give the sum over its edges of sigma times the unit "
+        "vector",
         rests="IIA.14",
     )
 
@@ -221,8 +222,8 @@ def _rim(script: Script) -> None:
         quoted=r"\text{``The first piece is }\csc\alpha_{i-1,i}/L_{i-1}-\cot\alpha_{i-1,i}/L_i"
         r"\text{'' \dots\ ``the first part of the force along the spoke edge (Eq. "
         r"(\ref{eq:firstpiece})) cancels }F_{rim,\parallel,-}\text{''}",
-        note="Eq. (firstpiece) is minus F_{rim,-} = -cot(eta_{i-1,i})/L_i; for acute, right "
-        "and obtuse angles. The second piece is its mirror image",
+        note="Remark: Eq. (firstpiece) is minus F_{rim,-} = -cot(eta_{i-1,i})/L_i; for acute, "
+        "right and obtuse angles. The second piece is its mirror image",
         equation="B8",
     )
     sign = script.alter("foot of the height beyond the hub", 1, -1)

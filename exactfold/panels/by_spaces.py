@@ -21,7 +21,8 @@ from exactfold.panels.spaces.regular import (
     point,
     truly_folds,
 )
-from exactfold.panels.spaces.subspaces import Leaf, SubspaceSearch, independent_parts, reduced
+from exactfold.panels.spaces.splitting import Splitting
+from exactfold.panels.spaces.subspaces import Leaf, independent_parts, reduced
 from exactfold.panels.vertex.stars import Star
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
@@ -97,7 +98,7 @@ def _complete(
     """
     vertices = tuple(moving)
     (rows, size), (small, left) = first, smaller
-    search = SubspaceSearch(moving, MOST_STEPS, clock.share(1 / 2))
+    search = Splitting(moving, MOST_STEPS, clock.share(1 / 2))
     spaces = search.leaves(small, left)
     together = 0
     counts: dict[int, int] = {}

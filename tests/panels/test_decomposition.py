@@ -14,7 +14,7 @@ from exactfold.panels.decomposition import decompose
 from exactfold.panels.modes.elementary import ModeSearch
 from exactfold.panels.modes.extension import cycle_basis
 from exactfold.panels.spaces.kernel import first_order
-from exactfold.panels.spaces.subspaces import leaves
+from exactfold.panels.spaces.splitting import leaves
 from exactfold.panels.vertex.stars import stars
 from exactfold.pattern.families import single_vertex
 from exactfold.pattern.opening import panels

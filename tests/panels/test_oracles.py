@@ -20,7 +20,9 @@ from exactfold._support.verdict import PROVED
 from exactfold.panels.by_spaces import by_spaces
 from exactfold.panels.decomposition import decompose
 from exactfold.panels.spaces.kernel import Rows, first_order, imposed
-from exactfold.panels.spaces.subspaces import Leaf, SubspaceSearch, factors, leaves
+from exactfold.panels.spaces.quadratics import factors
+from exactfold.panels.spaces.splitting import leaves
+from exactfold.panels.spaces.subspaces import Leaf, SubspaceSearch
 from exactfold.panels.vertex.stars import bracket, stars
 from exactfold.pattern.families import single_vertex
 from exactfold.pattern.opening import panels

@@ -136,6 +136,7 @@ def _cell(way: DrawnWay, x: float, y: float, high: float) -> str:
     body = svg.element("g", drawing.body(), transform=at, opacity=_FAINT if way.note else None)
     middle, below = x + _CELL / 2, y + drawing.extent[1]
     name = way.name.removeprefix("branch ") if way.signs else way.name
+    name = name.replace("a family of dimension", "dim.")
     letters = shortened(way.text, 22)
     lines = [
         svg.text(shortened(name, 18), middle, below + 12, anchor="middle", size=12, **_EVEN),

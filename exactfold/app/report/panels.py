@@ -225,7 +225,7 @@ def _notes(result: Decomposition, everything: bool) -> list[str]:
             "even so, it is often known whether the sheet starts to fold with given mountains and "
             "valleys: see `exactfold match`"
         )
-    if result.warning is not None:
+    if result.warning is not None and result.warning not in result.reason:
         notes.append(f"warning: {result.warning}")
     return notes
 

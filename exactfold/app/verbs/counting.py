@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from fractions import Fraction
@@ -204,6 +205,7 @@ def counted_with_letters(
     """
     from exactfold.branches.values.result import BranchCount
 
+    start = time.perf_counter()
     result = count_opened(
         opened, method=method, seed=seed, progress=progress, clock=clock.share(3 / 4)
     )
@@ -212,7 +214,9 @@ def counted_with_letters(
     from exactfold.design.panels.drawn import with_drawn
 
     known = with_drawn(result, opened, progress=progress, clock=clock)
-    return _with_proposal(known, opened, clock) if opened.doubt else known
+    if opened.doubt:
+        known = _with_proposal(known, opened, clock)
+    return replace(known, seconds=time.perf_counter() - start)
 
 
 def _with_proposal(result: Decomposition, opened: Opened, clock: Clock) -> Decomposition:

@@ -20,6 +20,7 @@ from exactfold.errors import TooManyModesError
 from exactfold.exact.linalg import from_fmpq
 from exactfold.exact.surds import Surd, ball
 from exactfold.panels.spaces.kernel import Entry, Rows, entry, first_order
+from exactfold.panels.spaces.quadratics import squares_of
 from exactfold.panels.spaces.regular import (
     BITS,
     Balls,
@@ -28,14 +29,8 @@ from exactfold.panels.spaces.regular import (
     regular_point,
     truly_folds,
 )
-from exactfold.panels.spaces.subspaces import (
-    Leaf,
-    independent_parts,
-    leaves,
-    made_leaf,
-    reduced,
-    squares_of,
-)
+from exactfold.panels.spaces.splitting import leaves
+from exactfold.panels.spaces.subspaces import Leaf, independent_parts, made_leaf, reduced
 from exactfold.panels.vertex.stars import Star
 from exactfold.pattern.panel_pattern import Edge
 from exactfold.rigidity.equations.quadratic import QuadraticSystem

@@ -18,7 +18,8 @@ from exactfold.design.panels.regular_motion import regular_motion
 from exactfold.errors import TooManyModesError
 from exactfold.exact.surds import sign
 from exactfold.panels.spaces.kernel import Rows, entry, first_order
-from exactfold.panels.spaces.subspaces import Leaf, leaves
+from exactfold.panels.spaces.splitting import leaves
+from exactfold.panels.spaces.subspaces import Leaf
 from exactfold.panels.vertex.stars import Star
 from exactfold.panels.vertex.vertex_motions import Fan
 from exactfold.pattern.panel_pattern import PanelPattern

@@ -18,8 +18,9 @@ from exactfold.design.refutations.refutation import Letters
 from exactfold.exact.surds import Number, ball, common_field, real_root, sign
 from exactfold.panels.folding_modes import folding_mode
 from exactfold.panels.spaces.kernel import Entry, Rows, entry, first_order, imposed, number
+from exactfold.panels.spaces.quadratics import factors, row_rank
 from exactfold.panels.spaces.regular import BITS, truly_folds
-from exactfold.panels.spaces.subspaces import SubspaceSearch, factors, independent_parts, row_rank
+from exactfold.panels.spaces.subspaces import SubspaceSearch, independent_parts
 from exactfold.panels.vertex.stars import Star
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 

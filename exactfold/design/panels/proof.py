@@ -14,6 +14,7 @@ from exactfold.design.panels.regular_motion import regular_motion
 from exactfold.design.refutations.refutation import Letters
 from exactfold.errors import TooManyModesError
 from exactfold.panels.spaces.kernel import Entry, Rows, first_order, imposed
+from exactfold.panels.spaces.quadratics import factors, is_semidefinite, squares_of
 from exactfold.panels.spaces.regular import (
     Balls,
     Forms,
@@ -21,7 +22,7 @@ from exactfold.panels.spaces.regular import (
     regular_point,
     truly_folds,
 )
-from exactfold.panels.spaces.subspaces import Leaf, factors, is_semidefinite, made_leaf, squares_of
+from exactfold.panels.spaces.subspaces import Leaf, made_leaf
 from exactfold.panels.vertex.stars import Star
 from exactfold.pattern.panel_pattern import Edge
 

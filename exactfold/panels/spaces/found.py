@@ -9,6 +9,12 @@ from exactfold._support.clock import UNLIMITED, Clock
 from exactfold.errors import TooManyModesError
 from exactfold.panels.spaces.kernel import Entry, Rows, imposed
 from exactfold.panels.spaces.proposals import Proposal, Proposals, is_too_large
+from exactfold.panels.spaces.quadratics import (
+    MOST_ROOTS,
+    factors,
+    is_semidefinite,
+    squares_of,
+)
 from exactfold.panels.spaces.regular import (
     Balls,
     Forms,
@@ -19,14 +25,7 @@ from exactfold.panels.spaces.regular import (
     regular_point,
     truly_folds,
 )
-from exactfold.panels.spaces.subspaces import (
-    MOST_ROOTS,
-    Leaf,
-    factors,
-    is_semidefinite,
-    made_leaf,
-    squares_of,
-)
+from exactfold.panels.spaces.subspaces import Leaf, made_leaf
 from exactfold.panels.vertex.stars import Star
 
 

@@ -5,7 +5,6 @@ import time
 
 import numpy as np
 import pytest
-from browser import chromium
 
 from exactfold.app.serving import view_server
 from exactfold.branches import count_branches, find_branch
@@ -14,19 +13,6 @@ from exactfold.pattern.data import example_path
 
 pytestmark = pytest.mark.slow
 READY = "window.exactfold && exactfold.view && !exactfold.view.page.busy"
-
-
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    found = tmp_path_factory.mktemp("serving")
-    (found / "downloads").mkdir()
-    return found
-
-
-@pytest.fixture(scope="module")
-def browser(folder):
-    with chromium(folder) as found:
-        yield found
 
 
 @pytest.fixture(scope="module")

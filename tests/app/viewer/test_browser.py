@@ -6,7 +6,6 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from browser import chromium
 from test_document import CORNER_AND_CENTRE
 
 from exactfold.app.pictures.crease_style import COLOUR
@@ -16,19 +15,6 @@ from exactfold.motion import follow
 from exactfold.pattern import load, open_pattern
 
 pytestmark = pytest.mark.slow
-
-
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    found = tmp_path_factory.mktemp("viewer")
-    (found / "downloads").mkdir()
-    return found
-
-
-@pytest.fixture(scope="module")
-def browser(folder):
-    with chromium(folder) as found:
-        yield found
 
 
 @pytest.fixture(scope="module")

@@ -16,7 +16,7 @@ from exactfold.panels.certificate import certificate_of_panels
 from exactfold.panels.decomposition import decompose
 from exactfold.panels.modes.trees import tree_components
 from exactfold.panels.spaces.kernel import first_order
-from exactfold.panels.spaces.subspaces import leaves
+from exactfold.panels.spaces.splitting import leaves
 from exactfold.panels.vertex.stars import Star, stars
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 

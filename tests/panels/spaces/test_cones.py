@@ -15,8 +15,8 @@ from exactfold.panels.decomposition import decompose
 from exactfold.panels.spaces import cones
 from exactfold.panels.spaces.cones import cone_motion, is_one_family
 from exactfold.panels.spaces.kernel import first_order, imposed
+from exactfold.panels.spaces.quadratics import squares_of
 from exactfold.panels.spaces.regular import Balls, Forms, in_balls, rank_at_least, truly_folds
-from exactfold.panels.spaces.subspaces import squares_of
 from exactfold.panels.vertex.stars import bracket, stars
 from exactfold.pattern.panel_pattern import PanelPattern
 

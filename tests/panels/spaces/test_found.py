@@ -17,6 +17,7 @@ from exactfold.panels.decomposition import decompose
 from exactfold.panels.result import Decomposition
 from exactfold.panels.spaces.found import FoundComponent, found_components
 from exactfold.panels.spaces.kernel import Rows, first_order, imposed
+from exactfold.panels.spaces.quadratics import factors, squares_of
 from exactfold.panels.spaces.regular import (
     Forms,
     in_balls,
@@ -27,7 +28,8 @@ from exactfold.panels.spaces.regular import (
     regular_point,
     truly_folds,
 )
-from exactfold.panels.spaces.subspaces import Leaf, factors, leaves, made_leaf, reduced, squares_of
+from exactfold.panels.spaces.splitting import leaves
+from exactfold.panels.spaces.subspaces import Leaf, made_leaf, reduced
 from exactfold.panels.vertex.stars import Star, stars
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
