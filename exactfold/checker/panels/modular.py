@@ -131,9 +131,7 @@ def one_component(forms: Sequence[Matrix], p: int) -> bool:
         moved = [_shifted(point, room, generator, p) for point in points]
         points, classes = _zeros(form, slopes, last, u, moved, p)
         if number and (
-            len(classes) < 2
-            if last
-            else not _apart(forms[:number], form, slopes, u, generator, p)
+            len(classes) < 2 if last else not _apart(forms[:number], form, slopes, u, generator, p)
         ):
             return False
         room = _kernel(form, room, p)

@@ -36,7 +36,9 @@ def near_zeros(forms: Sequence[Matrix]) -> Iterator[list[float]]:
             if max(map(abs, values)) < NEAR:
                 yield w
                 break
-            step = [sum(x * s[k] for x, s in zip(weights, slopes, strict=True)) for k in range(size)]
+            step = [
+                sum(x * s[k] for x, s in zip(weights, slopes, strict=True)) for k in range(size)
+            ]
             w = _unit([x - y for x, y in zip(w, step, strict=True)])
 
 

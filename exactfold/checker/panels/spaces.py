@@ -13,7 +13,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from ..core import limits
-from ..core.reading import at_most, require
+from ..core.reading import at_most
 from ..core.towers import Number
 from ..sheets.panels import Edge
 from .forms import Forms, Motion, Space, Squares, folds_of
@@ -114,7 +114,11 @@ class Spaces(Forms):
         kernel, products, left, settled = self._forms(space, settled)
         if kernel:
             return self._within(space, kernel, settled)
-        total = [] if products else self.narrowing_sum({v: self.squares(v, space) for v in left}, len(space))
+        total = (
+            []
+            if products
+            else self.narrowing_sum({v: self.squares(v, space) for v in left}, len(space))
+        )
         signs = {d.sign() for d, _ in total}
         if len(signs) == 1:
             return self._within(space, [values for _, values in total], settled)
