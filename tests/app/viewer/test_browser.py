@@ -351,6 +351,8 @@ def test_panes_stack_on_a_phone(browser, pages):
         " const b = node.getBoundingClientRect(); return [b.left, b.top, b.right, b.bottom] })"
     )
     assert len(boxes) == 4
+    boxes.sort(key=lambda box: box[1])
+    assert boxes[0][1] == browser.run("document.querySelector('.sheet').getBoundingClientRect().y")
     for (_, _, right, bottom), (left, top, _, _) in pairwise(boxes):
         assert left < 20
         assert right > 340
@@ -360,6 +362,19 @@ def test_panes_stack_on_a_phone(browser, pages):
         " (node) => node.getBoundingClientRect().height)"
     )
     assert min(small) >= 32
+
+
+def test_on_a_phone_the_sheet_stays_in_sight_while_folds_are_clicked(browser, pages):
+    browser.open(pages["h1-4"], width=390, height=844)
+    (i, j) = load("h1-4").folds[0]
+    browser.click(f'[data-fold="{i}-{j}"] .reach')
+    assert browser.run("exactfold.store.get().asks.size") == 1
+    box = "document.getElementById('stage').getBoundingClientRect()"
+    top, bottom = browser.run(f"[{box}.top, {box}.bottom]")
+    assert 0 <= top < bottom - 150
+    pattern = "document.getElementById('pattern').getBoundingClientRect()"
+    assert browser.run(f"{pattern}.top") > bottom
+    assert browser.run(f"{pattern}.bottom") <= 844
 
 
 def test_panels_are_followed_or_have_a_reason(browser, pages):
