@@ -57,9 +57,9 @@ fold in families have no such list. Of panels round vertices with more than four
 ways are drawn on which the tangents of half the fold angles stay in proportion.
 """
 READING: Final = f"""\
-Every number is proved. Where nothing follows it but the number with multiplicity, in which flat
-vertices count double, all branches are real, and each continues to a true motion. The dimension of
-a family is the number of folds that can be folded independently.
+Every number is proved. Where no more is said of a triangulated sheet, all branches are real, and
+each continues to a true motion. In numbers with multiplicity flat vertices count double. The
+dimension of a family is the number of folds that can be folded independently.
 
 Mountains are red, valleys blue and dashed, folds that stay flat grey. Triangles mark vertices that
 pop up or down. The width of a line grows with the fold angle. Ways with the same letters are framed
@@ -91,8 +91,8 @@ ROWS: Final = """\
 Small sheets with an exception: a vertex that stays flat, a straight crease, a reflex corner. Each
 is `DEGENERATE[NAME]()` in the lines above, and is shown folded along one of its ways.
 
-| | sheet | ways to start folding | what it is |
-|---|---|---|---|
+| | sheet, and ways to start folding | what it is |
+|---|---|---|
 """
 FOOT: Final = """## Where they come from
 
@@ -193,7 +193,7 @@ class Card:
         number, more = self.answer
         small = image(f"{self.name}-small", f"{self.name}, folded along way {self.way}", SMALL)
         count = f"{number}{more}".replace(" to start folding", "")
-        return f"| {small} | {self.name} | {count} | {self.what} |\n"
+        return f"| {small} | {self.name}<br>{count} | {self.what} |\n"
 
     @property
     def section(self) -> str:

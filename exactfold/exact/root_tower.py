@@ -46,10 +46,12 @@ class RootTower:
             return p * x + q * y * square, p * y + q * x
         half = len(a) // 2
         a0, a1, b0, b1 = a[:half], a[half:], b[:half], b[half:]
-        low = self.times(a0, b0)
-        if any(a1) and any(b1):
-            high = self.times(self.times(a1, b1), self._radicands[half.bit_length() - 1])
-            low = sum_of(low, high)
+        if not any(a1):
+            return self.times(a0, b0) + self.times(a0, b1)
+        if not any(b1):
+            return self.times(a0, b0) + self.times(a1, b0)
+        high = self.times(self.times(a1, b1), self._radicands[half.bit_length() - 1])
+        low = sum_of(self.times(a0, b0), high)
         return low + sum_of(self.times(a0, b1), self.times(a1, b0))
 
     def inverse(self, a: Parts) -> Parts:

@@ -122,7 +122,9 @@ class ConvertDocument(TypedDict):
     version: Literal[1]
     pattern: PatternDocument | PanelsDocument
     output: str
+    """The file that was written."""
     field: FieldName
+    """That of the coordinates."""
     joins: list[FoldText]
     """Edges that --triangulate added."""
     read: ReadDocument | None

@@ -71,8 +71,8 @@ def read(
 
     If the digits of a drawing are inexact, the sheet that was meant is inferred
     (docs/import.md, The sheet that was meant), and `meant` of the result says how. `without` names
-    relations that were not meant, as in "straight@12", and `also` relations that were, as in
-    "parallel 3-4,8-9". `noise` is the noise level as a share of the size, and `unit` is n if the
+    relations that were not meant, as in `straight@12`, and `also` relations that were, as in
+    `parallel 3-4,8-9`. `noise` is the noise level as a share of the size, and `unit` is n if the
     angles are multiples of pi / n. With snap "exact", nothing is inferred.
 
     Raises `InputError`, whose message names the file and what is wrong with it.
