@@ -42,28 +42,67 @@ AMOUNT: Final = "90deg"
 """How far a sheet is folded on its still."""
 COLUMNS: Final = 4
 """Of the table at the top."""
+USUAL: Final = (
+    ", each counted once",
+    ", as flat vertices count double",
+    "; the dimension is the number of folds that can be folded independently",
+    "; all real, every one continues to a true motion",
+)
+"""What the page says once, at its top."""
 HEAD: Final = """# Gallery
 
-The patterns that come with exactfold, and one sheet of each family that it can build. Each has all
-its ways to fold, up to twelve, drawn on the crease pattern, and one of them folded in space. Sheets
-that fold in families have no such list. Of panels round vertices with more than four folds, only
-the ways are drawn on which the tangents of half the fold angles stay in proportion.
-
-Mountains are red, valleys are blue and dashed, folds that stay flat are grey. A triangle that
-points up marks a vertex that pops up, one that points down a vertex that pops down. The width of a
-line grows with the fold angle. Ways with the same mountain and valley letters are framed together:
-only the vertex signs tell them apart. A folded sheet is blue above and yellow below.
+The patterns that come with exactfold, and one sheet of each family that it can build: all ways to
+fold it, up to twelve, drawn on the crease pattern, and one of them folded in space. Sheets that
+fold in families have no such list. Of panels round vertices with more than four folds, only the
+ways are drawn on which the tangents of half the fold angles stay in proportion.
 """
-FOOT: Final = """## How this page is made
+READING: Final = f"""\
+Every number is proved. Where no more is said of a triangulated sheet, all branches are real, and
+each continues to a true motion. In numbers with multiplicity flat vertices count double. The
+dimension of a family is the number of folds that can be folded independently.
 
-`python docs/make_gallery.py` counts every pattern anew and writes what the count says. The commands
-below a pattern make the same pictures; of the Python lines a notebook shows what they return.
+Mountains are red, valleys blue and dashed, folds that stay flat grey. Triangles mark vertices that
+pop up or down. The width of a line grows with the fold angle. Ways with the same letters are framed
+together: only the vertex signs tell them apart. A folded sheet is blue above and yellow below.
 
-The windmill, fish and bird bases are traditional forms. The Miura fold is Koryo Miura's, the
-Yoshimura pattern is named after Yoshimaru Yoshimura, who described how thin tubes buckle. The files
-below "Drawn by others" come from Origami Simulator, with the MIT licence of that project, copyright
-2018 Amanda Ghassaei; the text of the licence is installed beside them. All other files were drawn
-for exactfold and come with its licence.
+These commands make the pictures of a pattern NAME, folded along way WAY. Without a list of ways the
+pattern alone is drawn, by `exactfold draw NAME -o NAME.svg`.
+
+```sh
+exactfold count NAME
+exactfold draw NAME --all --most {MOST} -o NAME.svg
+exactfold draw NAME --way WAY --folded {AMOUNT} -o NAME-folded.svg
+```
+"""
+IN_PYTHON: Final = """\
+The sheets from here on are no files. Each is built by the expression below its name, and a notebook
+shows what these lines return:
+
+```python
+import exactfold
+from exactfold.pattern import families
+from exactfold.pattern.degenerate import DEGENERATE
+
+found = exactfold.count(families.hypar(1))
+motion = exactfold.follow(found, 4)
+```
+"""
+ROWS: Final = """\
+Small sheets with an exception: a vertex that stays flat, a straight crease, a reflex corner. Each
+is `DEGENERATE[NAME]()` in the lines above, and is shown folded along one of its ways.
+
+| | sheet, and ways to start folding | what it is |
+|---|---|---|
+"""
+FOOT: Final = """## Where they come from
+
+`python docs/make_gallery.py` counts every pattern anew and writes this page. The windmill, fish and
+bird bases are traditional forms. The Miura fold is Koryo Miura's; the Yoshimura pattern is named
+after Yoshimaru Yoshimura, who described how thin tubes buckle. The files below "Drawn by others"
+were drawn by Amanda Ghassaei for
+[Origami Simulator](https://github.com/amandaghassaei/OrigamiSimulator), copyright 2018, with the
+MIT licence, which is installed beside them. All other files were drawn for exactfold and come with
+its licence.
 """
 DEGENERATES: Final = tuple(
     name for name in DEGENERATE if name not in ("flat-vertex", "hypar-straight")
@@ -94,11 +133,6 @@ SHOWN: Final = {
     "notched": "A sheet with four corners, one of them reflex.",
 }
 """What each of them is, in one line."""
-SOURCE: Final = (
-    "Drawn by Amanda Ghassaei for [Origami Simulator]"
-    "(https://github.com/amandaghassaei/OrigamiSimulator), MIT licence."
-)
-"""Who made the drawings that come from elsewhere."""
 GROUPS: Final[dict[str, tuple[str, ...]]] = {
     "Drawings": tuple(name for name in DRAWINGS if name not in BY_OTHERS),
     "Drawn by others": tuple(BY_OTHERS),
@@ -125,6 +159,8 @@ class Card:
     @property
     def files(self) -> dict[str, str]:
         """The pictures by the names of their files."""
+        if self.name in DEGENERATES:
+            return {f"{self.name}-small.svg": self.small}
         stills = {} if self.still is None else {f"{self.name}-folded.svg": self.still}
         return {f"{self.name}.svg": self.ways, f"{self.name}-small.svg": self.small} | stills
 
@@ -135,7 +171,11 @@ class Card:
         said = answer(found) if isinstance(found, BranchCount) else panels_answer(found)
         timeless = re.sub(r" \(\d+\.\d\d s\)", "", said.plain)
         number, _, more = timeless.partition(f" - {str(PROVED).upper()}")
-        return number, more
+        for said_above in USUAL:
+            more = more.replace(said_above, "")
+        real, moves = "(?:all|it is) real", "(?:every one|it) continues to a true motion"
+        simple = re.match(rf"; {real}, (.+), {moves}$", more)
+        return number, f"; {simple[1]}" if simple else more
 
     @property
     def what(self) -> str:
@@ -143,40 +183,31 @@ class Card:
         return SHOWN[self.name] if self.name in BUILT else examples()[self.name]
 
     @property
-    def lines(self) -> list[str]:
-        """What makes the pictures: commands, or Python for what is no file."""
-        name, number = self.name, number_listed(self.found)
-        if name in BUILT:
-            (module,) = re.findall(r"^\w+", BUILT[name])
-            home = "pattern.degenerate" if module == "DEGENERATE" else "pattern"
-            lines = ["import exactfold", f"from exactfold.{home} import {module}", ""]
-            lines.append(f"found = exactfold.count({BUILT[name]})")
-            return [*lines, f"motion = exactfold.follow(found, {self.way})"] if self.way else lines
-        count, draw = f"exactfold count {name}", f"exactfold draw {name}"
-        if not number:
-            return [count, f"{draw} -o {name}.svg"]
-        most = f" --most {MOST}" if number > MOST else ""
-        lines = [count, f"{draw} --all{most} -o {name}.svg"]
-        still = f"{draw} --way {self.way} --folded {AMOUNT} -o {name}-folded.svg"
-        return [*lines, still] if self.way else lines
+    def shown(self) -> str:
+        """What the page says of the pattern, once the table at the top has named it."""
+        return self.row if self.name in DEGENERATES else self.section
+
+    @property
+    def row(self) -> str:
+        """A line of the table of degenerate sheets."""
+        number, more = self.answer
+        small = image(f"{self.name}-small", f"{self.name}, folded along way {self.way}", SMALL)
+        count = f"{number}{more}".replace(" to start folding", "")
+        return f"| {small} | {self.name}<br>{count} | {self.what} |\n"
 
     @property
     def section(self) -> str:
-        """What the page says of the pattern."""
+        """A section of its own."""
         number, more = self.answer
-        name, language = self.name, "python" if self.name in BUILT else "sh"
         wide = width(self.ways) if number_listed(self.found) else ALONE
         pictures = [image(self.name, f"The ways to fold {self.name}", wide)]
+        told = f"**{number[:1].upper()}{number[1:]}**{more}."
         if self.still is not None:
             about = f"{self.name}, folded along way {self.way}"
             pictures.append(image(f"{self.name}-folded", about, STILL))
-        parts = [
-            f"### {self.name}",
-            fill(f"**{number[:1].upper()}{number[1:]}**: proved{more}.", 100),
-            f"{self.what}\n{SOURCE}" if name in BY_OTHERS else self.what,
-            "\n".join(pictures),
-            "\n".join([f"```{language}", *self.lines, "```"]),
-        ]
+            told += f" Folded: way {self.way}."
+        what = f"`{BUILT[self.name]}`: {self.what}" if self.name in BUILT else self.what
+        parts = [f"### {self.name}", fill(what, 100), fill(told, 100), "\n".join(pictures)]
         return "\n\n".join(parts) + "\n"
 
     @property
@@ -269,14 +300,22 @@ def written(name: str) -> Card:
 def page(cards: Iterable[Card]) -> str:
     """The page on all of these."""
     by_name = {made.name: made for made in cards}
-    cells = [made.cell for made in by_name.values()]
+    cells = [made.cell for made in cards_on_top(by_name.values())]
     cells += [""] * (-len(cells) % COLUMNS)
     rows = [cells[k : k + COLUMNS] for k in range(0, len(cells), COLUMNS)]
     table = [rows[0], [":---:"] * COLUMNS, *rows[1:]]
     parts = [HEAD, "\n".join(f"| {' | '.join(row)} |" for row in table) + "\n"]
+    parts.append(READING)
     for title, group in GROUPS.items():
-        parts += [f"## {title}\n", *(by_name[name].section for name in group)]
+        parts += [f"## {title}\n", *([IN_PYTHON] if title == "Families" else [])]
+        shown = [by_name[name].shown for name in group]
+        parts += [f"{ROWS}{''.join(shown)}"] if group == DEGENERATES else shown
     return "\n".join([*parts, FOOT])
+
+
+def cards_on_top(cards: Iterable[Card]) -> list[Card]:
+    """Those in the table at the top: the others stand in a table of their own."""
+    return [made for made in cards if made.name not in DEGENERATES]
 
 
 def write(wanted: Iterable[str]) -> None:

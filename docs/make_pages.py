@@ -445,30 +445,59 @@ def _row(parameter: Any, context: Any) -> str:
 
 
 def _prose(text: str) -> str:
-    return "\n\n".join(_markdown(" ".join(part.split())) for part in text.split("\n\n"))
+    return "\n\n".join(_markdown(_coded(part)) for part in text.split("\n\n"))
 
 
 def _cell(text: str) -> str:
-    return _markdown(" ".join(text.split())).replace("|", "\\|")
+    return _markdown(_coded(text)).replace("|", "\\|")
+
+
+def _coded(text: str) -> str:
+    """The text in one line, with options and JSON in backticks: their quotes stay straight.
+
+    >>> _coded('without --rim the default, else {"5": 1}; `--all` "as drawn"')
+    'without `--rim` the default, else `{"5": 1}`; `--all` "as drawn"'
+    """
+    parts = " ".join(text.split()).split("`")
+    for k in range(0, len(parts), 2):
+        parts[k] = re.sub(r'(?<![\w-])--[a-z][a-z-]*|\{"[^}]*\}|"\d+/\d+"', r"`\g<0>`", parts[k])
+    return "`".join(parts)
 
 
 # Schemas
+
+
+INSIDE: Final = "Objects inside others"
 
 
 def _schemas() -> str:
     text = (
         "# JSON schemas\n\n"
         "The JSON Schema (draft 2020-12) of everything that is printed with `--json`, and of the "
-        'lines of `--jsonl`. In Python `exactfold.schema("count")` returns the same. What the keys '
-        "mean is explained on the page [files and exit codes](../files.md).\n"
+        'lines of `--jsonl`. In Python `exactfold.schema("count")` returns the same. Keys that '
+        "need more words, and those that mean the same everywhere, are explained on the page "
+        "[files and exit codes](../files.md#json). Types whose names begin with a capital letter "
+        f"are [objects inside others](#{INSIDE.lower().replace(' ', '-')}).\n"
     )
+    parts: dict[str, dict[str, Any]] = {}
+    shown: list[dict[str, Any]] = []
     for name in DOCUMENTS:
         found = schema(name)
         objects = _objects(found)
+        parts |= found.get("$defs", {})
+        shown += objects
         version = objects[0]["properties"]["version"]["const"]
         text += f"\n## {name}\n\n{found['title']}; version {version}.\n\n{_keys(objects)}"
         text += f":::{{dropdown}} The schema\n```json\n{json.dumps(found, indent=1)}\n```\n:::\n"
-    return text
+    text += f"\n## {INSIDE}\n"
+    inside = {name: part for name, part in sorted(parts.items()) if part not in shown}
+    for name, part in inside.items():
+        text += f"\n### {name}\n\n{_cell(part.get('description', ''))}\n\n{_keys([part])}"
+    return re.sub(
+        rf"(?<= )({'|'.join(inside)})(?= or | \|)",
+        lambda found: f"[{found[0]}](#{found[0].lower()})",
+        text,
+    )
 
 
 def _objects(found: Mapping[str, Any]) -> list[dict[str, Any]]:
@@ -483,7 +512,7 @@ def _keys(objects: list[dict[str, Any]]) -> str:
     text = "| key | type | what it is |\n|---|---|---|\n"
     for key in dict.fromkeys(key for one in objects for key in one["properties"]):
         values = [one["properties"][key] for one in objects if key in one["properties"]]
-        kinds = dict.fromkeys(_kind(value) for value in values)
+        kinds = dict.fromkeys(kind for value in values for kind in _kind(value).split(" or "))
         told = next((value["description"] for value in values if "description" in value), "")
         always = all(key in one["required"] for one in objects)
         text += f"| `{key}` | {' or '.join(kinds)} | {_cell(told)}"
@@ -498,6 +527,8 @@ def _kind(value: Mapping[str, Any]) -> str:
         return ", ".join(f"`{json.dumps(item)}`" for item in value["enum"])
     if "$ref" in value:
         return str(value["$ref"]).rsplit(":", 1)[-1].rsplit("/", 1)[-1]
+    if value.get("type") == "array" and "items" in value:
+        return f"list of {_kind(value['items'])}"
     if "type" in value:
         kinds = value["type"] if isinstance(value["type"], list) else [value["type"]]
         return " or ".join(kinds)

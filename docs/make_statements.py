@@ -6,6 +6,7 @@ import re
 import sys
 import textwrap
 from functools import cache
+from itertools import groupby, takewhile
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
@@ -14,9 +15,7 @@ sys.path.insert(0, str(HERE.parent))
 from proofs import MODULES
 from proofs.__main__ import load
 from proofs.framework import Proof
-from proofs.mutation import garbled
 from proofs.reading import pieces
-from proofs.replacements import REPLACEMENTS
 from proofs.statements import How, Ruling, Severity, Statement
 
 SECTIONS = {
@@ -37,6 +36,32 @@ SECTIONS = {
     "D": "Appendix D: high-dimensional geometry",
     "T": "Statements of exactfold",
 }
+
+
+EQUATIONS = {
+    "length": "1",
+    "expanded": "2",
+    "isometry": "3",
+    "expanded2": "4",
+    "compat": "5",
+    "wheelstress": "7",
+    "stressmatrix": "8",
+    "Dcount": "9",
+    "B distinct": "10",
+    "constraint": "A6",
+    "outer": "B1",
+    "spokes": "B2",
+    "outer2": "B3",
+    "outer3": "B4",
+    "spokepar": "B5 to B7",
+    "firstpiece": "B8",
+    "simpletrig": "B13",
+    "form": "C4",
+    "determinant": "C5",
+    "equalangleeigs": "C8",
+    "ratio": "C9",
+}
+"""The numbers of the paper's equations, by their labels in its source."""
 
 
 PLAIN = {
@@ -114,33 +139,40 @@ def definitions() -> dict[str, str]:
 
 
 def entry(statement: Statement, proof: Proof) -> str:
-    """One statement in a few lines: its place, what it says, and what shows it.
+    """A statement that holds as printed, or one of exactfold, with its place and what shows it.
 
-    Of the note only the first sentence stands here; `python -m proofs KEY` prints all of it. What
-    does not hold as printed is on the page of errata, with the words of the paper.
+    Of the note only a condition stands here; `python -m proofs KEY` prints all of it. A theorem of
+    exactfold is stated on its own page.
     """
-    script = f"[{proof.name}](../proofs/{proof.name}.py)"
-    code = f"; {code_links(statement.code)}" if statement.code else ""
-    shown = f"*{basis(statement, proof)}*: {script}{code}"
-    if statement.ruling is not Ruling.AS_PRINTED:
-        ruling = "corrected" if statement.corrected else "false"
-        says = f"**{ruling}**, see [errata](errata.md)."
+    code = f" {code_links(statement.code)}" if statement.code else ""
+    key = f"[{statement.key}](../proofs/{proof.name}.py)"
+    page, _, title = statement.place.partition(", ")
+    shown = basis(statement, proof)
+    if page.startswith("docs/"):
+        name = page.removeprefix("docs/")
+        prefix = "" if title.startswith("Theorem") else f"{name.removesuffix('.md')}, "
+        says = f"[{prefix}{title}]({name})."
+        shown = "; ".join(part for part in shown.split("; ") if "in words: " not in part)
     else:
         note = sentence(statement.note)
         says = mathematics(statement.source) + (f" \u2014 {note}" if note else ".")
-    return f"{wrapped(f'- **{statement.key}**{place(statement)}: {says} {shown}')}\n"
+    return f"{wrapped(numbered(f'- {key}{place(statement)}: {says} *{shown}.*{code}'))}\n"
 
 
 def sentence(note: str) -> str:
     """The first sentence of a note; if it is long, only the condition that it begins with.
 
+    >>> sentence("Remark: the form of a vertex with N = 3 is definite")
+    ''
     >>> sentence("for regular ones. The others are counted in docs/theorem.md, 4")
     'for regular ones.'
     >>> sentence("for every triangulated disk: " + "and so on, " * 10)
     'for every triangulated disk.'
     """
+    if note.startswith("Remark: "):
+        return ""
     text = re.split(r"(?<=[\w)])\. (?=[A-Z])", " ".join(note.split()))[0]
-    for mark, most in (("; ", 20), (": ", 24)):
+    for mark, most in (("; ", 16), (": ", 20)):
         head = text.partition(mark)[0]
         if len(text.split()) > most and len(head.split()) > 2:
             text = head
@@ -150,7 +182,7 @@ def sentence(note: str) -> str:
 def place(statement: Statement) -> str:
     """The place without its section, which stands in the heading."""
     if statement.is_own:
-        return f" ({statement.place})"
+        return ""
     text = re.sub(
         r"^(Section [IVX]+( [A-D])?|Appendix [A-D]|Introduction),? ?", "", where(statement)
     )
@@ -160,45 +192,57 @@ def place(statement: Statement) -> str:
 def basis(statement: Statement, proof: Proof) -> str:
     """What it rests on, without what is true of all that does not hold as printed."""
     text = re.sub(r"proved for all \(\d+ steps?\)", "proved", proof.basis(statement))
+    text = re.sub(r"tested on (\d+ cases?)", r"\1", text).replace("shown by an example", "example")
     return re.sub(r"(^|; )the printed form refuted by an example$", "", text) or "refuted"
 
 
 def where(statement: Statement) -> str:
-    """The place in the paper, with the number of the equation."""
-    number = f", Eq. ({statement.equation})" if statement.equation else ""
-    return f"{statement.place}{number}"
+    """The place in the paper, with the number of the equation; of a quotation only its section."""
+    place = numbered(statement.place)
+    quotes = mathematics(statement.source).startswith("\u201c")
+    if quotes and not re.search(r"Eq\.|Fig|Table|Theorem", place):
+        place = place.partition(",")[0]
+    number = f"Eq. ({statement.equation})"
+    return f"{place}, {number}" if statement.equation and number not in place else place
 
 
-def printed(statement: Statement) -> list[str]:
-    """What the paper prints, and the formula that is put together from it if there is one."""
-    lines = [f"- printed: {mathematics(statement.source)}"]
-    return [*lines, f"- that is: {mathematics(statement.printed)}"] if statement.quoted else lines
+def numbered(text: str) -> str:
+    """Text that names equations of the paper by their numbers, where a statement has their labels.
+
+    >>> numbered("Eqs. (outer) and (spokes), after Eq. (Dcount)")
+    'Eqs. (B1) and (B2), after Eq. (9)'
+    """
+    pattern = rf"\(({'|'.join(EQUATIONS)})\)"
+    return re.sub(pattern, lambda label: f"({EQUATIONS[label[1]]})", text)
 
 
 def erratum(statement: Statement, proof: Proof) -> str:
-    """One erratum: place, severity, what is printed, what to print instead, why, and the proof."""
+    """One erratum: place, severity, the proof, what is printed, what to print instead, and why."""
     severity = statement.severity.value if statement.severity else ""
-    lines = [f"**{statement.key}** ({where(statement)}). *{severity.capitalize()}.*", ""]
-    lines += printed(statement)
-    if statement.corrected:
-        lines.append(f"- correct: {mathematics(statement.corrected)}")
-    else:
-        lines.append("- false, and not to be mended by a condition")
-    lines.append(f"- why: {' '.join(statement.note.split())}")
-    script = f"[`python -m proofs {statement.key}`](../proofs/{proof.name}.py)"
-    lines[-1] += f" ({script}: {basis(statement, proof)})"
-    text = "\n".join(wrapped(line) for line in lines) + "\n"
-    for old, new in REPLACEMENTS[statement.key]:
-        instead = [f"% {row}" for row in rows(old, 94)]
-        block = "\n".join([*instead, *rows(new, 96)])
-        text += f"\n```latex\n{block}\n```\n"
-    return f"{text}\n"
+    script = f"[{proof.name}](../proofs/{proof.name}.py)"
+    code = f" {code_links(statement.code)}" if statement.code else ""
+    lines = [
+        f"**{statement.key}** ({where(statement)}). *{severity.capitalize()}.* "
+        f"{script}: {basis(statement, proof)}.{code}",
+        "",
+        f"- printed: {mathematics(statement.source)}",
+        f"- correct: {changed(mathematics(statement.source), mathematics(statement.corrected))}"
+        if statement.corrected
+        else "- false, and not to be mended by a condition",
+        f"- why: {' '.join(statement.note.partition(' Remark: ')[0].split())}",
+    ]
+    return "\n".join(wrapped(numbered(line)) for line in lines) + "\n\n"
 
 
-def rows(latex: str, width: int) -> list[str]:
-    """LaTeX in lines of at most `width` characters, broken at spaces and where it was broken."""
-    options = {"break_long_words": False, "break_on_hyphens": False}
-    return [row for line in latex.splitlines() for row in textwrap.wrap(line, width, **options)]
+def changed(printed: str, corrected: str) -> str:
+    """The correction without the words with which the printed passage begins as well.
+
+    >>> changed("\u201cthe number of the folds is $`3`$\u201d", "the number of the folds is $`4`$")
+    '\u2026 is $`4`$'
+    """
+    old, new = printed.lstrip("\u201c").split(), corrected.split()
+    same = len(list(takewhile(lambda k: old[k : k + 1] == new[k : k + 1], range(len(new)))))
+    return f"\u2026 {' '.join(new[same - 1 :])}" if same > 3 else corrected
 
 
 def wrapped(line: str) -> str:
@@ -227,43 +271,31 @@ def pages() -> dict[str, str]:
     )
     papers = [s for s, _ in stated if not s.is_own]
     counts = {ruling: sum(s.ruling is ruling for s in papers) for ruling in Ruling}
-    names = {
-        Ruling.AS_PRINTED: "hold as printed",
-        Ruling.CORRECTED: "hold when corrected",
-        Ruling.FALSE: "is false" if counts[Ruling.FALSE] == 1 else "are false",
-    }
-    summary = ", ".join(f"{number} {names[ruling]}" for ruling, number in counts.items())
     steps = [step for proof in proofs for step in proof.steps]
-    tested = sum(step.how is How.CASES for step in steps)
-    formulas = sum(len(proof.claims) for proof in proofs)
-    mutants = sum(1 for proof in proofs for claim in proof.claims for _ in garbled(claim.right))
-    mistakes = sum(len(proof.changes) for proof in proofs)
-    head = (
-        "# The paper, statement by statement\n\n"
-        'Chen & Santangelo, "Branches of triangulated origami near the unfolded state". '
-        f"{len(papers)} statements of the paper: {summary}. {len(stated) - len(papers)} statements "
-        "of exactfold come last. In quotation marks or as a formula stands what the paper "
-        "prints, word by word, then a condition or a remark, then *what shows it*, the script, and "
-        "the code that uses it. *Proved* is a step that holds for all, "
-        "*tested on cases* is evidence and no proof. `python -m proofs KEY` runs the steps of a "
-        "statement and prints its whole note; `python -m proofs` runs "
-        f"all {len(steps)} steps, {tested} of which test exact cases. {formulas} statements are "
-        f"formulas that a step evaluates; of {mutants} small mistakes in them all are "
-        "noticed but for a few that leave them true, each with its reason in the tests. The other "
-        f"statements are in words; their steps refuse at least one of {mistakes} deliberate "
-        f"mistakes each. Written by `python docs/make_statements.py`.\n\n{STANDARD}"
+    head = STATEMENTS.format(
+        papers=len(papers),
+        printed=counts[Ruling.AS_PRINTED],
+        corrected=counts[Ruling.CORRECTED],
+        false=counts[Ruling.FALSE],
+        own=len(stated) - len(papers),
+        steps=len(steps),
+        tested=sum(step.how is How.CASES for step in steps),
     )
-    head = "\n".join(textwrap.fill(part, 100) for part in head.split("\n")) + "\n"
     wrong = [(s, p) for s, p in stated if s.ruling is not Ruling.AS_PRINTED]
-    body, errata, section = head, ERRATA + severities([s for s, _ in wrong]), ""
-    for statement, proof in stated:
-        title = SECTIONS.get(statement.key.partition(".")[0].replace(" ", ""), "Further statements")
-        if title != section:
-            section = title
-            body += f"\n## {section}\n\n"
-        body += entry(statement, proof)
+    body, errata = head, ERRATA + severities([s for s, _ in wrong])
+    for title, group in groupby(stated, lambda pair: section(pair[0].key)):
+        pairs = list(group)
+        held = [entry(s, p) for s, p in pairs if s.ruling is Ruling.AS_PRINTED]
+        keys = [s.key for s, _ in pairs if s.ruling is not Ruling.AS_PRINTED]
+        body += f"\n## {title}\n\n{''.join(held)}"
+        body += wrapped(f"- [Errata](errata.md): {', '.join(keys)}.") + "\n" if keys else ""
     errata += "".join(erratum(statement, proof) for statement, proof in wrong)
     return {"statements.md": body.rstrip() + "\n", "errata.md": errata.rstrip() + "\n"}
+
+
+def section(key: str) -> str:
+    """The heading below which a statement stands."""
+    return SECTIONS.get(key.partition(".")[0].replace(" ", ""), "Further statements")
 
 
 def severities(statements: list[Statement]) -> str:
@@ -284,28 +316,38 @@ MEANINGS = {
 }
 
 
-STANDARD = (
-    "**The standard.** A statement is judged as it is worded, for the patterns that its section "
-    "admits. If it is about generic patterns, special ones that break it are named in a note and "
-    "do not count against it; otherwise one exact counterexample does. Inferences "
-    "(\u201cwe have thus shown\u201d) and conjectures are judged as well; a remark with reserve is "
-    "named as such. Reports of computations are taken as reported, and compared with samples of "
-    "our own."
-)
+STATEMENTS = """# The paper, statement by statement
+
+Chen & Santangelo, "Branches of triangulated origami near the unfolded state", makes {papers}
+statements. {printed} hold as printed and are listed here, {corrected} hold when corrected, and
+{false} is false: see the [errata](errata.md). Theorems of exactfold come last. Each entry links the
+script that checks the statement, and names the place. Then it gives what the paper prints, word
+by word, a condition, *what shows it*, and the code that uses it.
+
+*Proved* means: a step holds in general. *Cases* are exact tests: evidence, and no proof. *In words*
+is a proof that no machine runs. `python -m proofs KEY` prints the whole statement, its note and its
+steps; `python -m proofs` runs all {steps} steps, {tested} of which test cases.
+[Mutation](mutation.md) says which deliberate mistakes the steps refuse. Written by
+`python docs/make_statements.py`.
+
+**The standard.** A statement is judged as it is worded, for the patterns that its section admits.
+Special patterns do not count against a statement about generic ones; otherwise one exact
+counterexample does. Inferences (\u201cwe have thus shown\u201d) and conjectures are judged as well.
+Reports of computations are taken as reported, and compared with samples of our own.
+"""
 
 
 ERRATA = """# Errata of the paper
 
 Every statement of Chen & Santangelo, "Branches of triangulated origami near the unfolded state",
-that does not hold as printed, with the correction and the script that checks it. For each an exact
-example refutes what is printed, or another place of the paper says otherwise. None touches the
-paper's main observation, which is a theorem: all branches are real ([Theorem 2](theorem.md)), and
-on almost every sheet $`2^{V_i - V_t}`$ of them differ ([Theorem 11](generic.md)). The
-[standard](statements.md) is that of all statements. Written by `python docs/make_statements.py`.
+that does not hold as printed ([the standard](statements.md)). For each an exact example refutes
+what is printed, or another place of the paper says otherwise. None touches the paper's main
+observation, which is a theorem: all branches are real ([Theorem 2](theorem.md)), and on almost
+every sheet $`2^{V_i - V_t}`$ of them differ ([Theorem 11](generic.md)).
 
-The blocks of LaTeX can be pasted: below a passage of the paper's source, which is a comment, stands
-what to put in its place. `python docs/read_paper.py PAPER.tex CORRECTED.tex` does it for all of
-them.
+`python -m proofs C.7` runs the steps of C.7 and prints the LaTeX that replaces the passage;
+`python docs/read_paper.py PAPER.tex CORRECTED.tex` makes all replacements. Written by
+`python docs/make_statements.py`.
 
 """
 

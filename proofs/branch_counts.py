@@ -98,7 +98,7 @@ def _single_vertex(script: Script) -> None:
         "IIIA.10",
         "Section III A",
         r"\text{``3-fold vertices \dots\ are always rigid''}",
-        note="the form of a vertex with N = 3 is definite modulo planes",
+        note="Remark: the form of a vertex with N = 3 is definite modulo planes",
     )
     schematic = count_branches(families.two_vertex())
     halved = script.alter("one branch for each pair of sign patterns", 0, 1)
@@ -198,7 +198,7 @@ def _rigid_triangles(script: Script) -> None:
         "IIIA.11",
         "Table (summary), caption",
         r"\text{systems with }V_t>0\text{: ``in all cases these were flat octahedra''}",
-        note="the smallest case; consistent with none for Vi = 2, 3",
+        note="Remark: the smallest case; consistent with none for Vi = 2, 3",
         code="families.flat_octahedron_in_square",
     )
 

@@ -100,14 +100,14 @@ def _freedom(script: Script) -> None:
         "Section II C, after Eq. (Dcount)",
         r"\text{``recovers the count for the degrees of freedom for a generic (folded) "
         r"triangulated origami derived from a linear analysis''}",
-        note="3V - 6 - E = Ve - 3 with E = 3Vi + 2Ve - 3",
+        note="Remark: 3V - 6 - E = Ve - 3 with E = 3Vi + 2Ve - 3",
     )
     state(
         "IIC.3",
         "Section II C, before Eq. (Dcount) and Fig. (triangle)",
         r"\text{``all folds are incident to at least one internal vertex'' \dots\ ``Such "
         r"folds do not couple to any others''}",
-        note="a convenience: Eq. (Dcount) does not need it",
+        note="Remark: a convenience: Eq. (Dcount) does not need it",
         code="CreasePattern.chords",
     )
     state(
@@ -259,8 +259,9 @@ def _folds(script: Script) -> None:
         at=shares,
         note="2^n branches over the 2^(3n) assignments of IIIA.4, n = Vi - Vt, where all have "
         "different assignments, as in the two-vertex square: 4 of 64; the printed count of "
-        "folds would give (1/4)^(n + 1). As a bound (1/4)^(n - 1) is true and an overestimate, but "
-        "not because of the constraints: these do not lower the number of branches",
+        "folds would give (1/4)^(n + 1). Remark: as a bound (1/4)^(n - 1) is true and an "
+        "overestimate, but not because of the constraints: these do not lower the number of "
+        "branches",
         code="BranchCount.repeated_assignments",
         severity=Severity.CONSTANT,
         rests="IIIA.4",
@@ -321,8 +322,8 @@ def _chambers(script: Script) -> None:
         "Section III A, after Eq. (B distinct)",
         r"\text{``the branches must lie in a lower-dimensional "
         r"}\mathbb{R}^{V_i-V_t+1}\text{''}",
-        note="each of the Vt inner heights is the value of the plane through the triangle's "
-        "corners",
+        note="Remark: each of the Vt inner heights is the value of the plane through the "
+        "triangle's corners",
         code="CreasePattern.without_rigid_parts",
         rests="IIC.7",
     )
@@ -332,8 +333,8 @@ def _chambers(script: Script) -> None:
         r"\text{``there are therefore }2^{V_i-V_t}\text{ choices of vertex sign patterns'' \dots\ "
         r"``we are left with only }2^{V_i-V_t-1}\text{ equivalence classes''}",
         at=[{**names, "values": (2 * names["signs"], names["signs"])} for names in chambers],
-        note="a vertex of degree 4 has one class and two branches. Here counted as those of "
-        "branches: every sign vector occurs",
+        note="Remark: a vertex of degree 4 has one class and two branches. Here counted as those "
+        "of branches: every sign vector occurs",
         code="BranchCount.sign_vectors",
     )
     script.formula(

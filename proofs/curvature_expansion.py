@@ -68,7 +68,7 @@ def _law_of_cosines(script: Script) -> None:
         r"\cos\alpha_{i,i+1}=\cos\psi_i\cos\psi_{i+1}+\sin\psi_i\sin\psi_{i+1}\cos\beta_{i,i+1}",
         over=[triangle(psi, psi1, phi, beta)],
         at=[triangle(*numbers)],
-        note="alpha is a side of the spherical triangle, beta its angle at the z axis",
+        note="Remark: alpha is a side of the spherical triangle, beta its angle at the z axis",
         equation="A2",
     )
 
@@ -143,7 +143,7 @@ def _expansion(script: Script) -> Change:
         r"\cos\alpha_{i,i+1}-\delta\psi_{i+1}^2\cos\alpha_{i,i+1}}{2\sin\alpha_{i,i+1}}",
         over=[slopes(change, *free)],
         at=[slopes(change, *numbers)],
-        note="no term of first order, since sin alpha is not 0",
+        note="Remark: no term of first order, since sin alpha is not 0",
         equation="A3",
     )
     return change
@@ -173,16 +173,16 @@ def _deficit(script: Script, change: Change) -> None:
         "A.4",
         "Appendix A, 'no matter K', and Fig. (singlevertex)",
         r"\sum_i\beta_{i,i+1}=2\pi",
-        note="a multiple of 2 pi for every star without a fold along the z axis; near the unfolded "
-        "state it is 2 pi by continuity",
+        note="near the unfolded state, by continuity. Remark: a multiple of 2 pi for every star "
+        "without a fold along the z axis",
     )
     script.state(
         "IIB.31",
         "Section II B, definition of the trace",
         r"\text{``it is non-self-intersecting for a vertex sufficiently close to being unfolded "
         r"and thus cuts the sphere into two pieces''}",
-        note="there every beta is close to its alpha in (0, pi), and they add up to 2 pi (A.4), so "
-        "that the trace is a graph over the equator",
+        note="Remark: there every beta is close to its alpha in (0, pi), and they add up to 2 pi "
+        "(A.4), so that the trace is a graph over the equator",
         rests="A.4",
     )
     script.formula(
@@ -240,7 +240,7 @@ def _heights(script: Script, change: Change) -> None:
     )
     script.formula(
         "IIB.1",
-        "Section II B, curvature constraint (before Eq. wheelstress)",
+        "Section II B, curvature constraint",
         r"0=\sum_I\{\frac{\psi_I\psi_{I+1}}{\sin\alpha_{I,I+1}}-\frac{1}{2}\cot\alpha_{I,I+1}"
         r"[\psi_I^2+\psi_{I+1}^2]\}",
         over=[elevated(free)],
@@ -362,11 +362,11 @@ def _curvature_form(script: Script) -> None:
     )
     script.state(
         "A.9",
-        "Appendix A, 'precisely the form ... from the self stresses in Eq. (compat)'",
+        "Appendix A, after Eq. (constraint)",
         r"\text{``This is precisely the form of the quadratic constraint that we get from "
         r"the self stresses in Eq. (\ref{eq:compat})''}",
-        note="the same equation: Eq. (constraint) is one half of Eq. (compat) with the stress of "
-        "Eq. (wheelstress). K_v > 0 on a cone over a convex polygon",
+        note="Remark: the same equation: Eq. (constraint) is one half of Eq. (compat) with the "
+        "stress of Eq. (wheelstress). K_v > 0 on a cone over a convex polygon",
         code="curvature_form, stress_form, wheel_stress",
         equation="A6",
     )

@@ -126,8 +126,8 @@ def _rigid_folds(script: Script) -> None:
         "too: the formula adds up a part with too many constraints and one with too few. 4 x 4 "
         "unit squares with (6,3) and (3,6) joined to the corner (4,4), to each other and to the "
         "ends of its sides: Ve - 3 - E = -2 (as printed: -3), but the corner has four folds and "
-        "moves while all squares stay flat, also after small changes of all vertices. The 4 x 4 "
-        "squares alone (-3) fold along a straight line",
+        "moves while all squares stay flat, also after small changes of all vertices. "
+        "Remark: the 4 x 4 squares alone (-3) fold along a straight line",
         severity=Severity.CLAIM,
     )
     state(
@@ -135,9 +135,9 @@ def _rigid_folds(script: Script) -> None:
         "Section V, non-triangulated origami",
         r"\text{``triangulate the origami, then add additional quadratic constraints to rigidify "
         r"certain folds''}",
-        note="a bar across the fold: with it the two faces carry one self stress, whose equation "
-        "(compat) is the square of the bend. The linear equation, bend = 0, says the same and "
-        "counts no solution twice",
+        note="Remark: a bar across the fold: with it the two faces carry one self stress, whose "
+        "equation (compat) is the square of the bend. The linear equation, bend = 0, says the same "
+        "and counts no solution twice",
         code="fold_functional",
     )
     *ends, h1, h2, h3, h4 = sympy.symbols("x1 y1 x2 y2 x3 y3 x4 y4 h1:5")
@@ -235,7 +235,7 @@ def _orthogonality(script: Script) -> None:
         "Section V",
         r"\sum_{i=1}^{N_F}\frac{\partial E}{\partial\theta_i}\cdot\Delta\theta_i\ge0\text{ "
         r"\dots\ ``must then be perpendicular to all undesired branches''}",
-        note="x >= 0 and -x >= 0 give x = 0",
+        note="Remark: x >= 0 and -x >= 0 give x = 0",
         equation="12",
         words="x >= 0 and -x >= 0",
     )
@@ -270,7 +270,8 @@ def _orthogonality(script: Script) -> None:
         "V.6",
         "Section V, first displayed formula",
         r"E[x]=\frac12\sum_{(n,m)}k_{(n,m)}(\theta_{(n,m)}-\bar\theta_{(n,m)})^2",
-        note="a definition: a weighted squared distance, with gradient -k theta-bar when unfolded",
+        note="Remark: a definition: a weighted squared distance, with gradient -k theta-bar when "
+        "unfolded",
         equation="11",
     )
     state(

@@ -138,9 +138,9 @@ def _nappes(script: Script) -> None:
         r"\text{``Points on the two nappes can be distinguished by the sign of their dot "
         r"products with }\mathbf{h}_-\text{ since the plane normal to }\mathbf{h}_-\text{ "
         r"separates the nappes''}",
-        note="h_- . h = K(h_-, h)/lambda with K(h_-) > 0. Any t with K(t) > 0 serves as well, "
-        "with K(t, h) in place of the dot product; the dot product does not change when an affine "
-        "function is added to h",
+        note="Remark: h_- . h = K(h_-, h)/lambda with K(h_-) > 0. Any t with K(t) > 0 serves as "
+        "well, with K(t, h) in place of the dot product; the dot product does not change when an "
+        "affine function is added to h",
         code="vertex_sign_functional",
     )
     script.state(
@@ -149,9 +149,9 @@ def _nappes(script: Script) -> None:
         r"\sigma_n=\textrm{sgn}[\mathbf{e}_n\cdot\mathbf{h}]\text{ \dots\ ``each of the "
         r"}\mathbf{e}_n\text{ defines a hyperplane separating the popped-up configurations "
         r"at }n\text{ from those popped-down there''}",
-        note="by IIB.24; sigma_n = 0 iff the star of n is flat. On branches every other timelike "
-        "vector that points up gives the same sign. e_n belongs to the negative eigenvalue in the "
-        "sign of Appendix C (positive in that of Eq. (wheelstress), see IIB.21)",
+        note="Remark: by IIB.24; sigma_n = 0 iff the star of n is flat. On branches every other "
+        "timelike vector that points up gives the same sign. e_n belongs to the negative "
+        "eigenvalue in the sign of Appendix C (positive in that of Eq. (wheelstress), see IIB.21)",
         code="vertex_sign_functional",
     )
 
@@ -247,7 +247,8 @@ def _components(script: Script) -> None:
         note="the first part for every vertex (proof: LARGEST in proofs/eigenvector.py). With a "
         "reflex corner the printed words can fail: spokes (1,0), (3,4), (-2,-1), (8,-2), "
         "eigenvalue 4/5, h_- = (25; 15, -9, -26, -5): a neighbour moves more than the vertex, "
-        "another one in the same direction. They can hold, too: (-3,-1), (6,0), (4,1), (2,3)",
+        "another one in the same direction. Remark: they "
+        "can hold, too: (-3,-1), (6,0), (4,1), (2,3)",
         code="curvature_form, round_cone",
         severity=Severity.CLAIM,
         words="LARGEST in proofs/eigenvector.py",

@@ -71,7 +71,7 @@ def _stresses(script: Script) -> None:
         *differences,
         of="IIB.4 B.1 B.2",
     )
-    code, read = "wheel_stress", "read off A.8: coefficient of (h_i - h_j)^2 / (2 length)"
+    code, read = "wheel_stress", "Remark: read off A.8: coefficient of (h_i - h_j)^2 / (2 length)"
     script.formula(
         "IIB.4",
         "Section II B, Eq. (wheelstress)",
@@ -110,7 +110,8 @@ def _stresses(script: Script) -> None:
         r"\bm{\sigma}^T\cdot\mathbf{C}=\mathbf{0}^T\text{ \dots\ ``self stresses are "
         r"assignments of tensions and compressions to edges that preserve force balance at "
         r"each vertex''}",
-        note="the columns of vertex n give the sum over its edges of sigma times the unit vector",
+        note="Remark: the columns of vertex n give the sum over its edges of sigma times the unit "
+        "vector",
         rests="IIA.14",
     )
 
@@ -142,8 +143,8 @@ def _rim(script: Script) -> None:
         r"\sigma_{i-1,i}=-\csc\eta_{i-1,i}/L_i",
         over=[wheel(4), wheel(5)],
         at=drawn(4, 5),
-        note="notation: both eta are angles at vertex i, so Eq. (outer3) is not Eq. (outer2) with "
-        "i - 1 for i, whose eta_{i-1,i} would be the other angle, at vertex i - 1",
+        note="both eta are angles at vertex i. Remark: so Eq. (outer3) is not Eq. (outer2) with i "
+        "- 1 for i, whose eta_{i-1,i} would be the other angle, at vertex i - 1",
         equation="B4",
     )
     sign = script.alter("perpendicular balance as printed", 1, -1)
@@ -221,8 +222,8 @@ def _rim(script: Script) -> None:
         quoted=r"\text{``The first piece is }\csc\alpha_{i-1,i}/L_{i-1}-\cot\alpha_{i-1,i}/L_i"
         r"\text{'' \dots\ ``the first part of the force along the spoke edge (Eq. "
         r"(\ref{eq:firstpiece})) cancels }F_{rim,\parallel,-}\text{''}",
-        note="Eq. (firstpiece) is minus F_{rim,-} = -cot(eta_{i-1,i})/L_i; for acute, right "
-        "and obtuse angles. The second piece is its mirror image",
+        note="Remark: Eq. (firstpiece) is minus F_{rim,-} = -cot(eta_{i-1,i})/L_i; for acute, "
+        "right and obtuse angles. The second piece is its mirror image",
         equation="B8",
     )
     sign = script.alter("foot of the height beyond the hub", 1, -1)
@@ -333,8 +334,9 @@ def _telescope(script: Script) -> None:
         "Appendix B, conclusion",
         r"\text{``Eqs. (\ref{eq:outer}) and (\ref{eq:spokes}) define a self stress on the "
         r"wheel graph''}",
-        note="short proof for every closed star with c_j != 0, back-tracks and any winding too: "
-        "d_{j+1} - (s_j/L_j^2) d_j = (c_j/L_j^2) J d_j telescopes at the hub, cancels at the rim",
+        note="Remark: short proof for every closed star with c_j != 0, back-tracks and any winding "
+        "too: d_{j+1} - (s_j/L_j^2) d_j = (c_j/L_j^2) J d_j telescopes at the hub, cancels at the "
+        "rim",
         code="wheel_stress",
     )
 

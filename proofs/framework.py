@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 from proofs.claims import Claim, is_zero
 from proofs.formulas import Names
 from proofs.reading import read
+from proofs.replacements import REPLACEMENTS
 from proofs.statements import How, Ruling, Statement, Step
 
 T = TypeVar("T")
@@ -296,9 +297,15 @@ def shown(step: Step) -> str:
 
 
 def report_statement(proof: Proof, statement: Statement) -> str:
-    """The text that `python -m proofs KEY` prints: one statement and the steps that name it."""
+    """The text that `python -m proofs KEY` prints: one statement and the steps that name it.
+
+    What does not hold as printed ends with the LaTeX of the paper's source and its replacement.
+    """
     steps = [shown(step) for step in proof.steps_of(statement.key)]
-    return "\n".join([*stated(proof, statement), "", "Steps", *(steps or ["  none is run"])])
+    lines = [*stated(proof, statement), "", "Steps", *(steps or ["  none is run"])]
+    for old, new in REPLACEMENTS.get(statement.key, ()):
+        lines += ["", "In the source, replace", old, "by", new]
+    return "\n".join(lines)
 
 
 def run(proof: Proof) -> int:

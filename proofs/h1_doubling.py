@@ -156,8 +156,8 @@ def _straight(script: Script) -> None:
         "IV.6",
         "Section IV, assumption of no crosses",
         r"\text{``these nongeneric collinearities can rigidify folds in a flat state''}",
-        note="on one of the three branches of the flat-vertex square a whole vertex star stays "
-        "flat",
+        note="Remark: on one of the three branches of the flat-vertex square a whole vertex star "
+        "stays flat",
         code="families.collinear_folds",
     )
 
@@ -217,7 +217,8 @@ def _doubling(script: Script) -> None:
         r"\text{``a neighborhood of the unfolded state of the configuration space of the "
         r"two butterflies together consists of two intersecting lines, topologically a "
         r"letter X''}",
-        note="v2 has degree 3 in the seed, so the doubling needs only that its fold is bent",
+        note="Remark: v2 has degree 3 in the seed, so the doubling needs only that its fold is "
+        "bent",
         code="families.single_vertex",
     )
     script.state(

@@ -179,7 +179,7 @@ def _small(script: Script, levels: list[set[Triangulation]]) -> None:
         "by enumeration; rooted: (H1, all) = "
         f"{shares} for Vi = 1 to 4. It fails first at Vi = 4. With a fold between corners it fails "
         "for a flat octahedron on one side of it, and with five corners for a single vertex. "
-        "Section II C leaves such folds out, but not in the butterflies of this section",
+        "Remark: Section II C leaves such folds out, but not in the butterflies of this section",
         "families.h1_sequence",
         severity=Severity.CONDITION,
     )
@@ -188,8 +188,8 @@ def _small(script: Script, levels: list[set[Triangulation]]) -> None:
         "Section IV, fractions",
         r"\text{``starting from }0\%\text{ at }V_i=3\text{'' \dots\ ``from 1 at }"
         r"V_i=3\text{''}",
-        note="the shares without boundary vertices of degree 3, and of H1 triangulations: follows "
-        "from IV.10; the others are IV.15 and IV.16",
+        note="Remark: the shares without boundary vertices of degree 3, and of H1 triangulations: "
+        "follows from IV.10; the others are IV.15 and IV.16",
         rests="IV.10",
     )
 
@@ -245,9 +245,8 @@ def _counts(script: Script, levels: list[set[Triangulation]]) -> None:
         "IV.8",
         "Section IV, definition of H1 moves",
         r"\text{``We will require that }v_2\text{ has degree at least 3''}",
-        note="v2 gains one edge and becomes interior; at degree 2 it would become a degree-3 "
-        "vertex. "
-        "Consequence: H1 triangulations have no triangulated triangles at all",
+        note="Remark: v2 gains one edge and becomes interior; at degree 2 it would become a "
+        "degree-3 vertex. Consequence: H1 triangulations have no triangulated triangles at all",
     )
     script.state(
         "IV.9",

@@ -95,8 +95,8 @@ def _base_case(script: Script) -> None:
         r",1}(\cot\alpha_{2,3}+\cot\alpha_{1,2})}{L_2}",
         over=[wheel(3)],
         at=drawn(3),
-        note="its second line needs Eq. (simpletrig) twice and is sigma_2/sin(alpha_31) already; "
-        "display B.14 is the first line multiplied out and belongs between the two",
+        note="Remark: its second line needs Eq. (simpletrig) twice and is sigma_2/sin(alpha_31) "
+        "already; display B.14 is the first line multiplied out and belongs between the two",
         equation="B11 and B12",
     )
     right = script.alter("the cotangents as printed", c, b)
@@ -185,7 +185,7 @@ def _induction_formulas(script: Script) -> None:
     script.identity("Delta sigma_{i+1}", mirrored - after, of="B.17")
     script.formula(
         "B.25",
-        "Appendix B, induction, Delta sigma_{i-1} before simplification",
+        "Appendix B, induction",
         r"\Delta\sigma_{i-1}=\frac{\csc\alpha_{i-1,i}}{L_i}+\frac{\csc\alpha_{i-"
         r"2,i-1}}{L_{i-2}}-\frac{\cot\alpha_{i-1,i}+\cot\alpha_{i-2,i-1}}{L_{i-1"
         r"}}-\frac{\csc(\alpha_{i-1,i}+\alpha_{i,i+1})}{L_{i+1}}-\frac{\csc"
@@ -193,7 +193,8 @@ def _induction_formulas(script: Script) -> None:
         r"\cot\alpha_{i-2,i-1}}{L_{i-1}}",
         over=[without(5)],
         at=[without(5, numbers=True)],
-        note="with Delta sigma_{i-1} = sigma_{i-1} - sigma^0_{i-1} and Eq. (spokes) for sigma_i",
+        note="Remark: with Delta sigma_{i-1} = sigma_{i-1} - sigma^0_{i-1} and Eq. (spokes) for "
+        "sigma_i",
         equation="B17",
     )
     script.formula(
@@ -216,7 +217,8 @@ def _induction_formulas(script: Script) -> None:
         "Appendix B, induction",
         r"\text{``the self stress evaluated on corresponding spokes of }G_{n+1}\text{ and "
         r"}G_{n,i}\text{ are identical except at the edges }i-1,i,i+1\text{''}",
-        note="Eq. (spokes) for spoke j contains L_{j-1}, L_j, L_{j+1} and its two angles only",
+        note="Remark: Eq. (spokes) for spoke j contains L_{j-1}, L_j, L_{j+1} and its two angles "
+        "only",
         rests="B.2",
     )
 
@@ -279,9 +281,9 @@ def _induction_step(script: Script) -> None:
         over=[without(5)],
         at=[without(5, numbers=True)],
         note="sin(beta_i) is +sin(alpha_{i-1,i} + alpha_{i,i+1}); in the last display only the "
-        "leftmost side needs the sign. (Or beta_i = alpha_{i-1,i} + alpha_{i,i+1} - pi, which "
-        "mends both.) For the sides see B.26. Example: five unit spokes (1,0), (4/5,3/5), "
-        "(7/25,24/25), (-1,0), (0,-1), the second taken out: 25/36 against -25/36",
+        "leftmost side needs the sign. Example: five unit spokes (1,0), (4/5,3/5), (7/25,24/25), "
+        "(-1,0), (0,-1), the second taken out: 25/36 against -25/36. Remark: or beta_i = "
+        "alpha_{i-1,i} + alpha_{i,i+1} - pi, which mends both. For the sides see B.26",
         equation="B20",
         severity=Severity.TYPO,
     )
@@ -385,7 +387,8 @@ def _choice_of_spoke(script: Script) -> None:
         r"\sum_{j=1}^N\sigma_j\mathbf{u}_j=\mathbf{0}",
         over=forces(wheel(4)),
         at=[names for drawing in drawn(4, 5, 6) for names in forces(drawing)],
-        note="by the corrected induction, and by B.24 without induction; printed for N = 3 (B.16)",
+        note="Remark: by the corrected induction, and by B.24 without induction; printed for N = 3 "
+        "(B.16)",
         code="wheel_stress",
         rests="B.24",
     )

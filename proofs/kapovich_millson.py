@@ -251,8 +251,8 @@ def _vanishing(script: Script) -> None:
         r"\text{``we can perturb the angles }\alpha\text{ to avoid these cases'' \dots\ "
         r"``and hence without changing the signature. Such a perturbation can also be "
         r"chosen small enough so that }f,b,w\text{ do not change''}",
-        note="turn the spokes d_n, 2 < n < N, that are parallel to d_1. It can be avoided: two "
-        "minors in sequence never vanish, and C.7 gives opposite signs around one that does",
+        note="Remark: turn the spokes d_n, 2 < n < N, that are parallel to d_1. It can be avoided: "
+        "two minors in sequence never vanish, and C.7 gives opposite signs around one that does",
     )
 
 

@@ -77,7 +77,8 @@ def _expansion(script: Script) -> None:
         "IIA.1",
         "Section II A, Eq. (length)",
         r"|\mathbf X_n-\mathbf X_m|^2-L_{(n,m)}^2=0",
-        note="the definition of a configuration; equal lengths imply equal face angles (polarity)",
+        note="Remark: the definition of a configuration; equal lengths imply equal face angles "
+        "(polarity)",
         code="CreasePattern.edges",
         equation="1",
     )
@@ -197,8 +198,8 @@ def _in_plane(script: Script) -> None:
         "IIA.4",
         "Section II A, after Eq. (expanded)",
         r"\text{``we can safely neglect terms of order }\mathcal O(\mathbf u_n^2)\text{''}",
-        note="C is injective modulo rigid motions, so |u| <= c(|h|^2 + |u|^2) on configurations: "
-        "u = O(h^2) and u^2 = O(h^4)",
+        note="Remark: C is injective modulo rigid motions, so |u| <= c(|h|^2 + |u|^2) on "
+        "configurations: u = O(h^2) and u^2 = O(h^4)",
     )
     script.state(
         "IIA.5",
@@ -305,9 +306,9 @@ def _stresses(script: Script) -> None:
         "IIA.10",
         "Section II A, after Eq. (compat)",
         r"\text{``these conditions which are necessary \dots\ are also sufficient''}",
-        note="Fredholm: b is in the image of C exactly if every left null vector annihilates it",
+        note="Remark: b is in the image of C exactly if every left null vector annihilates it",
         code="BranchSystem",
-        cited="Fredholm: b is in the image iff every left null vector annihilates it",
+        cited="the Fredholm alternative",
     )
 
 

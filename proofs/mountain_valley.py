@@ -312,7 +312,7 @@ def _examples(script: Script) -> None:
         r"(MVMVMV in cyclic order around the vertex)'' \dots\ ``the distribution of "
         r"mountain and valley folds do not distinguish different branches in configuration "
         r"space''}",
-        note="heights (-3,-3,1,-2,-2,-3) and (3,3,3,2,2,-1) at the ends of its folds in "
+        note="Remark: heights (-3,-3,1,-2,-2,-3) and (3,3,3,2,2,-1) at the ends of its folds in "
         "ccw order: same folds, one popped up, one popped down. As D = 3 both lie on one branch",
     )
 

@@ -129,7 +129,7 @@ def _not_true(script: Script) -> None:
         "Section II A, last paragraph",
         r"\text{``there are (non-triangulated) origami examples where second-order solutions do "
         r"not correspond to points lying in the true configuration space''}",
-        note="cited in the paper; an exact example is two zigzags of one shape, the second "
+        note="Remark: cited in the paper; an exact example is two zigzags of one shape, the second "
         "sheared, crossed by straight rows",
         code="decompose",
     )
@@ -242,8 +242,8 @@ def _fold_angles(script: Script) -> None:
         "IIA.13",
         "Section II A, second paragraph",
         r"\text{``one can linearize the fold angles as functions of the displacements''}",
-        note="the linear map is injective modulo rigid motions: a piecewise linear function on a "
-        "disk without bends is affine, so branches look alike in both coordinates",
+        note="Remark: the linear map is injective modulo rigid motions: a piecewise linear "
+        "function on a disk without bends is affine, so branches look alike in both coordinates",
         code="fold_functional",
     )
 

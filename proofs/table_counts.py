@@ -65,7 +65,7 @@ def _table(script: Script) -> None:
         r"\text{``a very small number of systems (}2\text{ with }V_i=4\text{, }1\text{ with "
         r"}V_i=5\text{ and }1\text{ with }V_i=6\text{'' \dots\ ``appearing with frequency "
         r"}\sim1/1000\text{''}",
-        note="4 of 3350 with Vi >= 4, where exceptions are possible; 4 of 8450 in all",
+        note="Remark: 4 of 3350 with Vi >= 4, where exceptions are possible; 4 of 8450 in all",
     )
 
 
@@ -103,7 +103,7 @@ def _appendix(script: Script) -> None:
         at=[
             {"V_i": p.Vi, "values": (bends,)} for p, (_, bends) in zip(sheets, spaces, strict=True)
         ],
-        note="heights modulo planes embed into the bends (IIA.13)",
+        note="Remark: heights modulo planes embed into the bends (IIA.13)",
     )
     script.formula(
         "D.3",
@@ -111,7 +111,7 @@ def _appendix(script: Script) -> None:
         r"\text{``we have }2^{V_i+1}\text{ vectors. We then compute the }(2^{V_i+1})^2\text{ "
         r"angles''}",
         at=[{"V_i": n, "values": (ends, ends * ends)} for n, ends in counts],
-        note="4^(Vi + 1) ordered pairs, each with itself included",
+        note="Remark: 4^(Vi + 1) ordered pairs, each with itself included",
     )
     state(
         "D.4",
@@ -145,8 +145,8 @@ def _appendix(script: Script) -> None:
         r"\text{``for each angle }\theta\text{, we also include the angle "
         r"}\pi-\theta\text{'' \dots\ ``each branch has an angle }0\text{ and }\pi\text{ "
         r"with itself''}",
-        note="all four pairs of ends; a share 2^(-Vi) of the ordered pairs is of a branch with "
-        "itself",
+        note="Remark: all four pairs of ends; a share 2^(-Vi) of the ordered pairs is of a branch "
+        "with itself",
     )
     angle, n = sympy.symbols("theta n", positive=True)
     density = sympy.sin(angle) ** (n - 1)
@@ -172,7 +172,7 @@ def _appendix(script: Script) -> None:
         "D.7",
         place,
         r"\text{``the number of data points going into the histograms is comparable''}",
-        note="2/3 of the pairs for Vi = 7",
+        note="Remark: 2/3 of the pairs for Vi = 7",
     )
 
 

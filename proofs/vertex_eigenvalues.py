@@ -160,7 +160,7 @@ def _all_angles(script: Script) -> None:
         r"\text{exactly one of which is positive}",
         note="with the signs of Eqs. (compat), (wheelstress): Q = 2 K_v; five equal angles: "
         "inertia (1, 2, 3). As printed if Q belongs to the negative of that stress, as in "
-        "Appendix C (-2 K_v) and in all that follows. The number N-2 and the size N+1 hold",
+        "Appendix C (-2 K_v) and in all that follows. Remark: the number N-2 and the size N+1 hold",
         code="curvature_form",
         equation="8",
         severity=Severity.CONSTANT,
@@ -208,7 +208,7 @@ def _matrix(script: Script) -> None:
         r"\sum_{n,m}Q_{nm}h_n h_m=0\text{ \dots\ ``}Q_{nm}\text{ be the symmetric matrix "
         r"corresponding to }\bm{\sigma}\text{ so that the quadratic form in Eq. "
         r"(\ref{eq:compat}) is written in terms of the vector of vertical displacements''}",
-        note="Q_nm = -sigma_(n,m)/|U_n - U_m| for n != m, and the rows add up to 0",
+        note="Remark: Q_nm = -sigma_(n,m)/|U_n - U_m| for n != m, and the rows add up to 0",
         code="stress_form",
         equation="8",
     )

@@ -139,7 +139,7 @@ def _forms(script: Script) -> None:
         r"A_n=-f_n-g_{n,n+1}-g_{n-1,n}=\frac{\sigma_n}{L_n}",
         over=[wheel(5)],
         at=drawn(4, 5),
-        note="sigma_n is the stress of Eq. (spokes); rationally f_n = (d_{n-1} x "
+        note="Remark: sigma_n is the stress of Eq. (spokes); rationally f_n = (d_{n-1} x "
         "d_{n+1})/(c_{n-1} c_n), g_{n,n+1} = -1/c_n with c_n = d_n x d_{n+1}",
         code="wheel_stress",
         equation="C3",
@@ -232,8 +232,8 @@ def _null_directions(script: Script) -> None:
         r"\text{``three null directions, corresponding to the vertical translation and "
         r"rotations about the }x-\text{ and }y-\text{axes'' \dots\ ``We can remove these by "
         r"setting }h_0=h_1=h_N=0\text{''}",
-        note="exactly three, by C.6: the remaining determinant chi(N) = -c_N/(c_1...c_{N-1}) is "
-        "not 0",
+        note="Remark: exactly three, by C.6: the remaining determinant chi(N) = "
+        "-c_N/(c_1...c_{N-1}) is not 0",
         code="curvature_form",
         rests="C.6",
     )

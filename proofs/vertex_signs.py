@@ -72,8 +72,8 @@ def _popping(script: Script) -> None:
         r"straight line only}",
         note="the trace has length 2 pi: if it holds antipodes it consists of two great "
         "semicircles. Then, too, one side has area less than 2 pi, and the definition of popping "
-        "is not affected. That all other closed curves of length 2 pi lie in an open hemisphere "
-        "is classical and not checked here",
+        "is not affected. Remark: that all other closed curves of length 2 pi lie in an open "
+        "hemisphere is classical and not checked here",
         severity=Severity.CONDITION,
         cited="closed curves of length below 2 pi lie in an open hemisphere",
     )
@@ -157,7 +157,7 @@ def _chambers(script: Script) -> None:
         r"vertices divides }\mathbb{R}^{V_i-V_t+1}\text{ into }2^{V_i-V_t}\text{ chambers'' "
         r"\dots\ ``Each of these chambers is topologically the product of an orthant of "
         r"}\mathbb{R}^{V_i-V_t}\text{ with a real line''}",
-        note="because the functionals e_v . h are independent: heights that are 0 on the "
+        note="Remark: because the functionals e_v . h are independent: heights that are 0 on the "
         "boundary, flat in the triangulated triangles, and have K_v(e_v, h) = 0 at the foldable v "
         "have K_v(h) <= 0 everywhere, and vanish by the key lemma for convex polygons "
         "(docs/theorem.md). The paper does not say why",

@@ -131,8 +131,8 @@ def _compatibility(script: Script) -> None:
         "Section II A, Eq. (isometry)",
         r"\left[\mathbf{C}\left(\begin{array}{c}\mathbf{u}_1\\ "
         r"\vdots\end{array}\right)\right]_{(n,m)}=\frac{\mathbf{U}_n-\mathbf{U}_m}{\left|\mathbf{U}_n-\mathbf{U}_m\right|}\cdot\left(\mathbf{u}_n-\mathbf{u}_m\right)",
-        note="row (n, m) of the rigidity matrix is this row times |U_n - U_m|, so its left kernel "
-        "consists of the stress densities sigma/|U_n - U_m|",
+        note="Remark: row (n, m) of the rigidity matrix is this row times |U_n - U_m|, so its left "
+        "kernel consists of the stress densities sigma/|U_n - U_m|",
         code="rigidity_matrix",
         equation="3",
     )
@@ -194,8 +194,8 @@ def _counts(script: Script) -> None:
         r"\text{``the }2N+2\text{ in-plane positions of the vertices are subject to "
         r"}2N\text{ constraints. Since there are three planar Euclidean motions, there must "
         r"be generically one self stress''}",
-        note="the 2N + 2 positions are the coordinates of N + 1 vertices. Exactly one self stress "
-        "for every wheel with non-degenerate triangles, generic or not",
+        note="Remark: the 2N + 2 positions are the coordinates of N + 1 vertices. Exactly one self "
+        "stress for every wheel with non-degenerate triangles, generic or not",
         code="self_stresses",
     )
 
@@ -244,11 +244,11 @@ def _force_balance(script: Script) -> None:
     )
     script.state(
         "IIB.5",
-        "Section II B, 'Eqs. (wheelstress) do give the coefficients of a self stress'",
+        "Section II B, after Eq. (wheelstress)",
         r"\text{``we prove that Eqs. (\ref{wheelstress}) do give the coefficients of a self "
         r"stress''}",
-        note="also after embedding in the larger structure with all other components zero; for the "
-        "proof of Appendix B see B.1 and following",
+        note="Remark: also after embedding in the larger structure with all other components zero; "
+        "for the proof of Appendix B see B.1 and following",
         code="wheel_stress",
     )
 
@@ -296,7 +296,7 @@ def _basis(script: Script) -> None:
         "IIB.6",
         "Section II B, first observation",
         r"\text{``at least }V_i\text{ self stresses''}",
-        note="the wheel stresses are linearly independent",
+        note="Remark: the wheel stresses are linearly independent",
     )
     script.state(
         "IIB.7",
@@ -312,8 +312,8 @@ def _basis(script: Script) -> None:
         "Section II B, last sentence before the configuration space of a vertex; Introduction",
         r"\text{``the wheel stress constraint is precisely Gaussian curvature "
         r"preservation''}",
-        note="the equations K_v(h) = 0, one an interior vertex, are equivalent to Eq. (compat) for "
-        "all self stresses (A.9 and IIB.7)",
+        note="Remark: the equations K_v(h) = 0, one an interior vertex, are equivalent to Eq. "
+        "(compat) for all self stresses (A.9 and IIB.7)",
         code="BranchSystem",
     )
 

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import io
-import json
 import sys
 from pathlib import Path
-from typing import Annotated, Any, Literal, TypedDict
+from typing import Annotated, Any
 
 import typer
 
-from exactfold._support.documents import Several
-from exactfold._support.plurals import counted
 from exactfold._support.processes import one_thread
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.app.options.branches import (
@@ -34,12 +31,10 @@ from exactfold.app.shell.parameters import (
 from exactfold.app.shell.shell import (
     EXIT,
     OUTPUT_FAILED,
-    Bar,
     output_failed,
     reported,
     standard_input,
     standard_streams,
-    wrote,
 )
 from exactfold.app.shell.usage import Command, Group, taking
 
@@ -336,26 +331,9 @@ def random_(
     ] = None,
 ) -> None:
     """Sample the paper's random squares: a Delaunay triangulation of random points."""
-    from exactfold.pattern.triangulating.random_squares import sample_random_square
-    from exactfold.pattern.writing.fold_writing import checked_target, fold_text, write_text
+    from exactfold.app.commands.examples import write_random_square
 
-    if output is not None and str(output) != "-":
-        checked_target(output, (".fold", ".json"), "a sheet")
-    title = f"random square, {interior} interior vertices, seed {seed}, denominator {denominator}"
-    title += ", points redrawn" if redraw else ""
-    with Bar("drawing"):
-        sample = sample_random_square(interior, seed, denominator, redraw=redraw)
-        text = fold_text(sample.pattern, title=title)
-    if output is None or str(output) == "-":
-        sys.stdout.write(text)
-    else:
-        write_text(output, text)
-        pattern = sample.pattern
-        wrote(
-            output,
-            f"{counted(len(pattern.vertices), 'vertex')}, {counted(len(pattern.folds), 'fold')}, "
-            f"{counted(len(pattern.triangles), 'panel')}",
-        )
+    write_random_square(interior, seed, denominator, redraw, output)
 
 
 @app.command(cls=Command, rich_help_panel="Ask")
@@ -382,42 +360,13 @@ def convert(**options: Any) -> int:
     return 0
 
 
-class Example(TypedDict):
-    """A pattern that comes with exactfold."""
-
-    name: str
-    description: str
-    path: str
-
-
-class ExamplesDocument(TypedDict):
-    """The patterns that come with exactfold."""
-
-    format: Literal["exactfold examples result"]
-    version: Literal[1]
-    examples: Several[Example]
-
-
 @app.command(cls=Command, rich_help_panel="Files")
 @reported
 def examples(as_json: Json = False) -> None:
     """List the patterns that come with exactfold; every command takes their names as files."""
-    from exactfold.app import report
-    from exactfold.pattern.data import example_path
-    from exactfold.pattern.data import examples as described
+    from exactfold.app.commands.examples import show_examples
 
-    if as_json:
-        document: ExamplesDocument = {
-            "format": "exactfold examples result",
-            "version": 1,
-            "examples": [
-                {"name": name, "description": text, "path": str(example_path(name))}
-                for name, text in described().items()
-            ],
-        }
-        print(json.dumps(document))
-    else:
-        report.show(report.examples_report(described()))
+    show_examples(as_json)
 
 
 def _version(value: bool) -> None:

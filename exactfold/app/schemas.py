@@ -76,7 +76,7 @@ DOCUMENTS: Final = {
     ),
     "convert": ("exactfold convert --json", "app.commands.convert:ConvertDocument"),
     "check": ("exactfold check --json", "app.verbs.check_document:CheckDocument"),
-    "examples": ("exactfold examples --json", "app.cli:ExamplesDocument"),
+    "examples": ("exactfold examples --json", "app.commands.examples:ExamplesDocument"),
     "study": ("exactfold study NAME --json", "app.commands.study:StudyDocument"),
     "study-row": ("exactfold study NAME --row ID --json", "app.commands.study:StudyRowDocument"),
     "studies": ("exactfold study --json", "app.commands.study:StudiesDocument"),

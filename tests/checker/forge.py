@@ -137,6 +137,13 @@ _MULTIPLICITY = re.compile(r"branch (\d+): multiplicity is (\d+)")
 _CLAIM = re.compile(r"claim (\w+) = .*, but it is (.*)")
 
 
+def stopped(document: Document, message: str) -> None:
+    """Refused with this message, and accepted without that line."""
+    with without(message):
+        verified(document)
+    refused(document, message)
+
+
 def completed(document: Document) -> Document:
     """The certificate with the claims that its evidence seems to show."""
     made: Document = json.loads(json.dumps(document))

@@ -8,7 +8,7 @@ from fractions import Fraction
 from functools import cache
 from typing import Any
 
-from forge import Document, refused, verified, without
+from forge import Document
 from forge_panels import SHEETS
 from panel_sheets import grid, mesh, miura, tiling
 
@@ -81,13 +81,6 @@ def forged(name: str, change: Change) -> Document:
     document = given(name)
     change(document["claims"], document["evidence"])
     return document
-
-
-def stopped(document: Document, message: str) -> None:
-    """Refused with this message, and accepted with the line that says so taken out."""
-    refused(document, message)
-    with without(message):
-        verified(document)
 
 
 def at_rest(document: Document) -> Document:

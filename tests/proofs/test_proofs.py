@@ -16,12 +16,12 @@ from proofs import MODULES
 from proofs.__main__ import load, main
 from proofs.claims import Claim
 from proofs.formulas import latex
-from proofs.framework import Proof, Script
+from proofs.framework import Proof, Script, report_statement
 from proofs.mutation import garbled, survivors
 from proofs.quotations import UNPRINTED, digest, plain
 from proofs.reading import Text, read
 from proofs.replacements import REPLACEMENTS
-from proofs.statements import Ruling, Severity, Statement
+from proofs.statements import Ruling, Severity
 
 ROOT = Path(__file__).parent.parent.parent
 QUOTATIONS = Path(__file__).parent / "quotations.json"
@@ -77,7 +77,7 @@ def test_every_proof_holds_and_the_pages_show_it() -> None:
     assert sorted(pages) == ["errata.md", "statements.md"]
     for name, text in pages.items():
         assert (folder / name).read_text(encoding="utf-8") == text
-    check_errata(pages["errata.md"], statements)
+    check_errata(pages["errata.md"], proofs.values())
     claims = [claim for proof in proofs.values() for claim in proof.claims]
     assert [wrong for claim in claims for wrong in unexplained(claim)] == []
     assert set(SURVIVORS) <= {claim.key for claim in claims}
@@ -88,22 +88,23 @@ def test_every_proof_holds_and_the_pages_show_it() -> None:
         check_replacement(claim)
 
 
-def check_errata(page: str, statements: list[Statement]) -> None:
-    """Everything that does not hold as printed is on the page, with what to paste."""
-    wrong = {s.key for s in statements if s.ruling is not Ruling.AS_PRINTED}
+def check_errata(page: str, proofs: Iterable[Proof]) -> None:
+    """Everything that does not hold as printed is on the page; the command prints what to paste."""
+    stated = [(s, p) for p in proofs for s in p.statements if s.ruling is not Ruling.AS_PRINTED]
+    wrong = {s.key for s, _ in stated}
     assert set(re.findall(r"(?m)^\*\*([IVABCD]+\.\d+)\*\* \(", page)) == wrong == set(REPLACEMENTS)
     entries = re.split(r"(?m)^(?=\*\*[IVABCD]+\.\d+\*\* \()", page)[1:]
-    for statement in statements:
-        if statement.key in wrong:
-            (entry,) = (e for e in entries if e.startswith(f"**{statement.key}**"))
-            entry = " ".join(entry.split())
-            assert f"Eq. ({statement.equation})" in entry or not statement.equation
-            assert (
-                f"*{statement.severity.value.capitalize()}.*" in entry if statement.severity else 0
-            )
-            assert "- why: " in entry
-            assert f"python -m proofs {statement.key}`" in entry
-            assert entry.count("```latex") == len(REPLACEMENTS[statement.key])
+    for statement, proof in stated:
+        (entry,) = (e for e in entries if e.startswith(f"**{statement.key}**"))
+        entry = " ".join(entry.split())
+        assert f"Eq. ({statement.equation})" in entry or not statement.equation
+        assert statement.severity
+        assert f"*{statement.severity.value.capitalize()}.*" in entry
+        assert "- why: " in entry
+        assert f"[{proof.name}](../proofs/{proof.name}.py)" in entry
+        printed = report_statement(proof, statement)
+        for old, new in REPLACEMENTS[statement.key]:
+            assert f"replace\n{old}\nby\n{new}" in printed
     for pairs in REPLACEMENTS.values():
         for old, new in pairs:
             braces = [text.count("{") - text.count("}") for text in (old, new)]

@@ -167,8 +167,11 @@ class CertifyDocument(TypedDict):
     distinct: int
     """The number of disjoint boxes."""
     real: int
+    """How many zeros in them are proved real."""
     nonreal: int
+    """How many zeros in them are proved not real."""
     unknowns: list[str]
+    """Their names."""
     equations: str
     """What the unknowns and the equations are."""
     points: list[PointDocument]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from exactfold._support.verdict import PROVED, UNDECIDED
@@ -11,7 +12,7 @@ from exactfold.app.commands.branch import also_found
 from exactfold.app.commands.driving import driven_angles
 from exactfold.app.commands.ways import choice_of
 from exactfold.app.options.motions import FoldOptions
-from exactfold.app.pictures.film import FILMS, checked_film, pillow, write_film
+from exactfold.app.pictures.film import FILMS, checked_encoder, checked_film, write_film
 from exactfold.app.pictures.picture_files import checked_picture, write_picture
 from exactfold.app.shell.given import Given
 from exactfold.app.shell.patterns import in_doubt, read_any, tell_doubt, verdict
@@ -19,7 +20,8 @@ from exactfold.app.shell.shell import EXIT, Bar, name_of, say
 from exactfold.app.verbs.choosing import choose
 from exactfold.app.verbs.chosen import ChosenBranch, ChosenPanels
 from exactfold.app.verbs.moving import along, along_panels, prove
-from exactfold.errors import UndecidedBranchError, UsageError
+from exactfold.certificates.entries import write_certificate
+from exactfold.errors import NotApplicableError, UndecidedBranchError, UsageError
 from exactfold.motion.curves.motion import Motion
 from exactfold.motion.following import Goal
 from exactfold.motion.writing import ENDINGS, write_motion
@@ -48,8 +50,9 @@ class Wanted(FoldOptions):
         The exit code is 0 if the branch is proved or the modes provably fold, wherever the motion
         ends; with a certificate the motion must be proved, too. A branch that is undecided is not
         an error: the reason is printed to stderr. If no way was named, a line says which way was
-        taken, and why. Raises the other errors of `read_any`, `choose`, `along`, `along_panels` and
-        `write_motion`, and `UsageError` for options that belong to the other kind of sheet.
+        taken, and why. The certificate of a motion of a family proves how true motions begin.
+        Raises the other errors of `read_any`, `choose`, `along`, `along_panels` and `write_motion`,
+        and `UsageError` for options that belong to the other kind of sheet.
         """
         from exactfold.app import report
 
@@ -71,7 +74,7 @@ class Wanted(FoldOptions):
             proof = self._proof(motion, chosen, bar)
             motion = motion if proof is None else proof.motion
             bar("writing")
-            written = self._written(motion, proof)
+            written = self._written(motion, proof, opened)
         if self.as_json:
             document = in_doubt(opened, motion.to_dict(name_of(self.file), written))
             print(json.dumps({**document, "proof": None if proof is None else proof.to_dict()}))
@@ -81,7 +84,8 @@ class Wanted(FoldOptions):
         if isinstance(motion, Motion) and motion.branch.status is not PROVED:
             say(f"the branch is not proved: {motion.branch.reason}")
             return EXIT[motion.branch.status]
-        return EXIT[verdict(opened, PROVED if proof is None else proof.status)]
+        unproved = UNDECIDED if self.certificate is not None else PROVED
+        return EXIT[verdict(opened, unproved if proof is None else proof.status)]
 
     @property
     def _is_film(self) -> bool:
@@ -95,7 +99,7 @@ class Wanted(FoldOptions):
             if not self._is_film:
                 checked_target(self.output, (*ENDINGS, *FILMS), "a motion")
             else:
-                pillow()
+                checked_encoder(self.output.suffix.lower())
         for drawn in (self.plot, self.picture):
             if drawn is not None:
                 checked_picture(drawn)
@@ -170,7 +174,7 @@ class Wanted(FoldOptions):
         chosen: ChosenBranch | ChosenPanels,
         bar: Bar,
     ) -> MotionProof | PanelProof | None:
-        if self.certificate is None:
+        if self.certificate is None or self._is_of_family(motion):
             return None
         if isinstance(motion, Motion) and isinstance(chosen, ChosenBranch):
             from exactfold.motion.persistence import prove_persistently
@@ -180,10 +184,43 @@ class Wanted(FoldOptions):
         bar("proving")
         return prove(motion)
 
+    def _is_of_family(self, motion: Motion | PanelMotion | FamilyMotion) -> bool:
+        from exactfold.motion.panels.families import FamilyMotion
+
+        return isinstance(motion, FamilyMotion)
+
+    def _beginning(
+        self, opened: Opened, motion: Motion | PanelMotion | FamilyMotion, file: Path
+    ) -> bool:
+        """Write the certificate that true motions begin with the letters of a motion of a family.
+
+        Nothing more is proved of such a motion. The folds that stay flat at first are left free. If
+        this is not proved either, the reason is printed.
+        """
+        from exactfold.design.assignments.certificate import match_certificate
+        from exactfold.design.panels.match import match_panels
+
+        letters = {fold: x for fold, x in motion.assignment.items() if x in "MV"}
+        matched = match_panels(opened, letters)
+        try:
+            certificate = match_certificate(matched)
+        except NotApplicableError as error:
+            say(f"no certificate was written: {error}")
+            return False
+        write_certificate(certificate, file)
+        say(
+            "the certificate proves that true motions begin with these mountains and valleys; "
+            "nothing more is proved of this one, which was followed in floats"
+        )
+        return True
+
     # --- files -----------------------------------------------------------------------------------
 
     def _written(
-        self, motion: Motion | PanelMotion | FamilyMotion, proof: MotionProof | PanelProof | None
+        self,
+        motion: Motion | PanelMotion | FamilyMotion,
+        proof: MotionProof | PanelProof | None,
+        opened: Opened,
     ) -> list[str]:
         from exactfold.app import report
 
@@ -200,7 +237,10 @@ class Wanted(FoldOptions):
             name = f"{title}, {motion.name}" if title else motion.name
             write_picture(report.motion_stills(motion, title=name), self.picture)
             written.append(str(self.picture))
-        if self.certificate is not None and proof is not None:
+        if self.certificate is not None and proof is None:
+            if self._beginning(opened, motion, self.certificate):
+                written.append(str(self.certificate))
+        elif self.certificate is not None and proof is not None:
             if proof.write(self.certificate):
                 written.append(str(self.certificate))
             else:

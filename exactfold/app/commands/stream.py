@@ -64,7 +64,13 @@ class Streaming:
         apart(self.file, self.pattern)
         require_file(self.file, resume=True)
         with Bar("reading") as bar:
-            file = read(self.pattern, self.asked.reading, "--stream", verbose=self.asked.verbose)
+            file = read(
+                self.pattern,
+                self.asked.reading,
+                "--stream",
+                verbose=self.asked.verbose,
+                doubted=self.asked.as_json,
+            )
             _require_streamable(file.pattern)
             require_file(self.file, self.asked.resume)
             with resumable(self.file, self.again), interruptible():

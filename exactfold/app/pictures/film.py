@@ -6,6 +6,7 @@ import base64
 import io
 import tempfile
 from collections.abc import Sequence
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -59,7 +60,7 @@ def checked_film(path: Path) -> str:
 
 def _drawn(motion: SheetInMotion, frames: int, size: int) -> list[Image]:
     """Pictures of a motion, drawn at a larger scale first, so that lines are smooth."""
-    module, pen = pillow(), _pen()
+    module, pen = _pillow(), _pen()
     large = _FINER * size
     seen, height = seen_frames(motion, frames, large)
     found = []
@@ -103,14 +104,21 @@ def film(pictures: Sequence[Image], ending: str, seconds: float) -> bytes:
     raise UsageError(f"an animation ends in {' or '.join(ENDINGS)}, not in {ending!r}")
 
 
-def pillow() -> Any:
-    """The package that reads and writes pictures; raises `PackageMissingError`."""
-    try:
-        from PIL import Image
-    except ImportError:
+def checked_encoder(ending: str) -> None:
+    """Check, before the work, that files with this ending can be written.
+
+    Raises `PackageMissingError` for MP4 files without imageio and ffmpeg.
+    """
+    if ending == ".mp4" and not all(find_spec(name) for name in ("imageio", "imageio_ffmpeg")):
         raise PackageMissingError(
-            "animations need Pillow: pip install 'exactfold[animation]'"
-        ) from None
+            "MP4 files need imageio with ffmpeg: pip install 'exactfold[animation]', or write .gif"
+        )
+
+
+def _pillow() -> Any:
+    """Pillow is imported only where pictures are read or written, because that takes time."""
+    from PIL import Image
+
     return Image
 
 
@@ -121,7 +129,7 @@ def _pen() -> Any:
 
 
 def _opened(data: bytes) -> Image:
-    module = pillow()
+    module = _pillow()
     try:
         picture = module.open(io.BytesIO(data), formats=["PNG"])
         if picture.width * picture.height > MOST_PIXELS:
@@ -136,7 +144,7 @@ def _gif(pictures: Sequence[Image], seconds: float) -> bytes:
     pause = max(seconds / len(pictures), _LEAST_PAUSE)
     palette = _side_by_side(pictures).quantize(_COLOURS)
     first, *others = (
-        one.quantize(palette=palette, dither=pillow().Dither.NONE) for one in pictures
+        one.quantize(palette=palette, dither=_pillow().Dither.NONE) for one in pictures
     )
     target = io.BytesIO()
     milliseconds = 10 * max(round(100 * pause), 2)
@@ -148,21 +156,16 @@ def _side_by_side(pictures: Sequence[Image]) -> Image:
     """A few of the pictures in one, so that their colours are those of the animation."""
     some = pictures[:: -(-len(pictures) // _FEW)]
     width, height = some[0].size
-    sheet: Image = pillow().new("RGB", (width * len(some), height))
+    sheet: Image = _pillow().new("RGB", (width * len(some), height))
     for k, picture in enumerate(some):
         sheet.paste(picture, (k * width, 0))
     return sheet
 
 
 def _mp4(pictures: Sequence[Image], seconds: float) -> bytes:
-    try:
-        import imageio_ffmpeg  # noqa: F401
-        from imageio.v3 import imwrite
-    except ImportError:
-        raise PackageMissingError(
-            "MP4 files need imageio with ffmpeg: pip install 'exactfold[animation]'"
-        ) from None
+    checked_encoder(".mp4")
     import numpy as np
+    from imageio.v3 import imwrite
 
     width, height = (side - side % 2 for side in pictures[0].size)
     frames = [np.asarray(one.crop((0, 0, width, height))) for one in pictures]

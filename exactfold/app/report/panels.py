@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from exactfold.motion.panels.listing import PanelWay
+    from exactfold.panels.modes.extension import Extension
     from exactfold.panels.partial import Drawn
     from exactfold.panels.result import Decomposition
     from exactfold.pattern.panel_pattern import Edge
@@ -224,7 +225,7 @@ def _notes(result: Decomposition, everything: bool) -> list[str]:
             "even so, it is often known whether the sheet starts to fold with given mountains and "
             "valleys: see `exactfold match`"
         )
-    if result.warning is not None:
+    if result.warning is not None and result.warning not in result.reason:
         notes.append(f"warning: {result.warning}")
     return notes
 
@@ -252,8 +253,27 @@ def _table(result: Decomposition, ways: Sequence[PanelWay], everything: bool) ->
         verdict = way.verdict
         said = {str(PROVED): "yes", str(UNDECIDED): "undecided"}.get(str(verdict), "no")
         cells = [str(way.dimension)] if families else []
-        table.add_row(str(way.number), *cells, shown, f"{said}: {way.by}")
+        table.add_row(str(way.number), *cells, shown, f"{said}: {_because(way)}")
     return table
+
+
+def _because(way: PanelWay) -> str:
+    """Why a way truly folds or not, in the words of folded paper (docs/panels.md, 4)."""
+    if way.verdict is not PROVED:
+        return way.by
+    reasons = sorted({_of_mode(mode.extends) for mode in way.modes})
+    reasons += ["motions start along it"] if way.spaces else []
+    return " and ".join(reasons) or "folds from edge to edge"
+
+
+def _of_mode(extends: Extension) -> str:
+    from exactfold.panels.modes.extension import FOREST, LINEAR
+
+    if extends.by == FOREST:
+        return "no loop of folds"
+    if extends.by == LINEAR:
+        return "loops close at all angles"
+    return f"loops close, checked to order {extends.order}"
 
 
 def _legend(result: Decomposition, ways: Sequence[PanelWay], everything: bool) -> str:

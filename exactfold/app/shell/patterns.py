@@ -46,12 +46,14 @@ def located(path: Path) -> Path:
     )
 
 
-def read(path: Path, reading: Reading, needs: str, *, verbose: bool = False) -> Triangulated:
-    """Open a triangulated sheet for the command `needs`, and print warnings to stderr.
+def read(
+    path: Path, reading: Reading, needs: str, *, verbose: bool = False, doubted: bool = True
+) -> Triangulated:
+    """Open a triangulated sheet for the command `needs`, and print warnings as `read_any` does.
 
     Raises the errors of `located`, `open_pattern` and `triangles`.
     """
-    opened = read_any(path, reading, verbose=verbose)
+    opened = read_any(path, reading, verbose=verbose, doubted=doubted)
     return Triangulated(triangles(opened, needs), opened)
 
 

@@ -198,7 +198,10 @@ def prove(
     if isinstance(motion, PanelMotion):
         return prove_panels(motion)
     if isinstance(motion, FamilyMotion):
-        raise NotFollowedError(f"no proof of such a motion is known: {motion.reason}")
+        raise NotFollowedError(
+            f"this motion has no proof: it is {motion.reason}; `match` with its letters proves "
+            "that true motions begin like it"
+        )
     if not isinstance(motion, Motion):
         raise UsageError(f"{type(motion).__name__} is not a motion: `follow` makes one")
     return prove_motion(motion, progress=progress)

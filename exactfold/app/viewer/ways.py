@@ -16,8 +16,8 @@ from exactfold.app.viewer.families import Representative
 from exactfold.branches.values.export import AMOUNT
 from exactfold.errors import ExactfoldError, WorkerDiedError
 from exactfold.motion.following import follow
-from exactfold.motion.panels.followable import LINEAR
 from exactfold.motion.proving import prove
+from exactfold.panels.modes.extension import FOREST, LINEAR
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.opening import panels
 
@@ -348,7 +348,7 @@ def panel_way(ways: Decomposition, way: PanelWay) -> Way:
 
 def _shown_by(by: str) -> str:
     """The reason why a mode truly folds, in words (docs/panels.md, 4)."""
-    if by == "forest":
+    if by == FOREST:
         return "its vertices form no loop"
     if by == LINEAR:
         return "the tangents of half its fold angles stay in proportion"

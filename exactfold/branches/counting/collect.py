@@ -187,7 +187,7 @@ def not_convex(pattern: CreasePattern) -> str:
         f"the sheet has {pattern.Ve} boundary vertices, so it has {pattern.degrees_of_freedom} "
         f"degrees of freedom, and a reflex corner, vertex {pattern.reflex_corner}{chords}: for "
         "such a sheet, shapes with given boundary heights need not be real, and no theorem gives "
-        "their number (docs/any_border.md, A border that is not convex)"
+        "their number (docs/any_border.md, A boundary that is not convex)"
     )
 
 

@@ -5,8 +5,8 @@ A space of first-order motions is given by a basis, and a basis vector is {fold:
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from itertools import combinations
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import combinations, product
 from typing import Any
 
 from ..core import limits
@@ -16,6 +16,7 @@ from ..sheets.panels import Edge, PanelSheet, cross, pair
 from .reduction import Vector, zero
 
 MOST_STEPS = limits.SPACE_STEPS
+MOST_SUMMED = 4
 
 Motion = dict[Edge, Number]
 """A motion, as the densities of the folds; densities that are 0 are left out."""
@@ -135,7 +136,9 @@ class Forms:
         key = v, *map(id, motions)
         if key not in self._found:  # the motions are kept, so that no others get their numbers
             local = [{fold: x for fold, x in motion.items() if fold in folds} for motion in motions]
-            self._found[key] = motions, self._diagonal(v, local)
+            gradients = [self.gradient(v, motion) for motion in local]
+            work = [[self._value(weights, motion) for motion in local] for weights in gradients]
+            self._found[key] = motions, list(self._squares(work))
         nothing = self.sheet.tower.number(0)
         result: Squares = []
         for d, values in self._found[key][1]:
@@ -145,11 +148,8 @@ class Forms:
             result.append((d, all_values))
         return result
 
-    def _diagonal(self, v: int, local: Space) -> Squares:
-        """The form of a vertex on some motions, by completing squares."""
-        gradients = [self.gradient(v, motion) for motion in local]
-        work = [[self._value(weights, motion) for motion in local] for weights in gradients]
-        result: Squares = []
+    def _squares(self, work: list[list[Number]]) -> Iterator[tuple[Number, list[Number]]]:
+        """Write a symmetric matrix as sum d l^2, one square after the other."""
         while True:
             k = next((k for k, row in enumerate(work) if not zero(row[k])), None)
             if k is not None:
@@ -158,11 +158,11 @@ class Forms:
                 pairs = ((i, j) for i, row in enumerate(work) for j in range(i))
                 first = next(((i, j) for i, j in pairs if not zero(work[i][j])), None)
                 if first is None:
-                    return result
+                    return
                 i, j = first
                 values = [x + y for x, y in zip(work[i], work[j], strict=True)]
                 value = work[i][j] + work[i][j]
-            result.append((self.sheet.tower.number(1) / value, values))
+            yield self.sheet.tower.number(1) / value, values
             self.work.count(len(work) ** 2, value)
             work = [
                 [
@@ -171,6 +171,42 @@ class Forms:
                 ]
                 for row, a in zip(work, values, strict=True)
             ]
+
+    def narrowing_sum(self, forms: Mapping[int, Squares], size: int) -> Squares:
+        """A sum of forms with signs that is semidefinite, or a product of two linear functions.
+
+        It vanishes where the forms do. It is empty if there is none. At most `MOST_SUMMED` forms
+        are added.
+        """
+        if not 1 < len(forms) <= MOST_SUMMED:
+            return []
+        for signs in product((0, 1, -1), repeat=len(forms)):
+            used = [(s, form) for s, form in zip(signs, forms.values(), strict=True) if s]
+            if len(used) < 2 or used[0][0] < 0:
+                continue
+            found: Squares = []
+            for d, values in self._squares(self._added(used, size)):
+                found.append((d, values))
+                if len(found) > 2 and len({weight.sign() for weight, _ in found}) > 1:
+                    break
+            else:
+                if found:
+                    return found
+        return []
+
+    def _added(self, forms: Sequence[tuple[int, Squares]], size: int) -> list[list[Number]]:
+        """The matrix of a sum of forms with signs, on a basis of so many motions."""
+        nothing = self.sheet.tower.number(0)
+        total = [[nothing] * size for _ in range(size)]
+        for s, form in forms:
+            for d, values in form:
+                some = [(k, x) for k, x in enumerate(values) if not zero(x)]
+                self.work.count(len(some) ** 2, d)
+                for j, x in some:
+                    scaled = d * x if s > 0 else -(d * x)
+                    for k, y in some:
+                        total[j][k] = total[j][k] + scaled * y
+        return total
 
     def gradient(self, v: int, motion: Vector, bits: int | None = None) -> dict[Edge, Any]:
         """The derivatives of sum_{k<j} w_k w_j [d_k, d_j] by each density, at a motion.

@@ -13,7 +13,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from ..core import limits
-from ..core.reading import LimitError, at_most, require
+from ..core.reading import LimitError, at_most
 from ..core.towers import Number
 from ..sheets.panels import Edge
 from .forms import Forms, Motion, Space, Squares, folds_of
@@ -99,8 +99,9 @@ class Spaces(Forms):
     def parts(self, space: Space) -> list[Space]:
         """The space as a direct sum, with one part for each set of folds that vertices join.
 
-        Each condition imposed so far is about the densities at one vertex. So if a motion meets
-        them all, its restriction to one such set, with the other folds flat, meets them too.
+        If each condition imposed so far is about the densities at one vertex, and a motion meets
+        them all, its restriction to one such set, with the other folds flat, meets them too. A sum
+        of the forms of several vertices may join such sets; then the space is one part.
         """
         groups: list[set[Edge]] = []
         for fold in folds_of(space):
@@ -118,8 +119,7 @@ class Spaces(Forms):
         for group in groups:
             cut = [{fold: m[fold] for fold in m if fold in group} for m in space]
             parts.append([dict(motion) for _, motion in reduced(cut)])
-        require(sum(map(len, parts)) == len(space), "the parts of a space do not add up to it")
-        return parts
+        return parts if sum(map(len, parts)) == len(space) else [space]
 
     def _split(self, space: Space, settled: frozenset[int]) -> list[Leaf]:
         """The leaves of a part.
@@ -131,10 +131,19 @@ class Spaces(Forms):
         kernel, products, left, settled = self._forms(space, settled)
         if kernel:
             return self._within(space, kernel, settled)
-        if not products:
+        total = (
+            []
+            if products
+            else self.narrowing_sum({v: self.squares(v, space) for v in left}, len(space))
+        )
+        signs = {d.sign() for d, _ in total}
+        if len(signs) == 1:
+            return self._within(space, [values for _, values in total], settled)
+        if not products and not total:
             return [Leaf([_on_folds(motion) for motion in space], left)]
-        v, one, other = self.factors(products, space, settled)
-        settled |= {v}
+        v, one, other = self.factors(products or {left[0]: total}, space, settled)
+        if products:
+            settled |= {v}
         leaves = self._within(space, [one], settled)
         self._kept += 1
         kept = [

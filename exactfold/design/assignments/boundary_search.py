@@ -38,7 +38,7 @@ class BoundarySearch:
     """Local search for boundary heights of one convex sheet whose branch has given letters.
 
     Over boundary heights b there is exactly one solution h_e(b) in the closed nappes of the signs
-    e, and it is continuous in b (docs/any_border.md, Theorem 13). The search maximises a margin:
+    e, and it is continuous in b (docs/any_border.md, Theorem 6). The search maximises a margin:
     the least signed fold angle of the folds with letters, divided by the largest fold angle. A
     positive margin means that the solution has the letters. A linear program in the tangent space
     of K_v = 0 proposes a step, and trials choose its length. From the result only the boundary

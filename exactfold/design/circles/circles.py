@@ -47,7 +47,7 @@ def all_assignments(pattern: PatternLike, *, progress: Progress | None = None) -
 
     Where folds are flat along whole arcs, or more than five vertices can pop, the circles are
     covered by points instead, and the stand-alone checker verifies that the points show all
-    assignments (Theorem 2). If neither method succeeds, the status is UNDECIDED. Raises
+    assignments (Theorem 14). If neither method succeeds, the status is UNDECIDED. Raises
     `NotCountedError` unless the boundary is convex and has five vertices (D = 2), and from one to
     six vertices can pop.
 

@@ -15,14 +15,13 @@ from exactfold.errors import UsageError
 from exactfold.exact.joined_fields import joined
 from exactfold.exact.surds import Number, exact, sign, simple
 from exactfold.panels.modes.densities import Density, Roots
-from exactfold.panels.modes.extension import Extension, extension
+from exactfold.panels.modes.extension import LINEAR, Extension, extension
 from exactfold.panels.result import Decomposition, Part
 from exactfold.panels.spaces.subspaces import Leaf
 from exactfold.panels.vertex.local import LocalMode
 from exactfold.panels.vertex.stars import Star, stars
 from exactfold.pattern.panel_pattern import Edge, PanelPattern, Point
 
-LINEAR: Final = "linear transmissions"
 _REASONS: Final = 3
 
 

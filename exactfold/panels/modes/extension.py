@@ -20,6 +20,10 @@ from exactfold.pattern.panel_pattern import Edge, PanelPattern
 _BITS: Final = 256
 _MOST_NONLINEAR: Final = 6
 _MOST_ROOTS: Final = 5
+FOREST: Final = "forest"
+"""Why a mode extends whose active graph has no loop."""
+LINEAR: Final = "linear transmissions"
+"""Why a mode extends that has only linear transmissions along its loops."""
 
 Loops: TypeAlias = "dict[tuple[object, ...], Extension]"
 """The results for loops by the transmissions along them; loops of the same shape share a result."""
@@ -61,7 +65,7 @@ def extension(
     chosen = {local.vertex: local for local in modes}
     graph = active_graph(chosen)
     if nx.is_forest(graph):
-        return Extension(PROVED, "forest")
+        return Extension(PROVED, FOREST)
     nonlinear, highest = False, 0
     known = {} if known is None else known
     for cycle in cycle_basis(pattern, graph):
@@ -75,7 +79,7 @@ def extension(
         highest = max(highest, result.order)
         nonlinear = nonlinear or result.order > 1
     if not nonlinear:
-        return Extension(PROVED, "linear transmissions")
+        return Extension(PROVED, LINEAR)
     return Extension(PROVED, f"loops to order {highest}", order=highest)
 
 
@@ -93,13 +97,13 @@ def extend_together(
     for v in active:
         graph.add_edges_from(e for e in stars[v].folds if e[0] in active and e[1] in active)
     if nx.is_forest(graph):
-        return Extension(PROVED, "forest")
+        return Extension(PROVED, FOREST)
     for v in active:
         for mode in modes[v]:
             start = mode.folds[0]
             if not all(Transmission(stars[v], mode, start, e).is_linear for e in mode.folds[1:]):
                 return None
-    return Extension(PROVED, "linear transmissions")
+    return Extension(PROVED, LINEAR)
 
 
 def active_graph(chosen: Mapping[int, LocalMode]) -> nx.Graph:
@@ -165,7 +169,7 @@ def _round(steps: Sequence[Transmission]) -> Extension:
     """
     bent = sum(not step.is_linear for step in steps)
     if bent == 0:
-        return Extension(PROVED, "linear transmissions", order=1)
+        return Extension(PROVED, LINEAR, order=1)
     if bent > _MOST_NONLINEAR:
         return Extension(UNDECIDED, f"has {bent} vertices with nonlinear transmissions")
     order = 2**bent + 1

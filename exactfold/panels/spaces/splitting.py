@@ -10,7 +10,7 @@ from flint import fmpq
 
 from exactfold._support.clock import UNLIMITED, Clock
 from exactfold.errors import TooManyModesError
-from exactfold.exact.surds import Surd, common_field, sign
+from exactfold.exact.surds import Surd, SurdField, common_field, sign
 from exactfold.panels.spaces.kernel import Entry, Rows, entry, first_order
 from exactfold.panels.spaces.quadratics import MOST_ROOTS
 from exactfold.panels.spaces.sparse import (
@@ -33,6 +33,7 @@ from exactfold.panels.spaces.subspaces import (
     made_leaf,
     maximal,
 )
+from exactfold.panels.spaces.together import narrowing_sum, vanish_only_at_zero
 from exactfold.panels.vertex.stars import Star
 from exactfold.pattern.panel_pattern import Edge
 
@@ -86,7 +87,7 @@ class Splitting:
         self._avoids_roots = False
         self.sums = False
         self._field = common_field(x for star in stars.values() for d in star.directions for x in d)
-        self._factors: dict[tuple[int, int], tuple[Form, Row, Row | None]] = {}
+        self._other_factors: dict[tuple[int, int], tuple[Form, Row, Row | None]] = {}
         self._local = {v: _local(star) for v, star in stars.items()}
 
     def leaves(self, rows: Rows, size: int) -> list[Leaf]:
@@ -153,10 +154,21 @@ class Splitting:
         if found is None:
             return []
         space, settled, products, left = found
-        if not products:
-            return [_leaf(space, left)]
-        v, one, other = self._chosen(space, settled, products)
-        now = settled | {v}
+        now = settled
+        if products:
+            v, one, other = self._chosen(space, settled, products)
+            now = settled | {v}
+        else:
+            total = narrowing_sum(space.forms, left)
+            if total is None:
+                if vanish_only_at_zero(space.forms, left, len(space.parameters)):
+                    return [] if any(map(is_kept, space.rows)) else [Leaf({}, 0, ())]
+                return [_leaf(space, left)]
+            if len({sign(d) for d, _ in total}) == 1:
+                self.sums = True
+                smaller = self._imposed(space, [row for _, row in total])
+                return [] if smaller is None else self._solved(smaller, settled)
+            v, (one, other) = left[0], self._factors(total, self._field_of(space))
         solutions: list[Leaf] = []
         child = self._imposed(space, [one])
         if child is not None:
@@ -185,9 +197,7 @@ class Splitting:
                 if other is not None:
                     return v, one, other
 
-        field = common_field(x for row in space.rows.values() for x in row.values())
-        if field.dimension < self._field.dimension:
-            field = self._field
+        field = self._field_of(space)
 
         def rank(v: int) -> tuple[bool, int, int, int]:
             folds = [edge for edge in self.stars[v].folds if edge in space.rows]
@@ -196,18 +206,25 @@ class Splitting:
             return new, -near, len(folds), v
 
         v = min(products, key=rank)
-        factors = factors_of(space.forms[v], field, MOST_ROOTS)
+        return v, *self._factors(space.forms[v], field)
+
+    def _field_of(self, space: _Space) -> SurdField:
+        field = common_field(x for row in space.rows.values() for x in row.values())
+        return self._field if field.dimension < self._field.dimension else field
+
+    def _factors(self, form: Form, field: SurdField) -> tuple[Row, Row]:
+        factors = factors_of(form, field, MOST_ROOTS)
         if factors is None:
             raise TooManyModesError(
                 f"the spaces of motions need more than {MOST_ROOTS} independent square roots"
             )
-        return v, *factors
+        return factors
 
     def _other_factor(self, form: Form, one: Row) -> Row | None:
         """The other factor of a form if a row is a multiple of one of the two."""
-        known = self._factors.get((id(form), id(one)))
+        known = self._other_factors.get((id(form), id(one)))
         if known is None:  # the form and the row are kept, so that no others get their numbers
-            known = self._factors[id(form), id(one)] = form, one, other_factor(form, one)
+            known = self._other_factors[id(form), id(one)] = form, one, other_factor(form, one)
         return known[2]
 
     def _reduced(
@@ -293,9 +310,10 @@ class Splitting:
     def _parts(self, space: _Space) -> list[_Space]:
         """The space as a direct sum over the parts of the sheet that active folds connect.
 
-        Every parameter is the density of a fold. A motion whose densities at the folds of a part
-        are kept, all others being 0, belongs to the space, too. So the rows of a part depend only
-        on the parameters that are densities of its folds.
+        Every parameter is the density of a fold. Where every condition that was imposed belongs
+        to a single vertex, the rows of a part depend only on the parameters that are densities of
+        its folds. A sum of the forms of several vertices may join parts; then they are kept
+        together.
         """
         group: dict[int, int] = {}
 
@@ -310,7 +328,8 @@ class Splitting:
         parts: dict[int, dict[Edge, Row]] = {}
         for edge, row in space.rows.items():
             parts.setdefault(of(edge[edge[0] not in self.stars]), {})[edge] = row
-        if len(parts) == 1:
+        used = [{k for row in part.values() for k in row} for part in parts.values()]
+        if sum(map(len, used)) > len(set().union(*used)):
             return [space]
         together = []
         for part in parts.values():

@@ -77,7 +77,7 @@ class Exact:
     @property
     def brief(self) -> str:
         """In a few words, what the coordinates are now."""
-        if self.reason:
+        if self.reason and not self.drawing.exact:
             return "exact as written" if self.field_name != "Q" else "decimals as written"
         kept = f" but for {counted(len(self.kept), 'vertex')}" if self.kept else ""
         return f"exact in {self.field_name}{kept}"

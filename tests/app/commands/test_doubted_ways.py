@@ -65,3 +65,16 @@ def test_so_do_the_values_of_python(drawing: Path) -> None:
         assert (found.status, sure.status) == (exactfold.UNDECIDED, exactfold.PROVED)
         assert found.reason.endswith(f"; the digits as written: proved, {sure.reason}")
         assert "relations nearly hold" in found.reason
+
+
+def test_a_streamed_count_and_a_converted_sheet_say_the_doubt_once(
+    drawing: Path, tmp_path: Path
+) -> None:
+    streamed = run("count", drawing, "--stream", tmp_path / "s.txt")
+    assert streamed.exit_code == UNDECIDED
+    assert streamed.stderr == ""
+    assert " ".join(streamed.stdout.split()).count("relations nearly hold") == 1
+    as_json = run("count", drawing, "--stream", tmp_path / "t.txt", "--json")
+    assert as_json.stderr.count("relations nearly hold") == 1
+    converted = run("convert", drawing, tmp_path / "written.fold")
+    assert converted.stdout.count("warning: 7 relations nearly hold") == 1

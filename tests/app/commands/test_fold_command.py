@@ -10,7 +10,7 @@ import pytest
 from drawings import SQUARE, as_cp
 from jsonschema import Draft202012Validator
 from panel_sheets import miura
-from running import BAD_INPUT, UNDECIDED, USAGE, error_class, run
+from running import BAD_INPUT, PROVED, UNDECIDED, USAGE, error_class, run
 from sheets import TRIANGLE, scrambled
 
 from exactfold import random_square, schema
@@ -404,3 +404,21 @@ def test_motions_to_an_angle_or_a_length_are_proved(until, tmp_path):
 def test_a_fold_that_changes_its_letter_is_said():
     result = run("fold", "flat-octahedron", "--way", 7)
     assert "change     fold 3-4 changes from mountain to valley" in result.stdout
+
+
+@pytest.mark.parametrize("way", [[], ["--way", 13]])
+def test_the_certificate_of_a_family_proves_how_true_motions_begin(tmp_path, way):
+    path, frames = tmp_path / "begins.json", tmp_path / "frames.fold"
+    how = ("fold", "bird-base", *way, "--frames", 3, "--certificate", path, "-o", frames, "--json")
+    result = run(*how)
+    assert result.exit_code == UNDECIDED
+    assert "the certificate proves that true motions begin with these mountains" in result.stderr
+    assert "nothing more is proved of this one" in result.stderr
+    printed = json.loads(result.stdout)
+    assert printed["proof"] is None
+    assert frames.exists()
+    checked = run("check", path, "--json")
+    assert checked.exit_code == PROVED
+    asked = json.loads(path.read_text())["claims"]["letters"]
+    letters = (x if x in "MV" else "U" for x in printed["assignment"].values())
+    assert asked == "".join(letters)

@@ -1,17 +1,15 @@
 """A sheet that folds, as GIF, MP4 and PNG files."""
 
-import sys
-
 import numpy as np
 import pytest
+from PIL import Image
 from running import run
 
+from exactfold.app.pictures import film as film_module
 from exactfold.app.pictures.film import write_film
 from exactfold.branches import find_branch
 from exactfold.errors import UnwritableFileError, UsageError
 from exactfold.motion import follow
-
-Image = pytest.importorskip("PIL.Image")
 
 
 @pytest.fixture(scope="module")
@@ -73,9 +71,12 @@ def test_fold_writes_films_and_says_so(tmp_path, ending):
     assert Image.open(path).format == ending[1:].upper()
 
 
-def test_without_pillow_the_extra_is_named_before_the_work(tmp_path, monkeypatch):
-    monkeypatch.setitem(sys.modules, "PIL", None)
-    result = run("fold", "two-vertex", "-o", tmp_path / "two.gif")
-    assert result.exit_code != 0
-    assert "pip install 'exactfold[animation]'" in result.stderr
+def test_without_ffmpeg_the_extra_is_named_before_the_work(tmp_path, monkeypatch):
+    real = film_module.find_spec
+    monkeypatch.setattr(
+        film_module, "find_spec", lambda name: None if name == "imageio_ffmpeg" else real(name)
+    )
+    result = run("fold", "two-vertex", "-o", tmp_path / "two.mp4")
+    assert result.exit_code == 2
+    assert "pip install 'exactfold[animation]', or write .gif" in result.stderr
     assert not list(tmp_path.iterdir())

@@ -43,12 +43,12 @@ SUMMARY = dict.fromkeys(
 
 def test_on_large_sheets_letters_are_counted_not_spelled_out() -> None:
     small, large = decompose(crossings(3)), decompose(crossings(40))
-    assert "1          5  FVVFFFVVFFFVVF  yes: forest" in printed(
+    assert "1          5  FVVFFFVVFFFVVF  yes: no loop of folds" in printed(
         panels_report(small, None, everything=False)
     )
     assert len(large.pattern.folds) == 199
     brief = " ".join(printed(panels_report(large, None, everything=False)).split())
-    assert "1 2 valleys, 197 flat yes: forest" in brief
+    assert "1 2 valleys, 197 flat yes: no loop of folds" in brief
     assert "--all shows the letter of each fold" in brief
     full = printed(panels_report(large, None, everything=True))
     assert "FFFFFFFFFFFFFFFFFFFF" in full

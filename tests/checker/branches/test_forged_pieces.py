@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
-from forge import Document, beyond, given, refused, verified, with_one_key_more, without
+from forge import Document, beyond, given, refused, stopped, verified, with_one_key_more, without
 from sheets import HEXAGON, scrambled, wheel, with_point
 
 from exactfold import CreasePattern, checker, random_square
@@ -49,13 +49,6 @@ SHEETS = {
 def piece(name: str) -> Document:
     """A fresh copy of a certificate."""
     return given(f"pieces-{name}")
-
-
-def stopped(document: Document, message: str) -> None:
-    """Refused with this message, and without that line accepted."""
-    with without(message):
-        verified(document)
-    refused(document, message)
 
 
 def needed(document: Document, line: str, message: str) -> None:

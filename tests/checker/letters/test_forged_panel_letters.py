@@ -6,7 +6,7 @@ from itertools import combinations
 from typing import Any
 
 import pytest
-from forge import Document, beyond, given, refused, verified, with_one_key_more, without
+from forge import Document, beyond, given, refused, stopped, verified, with_one_key_more
 
 from exactfold import checker
 from exactfold.checker.letters import panels_motion as panel_letters_motion
@@ -45,13 +45,6 @@ def moving(name: str, motion: Any, letters: str | None = None, truly: str = "pro
         document["claims"]["letters"] = letters
     document["evidence"] = {"motion": motion, "flat": [], "densities": []}
     return document
-
-
-def stopped(document: Document, message: str) -> None:
-    """Refused with this message, and without that line accepted."""
-    with without(message):
-        verified(document)
-    refused(document, message)
 
 
 # --- what is read, and what is said --------------------------------------------------------------

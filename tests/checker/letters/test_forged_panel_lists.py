@@ -7,7 +7,7 @@ from typing import Any
 
 import networkx as nx
 import pytest
-from forge import Document, beyond, given, refused, verified, with_one_key_more, without
+from forge import Document, beyond, given, refused, stopped, verified, with_one_key_more
 
 from exactfold import checker
 from exactfold.checker.letters import panels_listed
@@ -22,13 +22,6 @@ from exactfold.pattern.panel_entries import panels_document
 def listed(name: str = "flat") -> Document:
     """A fresh copy of a certificate."""
     return given(f"assignments-panels-{name}")
-
-
-def stopped(document: Document, message: str) -> None:
-    """Refused with this message, and accepted without that line."""
-    with without(message):
-        verified(document)
-    refused(document, message)
 
 
 @pytest.mark.parametrize(

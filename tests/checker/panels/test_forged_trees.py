@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 
 import pytest
-from forge import Document, beyond, given, refused, verified, with_one_key_more, without
+from forge import beyond, given, refused, stopped, verified, with_one_key_more, without
 from random_trees import closed, random_tree
 
 from exactfold import checker
@@ -42,13 +42,6 @@ def test_random_trees_as_the_package_counts_them(seed: int) -> None:
         near: Near = {v: [sum(e) - v for e in made[v].folds] for v in sorted(made)}
         assert trees.tree_components(Stars(made), near) == expected
         compared += 1
-
-
-def stopped(document: Document, message: str) -> None:
-    """Refused with this message, and accepted without that line."""
-    with without(message):
-        verified(document)
-    refused(document, message)
 
 
 def test_what_is_said() -> None:

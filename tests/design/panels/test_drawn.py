@@ -100,7 +100,7 @@ def test_without_letters_or_with_a_complete_answer_nothing_is_said() -> None:
 
 def test_a_limit_stops_the_search_and_not_the_quick_proofs() -> None:
     found = counted(by_letter("V"), limit=1e-9)
-    assert "(--limit) was reached" in found.reason
+    assert "(--limit), was used up" in found.reason
     assert found.drawn is not None
     assert found.drawn.starts is REFUTED
     assert found.freedom is not None

@@ -267,3 +267,12 @@ def test_no_root_is_added_for_numbers_that_chance_would_fit_as_well(digits, odd)
     found = exact_coordinates(drawn([*WIDE, *odd], digits))
     assert found.field_name == "Q(sqrt 2)"
     assert found.kept == tuple(range(len(WIDE), len(WIDE) + len(odd)))
+
+
+def test_what_is_said_of_coordinates_that_are_kept_as_written():
+    """A FOLD file that states exact coordinates is exact; digits that are kept are digits."""
+    points = ((Fraction(0), Fraction(0)), (Fraction(1, 3), Fraction(0)), (Fraction(1), Fraction(2)))
+    stated = Drawing(points, (Line(0, 1, "B"),), "three points", exact=True)
+    digits = Drawing(points, (Line(0, 1, "B"),), "three points")
+    assert exact_coordinates(stated, "exact").brief == "exact in Q"
+    assert exact_coordinates(digits, "exact").brief == "decimals as written"

@@ -5,8 +5,8 @@ from __future__ import annotations
 from fractions import Fraction
 from itertools import product
 
-from forge import refused, verified
-from forge_panel_motions import at_rest, given, of_lines, stopped
+from forge import refused, stopped, verified
+from forge_panel_motions import at_rest, given, of_lines
 from forge_panels import bent
 
 from exactfold.checker.core.reading import CertificateError

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from forge import Document, beyond, refused, unreadable, verified
+from forge import Document, beyond, refused, stopped, unreadable, verified
 from forge import given as fixture
-from forge_panel_motions import MOTIONS, at_rest, forged, given, stopped, whole
+from forge_panel_motions import MOTIONS, at_rest, forged, given, whole
 
 from exactfold import checker
 from exactfold.checker.core.intervals import Interval
