@@ -61,9 +61,10 @@ Every number is proved. Where no more is said of a triangulated sheet, all branc
 each continues to a true motion. In numbers with multiplicity flat vertices count double. The
 dimension of a family is the number of folds that can be folded independently.
 
-Mountains are red, valleys blue and dashed, folds that stay flat grey. Triangles mark vertices that
-pop up or down. The width of a line grows with the fold angle. Ways with the same letters are framed
-together: only the vertex signs tell them apart. A folded sheet is blue above and yellow below.
+Mountains are red, valleys blue and dashed, folds that stay flat grey; folds that go either way in a
+family have dashes and dots. Triangles mark vertices that pop up or down. The width of a line grows
+with the fold angle. Ways with the same letters are framed together: only the vertex signs tell them
+apart. A folded sheet is blue above and yellow below.
 
 These commands make the pictures of a pattern NAME, folded along way WAY. Without a list of ways the
 pattern alone is drawn, by `exactfold draw NAME -o NAME.svg`.

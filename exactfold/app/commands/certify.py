@@ -43,7 +43,7 @@ class Asked(CertifyOptions):
         Raises the errors of `read`, `sheet_system`, `certify_points` and `points_in`.
         """
         with Bar("reading") as bar:
-            sheet = read(self.file, self.reading, "certify").pattern
+            sheet = read(self.file, self.reading, "certify", verbose=self.verbose).pattern
             bar("equations")
             system = sheet_system(sheet, Given(self.boundary_heights).heights)
             points = points_in(self.points, system)

@@ -37,8 +37,7 @@ from exactfold.panels.spaces.together import narrowing_sum, vanish_only_at_zero
 from exactfold.panels.vertex.stars import Star
 from exactfold.pattern.panel_pattern import Edge
 
-_FIRST_TURN: Final = 100_000
-_GROWTH: Final = 10
+_FIRST_TURN: Final = 300_000
 
 
 @dataclass(frozen=True)
@@ -66,9 +65,8 @@ def leaves(
     square root of its discriminant, and splits the space. Other forms remain. Parts of the sheet
     that share no active fold are independent, because every condition belongs to a single vertex.
 
-    Raises `TooManyModesError` if this takes more than `most` steps. A step is one fold of a vertex
-    times one dimension, times the square of the degree of the field. It also raises this error when
-    the clock has passed.
+    Raises `TooManyModesError` if this takes more than `most` steps, or if the clock has passed. A
+    form of a vertex with n independent folds takes n^2 steps, times the degree of the field.
     """
     return Splitting(stars, most, clock).leaves(rows, size)
 
@@ -95,8 +93,8 @@ class Splitting:
     def leaves(self, rows: Rows, size: int) -> list[Leaf]:
         """The leaves of a space without the flat state.
 
-        Which of two orders of vertices is quicker is not known before. So they are tried in turns,
-        each with more work than the last time.
+        Which of two orders of vertices is quicker is not known before. So both are tried with a
+        little work, and then with all that is allowed.
         """
         total: list[Leaf] = [Leaf({}, 0, ())]
         for part, part_size in independent_parts(rows, size, self.stars):
@@ -106,18 +104,16 @@ class Splitting:
         return [leaf for leaf in total if leaf.size]
 
     def _in_turns(self, space: _Space) -> list[Leaf]:
-        work, sums, turn = self.work, self.sums, _FIRST_TURN
-        while True:
+        work, sums = self.work, self.sums
+        for most in (min(work + _FIRST_TURN, self.most), self.most):
             for self._avoids_roots in (False, True):
-                self.work, self.sums = work, sums
-                self._until = min(work + turn, self.most)
+                self.work, self.sums, self._until = work, sums, most
                 try:
                     return self._split(space, frozenset())
-                except TooManyModesError:
+                except TooManyModesError as caught:
                     self.clock.check()
-                    if self._avoids_roots and work + turn >= self.most:
-                        raise
-            turn *= _GROWTH
+                    error = caught
+        raise error
 
     def _solved(self, space: _Space, settled: frozenset[int]) -> list[Leaf]:
         """The leaves of one space: the product of the leaves of its independent parts.
@@ -299,7 +295,7 @@ class Splitting:
         local = [rows.get(edge, {}) for edge in folds]
         numbers = (x for row in local for x in row.values())
         degree = max((x.field.dimension for x in numbers if isinstance(x, Surd)), default=1)
-        self._count(len(folds) ** 2 * degree**2)
+        self._count(len(folds) ** 2 * degree)
         if not are_independent(local):
             basis, coordinates = row_space(local)
             form = zeros(len(basis))
