@@ -75,8 +75,8 @@ def other_factor(form: Form, one: Row) -> Row | None:
     ({0: 1, 1: -1}, None)
     """
     (d, first), (e, second) = form
-    if not one.keys() <= first.keys() | second.keys():
-        return None
+    if not first.keys() ^ second.keys() <= one.keys() <= first.keys() | second.keys():
+        return None  # x and y are not 0
     zero = fmpq(0)
     k = min(first)
     scale = first[k]

@@ -37,7 +37,7 @@ from exactfold.panels.spaces.together import narrowing_sum, vanish_only_at_zero
 from exactfold.panels.vertex.stars import Star
 from exactfold.pattern.panel_pattern import Edge
 
-_FIRST_TURN: Final = 300_000
+_FIRST_TURN: Final = 100_000
 
 
 @dataclass(frozen=True)
@@ -319,6 +319,7 @@ class Splitting:
 
         def of(v: int) -> int:
             while (above := group.setdefault(v, v)) != v:
+                group[v] = group[above]
                 v = above
             return v
 
