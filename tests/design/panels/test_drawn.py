@@ -14,6 +14,8 @@ from exactfold.panels.decomposition import decompose
 from exactfold.panels.result import Decomposition
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
+pytestmark = pytest.mark.usefixtures("without_spaces")
+
 
 def boxes(size: int) -> PanelPattern:
     """A square grid, with a diagonal in each third square."""
@@ -23,12 +25,6 @@ def boxes(size: int) -> PanelPattern:
     squares = [(i, j) for i in range(size) for j in range(size) if (i + 2 * j) % 3 == 0]
     edges += [(i * up + j, i * up + j + up + 1) for i, j in squares]
     return PanelPattern([(i, j) for i in range(up) for j in range(up)], edges)
-
-
-@pytest.fixture(autouse=True)
-def few_steps(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The search for spaces ends at once, so that not all motions of the boxes are known."""
-    monkeypatch.setattr("exactfold.panels.by_spaces.MOST_STEPS", 0)
 
 
 def drawing(pattern: PanelPattern, letters: dict[Edge, str]) -> dict[str, object]:
