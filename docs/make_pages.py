@@ -475,9 +475,9 @@ def _schemas() -> str:
         "# JSON schemas\n\n"
         "The JSON Schema (draft 2020-12) of everything that is printed with `--json`, and of the "
         'lines of `--jsonl`. In Python `exactfold.schema("count")` returns the same. Keys that '
-        "need more words are explained on the page [files and exit codes](../files.md). Types "
-        "whose names begin with a capital letter are [objects inside others]"
-        f"(#{INSIDE.lower().replace(' ', '-')}).\n"
+        "need more words, and those that mean the same everywhere, are explained on the page "
+        "[files and exit codes](../files.md#json). Types whose names begin with a capital letter "
+        f"are [objects inside others](#{INSIDE.lower().replace(' ', '-')}).\n"
     )
     parts: dict[str, dict[str, Any]] = {}
     shown: list[dict[str, Any]] = []

@@ -180,9 +180,8 @@ def sentence(note: str) -> str:
 
 
 def place(statement: Statement) -> str:
-    """The place without its section, which stands in the heading; none if a quotation shows it."""
-    quotes = mathematics(statement.source).startswith("\u201c")
-    if statement.is_own or (quotes and not re.search(r"Eq\.|Fig|Table|Theorem", where(statement))):
+    """The place without its section, which stands in the heading."""
+    if statement.is_own:
         return ""
     text = re.sub(
         r"^(Section [IVX]+( [A-D])?|Appendix [A-D]|Introduction),? ?", "", where(statement)
@@ -198,8 +197,11 @@ def basis(statement: Statement, proof: Proof) -> str:
 
 
 def where(statement: Statement) -> str:
-    """The place in the paper, with the number of the equation."""
+    """The place in the paper, with the number of the equation; of a quotation only its section."""
     place = numbered(statement.place)
+    quotes = mathematics(statement.source).startswith("\u201c")
+    if quotes and not re.search(r"Eq\.|Fig|Table|Theorem", place):
+        place = place.partition(",")[0]
     number = f"Eq. ({statement.equation})"
     return f"{place}, {number}" if statement.equation and number not in place else place
 

@@ -124,7 +124,7 @@ def _butterfly(script: Script) -> None:
         r"}d_{min}\text{ in the flat folded state, to its maximum value }d_{max}\text{ when "
         r"the butterfly is flat and unfolded, and then decreases monotonically again to "
         r"}d_{min}\text{''}",
-        note="strictly: d^2 = const - 2 p q cos(theta)",
+        note="Remark: strictly: d^2 = const - 2 p q cos(theta)",
     )
     script.state(
         "IV.3",

@@ -107,7 +107,7 @@ def _freedom(script: Script) -> None:
         "Section II C, before Eq. (Dcount) and Fig. (triangle)",
         r"\text{``all folds are incident to at least one internal vertex'' \dots\ ``Such "
         r"folds do not couple to any others''}",
-        note="a convenience: Eq. (Dcount) does not need it",
+        note="Remark: a convenience: Eq. (Dcount) does not need it",
         code="CreasePattern.chords",
     )
     state(

@@ -1,15 +1,17 @@
 """Count every crease pattern below a folder, with this program and with an older one.
 
 python tests/benchmarks/real_files.py FOLDER [--against COMMIT] [--only TEXT] [--keep FOLDER]
+    [--csv FILE]
 
 Every file is a process of its own, ended after 60 seconds. The answers are kept below `--keep`, one
-file of JSON lines a program, so that an interrupted run goes on where it stopped. The tables at the
-end are those of docs/real_files.md.
+file of JSON lines a program, so that an interrupted run goes on where it stopped. The summary at
+the end is that of docs/real_files.md; `--csv` writes a row for each file, as docs/real_files.csv.
 """
 
 from __future__ import annotations
 
 import argparse
+import csv
 import json
 import os
 import subprocess
@@ -17,7 +19,7 @@ import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -207,19 +209,28 @@ def print_summary(programs: dict[str, dict[str, Line]]) -> None:
         print("they were about noise or lost creases.")
 
 
-def print_files(programs: dict[str, dict[str, Line]]) -> None:
-    """Print a row for each file."""
-    print(f"\n| file | {' | '.join(programs)} |\n|---|{'---|' * len(programs)}")
+def short(names: Iterable[str]) -> dict[str, str]:
+    """Each path without its first folder, the repository, where no two paths then agree."""
+    rest = {name: name.partition("/")[2] or name for name in names}
+    times = Counter(rest.values())
+    return {name: path if times[path] == 1 else name for name, path in rest.items()}
+
+
+def write_files(programs: dict[str, dict[str, Line]], path: Path) -> None:
+    """Write a row for each file."""
     first, now = next(iter(programs.values())), [*programs.values()][-1]
-    for name in now:
-        cells = []
-        for lines in programs.values():
-            kind, said = kind_of(lines[name])
-            star = "*" if lines is not now and withdrawn(first[name], now[name]) else ""
-            remedy = lines[name].get("remedy") and " ".join(REMEDIES[said])
-            then = f"; with `{remedy}` {helped(lines[name])}" if remedy else ""
-            cells.append((f"{kind}: {said}" if said else kind) + then + star)
-        print(f"| {name} | {' | '.join(cells)} |")
+    with path.open("w", encoding="utf-8", newline="") as out:
+        table = csv.writer(out, lineterminator="\n")
+        table.writerow(["file", *programs])
+        for name, path_shown in short(now).items():
+            cells = []
+            for lines in programs.values():
+                kind, said = kind_of(lines[name])
+                star = "*" if lines is not now and withdrawn(first[name], now[name]) else ""
+                remedy = lines[name].get("remedy") and " ".join(REMEDIES[said])
+                then = f"; with `{remedy}` {helped(lines[name])}" if remedy else ""
+                cells.append((f"{kind}: {said}" if said else kind) + then + star)
+            table.writerow([path_shown, *cells])
 
 
 def main() -> None:
@@ -228,6 +239,7 @@ def main() -> None:
     parser.add_argument("--against", metavar="COMMIT", help="an older program, run beside this one")
     parser.add_argument("--only", default="", help="only paths with this text")
     parser.add_argument("--keep", type=Path, default=Path("real-files"), help="where answers go")
+    parser.add_argument("--csv", type=Path, metavar="FILE", help="write a row for each file")
     arguments = parser.parse_args()
     paths = [
         path
@@ -243,7 +255,8 @@ def main() -> None:
             kept = arguments.keep / f"{commit or 'now'}.jsonl"
             programs[heading] = answers(paths, arguments.folder, commit, kept)
     print_summary(programs)
-    print_files(programs)
+    if arguments.csv:
+        write_files(programs, arguments.csv)
 
 
 if __name__ == "__main__":

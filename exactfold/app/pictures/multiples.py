@@ -90,7 +90,13 @@ def sheet_of_multiples(ways: Sequence[DrawnWay], title: str, *, number: int | No
         top += 20
     letters = {letter for way in ways for letter in way.letters.values()}
     signs = {sign for way in ways for sign in way.signs.values()}
-    key = legend(letters, signs, Style.of(100), by_angle=any(way.angles for way in ways))
+    key = legend(
+        letters,
+        signs,
+        Style.of(100),
+        by_angle=any(way.angles for way in ways),
+        of_family=any(way.is_open_family for way in ways),
+    )
     below, height = key.placed(width, top)
     head = svg.text(title, width / 2, 19, anchor="middle", size=_TITLE)
     return svg.picture(width, height, [head, *parts, *below], title)

@@ -5,8 +5,8 @@ A space of first-order motions is given by a basis, and a basis vector is {fold:
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from itertools import combinations
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import combinations, product
 from typing import Any
 
 from ..core import limits
@@ -16,6 +16,7 @@ from ..sheets.panels import Edge, PanelSheet, cross, pair
 from .reduction import Vector, zero
 
 MOST_STEPS = limits.SPACE_STEPS
+MOST_SUMMED = 4
 
 Motion = dict[Edge, Number]
 """A motion, as the densities of the folds; densities that are 0 are left out."""
@@ -39,24 +40,35 @@ class Work:
 
     def __init__(self) -> None:
         self.steps = 0
+        self._turn = MOST_STEPS
+
+    def turn(self, steps: int) -> bool:
+        """Allow so many steps more, if the limit does; say whether it allows more than these."""
+        self._turn = self.steps + steps
+        return self._turn < MOST_STEPS
 
     def count(self, products: int, value: Any) -> None:
         """Count products with this number or interval; raises `LimitError` if they are too many."""
         size = value.tower.size if isinstance(value, Number) else 1
         self.steps += products * size * size
-        at_most(self.steps, MOST_STEPS, "the steps to the spaces of motions", "SPACE_STEPS")
+        most = min(self._turn, MOST_STEPS)
+        at_most(self.steps, most, "the steps to the spaces of motions", "SPACE_STEPS")
 
 
 class Forms:
     """The first-order motions of a part of a sheet, and the second-order forms of its vertices.
 
     `near` has for each vertex of the part its neighbours across folds that may fold.
+    `avoids_roots` says which of two orders `factors` takes.
     """
+
+    avoids_roots = True
 
     def __init__(
         self, sheet: PanelSheet, near: Mapping[int, list[int]], work: Work | None = None
     ) -> None:
         self.sheet, self.near, self.work = sheet, near, work or Work()
+        self._found: dict[tuple[int, ...], tuple[Space, Squares]] = {}
         self._known: dict[tuple[int, int | None], list[tuple[Edge, Edge, Any]]] = {}
         self.first_order = self._first_order()
 
@@ -120,11 +132,24 @@ class Forms:
         """The form of a vertex as sum d_k l_k^2; each l_k is given by its values on the basis."""
         folds = {pair(v, u) for u in self.near[v]}
         touching = [k for k, motion in enumerate(space) if not folds.isdisjoint(motion)]
-        local = [{fold: x for fold, x in space[k].items() if fold in folds} for k in touching]
-        gradients = [self.gradient(v, motion) for motion in local]
-        work = [[self._value(weights, motion) for motion in local] for weights in gradients]
+        motions = [space[k] for k in touching]
+        key = v, *map(id, motions)
+        if key not in self._found:  # the motions are kept, so that no others get their numbers
+            local = [{fold: x for fold, x in motion.items() if fold in folds} for motion in motions]
+            gradients = [self.gradient(v, motion) for motion in local]
+            work = [[self._value(weights, motion) for motion in local] for weights in gradients]
+            self._found[key] = motions, list(self._squares(work))
         nothing = self.sheet.tower.number(0)
         result: Squares = []
+        for d, values in self._found[key][1]:
+            all_values = [nothing] * len(space)
+            for k, x in zip(touching, values, strict=True):
+                all_values[k] = x
+            result.append((d, all_values))
+        return result
+
+    def _squares(self, work: list[list[Number]]) -> Iterator[tuple[Number, list[Number]]]:
+        """Write a symmetric matrix as sum d l^2, one square after the other."""
         while True:
             k = next((k for k, row in enumerate(work) if not zero(row[k])), None)
             if k is not None:
@@ -133,19 +158,55 @@ class Forms:
                 pairs = ((i, j) for i, row in enumerate(work) for j in range(i))
                 first = next(((i, j) for i, j in pairs if not zero(work[i][j])), None)
                 if first is None:
-                    return result
+                    return
                 i, j = first
                 values = [x + y for x, y in zip(work[i], work[j], strict=True)]
                 value = work[i][j] + work[i][j]
-            all_values = [nothing] * len(space)
-            for k, x in zip(touching, values, strict=True):
-                all_values[k] = x
-            result.append((self.sheet.tower.number(1) / value, all_values))
+            yield self.sheet.tower.number(1) / value, values
             self.work.count(len(work) ** 2, value)
             work = [
-                [x - a * b / value for x, b in zip(row, values, strict=True)]
+                [
+                    x if zero(a) or zero(b) else x - a * b / value
+                    for x, b in zip(row, values, strict=True)
+                ]
                 for row, a in zip(work, values, strict=True)
             ]
+
+    def narrowing_sum(self, forms: Mapping[int, Squares], size: int) -> Squares:
+        """A sum of forms with signs that is semidefinite, or a product of two linear functions.
+
+        It vanishes where the forms do. It is empty if there is none. At most `MOST_SUMMED` forms
+        are added.
+        """
+        if not 1 < len(forms) <= MOST_SUMMED:
+            return []
+        for signs in product((0, 1, -1), repeat=len(forms)):
+            used = [(s, form) for s, form in zip(signs, forms.values(), strict=True) if s]
+            if len(used) < 2 or used[0][0] < 0:
+                continue
+            found: Squares = []
+            for d, values in self._squares(self._added(used, size)):
+                found.append((d, values))
+                if len(found) > 2 and len({weight.sign() for weight, _ in found}) > 1:
+                    break
+            else:
+                if found:
+                    return found
+        return []
+
+    def _added(self, forms: Sequence[tuple[int, Squares]], size: int) -> list[list[Number]]:
+        """The matrix of a sum of forms with signs, on a basis of so many motions."""
+        nothing = self.sheet.tower.number(0)
+        total = [[nothing] * size for _ in range(size)]
+        for s, form in forms:
+            for d, values in form:
+                some = [(k, x) for k, x in enumerate(values) if not zero(x)]
+                self.work.count(len(some) ** 2, d)
+                for j, x in some:
+                    scaled = d * x if s > 0 else -(d * x)
+                    for k, y in some:
+                        total[j][k] = total[j][k] + scaled * y
+        return total
 
     def gradient(self, v: int, motion: Vector, bits: int | None = None) -> dict[Edge, Any]:
         """The derivatives of sum_{k<j} w_k w_j [d_k, d_j] by each density, at a motion.
@@ -186,17 +247,25 @@ class Forms:
         """A vertex, and the values on the basis of the two linear factors of its form.
 
         If d and e have opposite signs, d l^2 + e m^2 = d (l - r m)(l + r m) with r^2 = -e / d. A
-        product is preferred whose root r already lies in the field, and then one of a vertex with
-        many settled neighbours, so that loops close early. The root is adjoined to a field
-        that holds the whole space, because numbers of the space are multiplied by it later.
+        vertex with many settled neighbours is preferred, so that loops close early. If roots are
+        avoided, vertices come before it whose root r already lies in the field. The root is
+        adjoined to a field that holds the whole space, because numbers of the space are multiplied
+        by it later.
         """
         tower, folds = tower_of(space), {*folds_of(space)}
+
+        def rank(v: int) -> tuple[int, int, int]:
+            active = [u for u in self.near.get(v, ()) if pair(v, u) in folds]
+            return -sum(u in settled for u in active), len(active), v
+
         found = []
-        for v, ((d, first), (e, second)) in products.items():
+        for v in sorted(products, key=rank):
+            (d, first), (e, second) = products[v]
             above, root = tower.adjoined(-(e / d))
-            near = sum(u in settled and pair(v, u) in folds for u in self.near.get(v, ()))
-            found.append((above.size, -near, v, first, second, root))
-        *_, v, first, second, root = min(found, key=lambda entry: entry[:3])
+            found.append((v, first, second, root))
+            if above is tower or not self.avoids_roots:
+                break
+        v, first, second, root = found[-1 if above is tower else 0]
         one, other = (
             [x + r * y for x, y in zip(first, second, strict=True)] for r in (root, -root)
         )

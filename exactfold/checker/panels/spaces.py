@@ -13,13 +13,14 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from ..core import limits
-from ..core.reading import at_most, require
+from ..core.reading import LimitError, at_most
 from ..core.towers import Number
 from ..sheets.panels import Edge
 from .forms import Forms, Motion, Space, Squares, folds_of
 from .reduction import inside, reduced, zero
 
 MOST_LEAVES = limits.SPACE_LEAVES
+FIRST_TURN, GROWTH = 1 << 17, 8
 
 
 @dataclass
@@ -49,16 +50,32 @@ class Spaces(Forms):
     _kept = 0
 
     def leaves(self) -> list[Leaf]:
-        """All components of the motions; the flat state alone is not counted."""
-        return [leaf for leaf in self._leaves(self.first_order) if leaf.basis]
+        """All components of the motions; the flat state alone is not counted.
+
+        Two orders of vertices are tried in turns, each with more steps than the last time.
+        """
+        before, steps = self.work.steps, FIRST_TURN
+        while True:
+            for self.avoids_roots in (False, True):
+                self.work.steps = before
+                more = self.work.turn(steps)
+                try:
+                    return [leaf for leaf in self._leaves(self.first_order) if leaf.basis]
+                except LimitError:
+                    if self.avoids_roots and not more:
+                        raise
+            steps *= GROWTH
 
     def _leaves(self, space: Space, settled: frozenset[int] = frozenset()) -> list[Leaf]:
         """The leaves of a space: all sums of one leaf of each part.
 
         The forms of `settled` vertices are known to vanish on the space.
         """
+        parts = self.parts(space)
+        if len(parts) == 1 and settled:
+            return self._split(space, settled)
         total = [Leaf([], ())]
-        for part in self.parts(space):
+        for part in parts:
             leaves = self._maximal(self._split(part, settled))
             number = len(total) * len(leaves)
             at_most(number, MOST_LEAVES, "the spaces of motions", "SPACE_LEAVES")
@@ -82,8 +99,9 @@ class Spaces(Forms):
     def parts(self, space: Space) -> list[Space]:
         """The space as a direct sum, with one part for each set of folds that vertices join.
 
-        Each condition imposed so far is about the densities at one vertex. So if a motion meets
-        them all, its restriction to one such set, with the other folds flat, meets them too.
+        If each condition imposed so far is about the densities at one vertex, and a motion meets
+        them all, its restriction to one such set, with the other folds flat, meets them too. A sum
+        of the forms of several vertices may join such sets; then the space is one part.
         """
         groups: list[set[Edge]] = []
         for fold in folds_of(space):
@@ -101,8 +119,7 @@ class Spaces(Forms):
         for group in groups:
             cut = [{fold: m[fold] for fold in m if fold in group} for m in space]
             parts.append([dict(motion) for _, motion in reduced(cut)])
-        require(sum(map(len, parts)) == len(space), "the parts of a space do not add up to it")
-        return parts
+        return parts if sum(map(len, parts)) == len(space) else [space]
 
     def _split(self, space: Space, settled: frozenset[int]) -> list[Leaf]:
         """The leaves of a part.
@@ -114,10 +131,19 @@ class Spaces(Forms):
         kernel, products, left, settled = self._forms(space, settled)
         if kernel:
             return self._within(space, kernel, settled)
-        if not products:
+        total = (
+            []
+            if products
+            else self.narrowing_sum({v: self.squares(v, space) for v in left}, len(space))
+        )
+        signs = {d.sign() for d, _ in total}
+        if len(signs) == 1:
+            return self._within(space, [values for _, values in total], settled)
+        if not products and not total:
             return [Leaf([_on_folds(motion) for motion in space], left)]
-        v, one, other = self.factors(products, space, settled)
-        settled |= {v}
+        v, one, other = self.factors(products or {left[0]: total}, space, settled)
+        if products:
+            settled |= {v}
         leaves = self._within(space, [one], settled)
         self._kept += 1
         kept = [

@@ -192,9 +192,17 @@ def _lines(part: Part) -> list[Leaf]:
     """The components of dimension one of a part with more than four folds at a vertex."""
     lines: list[Leaf] = []
     for leaf in (*part.spaces, *(one.leaf for one in part.found)):
-        if leaf.size == 1 and not leaf.vertices and leaf not in lines:
+        if leaf.size == 1 and not leaf.vertices and not any(_same(leaf, one) for one in lines):
             lines.append(leaf)
     return lines
+
+
+def _same(one: Leaf, other: Leaf) -> bool:
+    """Whether two lines have the same densities; their numbers may lie in different fields."""
+    if one.rows.keys() != other.rows.keys():
+        return False
+    these, those = joined([[leaf.rows[fold][0] for fold in one.rows] for leaf in (one, other)])
+    return these == those
 
 
 def _letters(choice: Sequence[LocalMode]) -> dict[Edge, str]:

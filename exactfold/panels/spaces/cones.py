@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from itertools import chain, combinations, islice
 from typing import Any, Final
 
@@ -10,10 +11,13 @@ import numpy as np
 from flint import arb, ctx
 from scipy.linalg import null_space
 
+from exactfold.checker.panels.modular import one_component
+from exactfold.checker.panels.proposed import near_zeros
 from exactfold.exact.surds import ball
 from exactfold.panels.spaces.kernel import Entry, Rows, imposed
-from exactfold.panels.spaces.quadratics import squares_of
+from exactfold.panels.spaces.quadratics import Squares, squares_of
 from exactfold.panels.spaces.regular import BITS, Balls, Forms
+from exactfold.panels.spaces.together import modulo_a_prime
 from exactfold.panels.vertex.stars import Star
 
 _SHIFTS: Final = 40
@@ -36,6 +40,9 @@ def cone_motion(
     component. The first form has rank at least 3 and needs no discriminant. The motion is enclosed
     in balls, and the derivatives of the forms are independent there.
 
+    Where this fails, the forms are looked at modulo a prime (docs/panels.md, One component modulo a
+    prime). If that shows one component, a regular zero is found near one in floating point.
+
     None decides nothing. More than 64 forms are not tried.
     """
     if len(vertices) > _MOST_FORMS:
@@ -44,25 +51,95 @@ def cone_motion(
     ctx.prec = BITS
     try:
         forms = Forms(stars)
-        points: list[Balls] = [{edge: arb(0) for edge in rows}]
-        for number, (v, room) in enumerate(_ordered(stars, rows, size, vertices)):
-            if number == 0 and len(squares_of(stars[v], rows, size)) < 3:
-                return None
-            for u in islice(_directions(forms, v, room), _DIRECTIONS):
-                above, below = _sides(forms, v, points, room, u)
-                if above and (below or number == 0):
-                    points = above
-                    break
-            else:
-                return None
-        return points[0] if vertices else None
+        ordered = _ordered(stars, rows, size, vertices)
+        if len(ordered[0].squares) < 3:
+            return None
+        start: Balls = {edge: arb(0) for edge in rows}
+        motion = _by_signs(forms, ordered, start)
+        if motion is None and _one_component([one.squares for one in ordered]):
+            motion = next(_regular_zeros(forms, ordered, rows, size), None)
+        return motion
     finally:
         ctx.prec = before
 
 
+def _by_signs(forms: Forms, ordered: Sequence[_Placed], start: Balls) -> Balls | None:
+    """A common zero of the forms, if each discriminant is shown to have both signs."""
+    points: list[Balls] = [start]
+    for number, (v, room) in enumerate((one.vertex, one.room) for one in ordered):
+        for u in islice(_directions(forms, v, room), _DIRECTIONS):
+            above, below = _sides(forms, v, points, room, u)
+            if above and (below or number == 0):
+                points = above
+                break
+        else:
+            return None
+    return points[0]
+
+
+def _regular_zeros(
+    forms: Forms, ordered: Sequence[_Placed], rows: Rows, size: int
+) -> Iterator[Balls]:
+    """Common zeros of the forms, near points that floating point proposes.
+
+    One form after the other is solved along a vector on which no earlier form depends.
+    """
+    matrices = []
+    for one in ordered:
+        weights = [float(d) for d, _ in one.squares]
+        vectors = np.array([[float(x) for x in row] for _, row in one.squares])
+        matrices.append((vectors.T @ np.diag(weights) @ vectors).tolist())
+    basis = _basis(rows, size)
+    for near in near_zeros(matrices):
+        w: Balls | None = {}
+        for x, motion in zip(near, basis, strict=True):
+            w = _plus(w or {}, arb(x), motion)
+        for one in ordered:
+            if w is not None:
+                w = _next_zero(forms, one, w)
+        if w is not None:
+            yield w
+
+
+def _next_zero(forms: Forms, one: _Placed, w: Balls) -> Balls | None:
+    """The nearest zero of a form on a line through a point, where its derivative is not 0."""
+    v = one.vertex
+    for u in one.room if one.flat else islice(_directions(forms, v, one.room), _DIRECTIONS):
+        middle, value = _product(forms.gradient(v, u), w) / 2, forms.value(v, w)
+        if middle.contains(0):
+            continue
+        if one.flat:
+            return _plus(w, -value / (2 * middle), u)
+        last = forms.value(v, u)
+        square = middle * middle - value * last
+        if square > 0:
+            root = square.sqrt() if middle > 0 else -square.sqrt()
+            return _plus(w, (root - middle) / last, u)
+    return None
+
+
+def _one_component(forms: Sequence[Squares]) -> bool:
+    """Whether the forms generate a prime ideal, which is shown modulo a prime."""
+    reduced = modulo_a_prime(forms)
+    return reduced is not None and one_component(*reduced)
+
+
+@dataclass(frozen=True)
+class _Placed:
+    """A vertex in the order, its form, and a basis of the space without the earlier forms.
+
+    `flat` says whether the form vanishes on that space.
+    """
+
+    vertex: int
+    squares: Squares
+    room: list[Balls]
+    flat: bool
+
+
 def _ordered(
     stars: Mapping[int, Star], rows: Rows, size: int, vertices: Sequence[int]
-) -> list[tuple[int, list[Balls]]]:
+) -> list[_Placed]:
     """The ordered vertices, each with a basis of the space on which no earlier form depends.
 
     The last vertex is one whose form has the highest rank there; the others follow in the same way.
@@ -90,7 +167,9 @@ def _ordered(
     bases = []
     before: list[Sequence[Entry]] = []
     for v in order:
-        bases.append((v, _basis(*imposed(rows, size, *before))))
+        room, room_size = imposed(rows, size, *before)
+        flat = not squares_of(stars[v], room, room_size)
+        bases.append(_Placed(v, squares[v], _basis(room, room_size), flat))
         before += functionals[v]
     return bases
 

@@ -207,7 +207,10 @@ def _transposed(rows: Sequence[Sequence[Entry]]) -> list[Vector]:
 
 
 def independent_parts(rows: Rows, size: int, stars: Mapping[int, Star]) -> list[tuple[Rows, int]]:
-    """The space as a direct sum over the parts of the sheet that active folds connect."""
+    """The space as a direct sum over the parts of the sheet that active folds connect.
+
+    It is one part if a condition on several vertices joins what active folds do not connect.
+    """
     graph = nx.Graph()
     for edge, row in rows.items():
         if any(row):
@@ -224,4 +227,4 @@ def independent_parts(rows: Rows, size: int, stars: Mapping[int, Star]) -> list[
     for group in groups:
         basis, coordinates = row_space([rows[edge] for edge in group], size)
         parts.append((dict(zip(group, coordinates, strict=True)), len(basis)))
-    return parts
+    return parts if sum(number for _, number in parts) == size else [(rows, size)]

@@ -445,3 +445,14 @@ def test_what_is_known_in_part_is_counted(tmp_path: Path) -> None:
     assert "2 patterns: 1 proved, 1 undecided (1 known in part), 0 failed" in words
     again = run("count", path, "two-vertex", "--jobs", 1, "--jsonl", out)
     assert "1 undecided (1 known in part)" in " ".join(again.stdout.split())
+
+
+def test_what_went_wrong_does_not_repeat_the_folders_of_a_file(tmp_path: Path) -> None:
+    """Otherwise a long path would be broken at the end of the line."""
+    folder = tmp_path / ("long" * 12) / ("name" * 12)
+    missing = folder / "missing.svg"
+    result = run("count", "two-vertex", missing, "--jobs", 1)
+    assert result.exit_code == BAD_INPUT
+    lines = result.stdout.splitlines()
+    assert f"{missing}:" in lines
+    assert "  cannot read missing.svg: No such file or directory" in lines

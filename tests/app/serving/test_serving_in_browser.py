@@ -70,6 +70,12 @@ def test_a_drawing_that_is_dropped_is_read_counted_and_listed(page):
     assert page.complaints() == []
 
 
+def test_the_empty_page_has_its_landmark_and_hides_its_parts(page):
+    """A screen reader finds the main part; parts with nothing to show are neither seen nor read."""
+    seen = "(one) => getComputedStyle(document.querySelector(one)).visibility"
+    assert page.run(f"['main', '#ways', '#play'].map({seen})") == ["visible", "hidden", "hidden"]
+
+
 def test_a_file_that_is_no_drawing_gets_a_sentence_and_the_page_goes_on(page, tmp_path):
     wrong = tmp_path / "wrong.svg"
     wrong.write_text("<svg", encoding="utf-8")
@@ -121,8 +127,10 @@ def test_letters_stay_asked_for_as_a_vertex_moves_and_both_are_undone(page):
     before = page.run("exactfold.view.sheet.points[5]")
     handle_of(page, 5)
     page.run("document.querySelector(\"[data-handle='5']\").focus()")
+    page.run("exactfold.view.old = true")
     page.press("\ue013")  # up
-    page.until(f"{READY} && exactfold.view.sheet.points[5][1] > {before[1]}")
+    page.until(f"{READY} && !exactfold.view.old && exactfold.page.ways.length === 4")
+    assert page.run("exactfold.view.sheet.points[5][1]") > before[1]
     assert page.run(asked) == '[[6,"M"]]'
     page.click("#edit")
     page.click('[data-fold="4-5"] .reach')

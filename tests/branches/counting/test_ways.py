@@ -14,6 +14,7 @@ from exactfold.branches import count_branches, count_many
 from exactfold.branches.counting.motion_facts import panel_facts
 from exactfold.branches.counting.ways import count_ways
 from exactfold.errors import SeveralSheetsError, UnreadableFileError, UsageError
+from exactfold.panels import by_spaces
 from exactfold.panels.decomposition import decompose
 from exactfold.pattern import write_fold
 from exactfold.pattern.crease_pattern import CreasePattern
@@ -52,7 +53,10 @@ def test_convex_sheets_with_more_freedom_are_also_decomposed() -> None:
     assert (found.connected_components.graphs, found.connected_components.number) == (4, 2)
 
 
-def test_sheets_with_more_freedom_and_a_reflex_corner_are_decomposed() -> None:
+def test_sheets_with_more_freedom_and_a_reflex_corner_are_decomposed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(by_spaces, "MOST_STEPS", 0)
     sheet = scrambled(2, DENTED, 4, loose=True)
     found = count_ways(sheet)
     ways = decompose(panels(sheet))
