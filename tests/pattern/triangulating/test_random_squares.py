@@ -115,7 +115,8 @@ def whole_triangulations(interior, seed, denominator):
     # crowded grids with points on edges and on circles, a sparse one, and one for long integers
     [(4, 8), (60, 16), (150, 64), (200, 1024), (120, 2**35), (1600, 1024), (1600, 80)],
 )
-def test_redrawing_in_place_is_triangulating_anew(interior, denominator, seed):
+def test_redrawing_in_place_is_triangulating_anew(interior, denominator, seed, monkeypatch):
+    monkeypatch.setattr(delaunay_sheets, "_PROPOSED", 1000)
     points, triangles, rounds = whole_triangulations(interior, seed, denominator)
     sample = sample_random_square(interior, seed, denominator, redraw=True)
     assert sample.attempts == rounds
