@@ -45,6 +45,7 @@ html_title = "exactfold"
 html_static_path = ["_static"]
 html_extra_path = ["generated/whole"]
 html_css_files = ["site.css"]
+html_search_scorer = str(HERE / "_static" / "scorer.js")
 html_math_renderer = "mathml"
 html_copy_source = False
 html_show_sourcelink = False
@@ -118,6 +119,13 @@ def _signature(
     return given, returned and short.sub("", returned).replace("~", "")
 
 
+def _options(_: Sphinx, __: str, ___: str, context: dict[str, Any], ____: Any) -> None:
+    """Options in code have a class, so that no line ends behind one of their hyphens."""
+    found = r'<span class="pre">(--?\w[\w-]*)</span>'
+    if "body" in context:
+        context["body"] = re.sub(found, r'<span class="pre option">\1</span>', context["body"])
+
+
 def _write(_: Sphinx) -> None:
     make_pages.write()
 
@@ -131,3 +139,4 @@ def setup(app: Sphinx) -> None:
     app.connect("autodoc-process-docstring", _docstring)
     app.connect("autodoc-process-signature", _signature)
     app.connect("missing-reference", make_pages.resolved)
+    app.connect("html-page-context", _options)

@@ -57,13 +57,14 @@ fold in families have no such list. Of panels round vertices with more than four
 ways are drawn on which the tangents of half the fold angles stay in proportion.
 """
 READING: Final = f"""\
-Every number is proved. Where nothing follows it but the number with multiplicity, in which flat
-vertices count double, all branches are real, and each continues to a true motion. The dimension of
-a family is the number of folds that can be folded independently.
+Every number is proved. Where no more is said of a triangulated sheet, all branches are real, and
+each continues to a true motion. In numbers with multiplicity flat vertices count double. The
+dimension of a family is the number of folds that can be folded independently.
 
-Mountains are red, valleys blue and dashed, folds that stay flat grey. Triangles mark vertices that
-pop up or down. The width of a line grows with the fold angle. Ways with the same letters are framed
-together: only the vertex signs tell them apart. A folded sheet is blue above and yellow below.
+Mountains are red, valleys blue and dashed, folds that stay flat grey; folds that go either way in a
+family have dashes and dots. Triangles mark vertices that pop up or down. The width of a line grows
+with the fold angle. Ways with the same letters are framed together: only the vertex signs tell them
+apart. A folded sheet is blue above and yellow below.
 
 These commands make the pictures of a pattern NAME, folded along way WAY. Without a list of ways the
 pattern alone is drawn, by `exactfold draw NAME -o NAME.svg`.
@@ -86,6 +87,13 @@ from exactfold.pattern.degenerate import DEGENERATE
 found = exactfold.count(families.hypar(1))
 motion = exactfold.follow(found, 4)
 ```
+"""
+ROWS: Final = """\
+Small sheets with an exception: a vertex that stays flat, a straight crease, a reflex corner. Each
+is `DEGENERATE[NAME]()` in the lines above, and is shown folded along one of its ways.
+
+| | sheet, and ways to start folding | what it is |
+|---|---|---|
 """
 FOOT: Final = """## Where they come from
 
@@ -152,6 +160,8 @@ class Card:
     @property
     def files(self) -> dict[str, str]:
         """The pictures by the names of their files."""
+        if self.name in DEGENERATES:
+            return {f"{self.name}-small.svg": self.small}
         stills = {} if self.still is None else {f"{self.name}-folded.svg": self.still}
         return {f"{self.name}.svg": self.ways, f"{self.name}-small.svg": self.small} | stills
 
@@ -174,8 +184,21 @@ class Card:
         return SHOWN[self.name] if self.name in BUILT else examples()[self.name]
 
     @property
+    def shown(self) -> str:
+        """What the page says of the pattern, once the table at the top has named it."""
+        return self.row if self.name in DEGENERATES else self.section
+
+    @property
+    def row(self) -> str:
+        """A line of the table of degenerate sheets."""
+        number, more = self.answer
+        small = image(f"{self.name}-small", f"{self.name}, folded along way {self.way}", SMALL)
+        count = f"{number}{more}".replace(" to start folding", "")
+        return f"| {small} | {self.name}<br>{count} | {self.what} |\n"
+
+    @property
     def section(self) -> str:
-        """What the page says of the pattern."""
+        """A section of its own."""
         number, more = self.answer
         wide = width(self.ways) if number_listed(self.found) else ALONE
         pictures = [image(self.name, f"The ways to fold {self.name}", wide)]
@@ -278,7 +301,7 @@ def written(name: str) -> Card:
 def page(cards: Iterable[Card]) -> str:
     """The page on all of these."""
     by_name = {made.name: made for made in cards}
-    cells = [made.cell for made in by_name.values()]
+    cells = [made.cell for made in cards_on_top(by_name.values())]
     cells += [""] * (-len(cells) % COLUMNS)
     rows = [cells[k : k + COLUMNS] for k in range(0, len(cells), COLUMNS)]
     table = [rows[0], [":---:"] * COLUMNS, *rows[1:]]
@@ -286,8 +309,14 @@ def page(cards: Iterable[Card]) -> str:
     parts.append(READING)
     for title, group in GROUPS.items():
         parts += [f"## {title}\n", *([IN_PYTHON] if title == "Families" else [])]
-        parts += [by_name[name].section for name in group]
+        shown = [by_name[name].shown for name in group]
+        parts += [f"{ROWS}{''.join(shown)}"] if group == DEGENERATES else shown
     return "\n".join([*parts, FOOT])
+
+
+def cards_on_top(cards: Iterable[Card]) -> list[Card]:
+    """Those in the table at the top: the others stand in a table of their own."""
+    return [made for made in cards if made.name not in DEGENERATES]
 
 
 def write(wanted: Iterable[str]) -> None:

@@ -445,11 +445,23 @@ def _row(parameter: Any, context: Any) -> str:
 
 
 def _prose(text: str) -> str:
-    return "\n\n".join(_markdown(" ".join(part.split())) for part in text.split("\n\n"))
+    return "\n\n".join(_markdown(_coded(part)) for part in text.split("\n\n"))
 
 
 def _cell(text: str) -> str:
-    return _markdown(" ".join(text.split())).replace("|", "\\|")
+    return _markdown(_coded(text)).replace("|", "\\|")
+
+
+def _coded(text: str) -> str:
+    """The text in one line, with options and JSON in backticks: their quotes stay straight.
+
+    >>> _coded('without --rim the default, else {"5": 1}; `--all` "as drawn"')
+    'without `--rim` the default, else `{"5": 1}`; `--all` "as drawn"'
+    """
+    parts = " ".join(text.split()).split("`")
+    for k in range(0, len(parts), 2):
+        parts[k] = re.sub(r'(?<![\w-])--[a-z][a-z-]*|\{"[^}]*\}|"\d+/\d+"', r"`\g<0>`", parts[k])
+    return "`".join(parts)
 
 
 # Schemas
@@ -463,9 +475,9 @@ def _schemas() -> str:
         "# JSON schemas\n\n"
         "The JSON Schema (draft 2020-12) of everything that is printed with `--json`, and of the "
         'lines of `--jsonl`. In Python `exactfold.schema("count")` returns the same. Keys that '
-        "need more words are explained on the page [files and exit codes](../files.md). Types "
-        "whose names begin with a capital letter are [objects inside others]"
-        f"(#{INSIDE.lower().replace(' ', '-')}).\n"
+        "need more words, and those that mean the same everywhere, are explained on the page "
+        "[files and exit codes](../files.md#json). Types whose names begin with a capital letter "
+        f"are [objects inside others](#{INSIDE.lower().replace(' ', '-')}).\n"
     )
     parts: dict[str, dict[str, Any]] = {}
     shown: list[dict[str, Any]] = []

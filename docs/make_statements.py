@@ -6,7 +6,7 @@ import re
 import sys
 import textwrap
 from functools import cache
-from itertools import groupby
+from itertools import groupby, takewhile
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
@@ -180,9 +180,8 @@ def sentence(note: str) -> str:
 
 
 def place(statement: Statement) -> str:
-    """The place without its section, which stands in the heading; none if a quotation shows it."""
-    quotes = mathematics(statement.source).startswith("\u201c")
-    if statement.is_own or (quotes and not re.search(r"Eq\.|Fig|Table|Theorem", where(statement))):
+    """The place without its section, which stands in the heading."""
+    if statement.is_own:
         return ""
     text = re.sub(
         r"^(Section [IVX]+( [A-D])?|Appendix [A-D]|Introduction),? ?", "", where(statement)
@@ -198,8 +197,11 @@ def basis(statement: Statement, proof: Proof) -> str:
 
 
 def where(statement: Statement) -> str:
-    """The place in the paper, with the number of the equation."""
+    """The place in the paper, with the number of the equation; of a quotation only its section."""
     place = numbered(statement.place)
+    quotes = mathematics(statement.source).startswith("\u201c")
+    if quotes and not re.search(r"Eq\.|Fig|Table|Theorem", place):
+        place = place.partition(",")[0]
     number = f"Eq. ({statement.equation})"
     return f"{place}, {number}" if statement.equation and number not in place else place
 
@@ -224,12 +226,23 @@ def erratum(statement: Statement, proof: Proof) -> str:
         f"{script}: {basis(statement, proof)}.{code}",
         "",
         f"- printed: {mathematics(statement.source)}",
-        f"- correct: {mathematics(statement.corrected)}"
+        f"- correct: {changed(mathematics(statement.source), mathematics(statement.corrected))}"
         if statement.corrected
         else "- false, and not to be mended by a condition",
-        f"- why: {' '.join(statement.note.split())}",
+        f"- why: {' '.join(statement.note.partition(' Remark: ')[0].split())}",
     ]
     return "\n".join(wrapped(numbered(line)) for line in lines) + "\n\n"
+
+
+def changed(printed: str, corrected: str) -> str:
+    """The correction without the words with which the printed passage begins as well.
+
+    >>> changed("\u201cthe number of the folds is $`3`$\u201d", "the number of the folds is $`4`$")
+    '\u2026 is $`4`$'
+    """
+    old, new = printed.lstrip("\u201c").split(), corrected.split()
+    same = len(list(takewhile(lambda k: old[k : k + 1] == new[k : k + 1], range(len(new)))))
+    return f"\u2026 {' '.join(new[same - 1 :])}" if same > 3 else corrected
 
 
 def wrapped(line: str) -> str:

@@ -198,7 +198,7 @@ def _rigid_triangles(script: Script) -> None:
         "IIIA.11",
         "Table (summary), caption",
         r"\text{systems with }V_t>0\text{: ``in all cases these were flat octahedra''}",
-        note="the smallest case; consistent with none for Vi = 2, 3",
+        note="Remark: the smallest case; consistent with none for Vi = 2, 3",
         code="families.flat_octahedron_in_square",
     )
 

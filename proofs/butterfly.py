@@ -124,7 +124,7 @@ def _butterfly(script: Script) -> None:
         r"}d_{min}\text{ in the flat folded state, to its maximum value }d_{max}\text{ when "
         r"the butterfly is flat and unfolded, and then decreases monotonically again to "
         r"}d_{min}\text{''}",
-        note="strictly: d^2 = const - 2 p q cos(theta)",
+        note="Remark: strictly: d^2 = const - 2 p q cos(theta)",
     )
     script.state(
         "IV.3",
@@ -225,13 +225,12 @@ def _reflex(script: Script) -> None:
         r"}\pi\text{; if it is larger, two if }v_2\text{ has degree 3 in }T\text{ or (to second "
         r"order) if }V_e=4\text{; only one can be sure if it is }\pi",
         "hub (0,0) with spokes (2,-1), (1,2), (-1,2), (-2,-1) at heights 0, 1, -1, 0 and w = "
-        "(0,-2): "
-        "|v1 v3| exceeds d_max and nothing can be attached, to second order and hence near the "
-        "unfolded state. Below pi it holds for true configurations too: the faces at v2 are a "
-        "chain of "
-        "arcs on a sphere, of length below pi, so that |v1 v3| < d_max as soon as it is bent. At "
-        "an angle of pi K is linear in the height of w: (1,0), (0,-1), (-1,0) at heights 1, 0, 1, "
-        "hub 0, with w = (0,1) have h_w = 0 only (the other attachment is folded over)",
+        "(0,-2): |v1 v3| exceeds d_max and nothing can be attached, to second order and hence near "
+        "the unfolded state. At an angle of pi K is linear in the height of w: (1,0), (0,-1), "
+        "(-1,0) at heights 1, 0, 1, hub 0, with w = (0,1) have h_w = 0 only (the other attachment "
+        "is folded over). Remark: below pi it holds for true configurations too: the faces at v2 "
+        "are a chain of arcs on a sphere, of length below pi, so that |v1 v3| < d_max as soon as "
+        "it is bent",
         "families.sample_h1_sequence",
         severity=Severity.CONDITION,
         words="docstring of proofs/butterfly.py",

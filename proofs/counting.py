@@ -107,7 +107,7 @@ def _freedom(script: Script) -> None:
         "Section II C, before Eq. (Dcount) and Fig. (triangle)",
         r"\text{``all folds are incident to at least one internal vertex'' \dots\ ``Such "
         r"folds do not couple to any others''}",
-        note="a convenience: Eq. (Dcount) does not need it",
+        note="Remark: a convenience: Eq. (Dcount) does not need it",
         code="CreasePattern.chords",
     )
     state(
@@ -259,8 +259,9 @@ def _folds(script: Script) -> None:
         at=shares,
         note="2^n branches over the 2^(3n) assignments of IIIA.4, n = Vi - Vt, where all have "
         "different assignments, as in the two-vertex square: 4 of 64; the printed count of "
-        "folds would give (1/4)^(n + 1). As a bound (1/4)^(n - 1) is true and an overestimate, but "
-        "not because of the constraints: these do not lower the number of branches",
+        "folds would give (1/4)^(n + 1). Remark: as a bound (1/4)^(n - 1) is true and an "
+        "overestimate, but not because of the constraints: these do not lower the number of "
+        "branches",
         code="BranchCount.repeated_assignments",
         severity=Severity.CONSTANT,
         rests="IIIA.4",

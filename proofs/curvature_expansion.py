@@ -68,7 +68,7 @@ def _law_of_cosines(script: Script) -> None:
         r"\cos\alpha_{i,i+1}=\cos\psi_i\cos\psi_{i+1}+\sin\psi_i\sin\psi_{i+1}\cos\beta_{i,i+1}",
         over=[triangle(psi, psi1, phi, beta)],
         at=[triangle(*numbers)],
-        note="alpha is a side of the spherical triangle, beta its angle at the z axis",
+        note="Remark: alpha is a side of the spherical triangle, beta its angle at the z axis",
         equation="A2",
     )
 
@@ -173,8 +173,8 @@ def _deficit(script: Script, change: Change) -> None:
         "A.4",
         "Appendix A, 'no matter K', and Fig. (singlevertex)",
         r"\sum_i\beta_{i,i+1}=2\pi",
-        note="a multiple of 2 pi for every star without a fold along the z axis; near the unfolded "
-        "state it is 2 pi by continuity",
+        note="near the unfolded state, by continuity. Remark: a multiple of 2 pi for every star "
+        "without a fold along the z axis",
     )
     script.state(
         "IIB.31",

@@ -126,8 +126,8 @@ def _rigid_folds(script: Script) -> None:
         "too: the formula adds up a part with too many constraints and one with too few. 4 x 4 "
         "unit squares with (6,3) and (3,6) joined to the corner (4,4), to each other and to the "
         "ends of its sides: Ve - 3 - E = -2 (as printed: -3), but the corner has four folds and "
-        "moves while all squares stay flat, also after small changes of all vertices. The 4 x 4 "
-        "squares alone (-3) fold along a straight line",
+        "moves while all squares stay flat, also after small changes of all vertices. "
+        "Remark: the 4 x 4 squares alone (-3) fold along a straight line",
         severity=Severity.CLAIM,
     )
     state(

@@ -247,7 +247,8 @@ def _components(script: Script) -> None:
         note="the first part for every vertex (proof: LARGEST in proofs/eigenvector.py). With a "
         "reflex corner the printed words can fail: spokes (1,0), (3,4), (-2,-1), (8,-2), "
         "eigenvalue 4/5, h_- = (25; 15, -9, -26, -5): a neighbour moves more than the vertex, "
-        "another one in the same direction. They can hold, too: (-3,-1), (6,0), (4,1), (2,3)",
+        "another one in the same direction. Remark: they "
+        "can hold, too: (-3,-1), (6,0), (4,1), (2,3)",
         code="curvature_form, round_cone",
         severity=Severity.CLAIM,
         words="LARGEST in proofs/eigenvector.py",

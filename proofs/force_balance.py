@@ -143,8 +143,8 @@ def _rim(script: Script) -> None:
         r"\sigma_{i-1,i}=-\csc\eta_{i-1,i}/L_i",
         over=[wheel(4), wheel(5)],
         at=drawn(4, 5),
-        note="notation: both eta are angles at vertex i, so Eq. (outer3) is not Eq. (outer2) with "
-        "i - 1 for i, whose eta_{i-1,i} would be the other angle, at vertex i - 1",
+        note="both eta are angles at vertex i. Remark: so Eq. (outer3) is not Eq. (outer2) with i "
+        "- 1 for i, whose eta_{i-1,i} would be the other angle, at vertex i - 1",
         equation="B4",
     )
     sign = script.alter("perpendicular balance as printed", 1, -1)
@@ -334,8 +334,9 @@ def _telescope(script: Script) -> None:
         "Appendix B, conclusion",
         r"\text{``Eqs. (\ref{eq:outer}) and (\ref{eq:spokes}) define a self stress on the "
         r"wheel graph''}",
-        note="short proof for every closed star with c_j != 0, back-tracks and any winding too: "
-        "d_{j+1} - (s_j/L_j^2) d_j = (c_j/L_j^2) J d_j telescopes at the hub, cancels at the rim",
+        note="Remark: short proof for every closed star with c_j != 0, back-tracks and any winding "
+        "too: d_{j+1} - (s_j/L_j^2) d_j = (c_j/L_j^2) J d_j telescopes at the hub, cancels at the "
+        "rim",
         code="wheel_stress",
     )
 

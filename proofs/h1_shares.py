@@ -97,11 +97,11 @@ def shares(script: Script) -> None:
         r"\text{``the fraction of H1 triangulations decreased roughly exponentially from 1 at "
         r"}V_i=3\text{ to 0.0077 at }V_i=8\text{''}",
         r"\text{decreased faster than exponentially from 1 at }V_i=3\text{ to 0.0077 at }V_i=8",
-        f"the two numbers agree; in our samples of {SAMPLES} for Vi = 3 to 8: "
-        + ", ".join(f"{k / SAMPLES:.4f}" for k in h1.values())
-        + '. What "roughly" allows is not said; but an exponential with these two ends has the '
-        "factor 0.38 throughout, and in 20,000 squares of each size the factors are 0.64, 0.48, "
-        "0.38, 0.25 and 0.24 (docs/studies.md, H1 triangulations)",
+        'the two numbers agree. What "roughly" allows is not said; but an exponential with these '
+        "two ends has the factor 0.38 throughout, and in 20,000 squares of each size the factors "
+        "are 0.64, 0.48, 0.38, 0.25 and 0.24 (docs/studies.md, H1 triangulations). Remark: in our "
+        f"samples of {SAMPLES} for Vi = 3 to 8: "
+        + ", ".join(f"{k / SAMPLES:.4f}" for k in h1.values()),
         code="random_square, families.sample_h1_sequence",
         severity=Severity.REMARK,
     )
@@ -167,11 +167,11 @@ def reductions(script: Script) -> None:
         r"\text{``the number of triangulations in this data set that can be reduced further with "
         r"more reverse H1 moves appears to decay exponentially''}",
         r"\text{decays more slowly than exponentially}",
-        f"in our samples of {SAMPLES} with Vi = 8, those with at least 0, 1, 2, ... moves: "
-        f"{', '.join(map(str, counts))}. Of 20,000 squares the factors are 0.11, 0.35, 0.44, 0.55 "
-        "and 0.73: one more move becomes ever less rare (docs/studies.md, H1 triangulations). "
-        "A triangulation that can be reduced to "
-        "Vi = 3 can be reduced to the seed (IV.10), unless it has a chord by then",
+        "of 20,000 squares with Vi = 8 the shares that admit one more move are 0.11, 0.35, 0.44, "
+        "0.55 and 0.73 (docs/studies.md, H1 triangulations). Remark: in samples of "
+        f"{SAMPLES}, those with at least 0, 1, 2, ... moves: {', '.join(map(str, counts))}. A "
+        "triangulation that can be reduced to Vi = 3 can be reduced to the seed (IV.10), unless it "
+        "has a chord by then",
         code="random_square",
         severity=Severity.REMARK,
     )

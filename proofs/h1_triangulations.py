@@ -179,7 +179,7 @@ def _small(script: Script, levels: list[set[Triangulation]]) -> None:
         "by enumeration; rooted: (H1, all) = "
         f"{shares} for Vi = 1 to 4. It fails first at Vi = 4. With a fold between corners it fails "
         "for a flat octahedron on one side of it, and with five corners for a single vertex. "
-        "Section II C leaves such folds out, but not in the butterflies of this section",
+        "Remark: Section II C leaves such folds out, but not in the butterflies of this section",
         "families.h1_sequence",
         severity=Severity.CONDITION,
     )

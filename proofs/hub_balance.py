@@ -281,9 +281,9 @@ def _induction_step(script: Script) -> None:
         over=[without(5)],
         at=[without(5, numbers=True)],
         note="sin(beta_i) is +sin(alpha_{i-1,i} + alpha_{i,i+1}); in the last display only the "
-        "leftmost side needs the sign. (Or beta_i = alpha_{i-1,i} + alpha_{i,i+1} - pi, which "
-        "mends both.) For the sides see B.26. Example: five unit spokes (1,0), (4/5,3/5), "
-        "(7/25,24/25), (-1,0), (0,-1), the second taken out: 25/36 against -25/36",
+        "leftmost side needs the sign. Example: five unit spokes (1,0), (4/5,3/5), (7/25,24/25), "
+        "(-1,0), (0,-1), the second taken out: 25/36 against -25/36. Remark: or beta_i = "
+        "alpha_{i-1,i} + alpha_{i,i+1} - pi, which mends both. For the sides see B.26",
         equation="B20",
         severity=Severity.TYPO,
     )

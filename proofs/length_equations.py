@@ -77,7 +77,8 @@ def _expansion(script: Script) -> None:
         "IIA.1",
         "Section II A, Eq. (length)",
         r"|\mathbf X_n-\mathbf X_m|^2-L_{(n,m)}^2=0",
-        note="the definition of a configuration; equal lengths imply equal face angles (polarity)",
+        note="Remark: the definition of a configuration; equal lengths imply equal face angles "
+        "(polarity)",
         code="CreasePattern.edges",
         equation="1",
     )

@@ -221,8 +221,8 @@ def _transversality(script: Script) -> None:
         r"\text{for a convex border, transversely along a branch iff no vertex star is flat on it; "
         r"for any border nowhere where }V_t>0",
         "triangulated triangles persist under small changes, and the paper's samples hold four. "
-        "The dimension is D all the same for a convex border (IIC.1). Nonsingular where no star is "
-        "flat: docs/theorem.md, Theorem 2 (c), which is about convex borders; that generic "
+        "The dimension is D all the same for a convex border (IIC.1). Remark: nonsingular where no "
+        "star is flat: docs/theorem.md, Theorem 2 (c), which is about convex borders; that generic "
         "patterns without triangulated triangles have no flat stars is not used here",
         "BranchSystem",
         severity=Severity.CONDITION,

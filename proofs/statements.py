@@ -53,8 +53,8 @@ class Statement:
     steps that name it, and besides on `rests` (keys of other statements), `cited` (a theorem of
     others) and `words` (the place of a written proof that is not run). `contradiction` names
     another place of the paper that says something else; no step has to refute it. The ruling is set
-    when a proof is finished. A `note` that begins with "Remark:" explains the statement; any other
-    begins with its condition, which docs/statements.md shows.
+    when a proof is finished. What a `note` says after "Remark:" is on no page.
+    Where the statement holds as printed, docs/statements.md shows the condition before it.
     """
 
     key: str

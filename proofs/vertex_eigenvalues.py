@@ -160,7 +160,7 @@ def _all_angles(script: Script) -> None:
         r"\text{exactly one of which is positive}",
         note="with the signs of Eqs. (compat), (wheelstress): Q = 2 K_v; five equal angles: "
         "inertia (1, 2, 3). As printed if Q belongs to the negative of that stress, as in "
-        "Appendix C (-2 K_v) and in all that follows. The number N-2 and the size N+1 hold",
+        "Appendix C (-2 K_v) and in all that follows. Remark: the number N-2 and the size N+1 hold",
         code="curvature_form",
         equation="8",
         severity=Severity.CONSTANT,

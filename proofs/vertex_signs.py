@@ -72,8 +72,8 @@ def _popping(script: Script) -> None:
         r"straight line only}",
         note="the trace has length 2 pi: if it holds antipodes it consists of two great "
         "semicircles. Then, too, one side has area less than 2 pi, and the definition of popping "
-        "is not affected. That all other closed curves of length 2 pi lie in an open hemisphere "
-        "is classical and not checked here",
+        "is not affected. Remark: that all other closed curves of length 2 pi lie in an open "
+        "hemisphere is classical and not checked here",
         severity=Severity.CONDITION,
         cited="closed curves of length below 2 pi lie in an open hemisphere",
     )

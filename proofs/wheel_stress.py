@@ -247,8 +247,8 @@ def _force_balance(script: Script) -> None:
         "Section II B, after Eq. (wheelstress)",
         r"\text{``we prove that Eqs. (\ref{wheelstress}) do give the coefficients of a self "
         r"stress''}",
-        note="also after embedding in the larger structure with all other components zero; for the "
-        "proof of Appendix B see B.1 and following",
+        note="Remark: also after embedding in the larger structure with all other components zero; "
+        "for the proof of Appendix B see B.1 and following",
         code="wheel_stress",
     )
 
@@ -312,8 +312,8 @@ def _basis(script: Script) -> None:
         "Section II B, last sentence before the configuration space of a vertex; Introduction",
         r"\text{``the wheel stress constraint is precisely Gaussian curvature "
         r"preservation''}",
-        note="the equations K_v(h) = 0, one an interior vertex, are equivalent to Eq. (compat) for "
-        "all self stresses (A.9 and IIB.7)",
+        note="Remark: the equations K_v(h) = 0, one an interior vertex, are equivalent to Eq. "
+        "(compat) for all self stresses (A.9 and IIB.7)",
         code="BranchSystem",
     )
 

@@ -3,6 +3,7 @@
 import functools
 import os
 
+import pytest
 import typer.testing
 
 # Tests start many processes. If they may not keep what they compile, each compiles exactfold again.
@@ -10,3 +11,9 @@ os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 # Typer prepares all commands again for each command line: once is enough for those of one process.
 typer.testing._get_command = functools.cache(typer.testing._get_command)
+
+
+@pytest.fixture
+def without_spaces(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The search for spaces of motions ends at once, so that not all ways of panels are known."""
+    monkeypatch.setattr("exactfold.panels.by_spaces.MOST_STEPS", 0)

@@ -32,5 +32,5 @@ def test_a_share_of_the_time_ends_first(monkeypatch: pytest.MonkeyPatch) -> None
     assert (clock.left, most.left, most.passed) == (16.0, 1.0, False)
     now = 146.0
     assert (clock.passed, most.passed, most.left) == (False, True, 0.0)
-    with pytest.raises(TooManyModesError, match=r"time limit of 60 seconds \(--limit\)"):
+    with pytest.raises(TooManyModesError, match=r"time limit, 45 of 60 seconds \(--limit\)"):
         most.check()

@@ -61,8 +61,18 @@ class Clock:
 
     @property
     def said(self) -> str:
-        """The reason to stop, in words."""
-        return f"the time limit of {self.limit:g} seconds (--limit) was reached"
+        """The reason to stop, in words.
+
+        >>> Clock(60).said
+        'the time limit of 60 seconds (--limit) was reached'
+        >>> Clock(60).share(3 / 4).said
+        'its share of the time limit, 45 of 60 seconds (--limit), was used up'
+        """
+        limit = self.limit or 0.0
+        if self._share == 1:
+            return f"the time limit of {limit:g} seconds (--limit) was reached"
+        part = f"{self._share * limit:.3g} of {limit:g} seconds (--limit)"
+        return f"its share of the time limit, {part}, was used up"
 
     def check(self) -> None:
         """Raise `TooManyModesError` if the time is over."""

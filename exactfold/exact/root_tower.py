@@ -46,11 +46,18 @@ class RootTower:
             return p * x + q * y * square, p * y + q * x
         half = len(a) // 2
         a0, a1, b0, b1 = a[:half], a[half:], b[:half], b[half:]
-        low = self.times(a0, b0)
-        if any(a1) and any(b1):
-            high = self.times(self.times(a1, b1), self._radicands[half.bit_length() - 1])
-            low = sum_of(low, high)
-        return low + sum_of(self.times(a0, b1), self.times(a1, b0))
+        if not any(a1):
+            return self.times(a0, b0) + self.times(a0, b1)
+        if not any(b1):
+            return self.times(a0, b0) + self.times(a1, b0)
+        low, high = self.times(a0, b0), self.times(a1, b1)
+        both = self.times(sum_of(a0, a1), sum_of(b0, b1))  # Karatsuba: three products, not four
+        cross = tuple([x - y - z for x, y, z in zip(both, low, high, strict=True)])
+        radicand = self._radicands[half.bit_length() - 1]
+        if any(radicand[1:]):
+            return sum_of(low, self.times(high, radicand)) + cross
+        scale = radicand[0]
+        return tuple([x + scale * y for x, y in zip(low, high, strict=True)]) + cross
 
     def inverse(self, a: Parts) -> Parts:
         """The inverse 1/a; raises `ZeroDivisionError` for zero."""

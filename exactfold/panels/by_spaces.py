@@ -36,9 +36,9 @@ def by_spaces(pattern: PanelPattern, moving: Mapping[int, Star], clock: Clock = 
 
     The dimension of the first-order motions is exact. The part is not decomposed if several forms
     remain on a space and are not shown to be one component, if splitting the spaces takes more than
-    `MOST_STEPS` steps, or if it takes more than half of the time of the clock. Then the components
-    are counted if the vertices form a tree. Otherwise the result contains the components that were
-    found, and the folds that stay flat to second order.
+    `MOST_STEPS` steps, or if it takes more than two thirds of the time of the clock. Then the
+    components are counted if the vertices form a tree. Otherwise the result contains the components
+    that were found, and the folds that stay flat to second order.
     """
     try:
         rows, size = first_order(moving, clock.share(1 / 2).at_least(QUICK))
@@ -98,7 +98,7 @@ def _complete(
     """
     vertices = tuple(moving)
     (rows, size), (small, left) = first, smaller
-    search = Splitting(moving, MOST_STEPS, clock.share(1 / 2))
+    search = Splitting(moving, MOST_STEPS, clock.share(2 / 3))
     spaces = search.leaves(small, left)
     together = 0
     counts: dict[int, int] = {}

@@ -20,7 +20,7 @@ from exactfold.checker.panels.claims import (
 from exactfold.errors import NotApplicableError, TooManyModesError
 from exactfold.panels.decomposition import MOST_LISTED
 from exactfold.panels.modes.elementary import ModeSearch, Support
-from exactfold.panels.modes.extension import Loops, extension
+from exactfold.panels.modes.extension import FOREST, Loops, extension
 from exactfold.panels.result import Counts, Decomposition, Mode, Part
 from exactfold.panels.vertex.local import LocalMode, local_modes
 from exactfold.panels.vertex.stars import Star, stars
@@ -167,7 +167,7 @@ def _support(
     first = extension(pattern, moving, together.choices[0])
     by, extending = "loops", None
     if first.verdict is PROVED and not first.order:
-        by = "forest" if first.by == "forest" else "linear"
+        by = "forest" if first.by == FOREST else "linear"
         extending = together.count
     elif len(together.choices) == together.count:
         loops: Loops = {}

@@ -42,10 +42,13 @@ class ModeDocument(TypedDict):
     """One elementary mode."""
 
     active: list[Natural]
+    """Its active vertices."""
     assignment: dict[FoldText, Annotated[str, Keywords(enum=["M", "V"])]]
+    """On one side of the sheet."""
     extends: VerdictText
     """Whether the mode truly folds."""
     by: str
+    """What decided whether it extends."""
 
 
 class AsWrittenDocument(TypedDict):
@@ -57,6 +60,7 @@ class AsWrittenDocument(TypedDict):
     status: VerdictText
     reason: str
     rigid: bool | None
+    """Null if it is not known."""
     distinct: Natural | None
     components: ComponentsDocument | None
 
@@ -69,12 +73,15 @@ class ProposalDocument(TypedDict):
     missed: NotNegative
     """The drawing misses the relations of this sheet by up to so much of its size."""
     relations: Natural
+    """How many exact relations between creases it has."""
     distance: NotNegative
     """The largest distance of a vertex from the drawing, by its size."""
     answer: AsWrittenDocument
     """What is known of this sheet."""
     freedom: FreedomDocument | None
+    """Bounds of its degrees of freedom."""
     drawn: DrawnDocument | None
+    """Whether it starts to fold with the letters of the drawing."""
     others: list[NotNegative]
     """Other values of --noise that give an exact sheet."""
 
@@ -90,13 +97,17 @@ class MotionKeys(TypedDict):
     """The keys of a count that belong to motions of rigid panels."""
 
     components: ComponentsDocument | None
+    """How many families of motions there are, by dimension."""
     freedom: FreedomDocument | None
+    """Bounds of the degrees of freedom, where not all motions are known."""
     drawn: DrawnDocument | None
     """The answer for the letters of the drawing; null if all ways are known."""
     proposal: ProposalDocument | None
     """A sheet that may have been meant by a drawing whose noise has no clear level."""
     modes_count: Natural | None
+    """The number of elementary modes."""
     modes: list[ModeDocument]
+    """The first elementary modes."""
     flat_folds: list[FoldText]
     """Folds that are flat in every motion."""
     still_folds: list[FoldText]
@@ -104,6 +115,7 @@ class MotionKeys(TypedDict):
     free_folds: list[FoldText]
     """Folds from boundary to boundary."""
     near_misses: list[NearMissDocument]
+    """Loops of folds that nearly close, within the rounding of coordinates."""
 
 
 class CountKeys(MotionKeys):
@@ -121,9 +133,12 @@ class CountKeys(MotionKeys):
     warnings: list[WarningDocument]
     seconds: NotNegative
     open_questions: list[str]
+    """What is missing for a proof, or which folds have the letter "U"."""
     settings: dict[str, int | str]
     rigid: bool | None
+    """Null if it is not known."""
     exceptional_vertices: list[Natural]
+    """In no triangulated triangle, and flat on some branch."""
     read: ReadDocument | None
     meant: MeantDocument | None
     """The sheet that an inexact drawing means; null if no relation nearly holds."""

@@ -14,7 +14,9 @@ class FreedomDocument(TypedDict):
     """Proved bounds for the largest dimension of a family of true motions."""
 
     least: Natural
+    """Proved."""
     most: Natural
+    """Proved."""
     first_order: Natural | None
     """The dimension of the first-order motions; null where it was not needed."""
     within: NotNegative | None
@@ -30,6 +32,7 @@ class DrawnDocument(TypedDict):
     truly: VerdictText
     """Whether true motions of the panels begin with these letters."""
     reasons: list[str]
+    """Why it is not known, or refuted."""
     within: NotNegative | None
     """If not null, the answer holds for every sheet with the same panels whose vertices lie within
     this share of the size of those that were read."""

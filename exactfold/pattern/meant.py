@@ -59,9 +59,11 @@ class MeantDocument(TypedDict):
     chance: NotNegative | None
     """The number of relations that are expected by chance."""
     relations: list[RelationDocument]
+    """Those of the meant sheet."""
     independent: Natural
     """So many of the relations imply all of them."""
     free_angles: Natural
+    """So many angles stay free."""
     distance: NotNegative | None
     """The largest distance of a vertex from the drawing, by its size."""
     existence: Existence

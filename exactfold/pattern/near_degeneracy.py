@@ -24,6 +24,7 @@ class WarningDocument(TypedDict):
     vertices: Several[Natural]
     """The vertices at which relations nearly hold."""
     text: str
+    """What is printed."""
 
 
 @dataclass(frozen=True)

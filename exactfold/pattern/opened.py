@@ -26,6 +26,7 @@ class ReadDocument(TypedDict):
     lines: Several[str]
     """What was read, how coordinates were made exact, and each repair, one sentence each."""
     field: FieldName
+    """That of the coordinates."""
     largest_move: NotNegative
     """The largest change of a coordinate, as a fraction of the size of the sheet."""
 

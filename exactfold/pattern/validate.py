@@ -52,7 +52,7 @@ def points(
 ) -> tuple[Point, ...]:
     """Distinct exact points; an error names the vertex that is not one."""
     result: list[Point] = []
-    seen: dict[Point, int] = {}
+    seen: dict[tuple[int, int, int, int], int] = {}  # by integers: fractions are slow to hash
     for index, vertex in enumerate(vertices):
         pair = _entries(vertex)
         if pair is None or len(pair) != 2:
@@ -63,13 +63,15 @@ def points(
             point = (convert(pair[0]), convert(pair[1]))
         except NumberError as error:
             raise type(error)(f"vertex {index}: {error}") from None
-        if point in seen:
+        x, y = point
+        key = (x.numerator, x.denominator, y.numerator, y.denominator)
+        if key in seen:
             raise MalformedPatternError(
-                f"vertices {seen[point]} and {index} are at the same point "
+                f"vertices {seen[key]} and {index} are at the same point "
                 f"({_coordinate(point[0])}, {_coordinate(point[1])})",
-                vertices=[seen[point], index],
+                vertices=[seen[key], index],
             )
-        seen[point] = index
+        seen[key] = index
         result.append(point)
     if len(result) < 3:
         raise MalformedPatternError(f"a pattern needs at least three vertices, not {len(result)}")
@@ -78,6 +80,8 @@ def points(
 
 def _entries(value: object) -> tuple[Any, ...] | None:
     """The entries of an iterable that is not text; None for all other objects."""
+    if type(value) is tuple:
+        return value
     if isinstance(value, str) or not isinstance(value, Iterable):
         return None
     return tuple(value)
@@ -98,6 +102,8 @@ def triples(triangles: Iterable[Sequence[int]], count: int) -> list[Triangle]:
                 f"face {face} is {shown(given)}, not three indices", faces=[face]
             )
         for v in triangle:
+            if type(v) is int and 0 <= v < count:
+                continue
             if isinstance(v, bool) or not isinstance(v, Integral):
                 raise MalformedPatternError(
                     f"face {face}: {shown(v)} is not a vertex index", faces=[face]
@@ -108,8 +114,8 @@ def triples(triangles: Iterable[Sequence[int]], count: int) -> list[Triangle]:
                     f"{agreeing(count, 'is')} {counted(count, 'vertex')}",
                     faces=[face],
                 )
-        a, b, c = (int(v) for v in triangle)
-        if len({a, b, c}) < 3:
+        a, b, c = map(int, triangle)
+        if a == b or b == c or c == a:
             raise DegenerateFaceError(
                 f"face {face} repeats a vertex: {(a, b, c)}", vertices=(a, b, c), faces=[face]
             )
@@ -148,6 +154,8 @@ def oriented_triangles(
 
 def incidence(count: int, triangles: Sequence[Triangle]) -> None:
     """Checks that every vertex has a face, and that no edge has three faces or two on one side."""
+    if _is_once_on_each_side(count, triangles):
+        return
     sides: dict[tuple[int, int], list[int]] = {}
     directed: dict[tuple[int, int], int] = {}
     doubled: tuple[int, int, int, int] | None = None
@@ -177,6 +185,16 @@ def incidence(count: int, triangles: Sequence[Triangle]) -> None:
         raise MalformedPatternError(
             f"vertex {lonely[0]} belongs to no face" + _more(lonely), vertices=lonely
         )
+
+
+def _is_once_on_each_side(count: int, triangles: Sequence[Triangle]) -> bool:
+    """Whether `incidence` has nothing to refuse; without the names of culprits, this is quick."""
+    directed: set[int] = set()  # edge (i, j) as i * count + j
+    for a, b, c in triangles:
+        directed |= {a * count + b, b * count + c, c * count + a}
+    return (
+        len(directed) == 3 * len(triangles) and len({edge // count for edge in directed}) == count
+    )
 
 
 def _more(items: Sequence[object]) -> str:

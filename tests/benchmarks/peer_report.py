@@ -201,24 +201,21 @@ One run of
 ```
 
 on {machine}.
-With `--json` the command prints everything measured, with `--markdown` this page, with neither
-the tables alone.
+Without `--markdown` it prints tables alone, among them the cost by stage.
 
 Patterns are random Delaunay squares (`random_square(Vi, seed)`, seeds {seeds}); the system is
 that of the chart *boundary saddle = 1*, `Vi` quadrics in `Vi` unknowns with integer coefficients,
 and the same for everybody. Every program is a process of its own with one thread. The machine was
-shared with other work, so that what counts is **processor time** of the process and its children,
-not the clock. Another machine or another run gives other seconds: compare only the numbers of
-this page with each other, and read ratios. Starting Python and loading every library used
-here takes {start} s. exactfold loads what it needs; that is most of its time at small sizes, and is
-included.
+shared with other work, so what counts is **processor time**, not the clock. Another machine or run
+gives other seconds: compare only the numbers of this page with each other. Starting Python and
+loading every library used here takes {start} s. What a program loads is included; it is most of the
+time of exactfold at small sizes.
 
 ## All solutions
 
 Processor seconds, medians of {count} patterns, by number of interior vertices; in brackets the
 ratio to the first line. *Growth* is the factor a vertex between the two largest sizes with
-complete answers (starting the program included: for exactfold see the next table), *MB* the largest
-memory of any run.
+complete answers, *MB* the largest memory of any run.
 
 {main}
 
@@ -230,22 +227,15 @@ memory of any run.
   found where some are missing. `>`: stopped after {limit} s by the clock; empty: not asked (after a
   limit was reached, beyond the sizes of this run, or beyond 7 vertices for lifting and 10 for
   the parametrisation from roots).{missing}
-- *exactfold, certificate* is `count_branches` with its certificate: every branch in a box,
-  proved, with its signs and folds. *Streaming* is `stream_branches` on one core: the same with a
-  compact certificate. *Exact* is the rational parametrisation of all branches, proved by
-  substitution, by two independent ways.
-- msolve's answer are boxes of exact numbers, computed modulo several primes until the result no
-  longer changes: exact, though not proved. It gives the same as *exact from roots*, which is its
-  rival; the other lines of exactfold isolate and prove, but give no polynomials. PHCpack (`phc -0
-  -b -t1`) and Macaulay2 (`solveSystem` with the tolerances under which it loses fewest solutions)
-  give floating-point numbers and no proof.
+- *exactfold, certificate* proves every branch in a box, with its signs and folds. *Streaming* is
+  `stream_branches` on one core: the same with a compact certificate. *Exact* is the rational
+  parametrisation of all branches, proved by substitution, in two independent ways.
+- msolve's answers are boxes of exact numbers, computed modulo several primes until the result no
+  longer changes: exact, though not proved. Its rival is *exact from roots*; the other lines of
+  exactfold isolate and prove, but give no polynomials. PHCpack (`phc -0 -b -t1`) and Macaulay2
+  (`solveSystem` with the tolerances under which it loses fewest solutions) give floating-point
+  numbers and no proof.
 
-## Cost by stage
-
-Processor seconds without starting Python, except for the check in integers, which is the whole
-stand-alone program. *Growth* as above.
-
-{stages}
 {branch}{profiles}"""
 
 _BRANCH = """
@@ -254,8 +244,8 @@ _BRANCH = """
 `find_branch` with random signs on random squares of any size (`--redraw`, coordinates over 2^20):
 processor seconds, of the whole process and for the branch alone. *Plain splu*
 (`tests/benchmarks/plain_splu.py`) follows the popping path of the same signs by Runge and Kutta's
-method, with SciPy's general sparse factorisation, and proves nothing; its heights are compared
-with those proved. Where it does not agree, its path stalled just before its end.
+method, with SciPy's general sparse factorisation, and proves nothing. Where it does not agree, its
+path stalled just before its end.
 
 {table}
 """
@@ -312,7 +302,6 @@ def markdown(results: Results) -> str:
         rivals=rivals(results) or "Nothing to compare with the exact parametrisation.",
         limit=number(results["limit"]),
         missing=missing,
-        stages=as_markdown(stage_table(results)),
         branch=branch,
         profiles=profiles,
     ).rstrip()

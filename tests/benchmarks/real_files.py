@@ -1,15 +1,17 @@
 """Count every crease pattern below a folder, with this program and with an older one.
 
 python tests/benchmarks/real_files.py FOLDER [--against COMMIT] [--only TEXT] [--keep FOLDER]
+    [--csv FILE]
 
 Every file is a process of its own, ended after 60 seconds. The answers are kept below `--keep`, one
-file of JSON lines a program, so that an interrupted run goes on where it stopped. The tables at the
-end are those of docs/real_files.md.
+file of JSON lines a program, so that an interrupted run goes on where it stopped. The summary at
+the end is that of docs/real_files.md; `--csv` writes a row for each file, as docs/real_files.csv.
 """
 
 from __future__ import annotations
 
 import argparse
+import csv
 import json
 import os
 import subprocess
@@ -17,7 +19,7 @@ import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -44,12 +46,15 @@ REASONS = {
     "MalformedPatternError": "creases that end inside panels",
     "MalformedDrawingError": "creases that vanish, or no folds",
 }
+REMEDIES = {"curves": ["--chords", "4"], "several sheets": ["--sheet", "all"]}
+"""What the message to a refused file names and nobody has to choose, as options of `count`."""
+
 Line = dict[str, Any]
 
 
-def answered(path: Path, source: Path) -> Line:
+def answered(path: Path, source: Path, *options: str) -> Line:
     """What `exactfold count` of the program below `source` answers."""
-    command = [sys.executable, "-m", "exactfold", "count", str(path.resolve()), "--json"]
+    command = [sys.executable, "-m", "exactfold", "count", str(path.resolve()), "--json", *options]
     began = time.perf_counter()
     try:
         done = subprocess.run(
@@ -64,13 +69,17 @@ def answered(path: Path, source: Path) -> Line:
     except subprocess.TimeoutExpired:
         return {"code": None, "seconds": LIMIT, "result": None, "error": ""}
     seconds = round(time.perf_counter() - began, 1)
-    result = json.loads(done.stdout) if done.stdout.startswith("{") else None
-    return {
+    results = [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
+    line = {
         "code": done.returncode,
         "seconds": seconds,
-        "result": result,
+        "result": results[0] if results else None,
         "error": done.stderr.strip(),
     }
+    if "all" in options:  # a line for each sheet
+        codes = Counter(one["exit_code"] for one in results)
+        line["sheets"] = {str(code): number for code, number in sorted(codes.items())}
+    return line
 
 
 def known_in_part(result: Line) -> list[str]:
@@ -127,6 +136,17 @@ def kind_of(line: Line) -> tuple[str, str]:
     return (KINDS[1], "; ".join(known)) if known else (KINDS[3], "")
 
 
+def helped(line: Line) -> str:
+    """The kind of the answer to a refused file with the remedy that its message names."""
+    remedy = line.get("remedy")
+    if not remedy:
+        return ""
+    if "sheets" not in remedy:
+        return kind_of(remedy)[0]
+    good = sum(remedy["sheets"].get(code, 0) for code in "01")
+    return KINDS[0 if good == sum(remedy["sheets"].values()) else 1] if good else KINDS[3]
+
+
 def withdrawn(before: Line, now: Line) -> bool:
     """Whether a complete answer of before has changed: it was about noise or lost creases."""
     return kind_of(before)[0] == KINDS[0] and kind_of(before) != kind_of(now)
@@ -159,6 +179,8 @@ def answers(paths: list[Path], folder: Path, commit: str | None, keep: Path) -> 
             if name in kept:
                 continue
             line = {"file": name, **answered(path, source)}
+            if line["code"] == 3 and (options := REMEDIES.get(refused_for(line))):
+                line["remedy"] = answered(path, source, *options)
             out.write(json.dumps(line) + "\n")
             out.flush()
             kept[name] = line
@@ -174,6 +196,12 @@ def print_summary(programs: dict[str, dict[str, Line]]) -> None:
         print(f"| {kind} | {' | '.join(str(count[kind]) for count in kinds)} |")
     slowest = [max(line["seconds"] for line in lines.values()) for lines in programs.values()]
     print(f"| slowest file, in seconds | {' | '.join(map(str, slowest))} |")
+    *_, now = programs.values()
+    kinds_helped = Counter(helped(line) for line in now.values())
+    tried = sum(number for kind, number in kinds_helped.items() if kind)
+    complete, partly = kinds_helped[KINDS[0]], kinds_helped[KINDS[1]]
+    print(f"\n{tried} refused files were counted again with the options that the message names:")
+    print(f"{complete} are then complete, {partly} in part.")
     if len(programs) == 2:
         before, now = programs.values()
         noise = sum(withdrawn(before[name], now[name]) for name in now)
@@ -181,17 +209,28 @@ def print_summary(programs: dict[str, dict[str, Line]]) -> None:
         print("they were about noise or lost creases.")
 
 
-def print_files(programs: dict[str, dict[str, Line]]) -> None:
-    """Print a row for each file."""
-    print(f"\n| file | {' | '.join(programs)} |\n|---|{'---|' * len(programs)}")
-    first, *_, now = programs.values()
-    for name in now:
-        cells = []
-        for lines in programs.values():
-            kind, said = kind_of(lines[name])
-            star = "*" if lines is not now and withdrawn(first[name], now[name]) else ""
-            cells.append((f"{kind}: {said}" if said else kind) + star)
-        print(f"| {name} | {' | '.join(cells)} |")
+def short(names: Iterable[str]) -> dict[str, str]:
+    """Each path without its first folder, the repository, where no two paths then agree."""
+    rest = {name: name.partition("/")[2] or name for name in names}
+    times = Counter(rest.values())
+    return {name: path if times[path] == 1 else name for name, path in rest.items()}
+
+
+def write_files(programs: dict[str, dict[str, Line]], path: Path) -> None:
+    """Write a row for each file."""
+    first, now = next(iter(programs.values())), [*programs.values()][-1]
+    with path.open("w", encoding="utf-8", newline="") as out:
+        table = csv.writer(out, lineterminator="\n")
+        table.writerow(["file", *programs])
+        for name, path_shown in short(now).items():
+            cells = []
+            for lines in programs.values():
+                kind, said = kind_of(lines[name])
+                star = "*" if lines is not now and withdrawn(first[name], now[name]) else ""
+                remedy = lines[name].get("remedy") and " ".join(REMEDIES[said])
+                then = f"; with `{remedy}` {helped(lines[name])}" if remedy else ""
+                cells.append((f"{kind}: {said}" if said else kind) + then + star)
+            table.writerow([path_shown, *cells])
 
 
 def main() -> None:
@@ -200,6 +239,7 @@ def main() -> None:
     parser.add_argument("--against", metavar="COMMIT", help="an older program, run beside this one")
     parser.add_argument("--only", default="", help="only paths with this text")
     parser.add_argument("--keep", type=Path, default=Path("real-files"), help="where answers go")
+    parser.add_argument("--csv", type=Path, metavar="FILE", help="write a row for each file")
     arguments = parser.parse_args()
     paths = [
         path
@@ -215,7 +255,8 @@ def main() -> None:
             kept = arguments.keep / f"{commit or 'now'}.jsonl"
             programs[heading] = answers(paths, arguments.folder, commit, kept)
     print_summary(programs)
-    print_files(programs)
+    if arguments.csv:
+        write_files(programs, arguments.csv)
 
 
 if __name__ == "__main__":

@@ -52,7 +52,7 @@ def why(found: PanelMatch) -> str:
         return "a fold with a letter that stays flat"
     if part.reason.startswith("round the loop"):
         return "a loop that does not close" + (", nearly" if "rounded" in part.reason else "")
-    if part.reason.startswith("together"):
+    if part.reason.startswith("the vertices"):
         return "vectors at several vertices"
     return "a single vertex"
 

@@ -45,6 +45,7 @@ def result(request: pytest.FixtureRequest) -> Decomposition:
     slants, solver = request.param
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(by_spaces, "found_components", lambda *_: ([], False))
+        patch.setattr(by_spaces, "MOST_STEPS", 0)
         if not solver:
             patch.setattr(by_modes, "has_solver", lambda: False)
             patch.setattr(by_modes, "straight_creases", lambda _: [])

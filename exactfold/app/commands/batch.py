@@ -305,7 +305,7 @@ def line_for(job: Job, result: BranchCount | Decomposition | Exception) -> Line:
         message = "; ".join([*known, result.reason])
         if result.status is PROVED:
             message = _to_second_order(result)
-        if (warning := result.warning) is not None:
+        if (warning := result.warning) is not None and warning not in message:
             message = f"{message}{'; ' if message else ''}warning: {warning}"
         warned = warning is not None
         ways = _ways(result)

@@ -43,7 +43,7 @@ class Asked(CertifyOptions):
         Raises the errors of `read`, `sheet_system`, `certify_points` and `points_in`.
         """
         with Bar("reading") as bar:
-            sheet = read(self.file, self.reading, "certify").pattern
+            sheet = read(self.file, self.reading, "certify", verbose=self.verbose).pattern
             bar("equations")
             system = sheet_system(sheet, Given(self.boundary_heights).heights)
             points = points_in(self.points, system)
@@ -167,8 +167,11 @@ class CertifyDocument(TypedDict):
     distinct: int
     """The number of disjoint boxes."""
     real: int
+    """How many zeros in them are proved real."""
     nonreal: int
+    """How many zeros in them are proved not real."""
     unknowns: list[str]
+    """Their names."""
     equations: str
     """What the unknowns and the equations are."""
     points: list[PointDocument]

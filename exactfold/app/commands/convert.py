@@ -12,7 +12,7 @@ from exactfold._support.documents import FieldName, FoldText
 from exactfold._support.plurals import agreeing, counted
 from exactfold.app.options.patterns import ConvertOptions
 from exactfold.app.shell.patterns import located
-from exactfold.app.shell.shell import Bar, apart, name_of, said, say, tell
+from exactfold.app.shell.shell import Bar, apart, name_of, said, say, sheet_written, tell
 from exactfold.certificates.entries import write_certificate
 from exactfold.errors import FoldError, NotApplicableError, NotFoldError, PatternError, UsageError
 from exactfold.interop.sheet_files import ENDINGS, FOLD_ENDINGS, write_sheet
@@ -112,11 +112,7 @@ def _written(made: Converted, output: str, exact: bool) -> str:
     if made.joins:
         is_ = agreeing(len(made.joins), "is")
         added = f"; {counted(len(made.joins), 'edge')} (J) {is_} added, which cut panels"
-    return (
-        f"wrote {output}: {counted(len(pattern.vertices), 'vertex')}, "
-        f"{counted(len(pattern.folds), 'fold')}, {counted(len(pattern.faces), 'panel')}, "
-        f"coordinates {field}{added}"
-    )
+    return f"wrote {output}: {sheet_written(pattern)}, coordinates {field}{added}"
 
 
 class ConvertDocument(TypedDict):
@@ -126,7 +122,9 @@ class ConvertDocument(TypedDict):
     version: Literal[1]
     pattern: PatternDocument | PanelsDocument
     output: str
+    """The file that was written."""
     field: FieldName
+    """That of the coordinates."""
     joins: list[FoldText]
     """Edges that --triangulate added."""
     read: ReadDocument | None

@@ -15,8 +15,6 @@ from exactfold.app.shell.given import Given
 from exactfold.app.shell.patterns import read, read_any
 from exactfold.app.shell.shell import EXIT, Bar, apart, name_of, say
 from exactfold.app.verbs.counting import counted_with_letters
-from exactfold.branches.certificates.listing import certificate as certificate_of
-from exactfold.branches.counting.stream import StreamedCount
 from exactfold.branches.values.result import BranchCount
 from exactfold.certificates.entries import write_certificate
 from exactfold.errors import NotApplicableError, UsageError
@@ -24,6 +22,7 @@ from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.opening import Opened
 
 if TYPE_CHECKING:  # counting branches does not need it
+    from exactfold.branches.counting.stream import StreamedCount
     from exactfold.panels.result import Decomposition
 
 
@@ -148,6 +147,8 @@ class Asked(CountOptions):
         """Write the certificate and return its path; if there is none, say why and return None."""
         if self.certificate is None:
             return None
+        from exactfold.branches.certificates.listing import certificate as certificate_of
+
         if not isinstance(result, BranchCount):
             return self._certified_panels(result, self.certificate)
         if result.connected_components is not None and result.proof is None:
@@ -171,6 +172,8 @@ class Asked(CountOptions):
 
     def _certified_components(self, result: BranchCount, file: Path) -> str | None:
         """Write the certificate of the connected components, and that of the irreducible ones."""
+        from exactfold.branches.certificates.listing import certificate as certificate_of
+
         written = None
         try:
             write_certificate(certificate_of(result), file)

@@ -7,6 +7,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from exactfold._support.plurals import counted
 from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.app.commands.ways import choice_of
 from exactfold.app.options.pictures import DrawOptions
@@ -18,7 +19,7 @@ from exactfold.app.pictures.picture_files import checked_picture, write_picture
 from exactfold.app.pictures.way_sheets import number_listed, sheet_of_ways, why_no_way
 from exactfold.app.shell.given import Given
 from exactfold.app.shell.patterns import located, read_any, verdict
-from exactfold.app.shell.shell import EXIT, STDIN, Bar, apart, say, wrote
+from exactfold.app.shell.shell import EXIT, STDIN, Bar, apart, say, sheet_written, wrote
 from exactfold.app.verbs.choosing import choose
 from exactfold.app.verbs.chosen import ChosenBranch, ChosenPanels
 from exactfold.app.verbs.moving import along, along_panels
@@ -70,7 +71,7 @@ class Wanted(DrawOptions):
             apart(target, self.file)
         with Bar("reading") as bar:
             try:
-                text, status = self._drawn(bar)
+                text, status, what = self._drawn(bar)
             except UndecidedBranchError as error:
                 say(f"not drawn: {error}")
                 return EXIT[UNDECIDED]
@@ -80,7 +81,7 @@ class Wanted(DrawOptions):
         if target is None:
             sys.stdout.write(text)
         else:
-            wrote(target)
+            wrote(target, what)
         return EXIT[status]
 
     def _target(self) -> Path | None:
@@ -105,8 +106,8 @@ class Wanted(DrawOptions):
     def _is_plain(self) -> bool:
         return not self.is_named and not self.everything
 
-    def _drawn(self, bar: Bar) -> tuple[str, Verdict]:
-        """The picture, and the verdict on the way that it shows."""
+    def _drawn(self, bar: Bar) -> tuple[str, Verdict, str]:
+        """The picture, the verdict on the way that it shows, and what it shows in words."""
         try:
             opened = read_any(self.file, self.reading, verbose=self.verbose)
         except (FoldError, PatternError, SeveralSheetsError) as error:
@@ -116,11 +117,14 @@ class Wanted(DrawOptions):
             if drawing is None:
                 raise
             say(f"drawn as it is, because it is not a sheet that can be counted: {error}")
-            return pattern_picture(drawing, title=self._title), PROVED
+            lines = counted(len(drawing.lines), "line")
+            return pattern_picture(drawing, title=self._title), PROVED, f"{lines}, no sheet"
+        what = sheet_written(opened.sheet)
         if self._is_plain:
-            return pattern_picture(opened.sheet, opened.assignment, title=self._title), PROVED
+            picture = pattern_picture(opened.sheet, opened.assignment, title=self._title)
+            return picture, PROVED, what
         text, status = self._way(opened, bar)
-        return text, verdict(opened, status)
+        return text, verdict(opened, status), what
 
     def _way(self, opened: Opened, bar: Bar) -> tuple[str, Verdict]:
         """The picture of the ways that were named, and the verdict on them."""

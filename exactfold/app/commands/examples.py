@@ -8,9 +8,8 @@ from pathlib import Path
 from typing import Literal, TypedDict
 
 from exactfold._support.documents import Several
-from exactfold._support.plurals import counted
 from exactfold.app import report
-from exactfold.app.shell.shell import Bar, wrote
+from exactfold.app.shell.shell import Bar, sheet_written, wrote
 from exactfold.pattern.data import example_path
 from exactfold.pattern.data import examples as described
 from exactfold.pattern.triangulating.random_squares import sample_random_square
@@ -64,9 +63,4 @@ def write_random_square(
         sys.stdout.write(text)
     else:
         write_text(output, text)
-        pattern = sample.pattern
-        wrote(
-            output,
-            f"{counted(len(pattern.vertices), 'vertex')}, {counted(len(pattern.folds), 'fold')}, "
-            f"{counted(len(pattern.triangles), 'panel')}",
-        )
+        wrote(output, sheet_written(sample.pattern))

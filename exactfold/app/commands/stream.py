@@ -6,6 +6,7 @@ import shlex
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from exactfold._support.processes import available_cores
 from exactfold.app.options.patterns import CountOptions
@@ -16,14 +17,15 @@ from exactfold.app.shell.shell import Bar, apart, interruptible
 from exactfold.branches.counting.by_theorem import IN_MEMORY, is_too_many, too_many
 from exactfold.branches.counting.collect import check_countable
 from exactfold.branches.counting.doubted import doubted
-from exactfold.branches.counting.on_dask import LOCAL, dask_engine
-from exactfold.branches.counting.stream import StreamedCount, stream_branches
 from exactfold.errors import (
     NotApplicableError,
     NotCountedError,
     UsageError,
 )
 from exactfold.pattern.crease_pattern import CreasePattern
+
+if TYPE_CHECKING:  # a plain count does not stream
+    from exactfold.branches.counting.stream import StreamedCount
 
 ADVISED = 16
 """From this many foldable vertices on, `count` advises --stream, which takes less memory."""
@@ -57,6 +59,8 @@ class Streaming:
         Another method may have proved what the run left open. Raises the errors of
         `stream_branches` and `dask_engine`, and `UsageError` for a file that exists already.
         """
+        from exactfold.branches.counting.on_dask import LOCAL
+
         if self.asked.workers is not None and self.asked.dask not in (None, LOCAL):
             raise UsageError(
                 "a running cluster has its own workers: leave out --workers, or use --dask local"
@@ -79,6 +83,9 @@ class Streaming:
                 return doubted(result, file.opened)
 
     def _streamed(self, pattern: CreasePattern, bar: Bar) -> StreamedCount:
+        from exactfold.branches.counting.on_dask import dask_engine
+        from exactfold.branches.counting.stream import stream_branches
+
         dask, workers = self.asked.dask, self.asked.workers
         cluster = nullcontext() if dask is None else dask_engine(dask, workers)
         with cluster as engine:

@@ -39,7 +39,9 @@ class ListedStudy(TypedDict):
     """A study that can be run."""
 
     study: str
+    """Its name."""
     study_version: Positive
+    """The version rises when rows change."""
     about: str
     numbers: dict[str, Natural]
     """The number of rows of each size."""
@@ -63,6 +65,7 @@ class StudyRowDocument(TypedDict):
     study: str
     journal: str
     row: Annotated[str, Keywords(pattern="^[0-9a-f]{16}$")]
+    """Its name, which follows from the study, its version and the recipe."""
     sha256: Digest
     """Digest of the recipe and the row as JSON with sorted keys and without blanks."""
     recipe: dict[str, Any]
@@ -89,6 +92,7 @@ class StudyDocument(TypedDict):
     numbers: dict[str, Natural]
     """The number of rows of each size."""
     rows: Natural
+    """How many rows there are."""
     computed: Natural
     """The number of rows that were computed because the journal did not have them."""
     undecided: Natural

@@ -42,6 +42,7 @@ class Wanted(ViewOptions):
                 frames=self.frames,
                 proving=self.proving,
                 workers=self.workers or available_cores(),
+                limit=self.limit,
                 progress=bar,
             )
         show(Text(document["answer"]))
@@ -89,11 +90,16 @@ def _contents(document: Mapping[str, Any]) -> str:
     ways = document["ways"]
     if not ways:
         return "the pattern only: no single way to fold is known"
+    numbered = [way for way in ways if way["number"]]  # as `count` lists them
+    drawn = ", and the motion with the letters of the file" * (0 < len(numbered) < len(ways))
+    listed = numbered or ways
+    left = sum(way["motion"] is None for way in listed)
+    why = " not followed (the page says why)"
     if document["kind"] == "branches":
-        return counted(len(ways), "branch")
-    folding = sum(way["motion"] is not None for way in ways)
-    left = len(ways) - folding
-    text = counted(folding, "way") + " to fold"
-    if not left and document["status"] == str(PROVED) and not document["complete"]:
+        return counted(len(listed), "branch") + (f", {left}{why}" if left else "") + drawn
+    text = counted(len(listed) - left, "way") + " to fold"
+    if left:
+        return f"{text}, {counted(left, 'way')}{why}{drawn}"
+    if document["status"] == str(PROVED) and not document["complete"] and not drawn:
         return f"{text}, those of which a motion is known"
-    return f"{text}, and {counted(left, 'mode')} not followed" if left else text
+    return f"{text}{drawn}"

@@ -208,7 +208,7 @@ class CertifyOptions(ReadingOptions):
             metavar="POINTS.json",
             help="A list of points; each is a list of coordinates in the order of the unknowns of "
             "`exactfold export --system`, or an object by unknown. A coordinate is a number, text "
-            'such as "1/3", or a pair [real part, imaginary part].',
+            'such as "1/3", or a list of real and imaginary part.',
         ),
     ]
     boundary_heights: BoundaryHeights = None

@@ -6,11 +6,13 @@ from typing import Annotated
 
 import typer
 
+from exactfold._support.clock import LIMIT
 from exactfold.app.options.reading import ReadingOptions
 from exactfold.app.options.ways import ONE_OF, WayOptions
 from exactfold.app.shell.parameters import (
     BoundaryHeights,
     Side,
+    duration,
     flag,
     number,
     written,
@@ -94,6 +96,15 @@ class ViewOptions(WayOptions):
         int | None,
         number("Number of processes that follow motions. Default: all cores."),
     ] = None
+    limit: Annotated[
+        float,
+        typer.Option(
+            parser=duration,
+            metavar="SECONDS",
+            help="When the search for ways stops; from then on no further motion is begun, but "
+            "half of the time at least is left for motions.",
+        ),
+    ] = LIMIT
 
 
 @dataclass(frozen=True, eq=False, repr=False, match_args=False)

@@ -110,7 +110,11 @@ def _frames(
 
 
 def _style(frames: int, seconds: float) -> str:
-    """The times at which each frame is seen: once on the way there, and once on the way back."""
+    """The times at which each frame is seen: once on the way there, and once on the way back.
+
+    The middle frame is seen where nothing is animated: in programs that ignore animations, and by
+    readers who prefer reduced motion.
+    """
     lines = [
         f".f{{visibility:hidden;animation-duration:{number(seconds)}s;"
         "animation-iteration-count:infinite;animation-timing-function:step-end}"
@@ -124,6 +128,6 @@ def _style(frames: int, seconds: float) -> str:
             f"{number(place)}%{{visibility:{state}}}" for place, state in sorted(steps.items())
         )
         lines.append(f".f{k}{{animation-name:k{k}}}@keyframes k{k}{{{keys}}}")
-    half = f".f{{animation:none!important}}.f{frames // 2}{{visibility:visible}}"
-    lines.append(f"@media (prefers-reduced-motion:reduce){{{half}}}")
+    lines.append(f".f{frames // 2}{{visibility:visible}}")
+    lines.append("@media (prefers-reduced-motion:reduce){.f{animation:none!important}}")
     return "".join(lines)

@@ -89,6 +89,7 @@ class CreaseDrawing:
     size: float = SIZE
     labelled: bool = True
     joined: bool | None = None
+    of_family: bool = False
 
     @cached_property
     def margin(self) -> float:
@@ -157,7 +158,8 @@ class CreaseDrawing:
             self.signs.values(),
             self.style,
             by_angle=bool(self.largest),
-            of_way=bool(self.signs or self.angles),
+            of_way=bool(self.signs or self.angles) or self.of_family,
+            of_family=self.of_family,
         )
         wide = max(width, min(key.natural, 320.0))
         parts, below = key.placed(wide, height)
@@ -176,7 +178,7 @@ class CreaseDrawing:
 
     def _group(self, letter: str, joined: bool) -> str:
         """The lines with one letter."""
-        plain = not set(self.lines.letters) - {"B", "U"}
+        plain = not self.of_family and not set(self.lines.letters) - {"B", "U"}
         chosen = [k for k, other in enumerate(self.lines.letters) if other == letter]
         content = self._few(letter, chosen) if joined else self._each(letter, chosen)
         style = self.style.attributes(letter, alone=plain)

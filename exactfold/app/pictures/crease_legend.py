@@ -11,7 +11,13 @@ import numpy as np
 from exactfold.app.pictures import svg
 from exactfold.app.pictures.crease_style import Style, mark
 
-_NAMES: Final = {"M": "mountain", "V": "valley", "F": "flat", "U": "undecided"}
+_NAMES: Final = {"M": "mountain", "V": "valley", "F": "flat"}
+_OPEN: Final = {
+    (False, False): "unassigned",
+    (True, False): "undecided",
+    (True, True): "mountain or valley",
+}
+"""What folds without a letter are, by `of_way` and `of_family`."""
 _SIGNS: Final = {1: "up", -1: "down", 0: "flat vertex"}
 _FONT: Final = 11.0
 _ROW: Final = 18.0
@@ -77,20 +83,24 @@ def legend(
     *,
     by_angle: bool = False,
     of_way: bool = True,
+    of_family: bool = False,
 ) -> Legend:
     """The legend of a picture with these letters and signs.
 
     With `by_angle`, the widths of lines show angles. With `of_way`, the letters are those of a way
-    to fold, and a missing letter is undecided.
+    to fold, and a missing letter is undecided. With `of_family`, they are those of a family, and
+    the folds without a letter are mountains in some of its ways and valleys in others.
 
     >>> shown = legend("BMV", [1], Style.of(50))
     >>> [item.name for item in shown.items]
     ['mountain', 'valley', 'up']
     """
     there = set(letters)
-    names = _NAMES if of_way else {**_NAMES, "U": "unassigned"}
+    names = {**_NAMES, "U": _OPEN[of_way, of_family]}
     items = [_line(letter, name) for letter, name in names.items() if letter in there]
-    if not there & set("MV"):  # without mountains and valleys the lines need no explanation
+    if not there & set("MV") and not (
+        of_family and "U" in there
+    ):  # without mountains and valleys the lines need no explanation
         items = []
     if by_angle and items:
         items.append(_Item(_wedge(), _SAMPLE, "wide: folds more"))

@@ -51,6 +51,11 @@ class DrawnWay:
         """A text that is the same for both sides of the sheet: the smaller of their two texts."""
         return min(self.text, self.text.translate(UPSIDE_DOWN))
 
+    @property
+    def is_open_family(self) -> bool:
+        """Whether folds are mountains in some ways of this family of panels, valleys in others."""
+        return not self.signs and "U" in self.text
+
     def turned(self, side: int) -> DrawnWay:
         """The way itself for side 1; its mirror image, with all signs and letters reversed, for
         side -1.
@@ -71,7 +76,9 @@ class DrawnWay:
         lines = crease_lines(self.pattern, self.letters)
         joined = True if small else None
         wide = size or natural_size(lines)
-        return CreaseDrawing(lines, self.signs, self.angles, wide, not small, joined)
+        return CreaseDrawing(
+            lines, self.signs, self.angles, wide, not small, joined, self.is_open_family
+        )
 
     def picture(self, title: str = "") -> str:
         """The crease pattern with this way as an SVG file."""

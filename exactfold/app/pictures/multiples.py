@@ -90,7 +90,13 @@ def sheet_of_multiples(ways: Sequence[DrawnWay], title: str, *, number: int | No
         top += 20
     letters = {letter for way in ways for letter in way.letters.values()}
     signs = {sign for way in ways for sign in way.signs.values()}
-    key = legend(letters, signs, Style.of(100), by_angle=any(way.angles for way in ways))
+    key = legend(
+        letters,
+        signs,
+        Style.of(100),
+        by_angle=any(way.angles for way in ways),
+        of_family=any(way.is_open_family for way in ways),
+    )
     below, height = key.placed(width, top)
     head = svg.text(title, width / 2, 19, anchor="middle", size=_TITLE)
     return svg.picture(width, height, [head, *parts, *below], title)
@@ -136,6 +142,7 @@ def _cell(way: DrawnWay, x: float, y: float, high: float) -> str:
     body = svg.element("g", drawing.body(), transform=at, opacity=_FAINT if way.note else None)
     middle, below = x + _CELL / 2, y + drawing.extent[1]
     name = way.name.removeprefix("branch ") if way.signs else way.name
+    name = name.replace("a family of dimension", "dim.")
     letters = shortened(way.text, 22)
     lines = [
         svg.text(shortened(name, 18), middle, below + 12, anchor="middle", size=12, **_EVEN),

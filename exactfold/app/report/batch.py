@@ -37,7 +37,8 @@ def batch_report(
     limit = len(rows) if everything or len(rows) <= _ROWS else _ROWS
     names = _without_folder([name for name, *_ in rows])
     below: dict[str, list[str]] = {}
-    for name, (_, status, ways, message) in zip(names[:limit], rows, strict=False):
+    for name, (path, status, ways, message) in zip(names[:limit], rows, strict=False):
+        message = message.replace(path, path.rsplit("/", 1)[-1])  # the line above has the folders
         long = len(message) > _BESIDE
         beside = "" if long or not message else f": {message}"
         lines.append(_row(ways, status_text(status), f"{name}{beside}"))

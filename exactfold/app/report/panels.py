@@ -36,7 +36,10 @@ NAMED = 12
 
 _SIDES = "Each way is shown on one side; on the other all is reversed."
 _FAMILIES = "A family has infinitely many ways; one is shown."
-_EITHER = "U is a fold that is a mountain in some and a valley in others."
+_EITHER = (
+    "A family has infinitely many ways; one is shown, with U for a fold that is a mountain in some "
+    "and a valley in others."
+)
 
 
 def panels_report(
@@ -225,7 +228,7 @@ def _notes(result: Decomposition, everything: bool) -> list[str]:
             "even so, it is often known whether the sheet starts to fold with given mountains and "
             "valleys: see `exactfold match`"
         )
-    if result.warning is not None:
+    if result.warning is not None and result.warning not in result.reason:
         notes.append(f"warning: {result.warning}")
     return notes
 
@@ -280,8 +283,8 @@ def _legend(result: Decomposition, ways: Sequence[PanelWay], everything: bool) -
     folds = result.pattern.folds
     sides = _SIDES
     if any(way.dimension > 1 for way in ways):
-        either = f"{_EITHER} " * any("U" in way.letters.values() for way in ways)
-        sides = f"{_FAMILIES} {either}{_SIDES}"
+        either = any("U" in way.letters.values() for way in ways)
+        sides = f"{_EITHER if either else _FAMILIES} {_SIDES}"
     if len(folds) > SPELLED and not everything:
         return f"{COUNTED} {sides}"
     order = ", ".join(f"{i}-{j}" for i, j in folds) if len(folds) <= NAMED else "of --json"

@@ -12,7 +12,7 @@ import sys
 import tempfile
 import threading
 import traceback
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sized
 from contextlib import contextmanager, suppress
 from functools import wraps
 from pathlib import Path
@@ -22,7 +22,7 @@ import typer
 
 from exactfold._support.documents import Keywords
 from exactfold._support.memory import is_shortage, memory_is_limited, shortage
-from exactfold._support.plurals import visible
+from exactfold._support.plurals import counted, visible
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED
 from exactfold.app.shell.guard import INTERRUPTED, NO_MEMORY
 from exactfold.errors import (
@@ -42,6 +42,8 @@ if TYPE_CHECKING:
     from types import FrameType
 
     from exactfold.app.shell.display import Display
+    from exactfold.pattern.crease_pattern import CreasePattern
+    from exactfold.pattern.panel_pattern import PanelPattern
 
 EXIT = {PROVED: 0, REFUTED: 1, UNDECIDED: 4}
 USAGE, BAD_INPUT = 2, 3
@@ -111,6 +113,15 @@ def wrote(path: Path, what: str = "") -> None:
     """Print which file was written, and what is in it; a closed standard output is no failure."""
     with suppress(OSError):
         tell(f"wrote {name_of(path)}{': ' if what else ''}{what}")
+
+
+def sheet_written(sheet: CreasePattern | PanelPattern) -> str:
+    """A sheet in the words with which every command says what it wrote."""
+    from exactfold.pattern.panel_pattern import PanelPattern
+
+    faces: Sized = sheet.faces if isinstance(sheet, PanelPattern) else sheet.triangles
+    sizes = ((sheet.vertices, "vertex"), (sheet.folds, "fold"), (faces, "panel"))
+    return ", ".join(counted(len(parts), noun) for parts, noun in sizes)
 
 
 def exit_code(error: Exception) -> int:

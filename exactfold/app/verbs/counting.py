@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from fractions import Fraction
@@ -70,8 +71,8 @@ def read(
 
     If the digits of a drawing are inexact, the sheet that was meant is inferred
     (docs/import.md, The sheet that was meant), and `meant` of the result says how. `without` names
-    relations that were not meant, as in "straight@12", and `also` relations that were, as in
-    "parallel 3-4,8-9". `noise` is the noise level as a share of the size, and `unit` is n if the
+    relations that were not meant, as in `straight@12`, and `also` relations that were, as in
+    `parallel 3-4,8-9`. `noise` is the noise level as a share of the size, and `unit` is n if the
     angles are multiples of pi / n. With snap "exact", nothing is inferred.
 
     Raises `InputError`, whose message names the file and what is wrong with it.
@@ -204,6 +205,7 @@ def counted_with_letters(
     """
     from exactfold.branches.values.result import BranchCount
 
+    start = time.perf_counter()
     result = count_opened(
         opened, method=method, seed=seed, progress=progress, clock=clock.share(3 / 4)
     )
@@ -212,7 +214,9 @@ def counted_with_letters(
     from exactfold.design.panels.drawn import with_drawn
 
     known = with_drawn(result, opened, progress=progress, clock=clock)
-    return _with_proposal(known, opened, clock) if opened.doubt else known
+    if opened.doubt:
+        known = _with_proposal(known, opened, clock)
+    return replace(known, seconds=time.perf_counter() - start)
 
 
 def _with_proposal(result: Decomposition, opened: Opened, clock: Clock) -> Decomposition:

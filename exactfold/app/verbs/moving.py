@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from exactfold._support.progress import Progress
@@ -155,7 +156,7 @@ def along_panels(
     if chosen.direction is not None:
         if by is not None:
             raise UsageError("by is not for a family, whose fold angles may turn back")
-        return follow_family(
+        motion = follow_family(
             chosen.answer.known.pattern,
             chosen.direction.densities,
             until=str(until),
@@ -163,6 +164,10 @@ def along_panels(
             held=0 if held is None else _face(chosen.answer.known, held),
             way=None if way is None else way.number,
         )
+        if way is None:
+            return motion
+        # At special points of a motion more folds seem free to first order than the family has.
+        return replace(motion, drivers=motion.drivers[: way.dimension])
     if way is not None:
         way.require_folding()
     numbers = [key for key in chosen.rates if isinstance(key, int)]

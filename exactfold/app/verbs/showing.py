@@ -7,6 +7,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, TypeAlias
 
+from exactfold._support.clock import LIMIT
 from exactfold._support.progress import Progress
 from exactfold.app.pictures.crease_drawing import pattern_picture
 from exactfold.app.pictures.drawn_ways import DrawnWay, branch_way, panel_way
@@ -93,15 +94,16 @@ def view(
     name: str | None = None,
     path: str | PathLike[str] | None = None,
     workers: int = 1,
+    limit: float = LIMIT,
     progress: Progress | None = None,
 ) -> str:
     """The page that shows how a sheet folds, as HTML text; with `path`, also written to a file.
 
     The page opens in a browser without a network. `sheet` is anything that `read` takes. The page
     shows all ways that are known, or the one that `way`, `signs`, `up` or `letters` names, as in
-    `follow`. Each way is followed in `frames`
-    frames to its first contact; with `proving`, its motion is also proved. `workers` processes
-    share the work.
+    `follow`. Each way is followed in `frames` frames to its first contact; with `proving`, its
+    motion is also proved. `workers` processes share the work. The search for ways, and with it the
+    following, ends after `limit` seconds; half of them at least are spent on following.
 
     Raises `UsageError` for signs that do not fit the sheet or a file that does not end in .html,
     and the errors of `read`.
@@ -128,6 +130,7 @@ def view(
         frames=frames,
         proving=proving,
         workers=workers,
+        limit=limit,
         progress=progress,
     )
     page = view_page(document)

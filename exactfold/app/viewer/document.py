@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import closing
 from dataclasses import dataclass
@@ -9,11 +10,12 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Final, Literal, TypedDict
 
+from exactfold._support.clock import LIMIT, Clock
 from exactfold._support.documents import Fold, Keywords, Natural, Triangle
 from exactfold._support.progress import Progress
 from exactfold.app.viewer.listing import Drawn, Facts, Listed, file_letters, listed_ways
 from exactfold.app.viewer.marks import Mark, marks_of
-from exactfold.app.viewer.ways import Followed, Letters, Way
+from exactfold.app.viewer.ways import Followed, Letters, Way, not_followed
 from exactfold.branches.counting.pools import Pool, process_pool
 from exactfold.errors import UsageError, WorkerDiedError
 from exactfold.pattern.crease_pattern import CreasePattern
@@ -74,6 +76,7 @@ def view_document(
     frames: int = FRAMES,
     proving: bool = False,
     workers: int = 1,
+    limit: float = LIMIT,
     progress: Progress | None = None,
 ) -> ViewDocument:
     """All that the page shows of a sheet, as JSON; `view_page` puts it into one HTML file.
@@ -92,7 +95,9 @@ def view_document(
 
     With `proving`, motions along branches are proved, too (`prove`), and so are the first contacts
     of motions of panels that are proved to exist (`prove_contacts`). `workers` is the number of
-    processes that share the work. `name` names the sheet.
+    processes that share the work. `name` names the sheet. The search for ways ends after `limit`
+    seconds. No further way is followed when they are over, but half of them at least are spent on
+    following; a way that is left says so.
 
     Raises the errors of `open_sheet`, `UsageError` for signs that do not fit, and
     `WorkerDiedError`. If nothing can be counted of a sheet, its document says why.
@@ -101,6 +106,7 @@ def view_document(
     >>> [(way["signs"], way["letters"], way["motion"]["end"]) for way in document["ways"]]
     [('+-', 'MVVVMVM', 'flat-fold')]
     """
+    clock = Clock(limit)
     known = Known.of(
         sheet,
         name=name,
@@ -108,10 +114,12 @@ def view_document(
         ways=ways,
         frames=frames,
         proving=proving,
+        limit=limit,
         progress=progress,
     )
     useful = max(1, len(known.listed) // _WORTH_A_PROCESS)
-    return known.document(known.followed(process_pool(min(workers, useful)), progress))
+    pool = process_pool(min(workers, useful))
+    return known.document(known.followed(pool, clock.at_least(limit / 2), progress))
 
 
 @dataclass(frozen=True)
@@ -142,6 +150,7 @@ class Known:
         ways: Sequence[int] | None = None,
         frames: int = FRAMES,
         proving: bool = False,
+        limit: float = LIMIT,
         progress: Progress | None = None,
     ) -> Known:
         """Compute what is known of a sheet; see `view_document`."""
@@ -153,17 +162,27 @@ class Known:
         title = name or (
             Path(sheet).stem if isinstance(sheet, str | PathLike) else "crease pattern"
         )
-        listed = listed_ways(opened, branches, ways, frames, proving, progress)
+        listed = listed_ways(opened, branches, ways, frames, proving, progress, limit=limit)
         return cls(opened, title, listed)
 
-    def followed(self, pool: Pool, progress: Progress | None) -> list[Way]:
-        """All ways with their motions."""
+    def followed(self, pool: Pool, clock: Clock, progress: Progress | None) -> list[Way]:
+        """All ways with their motions; first the one with the letters of the file.
+
+        A way that is not begun before the clock has passed says that it was left.
+        """
         ways = [way for way, _ in self.listed]
+        first = -1 if self.known.drawn is None else self.known.drawn["way"]
         jobs = [k for k, (_, job) in enumerate(self.listed) if job is not None]
-        for done, (k, followed) in enumerate(_numbered(pool, self.follower, self.listed, jobs), 1):
+        jobs.sort(key=lambda k: k != first)
+        begun = itertools.takewhile(lambda _: not clock.passed, jobs)
+        left = set(jobs)
+        for done, (k, followed) in enumerate(_numbered(pool, self.follower, self.listed, begun), 1):
             ways[k] = {**ways[k], **followed}
+            left.discard(k)
             if progress is not None:
                 progress("following", done, len(jobs))
+        for k in left:
+            ways[k] = {**ways[k], **not_followed(_left(ways[k], clock))}
         return ways
 
     def document(self, ways: Sequence[Way], served: bool = False) -> ViewDocument:
@@ -179,6 +198,12 @@ class Known:
             "drawn": self.known.drawn,
             "served": served,
         }
+
+
+def _left(way: Way, clock: Clock) -> str:
+    """Why a way was not followed, and what to do."""
+    name = f"--way {way['number']}" if way["number"] else "the options that name a way"
+    return f"{clock.said}; `exactfold view` or `fold` with {name} follows it alone"
 
 
 class _Numbered:

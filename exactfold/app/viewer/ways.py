@@ -212,13 +212,17 @@ def _family_of(branch: Branch, dimension: int, frames: int) -> Followed:
 
 
 def _family(motion: SheetInMotion, dimension: int) -> Family:
-    """The family to which a motion belongs; its drivers are independent in the middle of it."""
+    """The family to which a motion belongs; its drivers are independent in the middle of it.
+
+    There are at most as many as the family has dimensions: at special points of a motion more folds
+    seem free to first order.
+    """
     from exactfold.motion.panels.closing import Closing
 
     sheet = motion.pattern
     pattern = panels(sheet) if isinstance(sheet, CreasePattern) else sheet
     drivers = Closing(pattern).drivers(motion.angles[(len(motion.angles) + 1) // 2])
-    places = [sheet.folds.index(fold) for fold in drivers[:MOST_DRIVERS]]
+    places = [sheet.folds.index(fold) for fold in drivers[: min(dimension, MOST_DRIVERS)]]
     return {"dimension": dimension, "drivers": places}
 
 

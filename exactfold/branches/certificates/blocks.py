@@ -1,6 +1,6 @@
 """Writes proved blocks as lines of a certificate that has one root for each sign vector.
 
-`docs/certificate.md` describes every key.
+The module of the checker that reads blocks, `compact_blocks`, describes every key.
 """
 
 from __future__ import annotations

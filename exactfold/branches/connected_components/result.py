@@ -34,7 +34,9 @@ class JointDocument(TypedDict):
 
     vertex_signs: VertexSigns
     flat: list[Natural]
+    """The vertices whose stars are flat."""
     by: Annotated[str, Keywords(enum=["space", "isolated", "regular"])]
+    """What proves that it is a solution."""
     folds: bool
     """Whether it is proved to be tangent to true motions with the same flat stars."""
     densities: dict[FoldText, Pair[Rational]]
@@ -46,16 +48,23 @@ class PiecesDocument(TypedDict):
 
     status: ProvedOrNot
     graphs: Number
+    """Their number."""
     at_least: Number
+    """A bound of the number of pieces that they form."""
     at_most: Number
+    """A bound of the number of pieces that they form."""
     true_at_most: Number
+    """The same for true motions."""
     joints: list[JointDocument]
+    """Solutions that join graphs."""
     never_flat: dict[VertexText, str]
     """By vertex: why its star is flat in no solution."""
     complete: list[Natural]
+    """Vertices of which all joints are known."""
     open: dict[VertexText, str]
     """By vertex: why it is not known in which solutions its star is flat."""
     chord: FoldText | None
+    """A fold from boundary to boundary, which joins everything."""
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Final
 
 import numpy as np
 
@@ -30,6 +31,8 @@ from exactfold.solve.certify.enclosure import Enclosure
 from exactfold.solve.numeric.sparse_newton import End, solve
 from exactfold.solve.numeric.sparse_sheet import FloatSheet
 
+_NAMED: Final = 12
+"""At most this many vertices are named in a message."""
 Signs = str | Mapping[int, int] | Sequence[int]
 BoundaryHeights = Mapping[int, RationalLike]
 Deficits = Mapping[int, RationalLike]
@@ -226,7 +229,10 @@ class BranchFinder:
                 inside = self.pattern.Vi - len(names)
                 also = f" (or {self.pattern.Vi}, 0 for those that stay flat)" if inside else ""
                 some, wanted = counted(len(values), "sign"), counted(len(names), "vertex")
-                raise UsageError(f"{some} for {wanted}{also}")
+                first = ", ".join(map(str, names[:_NAMED])) + ", ..." * (len(names) > _NAMED)
+                raise UsageError(
+                    f"{some} for {wanted}{also}: give + or - for each, in the order {first}"
+                )
             given = dict(zip(keys, values, strict=True))
         for v, sign in given.items():
             if v in self._names:

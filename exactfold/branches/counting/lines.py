@@ -46,7 +46,6 @@ from exactfold.rigidity.equations.branch_system import BranchSystem, Chart, notc
 from exactfold.rigidity.equations.chart_change import from_chart, to_chart
 from exactfold.rigidity.equations.problem import Problem
 from exactfold.solve.algebraic.flat_zeros import common_parameter
-from exactfold.solve.algebraic.groebner_bases import groebner
 from exactfold.solve.certify.algebraic import AlgebraicProof, prove_algebraic
 from exactfold.solve.certify.isolation import Isolation, isolate
 from exactfold.solve.numeric.candidates import Candidates
@@ -294,6 +293,8 @@ def _solved_exactly(attempt: _Attempt) -> BranchCount:
     """Compute a Groebner basis; isolate simple roots in boxes and prove multiple ones exactly."""
     stage = attempt.stage("computing a Groebner basis")
     stage(0, 1)
+    from exactfold.solve.algebraic.groebner_bases import groebner  # few sheets need it
+
     solution = groebner(attempt.chart.system)
     stage(1, 1)
     if solution.dimension is None:

@@ -65,6 +65,7 @@ class BranchDocument(TypedDict):
     vertex_signs: VertexSigns
     """By interior vertex: 1 up, -1 down, 0 flat."""
     undecided_vertices: list[Natural]
+    """Vertices whose sign is not proved."""
     assignment: Assignment
     """By fold i-j: mountain, valley, flat, undecided; seen from +z."""
     gauge: GaugeText
@@ -74,10 +75,15 @@ class BranchDocument(TypedDict):
     straight_border: list[Natural]
     """With the gauge "rim": boundary vertices on a straight side."""
     saddle: Sign
+    """The sign of the boundary saddle."""
     centres: dict[VertexText, Rational]
+    """Each height lies within `radius` of its centre."""
     radius: Rational | None
+    """Null if nothing is proved."""
     squared_distance: Rational | None
+    """A proved bound of the distance to the branch."""
     steps: Natural
+    """Of Newton's method."""
     warnings: list[WarningDocument]
     seconds: NotNegative
 

@@ -35,7 +35,9 @@ class LetteredDocument(TypedDict):
     """Which of the branches listed have the letters of the file."""
 
     status: ProvedOrNot
+    """Proved: no other branch has them."""
     ways: list[LetteredWay]
+    """One for each side of a branch with these letters."""
 
 
 class BranchCountKeys(CountKeys):
@@ -43,11 +45,15 @@ class BranchCountKeys(CountKeys):
 
     pattern: PatternDocument
     theory: Literal["branches"]
+    """What was counted."""
     true_bounds: Pair[Power] | None
     """Bounds of the number of true branches, with four boundary vertices or three."""
     dimension: Natural | None
+    """Of the cone of all complex solutions modulo planes; null unless a stress proves it."""
     degree: Power | None
+    """Of this cone, with multiplicity."""
     branches: list[ListedBranch]
+    """Sorted by vertex signs; those that are proved to exist if the count is undecided."""
     letters: LetteredDocument | None
     """The branches with the letters of the file; null if it has none, or no branch is listed."""
 
@@ -57,11 +63,17 @@ class EnumeratedBranches(BranchCountKeys):
 
     status: Literal["proved"]
     by: Literal["enumeration"]
+    """How it was proved."""
     method: Annotated[str, Keywords(**{"not": {"const": "theorem"}})]
+    """How solutions were found."""
     distinct: Natural
+    """The number of different branches."""
     with_multiplicity: Power
+    """Their number, each counted with its multiplicity."""
     real: Natural
+    """How many of them are real."""
     nonreal: Natural
+    """How many of them are not real."""
     pieces: PiecesDocument | None
     """For a convex boundary with more than four vertices."""
 
@@ -102,21 +114,31 @@ class OpenRootDocument(TypedDict):
     """A sign vector whose branch was not proved."""
 
     signs: _Signs
+    """Over the foldable vertices."""
     reason: str
     limit: _Limit
+    """The same signs, and 0 for vertices that look flat."""
 
 
 class StreamDocument(TypedDict):
     """What a run of `exactfold count --stream` did."""
 
     file: str
+    """Where the branches were written."""
     blocks: Natural
+    """How many blocks there are."""
     resumed: Natural
+    """How many blocks were there before."""
     unproved: Natural
+    """How many sign vectors are open."""
     exact: Natural
+    """How many roots needed integers."""
     open: Annotated[list[OpenRootDocument], Keywords(maxItems=1000)]
+    """The first 1000 sign vectors that are open."""
     groups: dict[_Limit, list[_Signs]]
+    """Sign vectors that seem to meet, by their limit."""
     cpu_seconds: dict[str, NotNegative]
+    """Processor time by stage."""
 
 
 class StreamedBranches(EnumeratedBranches):

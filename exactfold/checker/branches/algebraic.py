@@ -1,4 +1,17 @@
-"""All zeros of a branch system, also multiple ones: in classes, in boxes, and on flat sheets."""
+"""All zeros of a branch system, also multiple ones: in classes, in boxes, and on flat sheets.
+
+A class has a squarefree `polynomial` p and `numerators` w_i of lower degree, with coefficients from
+the constant term up: x_i = w_i(T) / p'(T), where T is the form `separating` of the x_i. Its list
+`flat` has vertices whose quadrics have order 2 there: f of them give each zero the multiplicity
+2^f. A root is one of three things:
+
+- a box: `center`, `radius` and `bits`;
+- the number of its `class` and an `interval` in which p changes sign, or a rational root twice;
+- a box with a list `flat` of vertices, in the unknowns that the equations "all folds at these
+  vertices are flat" leave free: those that are no pivots of the reduced echelon form. There the
+  quadrics span a space with as many dimensions as there are unknowns, and a basis of it passes
+  Krawczyk's test.
+"""
 
 from __future__ import annotations
 

@@ -4,6 +4,21 @@ Root number s lies in a box with exactly one zero, by Krawczyk's test. On the wh
 functional of the k-th foldable vertex is negative if bit k of s is set, and positive if it is not.
 So the 2^n zeros differ from each other without any comparison. By refined Bezout these are all
 zeros of n quadrics in P^n, and all are simple and real.
+
+A block has these keys; texts are bytes in base 64:
+
+  block    its number k, from 0; it holds the roots number k * block to (k + 1) * block - 1
+  bits     centres and radii are in units of 2^-bits; at most 52
+  width    of an integer in `centers`, in bytes
+  centers  for each root n integers, little-endian, two's complement
+  radii    for each root one byte r: the radius is 2^r units; 255 means: see `exact`
+  folds    a bit for every fold of the pattern without rigid parts, 1 for a valley, 0 for a
+           mountain, lowest bit first, filled up to whole bytes for each root
+  exact    roots that need more: `root` (its place in the block), `bits`, `radius`, `center`, and
+           `assignment` with the letters M, V, F, or U (undecided: nothing is claimed); at most 4000
+           bits and numbers of 4000 digits
+  open     [place, reason] of roots that were not proved; a file with such roots proves nothing
+           about the number of branches and has no claims
 """
 
 from __future__ import annotations

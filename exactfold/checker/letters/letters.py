@@ -8,6 +8,22 @@ docs/branch.md): the ray in its nappes with a positive saddle, and the opposite 
 opposite nappes with a positive saddle. If the sheet does not have four boundary vertices, there are
 no leaves. Every solution still lies in the closed nappes of some sign vector, so that no solution
 has the letters if all ends of the tree are refuted.
+
+The evidence has `emptied`, the triangulated triangles, as in certificates of one branch, and:
+
+- `refuted`, sets of `signs`, pairs of a vertex and its sign, that no solution with the letters has.
+  `heights` are pairs of a vertex and the heights of its neighbours, counter-clockwise from the one
+  with the smallest number; they are integers, because all may be multiplied by one number. They are
+  null if all folds of the star bend to one side or stay flat, not all on one line.
+- `tree`, steps that are read with a stack of sets of signs. At first it holds the empty set; each
+  step takes the last set. `["split", v]` puts the signs with v down there, and then those with v
+  up; `["force", k, v]`, where all signs of the k-th refuted set but that of v are there, those with
+  the opposite sign of v. `["refuted", k]`: the k-th refuted set is among the signs. `["leaf"]`: all
+  signs are there, and the next entry of `leaves` is about them. `["flat", i, j]`: a mountain or a
+  valley is asked for inside a triangulated triangle.
+- `leaves`, pairs of halves with `heights` and `denominator` as in the certificate of one branch.
+  The first half has the signs of the leaf and a positive saddle, or its reflex corner up. The
+  second has the opposite signs; turned upside down it is the other half of the leaf.
 """
 
 from __future__ import annotations

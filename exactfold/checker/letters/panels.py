@@ -2,7 +2,29 @@
 
 If they do not, case distinctions show it; each case ends in a contradiction (`panels_refuted`). If
 they do, a motion of each part of the sheet shows it (`panels_motion`). The checker finds the flat
-closure and the parts again.
+closure and the parts again. Numbers of the field are lists of their coefficients.
+
+`refuted` and `tree` are read as those of `letters`. A refuted set has `signs`; `planes`, pairs of a
+vertex and a vector; and `heights`, pairs of a vertex and the heights at the ends of its folds that
+may fold, by the number of the neighbour. Steps, beside "split", "refuted" and "flat" (a fold with a
+letter that the flat closure holds flat), are
+
+- `["at", v]`: v rests, or moves on one side of one of its lines. Each way that fits the letters and
+  the sides so far is a case, by these sides (-1 mountain, 0, 1 valley), neighbours by number;
+- `["loop", [u, v, ...]]`: the densities do not fit round the loop; with an order behind it: the
+  fold angles do not, at this order, which excludes true motions only;
+- `["curved", v]`: v has at least four folds, all with one letter;
+- `["vertex", v]`: v cannot have its letters, by the theorem of Abel et al.;
+- `["spaces", [u, v, ...], [[[i, j], ...], ...]]`: the sets of folds exclude all spaces of motions
+  of these vertices.
+
+`motion` has an entry for each part, the part with the smallest vertex first: null at rest; `sides`,
+a letter for each fold; or `densities` over 2^bits for each fold, the places of the `unknowns`, the
+`inverse` of their derivatives over 2^shift, nearly, and the `radius` over 2^bits, with coordinates
+over 2^unit. Conditions go vertex by vertex: x, y and K_v, in which the fold to the neighbour with
+the smallest number is the first; for a straight pair only x or y. An entry of `flat` is a list of
+pairs of a vertex and its vector; `densities` are the ends of folds with their densities in one
+first-order motion.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Certificates of all mountain-valley assignments with which rigid panels start to fold.
 
 The file has no evidence, because the checker finds all assignments again. The motions are those to
-second order in which all folds bend that the flat closure leaves (docs/assignment.md, Theorem 8).
+second order in which all folds bend that the flat closure leaves (docs/assignment.md, Theorem 5).
 Parts of the sheet without a common vertex move independently. A part is cut into blocks at the
 folds that alone join their two sides: motions of the sides that agree in the letter of such a fold
 can be scaled until they agree there, and so the assignments of the part are those of the blocks

@@ -4,7 +4,7 @@ A part in which no fold has a letter may rest. If all vertices of a part have at
 the sides of its folds determine a line at each vertex, and the densities fit if they fit round all
 loops. In other parts Krawczyk's test shows that all conditions have a common zero near given
 densities, and that they are independent there. So true motions are tangent to this zero
-(docs/assignment.md, Theorem 6).
+(docs/assignment.md, Theorem 4).
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 At each vertex a motion to second order lies in one of the two closed nappes of the form, and on one
 of its lines if the vertex has at most four folds. Each case ends in one of these contradictions
-(docs/assignment.md, Theorem 4 and Theorem 5): heights of stars whose sums contradict the letters; a
+(docs/assignment.md, Theorem 1 and Theorem 3): heights of stars whose sums contradict the letters; a
 star that is curved; a vertex that cannot have its letters (`vertices`); a loop round which the
 densities do not fit; sets of folds that exclude all spaces of motions (`panels_spaces`); or a fold
 that has a letter but stays flat.

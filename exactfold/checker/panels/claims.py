@@ -6,9 +6,11 @@ from typing import TypedDict
 
 
 class LeafClaim(TypedDict):
-    """The leaves with the same folds, dimension and cones.
+    """The leaves of one kind: components of the motions of a part to second order.
 
-    `number` says how many there are, `extending` how many of them extend to true motions.
+    They have the same active `folds`, `dimension` and `cones`, the vertices whose forms are left
+    (none for a linear space). `number` says how many there are, `extending` how many of them, at
+    least, extend to true motions.
     """
 
     folds: list[list[int]]
@@ -19,7 +21,15 @@ class LeafClaim(TypedDict):
 
 
 class ModeClaim(TypedDict):
-    """A mode of a support. `choice` says which line of motions it has at each vertex."""
+    """A mode of a support.
+
+    `choice` says which line of motions it has at each vertex: "0" if only one has these active
+    folds. If two have, compare the density of the fold to the second neighbour over an active fold,
+    divided by that of the fold to the first, with neighbours taken by number: it is smaller for "-"
+    and larger for "+". `assignment` has the letters M and V of the folds, or all of them exchanged.
+    `extends` is "proved", "undecided", or "refuted", with a `loop` of vertices round which the
+    transmissions differ from the identity at the `order` in the fold angle; both are else null.
+    """
 
     choice: str
     assignment: str
@@ -32,7 +42,9 @@ class SupportClaim(TypedDict):
     """A support: folds that move together.
 
     `count` is the number of its modes, `extending` the number of modes that extend to true motions,
-    and `by` the reason why they extend.
+    or null if it is not known, and `by` the reason why they extend: "forest" if the active graph
+    has no loop, "linear" if all transmissions round its loops are linear, else "loops". `modes` is
+    null, or lists all of them.
     """
 
     vertices: list[int]
@@ -44,7 +56,11 @@ class SupportClaim(TypedDict):
 
 
 class PartClaim(TypedDict):
-    """A part of the sheet in which some vertex has more than four folds."""
+    """A part of the sheet in which some vertex has more than four folds.
+
+    `complete` says whether the leaves are all true motions near the flat state. If it is false,
+    nothing is claimed of others.
+    """
 
     vertices: list[int]
     complete: bool

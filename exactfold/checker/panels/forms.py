@@ -41,24 +41,35 @@ class Work:
 
     def __init__(self) -> None:
         self.steps = 0
+        self._turn = MOST_STEPS
+
+    def turn(self, steps: int) -> bool:
+        """Allow so many steps more, if the limit does; say whether it allows more than these."""
+        self._turn = self.steps + steps
+        return self._turn < MOST_STEPS
 
     def count(self, products: int, value: Any) -> None:
         """Count products with this number or interval; raises `LimitError` if they are too many."""
         size = value.tower.size if isinstance(value, Number) else 1
         self.steps += products * size * size
-        at_most(self.steps, MOST_STEPS, "the steps to the spaces of motions", "SPACE_STEPS")
+        most = min(self._turn, MOST_STEPS)
+        at_most(self.steps, most, "the steps to the spaces of motions", "SPACE_STEPS")
 
 
 class Forms:
     """The first-order motions of a part of a sheet, and the second-order forms of its vertices.
 
     `near` has for each vertex of the part its neighbours across folds that may fold.
+    `avoids_roots` says which of two orders `factors` takes.
     """
+
+    avoids_roots = True
 
     def __init__(
         self, sheet: PanelSheet, near: Mapping[int, list[int]], work: Work | None = None
     ) -> None:
         self.sheet, self.near, self.work = sheet, near, work or Work()
+        self._found: dict[tuple[int, ...], tuple[Space, Squares]] = {}
         self._known: dict[tuple[int, int | None], list[tuple[Edge, Edge, Any]]] = {}
         self.first_order = self._first_order()
 
@@ -122,16 +133,20 @@ class Forms:
         """The form of a vertex as sum d_k l_k^2; each l_k is given by its values on the basis."""
         folds = {pair(v, u) for u in self.near[v]}
         touching = [k for k, motion in enumerate(space) if not folds.isdisjoint(motion)]
-        local = [{fold: x for fold, x in space[k].items() if fold in folds} for k in touching]
-        gradients = [self.gradient(v, motion) for motion in local]
-        work = [[self._value(weights, motion) for motion in local] for weights in gradients]
+        motions = [space[k] for k in touching]
+        key = v, *map(id, motions)
+        if key not in self._found:  # the motions are kept, so that no others get their numbers
+            local = [{fold: x for fold, x in motion.items() if fold in folds} for motion in motions]
+            gradients = [self.gradient(v, motion) for motion in local]
+            work = [[self._value(weights, motion) for motion in local] for weights in gradients]
+            self._found[key] = motions, list(self._squares(work))
         nothing = self.sheet.tower.number(0)
         result: Squares = []
-        for weight, values in self._squares(work):
+        for d, values in self._found[key][1]:
             all_values = [nothing] * len(space)
             for k, x in zip(touching, values, strict=True):
                 all_values[k] = x
-            result.append((weight, all_values))
+            result.append((d, all_values))
         return result
 
     def _squares(self, work: list[list[Number]]) -> Iterator[tuple[Number, list[Number]]]:
@@ -151,7 +166,10 @@ class Forms:
             yield self.sheet.tower.number(1) / value, values
             self.work.count(len(work) ** 2, value)
             work = [
-                [x - a * b / value for x, b in zip(row, values, strict=True)]
+                [
+                    x if zero(a) or zero(b) else x - a * b / value
+                    for x, b in zip(row, values, strict=True)
+                ]
                 for row, a in zip(work, values, strict=True)
             ]
 
@@ -240,17 +258,25 @@ class Forms:
         """A vertex, and the values on the basis of the two linear factors of its form.
 
         If d and e have opposite signs, d l^2 + e m^2 = d (l - r m)(l + r m) with r^2 = -e / d. A
-        product is preferred whose root r already lies in the field, and then one of a vertex with
-        many settled neighbours, so that loops close early. The root is adjoined to a field
-        that holds the whole space, because numbers of the space are multiplied by it later.
+        vertex with many settled neighbours is preferred, so that loops close early. If roots are
+        avoided, vertices come before it whose root r already lies in the field. The root is
+        adjoined to a field that holds the whole space, because numbers of the space are multiplied
+        by it later.
         """
         tower, folds = tower_of(space), {*folds_of(space)}
+
+        def rank(v: int) -> tuple[int, int, int]:
+            active = [u for u in self.near.get(v, ()) if pair(v, u) in folds]
+            return -sum(u in settled for u in active), len(active), v
+
         found = []
-        for v, ((d, first), (e, second)) in products.items():
+        for v in sorted(products, key=rank):
+            (d, first), (e, second) = products[v]
             above, root = tower.adjoined(-(e / d))
-            near = sum(u in settled and pair(v, u) in folds for u in self.near.get(v, ()))
-            found.append((above.size, -near, v, first, second, root))
-        *_, v, first, second, root = min(found, key=lambda entry: entry[:3])
+            found.append((v, first, second, root))
+            if above is tower or not self.avoids_roots:
+                break
+        v, first, second, root = found[-1 if above is tower else 0]
         one, other = (
             [x + r * y for x, y in zip(first, second, strict=True)] for r in (root, -root)
         )

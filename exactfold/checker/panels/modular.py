@@ -2,8 +2,8 @@
 
 The forms have coefficients in a field of square roots, in which a prime p splits: all roots have
 values modulo p. If the forms modulo p have no common zero but 0, or if they generate a prime ideal
-whose zeros have the expected dimension, the same holds over the complex numbers
-(docs/panels.md, 5).
+whose zeros have the expected dimension, the same holds over the complex numbers (docs/panels.md,
+One component modulo a prime).
 """
 
 from __future__ import annotations

@@ -13,13 +13,14 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from ..core import limits
-from ..core.reading import at_most
+from ..core.reading import LimitError, at_most
 from ..core.towers import Number
 from ..sheets.panels import Edge
 from .forms import Forms, Motion, Space, Squares, folds_of
 from .reduction import inside, reduced, zero
 
 MOST_LEAVES = limits.SPACE_LEAVES
+FIRST_TURN, GROWTH = 1 << 17, 8
 
 
 @dataclass
@@ -49,16 +50,32 @@ class Spaces(Forms):
     _kept = 0
 
     def leaves(self) -> list[Leaf]:
-        """All components of the motions; the flat state alone is not counted."""
-        return [leaf for leaf in self._leaves(self.first_order) if leaf.basis]
+        """All components of the motions; the flat state alone is not counted.
+
+        Two orders of vertices are tried in turns, each with more steps than the last time.
+        """
+        before, steps = self.work.steps, FIRST_TURN
+        while True:
+            for self.avoids_roots in (False, True):
+                self.work.steps = before
+                more = self.work.turn(steps)
+                try:
+                    return [leaf for leaf in self._leaves(self.first_order) if leaf.basis]
+                except LimitError:
+                    if self.avoids_roots and not more:
+                        raise
+            steps *= GROWTH
 
     def _leaves(self, space: Space, settled: frozenset[int] = frozenset()) -> list[Leaf]:
         """The leaves of a space: all sums of one leaf of each part.
 
         The forms of `settled` vertices are known to vanish on the space.
         """
+        parts = self.parts(space)
+        if len(parts) == 1 and settled:
+            return self._split(space, settled)
         total = [Leaf([], ())]
-        for part in self.parts(space):
+        for part in parts:
             leaves = self._maximal(self._split(part, settled))
             number = len(total) * len(leaves)
             at_most(number, MOST_LEAVES, "the spaces of motions", "SPACE_LEAVES")

@@ -1,8 +1,22 @@
 """Relations between the angles of the edges of a sheet, each verified exactly.
 
 A relation says that a sum of multiples of edge angles is a multiple of pi / parts. The angle of an
-edge is that of the vector from its smaller vertex to its larger one, modulo pi. Each kind of
-relation has terms of one shape, and some kinds say more than their sum; this is verified, too.
+edge is that of the vector from its smaller vertex to its larger one, modulo pi. `parts` is 1 but
+for "grid" and "mirrored". Each kind of relation has terms of one shape, and some kinds say more
+than their sum; this is verified, too:
+
+  straight  Two folds at an interior vertex, with the numbers 1 and -1. As edges do not overlap,
+            they point in opposite directions.
+  border    The same for the two boundary edges at a vertex.
+  kawasaki  All folds at an interior vertex of even degree, in their order, with the numbers 1 and
+            -1 in turn. Every other sector adds up to pi: the sum is between 0 and 2 pi.
+  grid      One edge, or two with the numbers 1 and -1: the angle to the x-axis, or to the other
+            edge.
+  parallel  Two edges with the numbers 1 and -1.
+  mirrored  Two edges with the number 1, and perhaps the axis with the number -2; without it, the
+            axis is at a multiple of pi / (2 parts) to the x-axis.
+  sectors   Two sectors of paper between neighbouring edges at one vertex. They are equal, and not
+            only up to half a turn.
 """
 
 from __future__ import annotations

@@ -54,13 +54,16 @@ class Difference(TypedDict):
 
     fold: FoldText
     wanted: _Decided
+    """The letter that was asked for."""
     actual: _Decided
+    """The letter that it has."""
 
 
 class NearMatchDocument(MatchedDocument):
     """One side of a branch that differs from the letters asked for."""
 
     differences: list[Difference]
+    """The folds that differ."""
 
 
 class NearestDocument(TypedDict):
@@ -94,6 +97,7 @@ class MatchDocument(TypedDict):
     conflicts: dict[VertexText, str]
     """By vertex whose letters alone leave it no way to pop, why."""
     reasons: list[str]
+    """Why some signs are excluded without a refutation."""
     refuted: Natural
     """How often rational vectors refute some signs."""
     sign_vectors: Natural

@@ -84,20 +84,25 @@ class ArcDocument(TypedDict):
     """A part of a circle on which no fold is flat."""
 
     letters: _Letters
+    """In the order of the folds."""
     rim: dict[VertexText, Rational]
+    """Boundary heights on this arc."""
 
 
 class CrossingDocument(TypedDict):
     """A point of a circle at which folds are flat."""
 
     folds: list[FoldText]
+    """Those that are flat there."""
     vertices: list[Natural]
+    """Those whose stars are flat there."""
 
 
 class CircleDocument(TypedDict):
     """The solutions with one sign vector."""
 
     signs: Annotated[str, Keywords(pattern="^[+-]+$")]
+    """The vertex signs."""
     arcs: list[ArcDocument]
     crossings: list[CrossingDocument]
     """crossings[k] lies behind arcs[k-1] and before arcs[k]."""
@@ -112,9 +117,11 @@ class AssignmentsDocument(TypedDict):
     status: VerdictText
     reason: str
     number: Natural
+    """The number of assignments."""
     assignments: list[_Letters]
     """Letters in the order of the folds."""
     circles: list[CircleDocument]
+    """Empty if the list was proved by points alone."""
     forcing: ForcingDocument | None
     """A least set of folds whose letters force the others, if asked for."""
 

@@ -33,12 +33,14 @@ _SLACK: Final = 8  # more bits of the inverse than |1 - Y J| < 1 needs
 def starting_certificate(matched: PanelMatch) -> Document:
     """The proof, as a JSON object, that panels start to fold with given letters or do not.
 
-    Raises `NotApplicableError` if the question is undecided or was answered by splitting forms.
+    Raises `NotApplicableError` if the question is undecided or was answered by splitting forms, or
+    if the positions of vertices are known only nearly.
     """
     if matched.starts is UNDECIDED:
         raise NotApplicableError(
             "this match is undecided; only a match that is proved has a certificate"
         )
+    matched.pattern.check_positions()
     moving = stars(matched.pattern, held(matched.letters))
     truly, evidence = matched.truly, dict[str, Any]()
     if matched.starts is PROVED:

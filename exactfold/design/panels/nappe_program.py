@@ -29,7 +29,7 @@ _PLACES: Final = 40
 class NappeCases:
     """A search for case distinctions by the signs of vertices, each refuted by exact vectors.
 
-    A motion lies in a closed nappe of the form of each vertex (docs/assignment.md, Theorem 4). For
+    A motion lies in a closed nappe of the form of each vertex (docs/assignment.md, Theorem 1). For
     the signs of a case, a cone program looks for heights of stars, in the nappe of the sign or on a
     plane where the vertex has none, whose sums at all folds with letters are against the letters by
     some margin. Their rounded values are verified exactly. Where there are none, a vertex more gets

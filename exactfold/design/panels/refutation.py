@@ -25,7 +25,7 @@ class PanelRefutation:
 
     If s_f <= 0 for valleys, s_f >= 0 for mountains and s_f = 0 for free folds, and s_f is not 0 for
     some mountain or valley, the left side is negative, which is a contradiction. Without signs the
-    right side is 0, and the letters are refuted to first order (docs/assignment.md, Theorem 4).
+    right side is 0, and the letters are refuted to first order (docs/assignment.md, Theorem 1).
     Folds that stay flat may have any s_f.
     """
 

@@ -117,7 +117,7 @@ class FlatByLetters:
 
     The motions are those to first order. Consider the sum 0 = sum_v y_v . sum_k w_k d_k = sum_f w_f
     s_f. If w_f s_f is at most 0 for all folds that are not known to be flat, and 0 for free ones,
-    then w_f = 0 wherever s_f is not 0 (docs/assignment.md, Theorem 7). `flat` are the folds shown
+    then w_f = 0 wherever s_f is not 0 (docs/assignment.md, Theorem 1). `flat` are the folds shown
     to be flat. `steps` are the vectors that show it; each step uses the folds that earlier steps
     showed to be flat.
     """

@@ -54,6 +54,7 @@ class EventDocument(TypedDict):
     folds: list[FoldText]
     vertices: list[Natural]
     detail: str
+    """What happens, in words."""
 
 
 @dataclass(frozen=True)

@@ -99,6 +99,7 @@ class ProofDocument(TypedDict):
     status: ProvedOrNot
     reason: str
     tubes: Positive
+    """The number of pieces of the proof."""
     length: Pair[float]
     """Proved bounds of the length."""
     clear: float | None

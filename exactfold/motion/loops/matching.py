@@ -61,6 +61,7 @@ class LoopsDocument(TypedDict):
     loops: list[LoopDocument]
     """One of each pair of mirror images, in one of its two directions."""
     graph: GraphDocument
+    """The configurations that can be reached from the flat state."""
     skipped: dict[str, str]
     """Branches that are not simple, by their signs, with the reason."""
     warnings: list[WarningDocument]

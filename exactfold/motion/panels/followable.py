@@ -15,14 +15,13 @@ from exactfold.errors import UsageError
 from exactfold.exact.joined_fields import joined
 from exactfold.exact.surds import Number, exact, sign, simple
 from exactfold.panels.modes.densities import Density, Roots
-from exactfold.panels.modes.extension import Extension, extension
+from exactfold.panels.modes.extension import LINEAR, Extension, extension
 from exactfold.panels.result import Decomposition, Part
-from exactfold.panels.spaces.subspaces import Leaf, maximal
+from exactfold.panels.spaces.subspaces import Leaf
 from exactfold.panels.vertex.local import LocalMode
 from exactfold.panels.vertex.stars import Star, stars
 from exactfold.pattern.panel_pattern import Edge, PanelPattern, Point
 
-LINEAR: Final = "linear transmissions"
 _REASONS: Final = 3
 
 
@@ -191,8 +190,19 @@ def _examples(part: Part) -> Iterable[tuple[LocalMode, ...]]:
 
 def _lines(part: Part) -> list[Leaf]:
     """The components of dimension one of a part with more than four folds at a vertex."""
-    both = (*part.spaces, *(one.leaf for one in part.found))
-    return maximal(leaf for leaf in both if leaf.size == 1 and not leaf.vertices)
+    lines: list[Leaf] = []
+    for leaf in (*part.spaces, *(one.leaf for one in part.found)):
+        if leaf.size == 1 and not leaf.vertices and not any(_same(leaf, one) for one in lines):
+            lines.append(leaf)
+    return lines
+
+
+def _same(one: Leaf, other: Leaf) -> bool:
+    """Whether two lines have the same densities; their numbers may lie in different fields."""
+    if one.rows.keys() != other.rows.keys():
+        return False
+    these, those = joined([[leaf.rows[fold][0] for fold in one.rows] for leaf in (one, other)])
+    return these == those
 
 
 def _letters(choice: Sequence[LocalMode]) -> dict[Edge, str]:

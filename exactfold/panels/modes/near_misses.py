@@ -27,6 +27,7 @@ class NearMissDocument(TypedDict):
     """A loop of folds that nearly closes."""
 
     fold: FoldText
+    """Where the loop does not close."""
     quotient: float
     """The product of the gains round the loop, which is near to 1 and not 1."""
     loop: list[Natural]

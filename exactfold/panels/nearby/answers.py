@@ -49,8 +49,10 @@ def drawn_nearby(
         reason = f"{which} {named}{more} cannot have {have} letters on any of these sheets"
         return Drawn(REFUTED, REFUTED, (reason,), within=within)
     sure = sum(fan.must_fold([letters.get(f, "U") for f in fan.folds]) for fan in fans.values())
-    reason = (
-        f"by itself, each of {sure} of {counted(len(fans), 'vertex')} starts to fold with its "
-        "letters - PROVED"
-    )
+    if sure == len(fans):
+        said = f"each of the {counted(sure, 'vertex')} starts to fold with its letters"
+    else:
+        start = "starts to fold with its" if sure == 1 else "start to fold with their"
+        said = f"{sure} of {counted(len(fans), 'vertex')} {start} letters"
+    reason = f"by itself, {said} - PROVED"
     return Drawn(UNDECIDED, UNDECIDED, (reason,), within=within)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from typing import TypeAlias
 
@@ -63,6 +64,32 @@ def factors_of(form: Form, field: SurdField, most_roots: int) -> tuple[Row, Row]
     return pair[0], pair[1]
 
 
+def other_factor(form: Form, one: Row) -> Row | None:
+    """The second factor of d l^2 + e m^2 if a row x l + y m is a multiple of one factor, else None.
+
+    This is so if d y^2 + e x^2 = 0, and the other factor is x l - y m.
+
+    >>> unit = fmpq(1)
+    >>> form = [(unit, {0: unit}), (-unit, {1: unit})]
+    >>> other_factor(form, {0: unit, 1: unit}), other_factor(form, {0: unit})
+    ({0: 1, 1: -1}, None)
+    """
+    (d, first), (e, second) = form
+    if not first.keys() ^ second.keys() <= one.keys() <= first.keys() | second.keys():
+        return None  # x and y are not 0
+    zero = fmpq(0)
+    k = min(first)
+    scale = first[k]
+    rest = combined({0: fmpq(1), 1: -second.get(k, zero) / scale}, [second, first])
+    n = min(rest)
+    left = one.get(n, zero) - one.get(k, zero) * first.get(n, zero) / scale
+    y = left / rest[n]
+    x = (one.get(k, zero) - y * second.get(k, zero)) / scale
+    if d * y * y + e * x * x or combined({0: x, 1: y}, [first, second]) != one:
+        return None
+    return combined({0: x, 1: -y}, [first, second])
+
+
 def row_space(rows: Sequence[Row]) -> tuple[list[Row], list[Row]]:
     """A basis of the span of the rows, chosen among the rows, and every row in that basis."""
     basis: list[Row] = []
@@ -92,10 +119,41 @@ def row_space(rows: Sequence[Row]) -> tuple[list[Row], list[Row]]:
     return basis, coordinates
 
 
+def are_independent(rows: Sequence[Row]) -> bool:
+    """Whether rows are seen at once to be independent; False decides nothing.
+
+    >>> one = fmpq(1)
+    >>> are_independent([{1: one}, {1: one, 2: one}]), are_independent([{1: one}, {1: one + one}])
+    (True, False)
+    """
+    waiting = list(rows)
+    while waiting:
+        users = Counter(k for row in waiting for k in row)
+        rest = [row for row in waiting if all(users[k] > 1 for k in row)]
+        if len(rest) == len(waiting):
+            return len(rest) == 2 and bool(rest[0]) and bool(rest[1]) and not is_multiple(*rest)
+        waiting = rest
+    return True
+
+
+def combined(weights: Row, rows: Sequence[Row]) -> Row:
+    """The sum of rows with these weights."""
+    total: Row = {}
+    for a, weight in weights.items():
+        for k, x in rows[a].items():
+            increase(total, k, weight * x)
+    return {k: plain(x) for k, x in total.items()}
+
+
+def zeros(size: int) -> list[list[Entry]]:
+    """A square matrix of zeros."""
+    return [[fmpq(0)] * size for _ in range(size)]
+
+
 def diagonalised(form: list[list[Entry]]) -> list[tuple[Entry, Row]]:
     """A symmetric matrix as sum d_i l_i^2 with d_i not 0, by completing squares."""
     size = len(form)
-    work = form
+    work = [list(line) for line in form]
     squares: list[tuple[Entry, Row]] = []
     while True:
         pivot = next((k for k in range(size) if work[k][k]), None)

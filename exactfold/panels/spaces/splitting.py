@@ -4,23 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Final
 
 from flint import fmpq
 
 from exactfold._support.clock import UNLIMITED, Clock
 from exactfold.errors import TooManyModesError
 from exactfold.exact.surds import Surd, SurdField, common_field, sign
-from exactfold.panels.spaces.kernel import Entry, Rows, entry, increase
+from exactfold.panels.spaces.kernel import Entry, Rows, entry, first_order
 from exactfold.panels.spaces.quadratics import MOST_ROOTS
 from exactfold.panels.spaces.sparse import (
     Form,
     Row,
+    are_independent,
+    combined,
     diagonalised,
     factors_of,
-    is_multiple,
+    other_factor,
     plain,
     row_space,
     without,
+    zeros,
 )
 from exactfold.panels.spaces.subspaces import (
     Leaf,
@@ -32,6 +36,8 @@ from exactfold.panels.spaces.subspaces import (
 from exactfold.panels.spaces.together import narrowing_sum, vanish_only_at_zero
 from exactfold.panels.vertex.stars import Star
 from exactfold.pattern.panel_pattern import Edge
+
+_FIRST_TURN: Final = 100_000
 
 
 @dataclass(frozen=True)
@@ -59,9 +65,8 @@ def leaves(
     square root of its discriminant, and splits the space. Other forms remain. Parts of the sheet
     that share no active fold are independent, because every condition belongs to a single vertex.
 
-    Raises `TooManyModesError` if this takes more than `most` steps. A step is one fold of a vertex
-    times one dimension, times the square of the degree of the field. It also raises this error when
-    the clock has passed.
+    Raises `TooManyModesError` if this takes more than `most` steps, or if the clock has passed. A
+    form of a vertex with n independent folds takes n^2 steps, times the degree of the field.
     """
     return Splitting(stars, most, clock).leaves(rows, size)
 
@@ -78,17 +83,37 @@ class Splitting:
         self.most = most
         self.clock = clock
         self.work = self._kept = self.nodes = 0
+        self._until = most
+        self._avoids_roots = False
         self.sums = False
         self._field = common_field(x for star in stars.values() for d in star.directions for x in d)
-        self._brackets = {v: _brackets(star) for v, star in stars.items()}
+        self._other_factors: dict[tuple[int, int], tuple[Form, Row, Row | None]] = {}
+        self._local = {v: _local(star) for v, star in stars.items()}
 
     def leaves(self, rows: Rows, size: int) -> list[Leaf]:
-        """The leaves of a space without the flat state."""
+        """The leaves of a space without the flat state.
+
+        Which of two orders of vertices is quicker is not known before. So both are tried with a
+        little work, and then with all that is allowed.
+        """
         total: list[Leaf] = [Leaf({}, 0, ())]
         for part, part_size in independent_parts(rows, size, self.stars):
-            found = maximal(self._split(_Space(_on_folds(part, part_size), {}), frozenset()))
+            whole = _Space(_on_folds(part, part_size), {})
+            found = maximal(self._in_turns(whole))
             total = [direct_sum(a, b) for a in total for b in found]
         return [leaf for leaf in total if leaf.size]
+
+    def _in_turns(self, space: _Space) -> list[Leaf]:
+        work, sums = self.work, self.sums
+        for most in (min(work + _FIRST_TURN, self.most), self.most):
+            for self._avoids_roots in (False, True):
+                self.work, self.sums, self._until = work, sums, most
+                try:
+                    return self._split(space, frozenset())
+                except TooManyModesError as caught:
+                    self.clock.check()
+                    error = caught
+        raise error
 
     def _solved(self, space: _Space, settled: frozenset[int]) -> list[Leaf]:
         """The leaves of one space: the product of the leaves of its independent parts.
@@ -111,7 +136,7 @@ class Splitting:
         """
         self.clock.check()
         self.work += steps
-        if self.work > self.most:
+        if self.work > self._until:
             raise TooManyModesError(
                 "splitting its spaces of motions one by one takes more work than is allowed"
             )
@@ -162,24 +187,23 @@ class Splitting:
 
         A factor that is a multiple of a kept row vanishes nowhere that is wanted: then the other
         one does, and nothing is split. Otherwise the vertex has the most neighbours that are
-        settled, so that loops close early.
+        settled, so that loops close early. If roots are avoided, vertices come before it whose
+        forms need no new root.
         """
-        field = self._field_of(space)
+        kept = [row for key, row in space.rows.items() if is_kept(key)]
         for v in products:
-            kept = [space.rows[key] for key in space.rows if is_kept(key)]
-            (_, first), (_, second) = space.forms[v]
-            both = first.keys() | second.keys()
-            if not any(row.keys() <= both for row in kept):
-                continue
-            factors = factors_of(space.forms[v], field, 0)
-            for one, other in (factors, factors[::-1]) if factors else ():
-                if any(is_multiple(one, row) for row in kept):
+            for one in kept:
+                other = self._other_factor(space.forms[v], one)
+                if other is not None:
                     return v, one, other
 
-        def rank(v: int) -> tuple[int, int, int]:
+        field = self._field_of(space)
+
+        def rank(v: int) -> tuple[bool, int, int, int]:
             folds = [edge for edge in self.stars[v].folds if edge in space.rows]
             near = sum(u in settled for edge in folds for u in edge)
-            return -near, len(folds), v
+            new = self._avoids_roots and factors_of(space.forms[v], field, 0) is None
+            return new, -near, len(folds), v
 
         v = min(products, key=rank)
         return v, *self._factors(space.forms[v], field)
@@ -195,6 +219,13 @@ class Splitting:
                 f"the spaces of motions need more than {MOST_ROOTS} independent square roots"
             )
         return factors
+
+    def _other_factor(self, form: Form, one: Row) -> Row | None:
+        """The other factor of a form if a row is a multiple of one of the two."""
+        known = self._other_factors.get((id(form), id(one)))
+        if known is None:  # the form and the row are kept, so that no others get their numbers
+            known = self._other_factors[id(form), id(one)] = form, one, other_factor(form, one)
+        return known[2]
 
     def _reduced(
         self, space: _Space, settled: frozenset[int]
@@ -255,34 +286,26 @@ class Splitting:
         return _Space(rows, {v: f for v, f in space.forms.items() if v not in touched})
 
     def _form(self, v: int, rows: Mapping[Edge, Row]) -> Form:
-        """The form of a vertex on a space, as a sum of squares."""
-        folds = [k for k, edge in enumerate(self.stars[v].folds) if edge in rows]
-        local = [rows[self.stars[v].folds[k]] for k in folds]
-        basis, coordinates = row_space(local)
-        count = len(basis)
-        form: list[list[Entry]] = [[fmpq(0)] * count for _ in range(count)]
+        """The form of a vertex on a space, as a sum of squares.
+
+        All local motions of the vertex are known by the densities of some of its folds. If these
+        are independent on the space, the squares are those of the vertex by itself.
+        """
+        folds, matrix, squares = self._local[v]
+        local = [rows.get(edge, {}) for edge in folds]
         numbers = (x for row in local for x in row.values())
         degree = max((x.field.dimension for x in numbers if isinstance(x, Surd)), default=1)
-        self._count(len(folds) * count * degree**2)
-        brackets = self._brackets[v]
-        for j in range(len(folds)):
-            for k in range(j):
-                c = brackets[folds[j]][folds[k]]
-                if not c:
-                    continue
-                for a, x in coordinates[k].items():
-                    for b, y in coordinates[j].items():
-                        term = c * x * y
-                        form[a][b] = form[a][b] + term
-                        form[b][a] = form[b][a] + term
-        squares: Form = []
-        for d, weights in diagonalised(form):
-            total: Row = {}
-            for a, weight in weights.items():
-                for k, x in basis[a].items():
-                    increase(total, k, weight * x)
-            squares.append((plain(d), {k: plain(x) for k, x in total.items()}))
-        return squares
+        self._count(len(folds) ** 2 * degree)
+        if not are_independent(local):
+            basis, coordinates = row_space(local)
+            form = zeros(len(basis))
+            for one, line in zip(coordinates, matrix, strict=True):
+                for other, c in zip(coordinates, line, strict=True):
+                    for a, x in one.items() if c else ():
+                        for b, y in other.items():
+                            form[a][b] = form[a][b] + c * x * y
+            local, squares = basis, diagonalised(form)
+        return [(plain(d), combined(weights, local)) for d, weights in squares]
 
     def _parts(self, space: _Space) -> list[_Space]:
         """The space as a direct sum over the parts of the sheet that active folds connect.
@@ -296,6 +319,7 @@ class Splitting:
 
         def of(v: int) -> int:
             while (above := group.setdefault(v, v)) != v:
+                group[v] = group[above]
                 v = above
             return v
 
@@ -338,6 +362,22 @@ def _leaf(space: _Space, left: Iterable[int]) -> Leaf:
     return made_leaf(rows, len(names), left)
 
 
-def _brackets(star: Star) -> list[list[Entry]]:
-    ends = [(entry(x), entry(y)) for x, y in star.directions]
-    return [[plain(a * t - b * s) for s, t in ends] for a, b in ends]
+def _local(star: Star) -> tuple[list[Edge], list[list[Entry]], list[tuple[Entry, Row]]]:
+    """Folds whose densities determine those of a vertex, and its form in them as a matrix and as a
+    sum of squares.
+    """
+    rows, size = first_order({star.vertex: star})
+    units = [[fmpq(k == n) for k in range(size)] for n in range(size)]
+    folds = [next(edge for edge, row in rows.items() if list(row) == unit) for unit in units]
+    ends = [
+        (edge, entry(x), entry(y)) for edge, (x, y) in zip(star.folds, star.directions, strict=True)
+    ]
+    form = zeros(size)
+    for n, (edge, a, b) in enumerate(ends):
+        for other, s, t in ends[:n]:
+            c = s * b - t * a
+            for k, x in enumerate(rows.get(edge, ())):
+                for m, y in enumerate(rows.get(other, ())):
+                    form[k][m] = form[k][m] + c * x * y
+                    form[m][k] = form[m][k] + c * x * y
+    return folds, [list(map(plain, line)) for line in form], diagonalised(form)

@@ -4,12 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from itertools import pairwise
+from typing import TYPE_CHECKING, Final
 
 from exactfold.errors import MalformedPatternError
 from exactfold.exact.numbers import RationalLike, as_rational, over_common_denominator
 from exactfold.pattern import validate
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.validate import IntPoint, Triangle, orientation
+
+if TYPE_CHECKING:
+    from exactfold.pattern.triangulating.delaunay_mesh import DelaunayMesh
+
+
+_PROPOSED: Final = 6000
+"""From this number of points on, the sweep takes longer than loading SciPy."""
 
 
 def delaunay(points: Iterable[Sequence[RationalLike]]) -> CreasePattern:
@@ -41,7 +49,23 @@ def delaunay_triangles(points: Sequence[IntPoint]) -> list[Triangle]:
     A sweep from left to right makes a first triangulation, and Lawson's flips make it Delaunay. If
     the in-circle test is a tie, the lexicographically smallest of the four points counts as lifted
     slightly below the paraboloid. This makes all diagonals of the polygon start at that point.
+    Many points have a first triangulation from SciPy instead, if it passes exact tests.
     """
+    return _swept(points) if len(points) < _PROPOSED else delaunay_mesh(points).triangles()
+
+
+def delaunay_mesh(points: Sequence[IntPoint]) -> DelaunayMesh:
+    """The triangulation of `delaunay_triangles`, in arrays."""
+    from exactfold.pattern.triangulating.delaunay_mesh import DelaunayMesh, proposed_mesh
+
+    mesh = proposed_mesh(points) if len(points) >= _PROPOSED else None
+    if mesh is None:
+        return DelaunayMesh(points, _swept(points))
+    mesh.make_delaunay()
+    return mesh
+
+
+def _swept(points: Sequence[IntPoint]) -> list[Triangle]:
     apex = _sweep(points)
     stack = [(a, b) for a, b in apex if a < b]
     while stack:

@@ -210,6 +210,9 @@ def _value(value: object, indent: str) -> str:
         return _object(value, f"{indent}  ")
     if isinstance(value, list) and value and isinstance(value[0], list | dict):
         inner = f"{indent}    "
+        whole = json.dumps(value)
+        if whole.count("], [") == len(value) - 1 and "{" not in whole:  # flat lists, for speed
+            return f"[\n{inner}[" + whole[2:-2].replace("], [", f"],\n{inner}[") + f"]\n{indent}  ]"
         entries = [_object(v, inner) if isinstance(v, dict) else json.dumps(v) for v in value]
         return "[\n" + ",\n".join(inner + entry for entry in entries) + f"\n{indent}  ]"
     return json.dumps(value)

@@ -14,7 +14,6 @@ from exactfold.rigidity.equations.branch_system import Chart
 from exactfold.rigidity.equations.flat_sheets import FlatSheets
 from exactfold.rigidity.functionals import fold_functional
 from exactfold.solve.algebraic.exact_solution import RootClass
-from exactfold.solve.algebraic.groebner_bases import classes_of_ideal
 from exactfold.solve.algebraic.quotient import Exponent, separating_forms
 
 _ONE_POINT = RootClass((0, 1), (), 1, ())  # the only point of a space of dimension 0
@@ -38,6 +37,8 @@ def zeros_flat_at(sheets: FlatSheets) -> list[RootClass]:
     if not sheets.free:
         classes: Sequence[RootClass] | None = [] if any(quadrics) else [_ONE_POINT]
     else:
+        from exactfold.solve.algebraic.groebner_bases import classes_of_ideal  # few need it
+
         classes = classes_of_ideal(quadrics, len(sheets.free))
     if classes is None:
         raise SolverError(

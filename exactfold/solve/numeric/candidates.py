@@ -51,4 +51,5 @@ class Candidates:
         """Whether two candidates agree to about so many digits."""
         size = np.abs(self.points).max(axis=1, initial=1.0)
         rounded = np.round(self.points / size[:, None], digits)
-        return len(np.unique(rounded, axis=0)) < len(rounded)
+        different = {tuple(row) for row in rounded.tolist()}  # `np.unique` loads masked arrays
+        return len(different) < len(rounded)

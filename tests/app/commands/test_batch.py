@@ -52,6 +52,7 @@ def lines(path: Path) -> list[dict]:
     return [json.loads(line) for line in path.read_text().splitlines()]
 
 
+@pytest.mark.usefixtures("without_spaces")
 def test_a_line_for_each_file_and_the_worst_exit_code(tmp_path: Path) -> None:
     good, open_, bad, out = (tmp_path / n for n in ("a.fold", "b.fold", "c.fold", "o.jsonl"))
     write_fold(random_square(3, seed=1), good)
@@ -77,7 +78,7 @@ def test_a_line_for_each_file_and_the_worst_exit_code(tmp_path: Path) -> None:
     assert "not JSON at" in found[2]["error"]["message"]
     assert str(tmp_path / "none.fold") in found[3]["error"]["message"]
     assert found[3]["sha256"] is None
-    assert run("count", good, open_).exit_code == UNDECIDED
+    assert run("count", good, open_, "--jobs", 1).exit_code == UNDECIDED
     assert run("count", good, good).exit_code == PROVED
 
 
@@ -301,6 +302,7 @@ def test_without_a_file_the_lines_are_printed() -> None:
     assert rows == [["ways", "status"], ["4", "PROVED"], ["2", "PROVED"], ["1", "PROVED"]]
 
 
+@pytest.mark.usefixtures("without_spaces")
 def test_the_line_of_progress_tells_of_what_is_not_proved(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -434,6 +436,7 @@ def test_on_dask(tmp_path: Path) -> None:
     }
 
 
+@pytest.mark.usefixtures("without_spaces")
 def test_what_is_known_in_part_is_counted(tmp_path: Path) -> None:
     path, out = tmp_path / "partly.fold", tmp_path / "o.jsonl"
     write_fold(scrambled(2, DENTED, 4, loose=True), path)
@@ -445,3 +448,14 @@ def test_what_is_known_in_part_is_counted(tmp_path: Path) -> None:
     assert "2 patterns: 1 proved, 1 undecided (1 known in part), 0 failed" in words
     again = run("count", path, "two-vertex", "--jobs", 1, "--jsonl", out)
     assert "1 undecided (1 known in part)" in " ".join(again.stdout.split())
+
+
+def test_what_went_wrong_does_not_repeat_the_folders_of_a_file(tmp_path: Path) -> None:
+    """Otherwise a long path would be broken at the end of the line."""
+    folder = tmp_path / ("long" * 12) / ("name" * 12)
+    missing = folder / "missing.svg"
+    result = run("count", "two-vertex", missing, "--jobs", 1)
+    assert result.exit_code == BAD_INPUT
+    lines = result.stdout.splitlines()
+    assert f"{missing}:" in lines
+    assert "  cannot read missing.svg: No such file or directory" in lines

@@ -20,6 +20,7 @@ def test_certificate_is_written_and_valid(tmp_path, name):
     assert checked.stdout.startswith("VALID: ")
 
 
+@pytest.mark.usefixtures("without_spaces")
 def test_certificates_of_panels(tmp_path):
     drawing = tmp_path / "cross.fold"
     points = [[-1, -1], [1, -1], [1, 1], [-1, 1], [0, 0], [0, -1], [1, 0], [0, 1], [-1, 0]]

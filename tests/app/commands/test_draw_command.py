@@ -140,12 +140,15 @@ def test_names_of_files_are_made_safe(tmp_path):
     assert title(drawn(path)) == path.stem
 
 
+SHEET = "6 vertices, 7 folds, 6 panels"
+"""`two-vertex`, as `random` and `convert` say it, too."""
+
 # --- where it goes -------------------------------------------------------------------------------
 
 
 def test_files_are_written_by_their_ending(tmp_path):
     result = run("draw", "two-vertex", "-o", tmp_path / "p.svg")
-    assert (result.exit_code, result.stdout) == (PROVED, f"wrote {tmp_path / 'p.svg'}\n")
+    assert (result.exit_code, result.stdout) == (PROVED, f"wrote {tmp_path / 'p.svg'}: {SHEET}\n")
     assert (tmp_path / "p.svg").read_text("utf-8") == drawn("two-vertex")
     assert drawn("two-vertex", "-o", "-") == drawn("two-vertex")
     wrong = run("draw", "two-vertex", "-o", tmp_path / "p.gif")
@@ -161,7 +164,7 @@ def test_on_a_terminal_a_file_is_written(asked, name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(draw, "on_a_terminal", lambda: True)
     result = run("draw", "two-vertex", *asked)
-    assert result.stdout == f"wrote {name}\n"
+    assert result.stdout == f"wrote {name}: {SHEET}\n"
     assert (tmp_path / name).read_text("utf-8").startswith("<svg")
 
 

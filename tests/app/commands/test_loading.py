@@ -42,6 +42,29 @@ def test_commands_load_what_they_need(two_vertex, arguments, idle):
     assert result.stdout != ""
 
 
+def test_what_a_small_count_loads(two_vertex):
+    script = (
+        "import sys\n"
+        "from exactfold.app.cli import main\n"
+        "try: main()\n"
+        "except SystemExit as end: assert end.code == 0\n"
+        "print(*sorted(sys.modules), sep='\\n', file=sys.stderr)"
+    )
+    command = [sys.executable, "-c", script, "count", str(two_vertex)]
+    loaded = subprocess.run(command, capture_output=True, text=True, check=True).stderr.split()
+    assert {name for name in loaded if name in (*HEAVY, "numpy", "numpy.ma", "flint")} == {
+        "numpy",
+        "flint",
+    }
+    rooms = ("panels", "motion", "design", "studies", "interop", "branches.connected_components")
+    idle = tuple(f"exactfold.{room}" for room in rooms)
+    assert [name for name in loaded if name.startswith(idle)] == []
+    assert [name for name in loaded if name.startswith("exactfold.solve.algebraic.")] == [
+        f"exactfold.solve.algebraic.{module}"
+        for module in ("exact_solution", "flat_zeros", "from_roots", "quotient", "refine_roots")
+    ]
+
+
 @pytest.mark.parametrize("name", [*exactfold.branches.METHODS, *ALIASES])
 def test_methods_of_the_command_line(two_vertex, name):
     assert run("count", two_vertex, "--method", name).exit_code == PROVED

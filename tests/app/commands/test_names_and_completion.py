@@ -11,9 +11,11 @@ import sys
 from pathlib import Path
 
 import pytest
+from rich.text import Text
 from running import BAD_INPUT, PROVED, run
+from typer.main import get_command
 
-from exactfold.app.cli import TAGLINE
+from exactfold.app.cli import TAGLINE, app
 from exactfold.app.shell.usage import PANELS
 from exactfold.branches import METHODS
 from exactfold.pattern.data import EXAMPLES, example_path
@@ -163,3 +165,11 @@ def test_the_help_has_groups_and_a_short_name() -> None:
         assert run(name, "-h").stdout == run(name, "--help").stdout != ""
     text = run("match", "-h").stdout
     assert text.index("How a drawing is read") < text.index("--colours")
+
+
+def test_no_help_loses_words_in_brackets() -> None:
+    """Rich takes words in brackets for a style and leaves them out."""
+    for command in get_command(app).commands.values():
+        for parameter in command.params:
+            text = getattr(parameter, "help", None) or ""
+            assert Text.from_markup(text).plain == text, f"{command.name} {parameter.name}"

@@ -203,7 +203,7 @@ def test_a_dead_worker_is_no_verdict(tmp_path: Path, monkeypatch: pytest.MonkeyP
         (tmp_path / "c.txt").write_text("some blocks")
         raise WorkerDiedError("a worker process died")
 
-    monkeypatch.setattr(stream_command, "stream_branches", died)
+    monkeypatch.setattr("exactfold.branches.counting.stream.stream_branches", died)
     more = ("--workers", 3, "--seed", 0, "--certificate", "c.json")
     result = run("count", TWO, "--stream", tmp_path / "c.txt", *more)
     assert result.exit_code == 70

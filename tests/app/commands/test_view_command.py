@@ -39,7 +39,9 @@ def test_a_drawing_with_panels_is_shown_by_its_modes(tmp_path):
     result = run("view", "zigzags", "-o", target, "--frames", "2")
     assert result.exit_code == OK
     assert result.stdout.startswith("3 families of ways to fold")
-    assert result.stdout.endswith(f"wrote {target}: 3 ways to fold, and 1 mode not followed\n")
+    assert result.stdout.endswith(
+        f"wrote {target}: 3 ways to fold, 1 way not followed (the page says why)\n"
+    )
     assert "read zigzags: 12 lines, exact in Q" in result.stderr
 
 
@@ -85,3 +87,12 @@ def test_ctrl_c_ends_the_server():
         served.send_signal(signal.SIGINT)
         _, said = served.communicate(timeout=60)
     assert (served.returncode, said) == (OK, "exactfold: the server has ended\n")
+
+
+def test_what_is_written_is_counted_as_count_counts_it(tmp_path):
+    """The motion with the letters of the file comes besides the ways that have numbers."""
+    target = tmp_path / "bird-base.html"
+    result = run("view", "bird-base", "-o", target, "--frames", 2)
+    assert result.stdout.startswith("16 families of ways to fold")
+    said = f"wrote {target}: 16 ways to fold, and the motion with the letters of the file\n"
+    assert result.stdout.endswith(said)

@@ -1,9 +1,11 @@
 """Sheets that fold in a picture: what is seen at every moment, and what is drawn."""
 
+import io
 import re
 from xml.etree import ElementTree
 
 import pytest
+from PIL import Image
 
 from exactfold.app.report import motion_animation, motion_stills
 from exactfold.branches import find_branch
@@ -55,8 +57,16 @@ def test_every_frame_has_every_face_and_the_ends_are_those_of_the_stills(motion)
     assert fills[0] != fills[-1]
 
 
-def test_where_less_motion_is_asked_for_the_sheet_stands(motion):
-    (rule,) = re.findall(
-        r"@media \(prefers-reduced-motion:reduce\)\{(.*)\}</style>", motion_animation(motion)
-    )
-    assert rule == ".f{animation:none!important}.f20{visibility:visible}"
+def test_where_nothing_is_animated_the_middle_frame_stands(motion):
+    """For readers who ask for less motion, and in programs that know no animations."""
+    (style,) = re.findall(r"<style>(.*)</style>", motion_animation(motion))
+    before, _, rule = style.partition("@media (prefers-reduced-motion:reduce)")
+    assert before.startswith(".f{visibility:hidden;")
+    assert before.endswith(".f20{visibility:visible}")
+    assert rule == "{.f{animation:none!important}}"
+
+
+def test_a_program_without_animations_shows_the_sheet(motion):
+    picture = pytest.importorskip("cairosvg").svg2png(motion_animation(motion).encode())
+    colours = Image.open(io.BytesIO(picture)).convert("RGB").getcolors(1 << 20)
+    assert len(colours) > 20

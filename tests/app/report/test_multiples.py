@@ -1,5 +1,6 @@
 """Sheets of small multiples: the order of `count`, frames round ways with the same letters."""
 
+import re
 from dataclasses import replace
 
 import pytest
@@ -150,3 +151,15 @@ def test_a_count_without_a_list_has_no_sheet_error():
 def test_why_families_of_panels_have_no_sheet():
     result = decompose(panels(single_vertex(5)))
     assert why_no_way(result).startswith("the sheet folds in families")
+
+
+def test_folds_of_either_letter_have_one_look_and_a_line_in_the_legend():
+    """A way that has folds of either letter only looks like the others."""
+    ways = ways_of(count_ways("bird-base"))
+    (free,) = (way for way in ways if set(way.text) == {"U"})
+    for text in (sheet_of_multiples(ways, "bird base"), free.picture("bird base")):
+        assert ">mountain or valley</text>" in text
+        assert "undecided" not in text
+        lines = re.findall(r'<(?:path|g) [^>]*stroke="#5c6670"[^>]*>', text)
+        assert lines
+        assert all("stroke-dasharray" in line for line in lines)

@@ -70,6 +70,12 @@ def test_a_drawing_that_is_dropped_is_read_counted_and_listed(page):
     assert page.complaints() == []
 
 
+def test_the_empty_page_has_its_landmark_and_hides_its_parts(page):
+    """A screen reader finds the main part; parts with nothing to show are neither seen nor read."""
+    seen = "(one) => getComputedStyle(document.querySelector(one)).visibility"
+    assert page.run(f"['main', '#ways', '#play'].map({seen})") == ["visible", "hidden", "hidden"]
+
+
 def test_a_file_that_is_no_drawing_gets_a_sentence_and_the_page_goes_on(page, tmp_path):
     wrong = tmp_path / "wrong.svg"
     wrong.write_text("<svg", encoding="utf-8")
@@ -99,7 +105,7 @@ def test_a_vertex_is_dragged_the_answer_changes_live_and_is_undone(page):
     assert abs(mark - handle) < 2  # the handle goes with its vertex
     assert "4 ways to start folding" in page.text("#answer")
     ActionChains(page.driver).release().perform()
-    page.until("!document.getElementById('undo').disabled")
+    page.until("!document.getElementById('undo').hidden")
     page.until(f"{READY} && exactfold.page.ways.length > 0")
     after = page.run("exactfold.view.sheet.points[4]")
     assert after != before
@@ -109,8 +115,31 @@ def test_a_vertex_is_dragged_the_answer_changes_live_and_is_undone(page):
     page.click("#undo")
     page.until(f"{READY} && exactfold.view.sheet.points[4][0] === {before[0]}")
     assert page.run("exactfold.view.sheet.points[4]") == before
-    assert page.run("document.getElementById('undo').disabled")
+    assert page.run("document.getElementById('undo').hidden")
     assert page.complaints() == []
+
+
+def test_letters_stay_asked_for_as_a_vertex_moves_and_both_are_undone(page):
+    opened(page, example_path("two-vertex"))
+    page.click('[data-fold="4-5"] .reach')
+    asked = "JSON.stringify([...exactfold.store.get().asks])"
+    assert page.run(asked) == '[[6,"M"]]'
+    before = page.run("exactfold.view.sheet.points[5]")
+    handle_of(page, 5)
+    page.run("document.querySelector(\"[data-handle='5']\").focus()")
+    page.run("exactfold.view.old = true")
+    page.press("\ue013")  # up
+    page.until(f"{READY} && !exactfold.view.old && exactfold.page.ways.length === 4")
+    assert page.run("exactfold.view.sheet.points[5][1]") > before[1]
+    assert page.run(asked) == '[[6,"M"]]'
+    page.click("#edit")
+    page.click('[data-fold="4-5"] .reach')
+    assert page.run(asked) == '[[6,"V"]]'
+    page.press_with_control("z")  # first the letter
+    assert page.run(asked) == '[[6,"M"]]'
+    page.press_with_control("z")  # then the vertex
+    page.until(f"{READY} && exactfold.view.sheet.points[5][1] === {before[1]}")
+    assert page.run(asked) == '[[6,"M"]]'
 
 
 def test_a_vertex_that_cannot_go_somewhere_comes_back(page):

@@ -12,6 +12,7 @@ from exactfold.design import match
 from exactfold.errors import NotCountedError, NotFollowedError, UsageError
 from exactfold.motion import find_driven, follow_panels, panel_ways
 from exactfold.motion import follow as follow_branch
+from exactfold.motion.panels.closing import Closing
 from exactfold.pattern import families
 
 SHORT = {"until": "30deg", "frames": 3}
@@ -203,3 +204,13 @@ def test_letters_of_a_drawing_in_a_family_are_followed_as_match_proves_them():
     }
     last = dict(zip(motion.pattern.folds, motion.angles[-1], strict=True))
     assert all((last[f] > 0) == (x == "V") for f, x in letters.items() if x in "MV")
+
+
+def test_a_motion_has_no_more_free_folds_than_its_way_has_dimensions():
+    """Along one of these ways two folds seem free to first order, but the way is one curve."""
+    result = exactfold.count("flapping-bird")
+    ways = [way for way in panel_ways(result) if way.spaces]
+    motions = [exactfold.follow(result, way.number, frames=3) for way in ways]
+    assert [motion.dimension for motion in motions] == [way.dimension for way in ways] == [1] * 16
+    assert [motion.name for motion in motions] == [f"way {way.number}" for way in ways]
+    assert max(len(Closing(m.pattern).drivers(m.angles[-1])) for m in motions) == 2

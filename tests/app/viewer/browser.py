@@ -108,6 +108,13 @@ class Browser:
             chain.send_keys(key)
         chain.perform()
 
+    def press_with_control(self, key):
+        """A key while Ctrl is held."""
+        from selenium.webdriver.common.action_chains import ActionChains
+
+        chain = ActionChains(self.driver).key_down("\ue009")
+        chain.send_keys(key).key_up("\ue009").perform()
+
     def click(self, selector):
         """A click of the mouse on the middle of an element."""
         from selenium.webdriver.common.action_chains import ActionChains

@@ -64,6 +64,18 @@ def test_sliders_choose_another_way_of_a_family_and_play_goes_on(browser, pages)
     assert browser.complaints() == []
 
 
+def test_an_empty_list_is_no_listbox(browser, pages):
+    role = "document.getElementById('ways').getAttribute('role')"
+    browser.open(pages["h1-4"])
+    assert browser.run(role) == "listbox"
+    browser.click("#search")
+    browser.press("#99")
+    assert browser.text("#ways").startswith("No branch of this sheet agrees with the search")
+    assert browser.run(role) == "group"
+    browser.click("#clear")
+    assert browser.run(role) == "listbox"
+
+
 def test_without_a_motion_there_is_nothing_to_play(browser, pages):
     browser.open(pages["zigzags"])
     browser.click(".way:last-child")
@@ -163,6 +175,34 @@ def test_clicks_on_folds_ask_for_letters_and_the_list_shrinks(browser, pages):
 
 def _agree(number):
     return "agrees" if number == 1 else "agree"
+
+
+def test_what_was_asked_is_undone_step_by_step(browser, pages):
+    browser.open(pages["h1-4"])
+    (i, j), (k, m) = (load("h1-4").folds[at] for at in (-1, 0))
+    hidden = "document.getElementById('undo').hidden"
+    asked = "[...exactfold.store.get().asks.values()].join('')"
+    assert browser.run(hidden)
+    way = browser.run("exactfold.store.get().way")
+    for edge in (f"{i}-{j}", f"{i}-{j}", f"{k}-{m}"):
+        browser.click(f'[data-fold="{edge}"] .reach')
+    assert browser.run(asked) == "VM"
+    browser.click("#undo")
+    assert browser.run(asked) == "V"
+    browser.press_with_control("z")
+    assert browser.run(asked) == "M"
+    browser.click("#undo")
+    assert (browser.run(asked), browser.run(hidden)) == ("", True)
+    assert browser.run("exactfold.store.get().way") == way
+    assert browser.run("document.activeElement.closest('#pattern') !== null")
+    browser.click(f'[data-fold="{i}-{j}"] .reach')
+    browser.click("#search")
+    browser.press("#1")
+    browser.click("#clear")
+    assert browser.run("document.getElementById('search').value") == ""
+    browser.click("#undo")  # what "Clear" took away comes back
+    assert browser.run("document.getElementById('search').value") == "#1"
+    assert browser.run(asked) == "M"
 
 
 def test_the_hint_says_what_a_click_does(browser, pages):
@@ -311,6 +351,8 @@ def test_panes_stack_on_a_phone(browser, pages):
         " const b = node.getBoundingClientRect(); return [b.left, b.top, b.right, b.bottom] })"
     )
     assert len(boxes) == 4
+    boxes.sort(key=lambda box: box[1])
+    assert boxes[0][1] == browser.run("document.querySelector('.sheet').getBoundingClientRect().y")
     for (_, _, right, bottom), (left, top, _, _) in pairwise(boxes):
         assert left < 20
         assert right > 340
@@ -320,6 +362,19 @@ def test_panes_stack_on_a_phone(browser, pages):
         " (node) => node.getBoundingClientRect().height)"
     )
     assert min(small) >= 32
+
+
+def test_on_a_phone_the_sheet_stays_in_sight_while_folds_are_clicked(browser, pages):
+    browser.open(pages["h1-4"], width=390, height=844)
+    (i, j) = load("h1-4").folds[0]
+    browser.click(f'[data-fold="{i}-{j}"] .reach')
+    assert browser.run("exactfold.store.get().asks.size") == 1
+    box = "document.getElementById('stage').getBoundingClientRect()"
+    top, bottom = browser.run(f"[{box}.top, {box}.bottom]")
+    assert 0 <= top < bottom - 150
+    pattern = "document.getElementById('pattern').getBoundingClientRect()"
+    assert browser.run(f"{pattern}.top") > bottom
+    assert browser.run(f"{pattern}.bottom") <= 844
 
 
 def test_panels_are_followed_or_have_a_reason(browser, pages):

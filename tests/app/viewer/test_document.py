@@ -2,6 +2,7 @@
 
 import base64
 import hashlib
+import itertools
 import json
 import re
 from fractions import Fraction
@@ -14,12 +15,15 @@ from jsonschema import Draft202012Validator, ValidationError
 
 import exactfold
 from exactfold import CreasePattern, Opened, PanelPattern, delaunay, random_square, schema
+from exactfold._support.clock import Clock
 from exactfold.app.pictures import crease_style
 from exactfold.app.report.connected_components import piece_notes
 from exactfold.app.viewer import page as page_module
 from exactfold.app.viewer import view_document, view_page
 from exactfold.app.viewer.coding import coded_frames, decoded_frames, levelled
+from exactfold.app.viewer.document import Known
 from exactfold.branches import count_branches, count_ways, find_branch
+from exactfold.branches.counting.pools import process_pool
 from exactfold.design import match_panels
 from exactfold.errors import UsageError
 from exactfold.motion import follow, follow_panels, panel_ways, prove, prove_contacts
@@ -335,3 +339,25 @@ def test_ways_have_the_same_numbers_in_the_page_in_fold_and_in_count():
     for name in ("two-vertex", "zigzags"):
         listed = document_of(name)["ways"]
         assert [way["number"] for way in listed] == [*range(1, len(listed) + 1)]
+
+
+def test_ways_that_are_not_begun_in_time_say_so_and_how_they_are_followed():
+    """The way with the letters of the file is the first that is followed."""
+    known = Known.of("miura", frames=3)
+    drawn = known.known.drawn["way"]
+    order = []
+
+    def pool(work, jobs):
+        for job in itertools.islice(jobs, 2):
+            order.append(job[0])
+            yield job, work(job)
+
+    ways = known.followed(pool, Clock(60), None)
+    assert order[0] == drawn
+    assert [way["motion"] is not None for way in ways] == [k in order for k in range(8)]
+    late = known.followed(process_pool(1), Clock(0), None)
+    said = "the time limit of 0 seconds (--limit) was reached; `exactfold view` or `fold` with"
+    assert [way["why"] for way in late] == [
+        f"{said} --way {k} follows it alone" for k in range(1, 9)
+    ]
+    assert all(way["motion"] is None for way in late)

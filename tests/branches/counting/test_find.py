@@ -336,7 +336,7 @@ def test_all_ways_to_give_signs_agree() -> None:
     [
         (None, None, "either"),
         ("+-+", [4], "either"),
-        ("+-", None, "2 signs for 3 vertices"),
+        ("+-", None, r"2 signs for 3 vertices: give \+ or - for each, in the order 4, 5, 6$"),
         ("+-+-", None, "4 signs for 3 vertices"),
         ("+x+", None, "'x' is not a vertex sign"),
         ([1, 2, 1], None, "2 is not a vertex sign"),

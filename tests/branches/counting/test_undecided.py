@@ -16,6 +16,7 @@ from exactfold.checker.branches import listing
 from exactfold.pattern.degenerate import DEGENERATE
 from exactfold.pattern.families import FAMILIES, hypar, two_vertex
 from exactfold.rigidity import rigid_triangles
+from exactfold.solve.algebraic import groebner_bases
 from exactfold.solve.certify import algebraic
 
 
@@ -45,9 +46,9 @@ def test_undecided_where_a_multiplicity_is_too_small(monkeypatch):
 
 
 def test_undecided_where_the_engine_finds_a_curve_of_solutions(monkeypatch):
-    real = lines.groebner
+    real = groebner_bases.groebner
     monkeypatch.setattr(
-        lines, "groebner", lambda system: dataclasses.replace(real(system), dimension=None)
+        groebner_bases, "groebner", lambda system: dataclasses.replace(real(system), dimension=None)
     )
     result = count_branches(two_vertex(), method="groebner")
     assert result.status is UNDECIDED

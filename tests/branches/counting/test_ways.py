@@ -52,6 +52,7 @@ def test_convex_sheets_with_more_freedom_are_also_decomposed() -> None:
     assert (found.connected_components.graphs, found.connected_components.number) == (4, 2)
 
 
+@pytest.mark.usefixtures("without_spaces")
 def test_sheets_with_more_freedom_and_a_reflex_corner_are_decomposed() -> None:
     sheet = scrambled(2, DENTED, 4, loose=True)
     found = count_ways(sheet)

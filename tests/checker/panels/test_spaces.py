@@ -166,7 +166,12 @@ def test_bounds_are_kept_at_their_last_value(monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setattr(panel_forms, "MOST_STEPS", used)
     assert len(spaces(triangle()).leaves()) == 8
     monkeypatch.setattr(panel_forms, "MOST_STEPS", used - 1)
-    with pytest.raises(LimitError, match=f"steps to the spaces of motions, {used}, are more than"):
+    other = spaces(triangle())
+    assert len(other.leaves()) == 8  # in the other order, which is quicker here
+    least = other.work.steps
+    assert least < used
+    monkeypatch.setattr(panel_forms, "MOST_STEPS", least - 1)
+    with pytest.raises(LimitError, match=f"steps to the spaces of motions, {least}, are more than"):
         spaces(triangle()).leaves()
     monkeypatch.setattr(panel_forms, "MOST_STEPS", used)
     monkeypatch.setattr(panel_spaces, "MOST_LEAVES", 7)

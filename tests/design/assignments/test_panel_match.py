@@ -20,10 +20,10 @@ from exactfold.design.panels.first_order_program import FirstOrderProgram
 from exactfold.design.panels.regular_motion import _System, regular_motion
 from exactfold.design.panels.together import going_together
 from exactfold.design.panels.vertex.reasons import vertex_reason
-from exactfold.errors import UsageError
+from exactfold.errors import NotApplicableError, UsageError
 from exactfold.panels import decompose
 from exactfold.panels.vertex.stars import Star, stars
-from exactfold.pattern.panel_pattern import PanelPattern
+from exactfold.pattern.panel_pattern import EnclosedPattern, PanelPattern
 
 TURNED = str.maketrans("MV", "VM")
 
@@ -219,6 +219,18 @@ def test_certificates_of_random_letters_verify():
             assert named == {fold for fold, x in found.letters.items() if x in "MV"}
             assert [list(fold) for fold in first.never] == claims["never"]
     assert answers == {"proved", "refuted"}
+
+
+def test_no_certificate_is_written_of_positions_that_are_known_only_nearly():
+    """The first edge of such a sheet may have no direction: only its folds need one."""
+    exact = tiling(2, 1)
+    directions = {fold: exact.direction(*fold) for fold in exact.folds}
+    assert exact.edges[0] not in directions
+    sheet = EnclosedPattern(exact.vertices, exact.edges, directions, Fraction(1, 10**9))
+    found = match_panels(sheet, "M" * len(exact.folds))
+    assert found.starts is REFUTED
+    with pytest.raises(NotApplicableError, match="they are known only within"):
+        match_certificate(found)
 
 
 @pytest.mark.parametrize(("seed", "count"), [(0, 8), (1, 0), (6, 5)])

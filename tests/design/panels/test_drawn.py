@@ -14,9 +14,11 @@ from exactfold.panels.decomposition import decompose
 from exactfold.panels.result import Decomposition
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
+pytestmark = pytest.mark.usefixtures("without_spaces")
+
 
 def boxes(size: int) -> PanelPattern:
-    """A square grid, with a diagonal in each third square: too many dimensions to decompose."""
+    """A square grid, with a diagonal in each third square."""
     up = size + 1
     edges = [(i * up + j, (i + 1) * up + j) for i in range(size) for j in range(up)]
     edges += [(j * up + i, j * up + i + 1) for i in range(size) for j in range(up)]
@@ -100,7 +102,7 @@ def test_without_letters_or_with_a_complete_answer_nothing_is_said() -> None:
 
 def test_a_limit_stops_the_search_and_not_the_quick_proofs() -> None:
     found = counted(by_letter("V"), limit=1e-9)
-    assert "(--limit) was reached" in found.reason
+    assert "(--limit), was used up" in found.reason
     assert found.drawn is not None
     assert found.drawn.starts is REFUTED
     assert found.freedom is not None

@@ -1,5 +1,7 @@
 from fractions import Fraction
 from itertools import combinations
+from math import cos, radians, sin
+from random import Random
 
 import pytest
 from hypothesis import given
@@ -7,7 +9,13 @@ from hypothesis import strategies as st
 from pattern_strategies import point_sets, quick, same_up_to_labels, similarities
 
 from exactfold.errors import FloatRefusedError, MalformedPatternError
-from exactfold.pattern.triangulating.delaunay_sheets import delaunay
+from exactfold.pattern.triangulating import delaunay_sheets
+from exactfold.pattern.triangulating.delaunay_mesh import DelaunayMesh, proposed_mesh
+from exactfold.pattern.triangulating.delaunay_sheets import (
+    _sweep,
+    delaunay,
+    delaunay_triangles,
+)
 
 
 def circle(p, q, r):
@@ -108,6 +116,70 @@ def test_a_circle_missed_by_one_part_in_ten_to_the_sixty():
     assert delaunay([*corners, (1, 1)]).folds == ((0, 3),)
     assert delaunay([*corners, (1 + tiny, 1)]).folds == ((1, 2),)
     assert delaunay([*corners, (1 - tiny, 1)]).folds == ((0, 3),)
+
+
+@quick
+@given(point_sets(most=40, width=12))
+def test_the_proposal_of_scipy_ends_as_the_sweep_does(points):
+    integers = [(int(x), int(y)) for x, y in points]
+    mesh = proposed_mesh(integers)
+    mesh.make_delaunay()
+    assert mesh.triangles() == delaunay_triangles(integers)
+
+
+@pytest.mark.parametrize("far", [1, 2**12, 2**20, 2**40])
+def test_flips_repair_any_triangulation(far):
+    source = Random(far)
+    points = list({(far * source.randrange(30), source.randrange(30)): 0 for _ in range(300)})
+    mesh = DelaunayMesh(points, triangles_of(_sweep(points)))
+    mesh.make_delaunay()
+    assert mesh.is_triangulation_of_hull()
+    assert mesh.triangles() == delaunay_triangles(points)
+
+
+def triangles_of(apex):
+    return [(a, b, c) for (a, b), c in apex.items() if a < min(b, c)]
+
+
+SQUARE = [(0, 0), (2, 0), (2, 2), (0, 2), (1, 1)]
+TWICE_AROUND = [
+    (round(1000 * cos(radians(80 * k))), round(1000 * sin(radians(80 * k)))) for k in range(9)
+]
+
+
+@pytest.mark.parametrize(
+    ("points", "triangles"),
+    [
+        pytest.param(SQUARE[:4], [(0, 1, 2), (0, 3, 2)], id="a clockwise triangle"),
+        pytest.param([*SQUARE[:2], (1, 0), (0, 2)], [(0, 1, 3), (0, 2, 1)], id="a flat triangle"),
+        pytest.param(SQUARE[:4], [(0, 1, 2), (0, 1, 3)], id="an edge twice on one side"),
+        pytest.param(SQUARE, [(0, 1, 2), (0, 2, 3)], id="a point in no triangle"),
+        pytest.param(SQUARE, [(0, 1, 4), (1, 2, 4), (2, 3, 4)], id="a boundary with a notch"),
+        pytest.param(SQUARE, [(0, 1, 4), (2, 3, 4)], id="two triangles with one common point"),
+        pytest.param(
+            [(0, 0), (1, 0), (0, 1), (5, 0), (6, 0), (5, 1)],
+            [(0, 1, 2), (3, 4, 5)],
+            id="two boundaries",
+        ),
+        pytest.param(
+            [*TWICE_AROUND, (0, 0)],
+            [(k, (k + 1) % 9, 9) for k in range(9)],
+            id="a boundary that turns left and goes around twice",
+        ),
+    ],
+)
+def test_what_does_not_tile_the_hull_is_refused(points, triangles):
+    assert not DelaunayMesh(points, triangles).is_triangulation_of_hull()
+
+
+def test_a_proposal_that_fails_gives_way_to_the_sweep(monkeypatch):
+    points = list({(x * x % 211, x * 7 % 97): 0 for x in range(400)})
+    expected = delaunay_triangles(points)
+    monkeypatch.setattr(delaunay_sheets, "_PROPOSED", 100)
+    assert delaunay_triangles(points) == expected
+    far = [(2**70 + x, y) for x, y in points]  # the same place for floats
+    assert proposed_mesh(far) is None
+    assert delaunay_triangles(far) == expected
 
 
 def test_collinear_points_error():

@@ -1,10 +1,18 @@
+import random
+from collections import Counter
 from fractions import Fraction
+from itertools import chain
 
 import pytest
 
 from exactfold.errors import NotApplicableError, UsageError
+from exactfold.pattern.triangulating import delaunay_sheets, random_squares
 from exactfold.pattern.triangulating.delaunay_sheets import delaunay
-from exactfold.pattern.triangulating.random_squares import random_square, sample_random_square
+from exactfold.pattern.triangulating.random_squares import (
+    CORNERS,
+    random_square,
+    sample_random_square,
+)
 
 
 @pytest.mark.parametrize("seed", range(12))
@@ -82,3 +90,61 @@ def test_redrawing_changes_nothing_where_the_first_sample_passes(seed):
     redrawn = sample_random_square(3, seed, redraw=True)
     assert (plain.pattern == redrawn.pattern) == (plain.attempts == 1)
     assert (plain.attempts == 1) == (redrawn.attempts == 1)
+
+
+def whole_triangulations(interior, seed, denominator):
+    """The redrawing as it is defined: every round triangulates all points with the sweep."""
+    source, kept, rounds = random.Random(seed), [], 0
+    corners = [(x * denominator, y * denominator) for x, y in CORNERS]
+    while True:
+        rounds += 1
+        drawn = dict.fromkeys(kept)
+        while len(drawn) < interior:
+            drawn[source.randrange(1, denominator), source.randrange(1, denominator)] = None
+        points = [*corners, *drawn]
+        triangles = delaunay_sheets._swept(points)
+        degrees = Counter(chain.from_iterable(triangles))
+        kept = [points[v] for v in range(4, len(points)) if degrees[v] != 3]
+        if len(kept) == interior:
+            return points, triangles, rounds
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize(
+    ("interior", "denominator"),
+    # crowded grids with points on edges and on circles, a sparse one, and one for long integers
+    [(4, 8), (60, 16), (150, 64), (200, 1024), (120, 2**35), (1600, 1024), (1600, 80)],
+)
+def test_redrawing_in_place_is_triangulating_anew(interior, denominator, seed, monkeypatch):
+    monkeypatch.setattr(delaunay_sheets, "_PROPOSED", 1000)
+    points, triangles, rounds = whole_triangulations(interior, seed, denominator)
+    sample = sample_random_square(interior, seed, denominator, redraw=True)
+    assert sample.attempts == rounds
+    assert sample.pattern.triangles == tuple(triangles)
+    assert sample.pattern.vertices == tuple(
+        (Fraction(x, denominator), Fraction(y, denominator)) for x, y in points
+    )
+
+
+def test_a_hopeless_draw_is_given_up_at_once(monkeypatch):
+    drawn = []
+    monkeypatch.setattr(
+        random_squares,
+        "delaunay_triangles",
+        lambda points: drawn.append(len(points)) or delaunay_sheets.delaunay_triangles(points),
+    )
+    with pytest.raises(
+        NotApplicableError,
+        match=r"hopeless: 20 samples had 283 points .*14\.2 in "
+        r"the mean, .* one sample in 1,000,000 has none.*--redraw",
+    ):
+        sample_random_square(1000, 3)
+    assert len(drawn) == 20
+    with pytest.raises(NotApplicableError, match=r"1 sample had .* one sample in 10\^\d+ has none"):
+        sample_random_square(3000, 3)
+
+
+def test_a_draw_with_a_chance_is_not_given_up():
+    assert sample_random_square(200, 4).attempts == 124  # one sample in some thirty passes
+    with pytest.raises(NotApplicableError, match="all 60 samples"):
+        sample_random_square(300, 2, max_attempts=60)

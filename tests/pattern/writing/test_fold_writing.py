@@ -20,7 +20,12 @@ from exactfold.pattern.data import example_path
 from exactfold.pattern.drawing.formats.fold_json import EXACT_KEY
 from exactfold.pattern.families import single_vertex, two_vertex
 from exactfold.pattern.fold import load_fold, parse_fold, read_fold
-from exactfold.pattern.writing.fold_writing import fold_document, write_fold, write_text
+from exactfold.pattern.writing.fold_writing import (
+    document_text,
+    fold_document,
+    write_fold,
+    write_text,
+)
 
 
 def test_document_has_what_other_programs_need():
@@ -151,3 +156,25 @@ def test_what_is_no_pattern_is_named(tmp_path):
     with pytest.raises(UsageError, match="3 is not a pattern"):
         write_fold(3, tmp_path / "out.fold")
     assert os.listdir(tmp_path) == []
+
+
+@pytest.mark.parametrize(
+    "rows",
+    [
+        [[0, 1], [2, 3]],
+        [["1/2", "-3"], ["4", "5"]],
+        [["], [", "x"]],
+        [["], ["], []],
+        [[[1, 2], [3]], [4]],
+        [[], []],
+        [[{"a": 1}], [2]],
+        [{"a": [[1, 2], [3]]}, {"b": 2}],
+    ],
+)
+def test_rows_are_on_lines_of_their_own_and_stay_the_same(rows):
+    text = document_text({"rows": rows})
+    assert json.loads(text) == {"rows": rows}
+    assert all(
+        isinstance(row, dict) or f"\n    {json.dumps(row)}{end}" in text
+        for row, end in zip(rows, [*[",\n"] * (len(rows) - 1), "\n  ]"], strict=True)
+    )

@@ -22,7 +22,6 @@ export function createEditing({ server, open, view }) {
     byId("edit").hidden = false;
     byId("edit").setAttribute("aria-pressed", String(on));
     byId("grid").value = String(grid);
-    byId("undo").disabled = !undone.length;
     byId("edit-tools").hidden = !on;
     byId("edit").addEventListener("click", () => {
       on = !on;
@@ -32,7 +31,6 @@ export function createEditing({ server, open, view }) {
       if (on) say("Drag a vertex; the answer changes as it moves");
     });
     byId("grid").addEventListener("change", ({ target }) => (grid = Number(target.value)));
-    byId("undo").addEventListener("click", undo);
     const live = byId("live");
     live.textContent = page.freedom;
     pattern.onLayout(handles);
@@ -140,8 +138,9 @@ export function createEditing({ server, open, view }) {
       showAnswer(name, view().page.answer);
       return;
     }
-    undone = [...undone.slice(1 - MOST_UNDONE), { fold: before, name }];
-    await open({ name, fold: lettered(found) });
+    const { asks } = view().store.get();
+    undone = [...undone.slice(1 - MOST_UNDONE), { fold: before, name, asks }];
+    await open({ name, fold: lettered(found) }, { asks });
   }
 
   function lettered(sheet) {
@@ -163,14 +162,8 @@ export function createEditing({ server, open, view }) {
 
   function undo() {
     const last = undone.pop();
-    if (last) open({ name: last.name, fold: last.fold });
+    if (last) open({ name: last.name, fold: last.fold }, { asks: last.asks });
   }
 
-  document.addEventListener("keydown", (event) => {
-    if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "z" || event.target.matches?.("input[type=search]")) return;
-    event.preventDefault();
-    undo();
-  });
-
-  return { attach, fold, changed: () => view() !== null, forget: () => (undone = []) };
+  return { attach, fold, undo, undoable: () => undone.length > 0, changed: () => view() !== null, forget: () => (undone = []) };
 }

@@ -4,7 +4,7 @@ import { agreeing, difference, seen } from "./choose.js";
 
 const NOUNS = { branches: ["branch", "branches"], panels: ["way", "ways"] };
 
-export function createList(page, store) {
+export function createList(page, store, { onAsk }) {
   const box = document.getElementById("ways");
   const search = document.getElementById("search");
   const count = document.getElementById("count");
@@ -21,9 +21,12 @@ export function createList(page, store) {
     found = agreeing(ways, asks, text);
     const narrowed = asks.size > 0 || text.trim() !== "";
     const total = `${ways.length} ${ways.length === 1 ? one : many}`;
-    count.textContent = narrowed ? `${found.length} of ${total} ${found.length === 1 ? "agrees" : "agree"}` : ways.length ? total : "";
+    const numbered = ways.filter((way) => way.number).length;  // as `count` lists them
+    const drawn = numbered && numbered < ways.length ? `${numbered} ${numbered === 1 ? one : many}, 1 as drawn` : total;
+    count.textContent = narrowed ? `${found.length} of ${total} ${found.length === 1 ? "agrees" : "agree"}` : ways.length ? drawn : "";
     clear.hidden = !narrowed;
     box.replaceChildren(...found.map(({ way, mirrored }) => row(ways[way], way, mirrored, page.drawn)));
+    box.setAttribute("role", found.length ? "listbox" : "group");  // a listbox has options
     search.hidden = !ways.length;
     if (!found.length) box.append(paragraph(page.busy && !ways.length ? "Looking for ways to fold …" : ways.length ? nothing() : `No way to list: ${page.answer.split(" - ")[0]}.`));
     settle();
@@ -86,7 +89,7 @@ export function createList(page, store) {
   search.addEventListener("input", () => store.set({ search: search.value }));
   clear.addEventListener("click", () => {
     search.value = "";
-    store.set({ search: "", asks: new Map() });
+    onAsk({ search: "", asks: new Map() });
     search.focus();
   });
   store.on(["ways", "asks", "search"], refresh);
@@ -103,11 +106,12 @@ function row(way, k, mirrored, drawn) {
   node.setAttribute("role", "option");
   node.setAttribute("aria-selected", "false");
   const number = span("number", way.number ? String(way.number) : "–");
-  const signs = span(side.signs ? "signs" : "signs plain", side.signs ? side.signs.replaceAll("-", "−") : way.name);
+  const title = way.number ? `way ${way.number}` : way.name;
+  const signs = span(side.signs ? "signs" : "signs plain", side.signs ? side.signs.replaceAll("-", "−") : title);
   const notes = [];
   if (mirrored) notes.push("mirror image");
   if (drawn?.way === k && way.name !== "letters of the file") notes.push("letters of the file");
-  if (way.family && !way.name.includes("family")) notes.push(`family of dimension ${way.family.dimension}`);
+  if (way.family && !title.includes("family")) notes.push(`family of dimension ${way.family.dimension}`);
   if (way.status === "refuted") notes.push("does not fold on");
   else if (way.status !== "proved") notes.push(way.status);
   else if (way.why) notes.push("no motion drawn");

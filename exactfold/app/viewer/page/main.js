@@ -22,7 +22,7 @@ function show(page, begin) {
   document.title = `${page.name} - exactfold`;
   view = createView(page, {
     server: server && { follow: (k) => server.one("follow", { way: k }), branch: async (signs) => (await server.one("follow", { signs })).branch },
-    signal: ended.signal, begin, changed: () => saveState(view, editing),
+    signal: ended.signal, begin, moves: editing, changed: () => saveState(view, editing),
   });
   createFilm(view, server);
   editing?.attach(view);

@@ -26,7 +26,7 @@ function drawLine(node, letter, share, scale = 1) {
   return node;
 }
 
-export function createPattern(holder, sheet, store, { onVertex, onHint, poppable }) {
+export function createPattern(holder, sheet, store, { onVertex, onAsk, onHint, poppable }) {
   const picture = svg("svg", { role: "group", "aria-label": "Crease pattern" });
   holder.append(picture);
   let folds = [], vertices = [], place = null, scale = 1, held = false, after = null;
@@ -96,7 +96,7 @@ export function createPattern(holder, sheet, store, { onVertex, onHint, poppable
     const next = ASKED[(ASKED.indexOf(asks.get(k)) + 1) % ASKED.length];
     if (next) asks.set(k, next);
     else asks.delete(k);
-    store.set({ asks });
+    onAsk({ asks });
   }
 
   function act(target) {

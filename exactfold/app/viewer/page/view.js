@@ -45,8 +45,8 @@ function flatPositions({ points }) {
 
 // Shows the document `page`. `server` follows ways and finds branches on demand; null without one.
 // `signal` ends what listens beyond the parts of the page, `begin` is the state to begin with, and
-// `changed` is called when the state changes.
-export function createView(page, { server, signal, begin = {}, changed }) {
+// `changed` is called when the state changes. `moves` undoes moves of vertices; null without them.
+export function createView(page, { server, signal, begin = {}, moves = null, changed }) {
   const sheet = readSheet(page.sheet);
   const flat = flatPositions(sheet);
   const store = createStore({
@@ -169,13 +169,38 @@ export function createView(page, { server, signal, begin = {}, changed }) {
     }
   }
 
+  // --- asking for letters, and asking no longer ---------------------------------------------------
+
+  const past = [];
+
+  function ask(patch) {
+    const { asks, search, way, mirrored } = store.get();
+    past.push({ asks, search, way, mirrored });
+    store.set(patch);
+    undoable();
+  }
+
+  // What was asked last is undone first, then the moves of vertices before it.
+  function undo() {
+    const last = past.pop();
+    if (last) {
+      byId("search").value = last.search;
+      store.set(last);
+    } else moves?.undo();
+    undoable();
+  }
+
+  function undoable() {
+    byId("undo").hidden = !past.length && !moves?.undoable();
+  }
+
   function pop(at) {
     const { ways, way, mirrored } = store.get();
     if (!ways[way]) return;
     const vertex = sheet.interior[at];
     const next = popped(ways, way, mirrored, at);
     if (next) {
-      if (!byId(`way-${next.way}`)) store.set({ search: (byId("search").value = ""), asks: new Map() });
+      if (!byId(`way-${next.way}`)) ask({ search: (byId("search").value = ""), asks: new Map() });
       store.set({ way: next.way, mirrored: next.mirrored });
       say(`Vertex ${vertex} popped through`);
     } else if (server) fetchBranch(poppedSigns(seen(ways[way], mirrored).signs, at));
@@ -198,10 +223,10 @@ export function createView(page, { server, signal, begin = {}, changed }) {
 
   const transport = createTransport(store);
   const pattern = createPattern(byId("pattern"), sheet, store, {
-    onVertex: pop, onHint: hint,
+    onVertex: pop, onAsk: ask, onHint: hint,
     poppable: (at) => server !== null || popped(store.get().ways, store.get().way, store.get().mirrored, at) !== null,
   });
-  const list = createList(page, store);
+  const list = createList(page, store, { onAsk: ask });
   const family = createFamily(byId("family"), sheet, store, { positions: () => positions, pose, say });
   try {
     scene = createScene(byId("canvas"), sheet, flat, radius, signal);
@@ -240,11 +265,16 @@ export function createView(page, { server, signal, begin = {}, changed }) {
   });
   byId("as-drawn").hidden = !page.ways.length || !/[MV]/.test(sheet.letters);
   byId("as-drawn").addEventListener("click", () => {
-    store.set({ asks: new Map([...sheet.letters].flatMap((letter, k) => ("MV".includes(letter) ? [[k, letter]] : []))) });
+    ask({ asks: new Map([...sheet.letters].flatMap((letter, k) => ("MV".includes(letter) ? [[k, letter]] : []))) });
     const { drawn } = page;
     if (drawn) store.set({ way: drawn.way, mirrored: drawn.mirrored });
     else say(page.complete ? "No way of this sheet has the letters of the file" : "No listed way has the letters of the file");
   });
+  byId("undo").addEventListener("click", () => {
+    undo();
+    if (byId("undo").hidden) byId("pattern").querySelector("[tabindex='0']")?.focus({ preventScroll: true });
+  });
+  undoable();
   byId("download").addEventListener("click", () => {
     const { ways, way, mirrored } = store.get();
     const name = fileName(page, ways[way], mirrored);
@@ -265,6 +295,11 @@ export function createView(page, { server, signal, begin = {}, changed }) {
     event.stopPropagation();
   });
   document.addEventListener("keydown", (event) => {
+    if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "z" && !event.target.matches?.("input[type=search]")) {
+      event.preventDefault();
+      undo();
+      return;
+    }
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const typing = event.target.matches?.("input[type=search], select");
     const pressing = event.target.matches?.("button, summary");

@@ -35,7 +35,7 @@ def vertex_reason(star: Star, letters: Letters) -> VertexReason | None:
     sectors smaller than pi. To first order, sum_k w_k d_k = 0 is refuted by a vector y with y . d_k
     <= 0 for valleys, >= 0 for mountains, and 0 for free folds, not always 0. To second order, the
     vertex pops up only if its mountains lie in no closed half-plane and it has a valley. For
-    popping down, mountains and valleys change places (docs/assignment.md, Theorem 4).
+    popping down, mountains and valleys change places (docs/assignment.md, Theorem 1).
 
     >>> star = Star(4, ((0, 4), (1, 4), (2, 4), (3, 4)), ((2, 1), (-1, 1), (-1, -1), (1, -2)))
     >>> vertex_reason(star, dict(zip(star.folds, "MMMV")))
