@@ -17,6 +17,8 @@ from exactfold.checker.panels.cones import Place, cone_motion
 from exactfold.checker.panels.leaves import complete
 from exactfold.checker.panels.reduction import BITS, enclosed, reduced, rest_of
 from exactfold.checker.panels.spaces import Leaf, Spaces
+from exactfold.panels.certificate import certificate_of_panels
+from exactfold.panels.decomposition import decompose
 from exactfold.pattern.panel_entries import panels_document
 from exactfold.pattern.panel_pattern import PanelPattern
 
@@ -50,18 +52,27 @@ def test_the_motion_is_a_regular_zero_of_all_forms(pattern: PanelPattern) -> Non
     assert not any(x.sign() for x in rest_of(place, space).values())
 
 
-def test_a_ring_is_not_decided() -> None:
+def test_a_ring_is_decided_modulo_a_prime(monkeypatch: pytest.MonkeyPatch) -> None:
     """In every order the last discriminant is a sum of squares at all real zeros."""
     found = spaces(ring_of_fives())
-    for cones in ([0, 1, 2], [2, 1, 0]):
+    orders = [0, 1, 2], [2, 1, 0]
+    for cones in orders:
+        assert cone_motion(found, found.first_order, cones) is not None
+    made = certificate_of_panels(decompose(ring_of_fives()))
+    verified(made)
+    monkeypatch.setattr(panel_cones, "one_component", lambda *_: False)
+    for cones in orders:
         assert cone_motion(found, found.first_order, cones) is None
     assert cone_motion(found, found.first_order, [0, 1]) is not None
+    refused(made, "the zeros of the forms of vertices 0, 1, 2 may be several components")
 
 
 def test_both_signs_of_the_discriminant_are_needed(monkeypatch: pytest.MonkeyPatch) -> None:
     sides = panel_cones._sides
     monkeypatch.setattr(panel_cones, "_sides", lambda *args: (sides(*args)[0], False))
     made = certified("joined stars")
+    verified(made)  # modulo a prime, both kinds of values are found
+    monkeypatch.setattr(panel_cones, "one_component", lambda *_: False)
     refused(made, "the zeros of the forms of vertices 0, 1 may be several components")
     verified(certified("star"))  # one form has rank 3, and needs no sign
 

@@ -9,14 +9,13 @@ from fractions import Fraction
 from functools import cache
 
 import pytest
-from forge import refused, verified, without
+from forge import refused, verified
 from forge_panels import Document, stopped
 from panel_sheets import (
     crossed_stars,
     miura,
     outlined,
     regular_twist,
-    ring_of_fives,
     row_of_stars,
     shifted_columns,
     tiling,
@@ -253,37 +252,7 @@ def test_what_a_leaf_is(change: Document, message: str) -> None:
     refused(made, message)
 
 
-# --- what cannot be decided ----------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    ("pattern", "message"),
-    [
-        (ring_of_fives(), "the zeros of the forms of vertices 0, 1, 2 may be several components"),
-    ],
-)
-def test_several_forms(pattern: PanelPattern, message: str) -> None:
-    """Zeros of several forms are not claimed to be one component where that is not shown."""
-    result = decompose(pattern)
-    assert result.second_order is None
-    made = certified("star")
-    shape = certificate_of_panels(decompose(pattern, flat=pattern.folds))["pattern"]
-    with without(message):
-        [spaces] = spaces_of(shape)
-        leaves = [
-            {
-                "folds": [list(fold) for fold in leaf.folds],
-                "dimension": leaf.dimension,
-                "cones": list(leaf.cones),
-                "number": 1,
-                "extending": 0,
-            }
-            for leaf in spaces.leaves()
-        ]
-    made["pattern"] = shape
-    part = {"vertices": sorted(spaces.near), "complete": False, "leaves": leaves}
-    made["claims"]["spaces"] = [part]
-    stopped(made, message)
+# --- limits --------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(

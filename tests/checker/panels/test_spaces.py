@@ -12,7 +12,7 @@ from test_forged_spaces import certified, cone, leaves_of, sheet, spaces_of, tri
 
 from exactfold.checker import check, load
 from exactfold.checker.core.intervals import Interval
-from exactfold.checker.core.reading import CertificateError, LimitError
+from exactfold.checker.core.reading import LimitError
 from exactfold.checker.core.towers import Number, Tower
 from exactfold.checker.panels import forms as panel_forms
 from exactfold.checker.panels import reduction as panel_reduction
@@ -248,11 +248,12 @@ def test_a_part_with_two_parameters_is_no_mode(pattern: PanelPattern, folds: boo
         assert _folds(found, [motion], []) is folds
 
 
-def test_spaces_that_are_no_sums_are_refused() -> None:
+def test_spaces_that_are_no_sums_are_one_part() -> None:
     found = spaces(half_crossed())
     one = number(1)
-    with pytest.raises(CertificateError, match="the parts of a space do not add up"):
-        found.parts([{(0, 2): one, (1, 3): one}])
+    joined = [{(0, 2): one, (1, 3): one}]
+    assert found.parts(joined) == [joined]
+    assert len(found.parts([{(0, 2): one}, {(1, 3): one}])) == 2
 
 
 def test_squares_have_the_values_of_the_form_also_where_motions_leave_a_vertex_flat() -> None:
@@ -281,3 +282,17 @@ def test_a_vertex_with_settled_neighbours_is_split_first() -> None:
         neighbours = {u for u in around if u in found.near}
         left = {u: squares for u, squares in products.items() if u != v}
         assert found.factors(left, found.first_order, frozenset({v}))[0] in neighbours
+
+
+def test_forms_that_vanish_only_at_zero_leave_zero() -> None:
+    found = spaces(half_crossed())
+    values = {0: (1, -1), 1: (1, -2), 2: (3, -5)}
+    rows = [number(1), number(0)], [number(0), number(1)]
+    forms = {
+        v: [(number(d), row) for d, row in zip(pair, rows, strict=True)]
+        for v, pair in values.items()
+    }
+    assert found.vanish_only_at_zero(forms, 2)
+    assert not found.vanish_only_at_zero({0: forms[0], 2: forms[0]}, 2)
+    assert not found.vanish_only_at_zero({0: forms[0]}, 2)
+    assert not found.vanish_only_at_zero(forms, 1)

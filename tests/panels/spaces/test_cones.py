@@ -36,6 +36,7 @@ SHEETS = {
     "twins": (twins(), {3: 1}, True),
     "row of stars": (row_of_stars(), {5: 1}, True),
     "crossed stars": (crossed_stars(), {5: 2}, False),
+    "ring of fives": (ring_of_fives(), {3: 1}, True),
 }
 
 
@@ -55,7 +56,7 @@ def motion_of(pattern: PanelPattern) -> Balls | None:
     return cone_motion(moving, *first_order(moving), list(moving))
 
 
-@pytest.mark.parametrize("name", ["two stars", "twins", "row of stars"])
+@pytest.mark.parametrize("name", ["two stars", "twins", "row of stars", "ring of fives"])
 def test_the_motion_is_a_regular_zero_of_all_forms(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -77,9 +78,13 @@ def test_the_motion_is_a_regular_zero_of_all_forms(
     assert truly_folds(moving, motion)
 
 
-def test_a_ring_is_not_decided() -> None:
+def test_a_ring_is_decided_modulo_a_prime(monkeypatch: pytest.MonkeyPatch) -> None:
     """At the last vertex the discriminant is never negative, as three folds have K > 0."""
     pattern = ring_of_fives()
+    result = decompose(pattern)
+    assert result.status is PROVED
+    assert result.second_order == result.true == {3: 1}
+    monkeypatch.setattr(cones, "one_component", lambda *_: False)
     assert motion_of(pattern) is None
     result = decompose(pattern)
     assert result.status is UNDECIDED
@@ -108,6 +113,8 @@ def test_both_signs_of_the_discriminant_are_needed(monkeypatch: pytest.MonkeyPat
     """Without a negative one the zeros of the second form could be two sheets over the first."""
     sides = cones._sides
     monkeypatch.setattr(cones, "_sides", lambda *args: (sides(*args)[0], False))
+    assert motion_of(two_stars()) is not None  # modulo a prime, both kinds of values are found
+    monkeypatch.setattr(cones, "one_component", lambda *_: False)
     assert motion_of(two_stars()) is None
 
 

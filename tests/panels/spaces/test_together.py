@@ -1,0 +1,129 @@
+"""Sums of forms that split a space, and forms that vanish together only at 0."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Mapping
+from fractions import Fraction
+from functools import cache
+
+import pytest
+from flint import fmpq
+from forge import verified
+from test_oracles import by_singular, degrees
+
+from exactfold._support.verdict import PROVED
+from exactfold.checker.core.reading import CertificateError
+from exactfold.checker.panels import certificate as checked
+from exactfold.checker.panels.forms import Forms
+from exactfold.panels.certificate import certificate_of_panels
+from exactfold.panels.decomposition import decompose
+from exactfold.panels.result import Decomposition
+from exactfold.panels.spaces import splitting
+from exactfold.panels.spaces.sparse import Form
+from exactfold.panels.spaces.together import narrowing_sum, vanish_only_at_zero
+from exactfold.pattern.panel_pattern import PanelPattern
+
+SQUARES = [
+    *[(0, 5), (0, 1), (5, 10), (5, 6), (10, 15), (10, 11), (15, 20), (15, 16), (20, 21), (1, 6)],
+    *[(1, 2), (6, 11), (6, 7), (6, 12), (11, 16), (11, 12), (16, 21), (16, 17), (21, 22), (2, 7)],
+    *[(2, 3), (7, 12), (7, 8), (7, 13), (12, 17), (12, 13), (17, 22), (17, 18), (22, 23), (3, 8)],
+    *[(3, 4), (3, 9), (8, 13), (8, 9), (13, 18), (13, 14), (18, 23), (18, 19), (23, 24), (4, 9)],
+    *[(9, 14), (14, 18), (14, 19), (19, 23), (19, 24)],
+]
+TURNED = [
+    *[(0, 5), (0, 1), (5, 10), (10, 15), (10, 11), (10, 16), (15, 20), (20, 21), (1, 6), (1, 2)],
+    *[(1, 7), (6, 10), (11, 16), (11, 12), (11, 17), (16, 21), (21, 22), (2, 7), (2, 3), (2, 8)],
+    *[(7, 12), (7, 13), (12, 17), (12, 13), (12, 18), (17, 21), (17, 22), (17, 18), (22, 23)],
+    *[(3, 8), (3, 4), (8, 13), (8, 9), (8, 14), (13, 18), (13, 19), (18, 23), (18, 19), (23, 24)],
+    *[(4, 8), (4, 9), (9, 14), (14, 19), (19, 24)],
+]
+SHEETS = {"squares": (SQUARES, {3: 8, 4: 2, 5: 3}), "turned": (TURNED, {2: 1, 3: 4, 4: 2})}
+"""Creases on a grid of 5 x 5 points, and the numbers of components by dimension."""
+
+
+REAL = {"squares": {3: 3, 2: 4, 1: 8}, "turned": {4: 6, 3: 8, 2: 1}}
+"""The sums of the degrees of these components by dimension, free folds apart."""
+
+
+@cache
+def counted(name: str) -> Decomposition:
+    points = [(Fraction(x), Fraction(y)) for y in range(5) for x in range(5)]
+    return decompose(PanelPattern(points, SHEETS[name][0]))
+
+
+@pytest.mark.parametrize("name", SHEETS)
+def test_a_sum_of_forms_splits_a_space(name: str) -> None:
+    result = counted(name)
+    assert result.status is PROVED
+    assert result.second_order == SHEETS[name][1]
+
+
+@pytest.mark.parametrize("name", SHEETS)
+def test_the_checker_splits_the_same_spaces(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    made = certificate_of_panels(counted(name))
+    verified(made)
+    monkeypatch.setattr(Forms, "narrowing_sum", lambda *_: [])
+    with pytest.raises(CertificateError, match="may be several components"):
+        checked.PANELS.check(made)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(shutil.which("Singular") is None, reason="Singular is not installed")
+@pytest.mark.parametrize(
+    ("name", "over_q"), [("squares", {3: 3, 2: 4, 1: 8}), ("turned", {4: 6, 3: 8 + 2})]
+)
+def test_singular_finds_the_same_components(name: str, over_q: dict[int, int]) -> None:
+    """A sum of two squares is a pair of planes that are not real, and meet in a real one of one
+    dimension less.
+    """
+    pattern = counted(name).pattern
+    assert by_singular(pattern) == over_q
+    assert degrees(pattern) == REAL[name]
+
+
+def test_without_sums_the_sheet_is_not_decided(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(splitting, "narrowing_sum", lambda *_: None)
+    assert decompose(counted("squares").pattern).second_order is None
+
+
+def squares(*rows: tuple[int, Mapping[int, int]]) -> Form:
+    return [(fmpq(d), {k: fmpq(x) for k, x in row.items()}) for d, row in rows]
+
+
+ONE = squares((1, {0: 1}), (-1, {1: 1}), (-1, {2: 1}))
+
+
+@pytest.mark.parametrize(
+    ("other", "inertia"),
+    [
+        (squares((-1, {0: 1}), (2, {1: 1}), (2, {2: 1})), [1, 1]),  # the sum is definite
+        (squares((1, {0: 1}), (-2, {1: 1}), (-2, {2: 1})), [1, 1]),  # the difference is
+        (squares((1, {0: 1}), (-1, {1: 1}), (-2, {3: 1})), [1, -1]),  # the difference splits
+        (squares((1, {0: 1}), (-3, {1: 1}), (-2, {3: 1})), None),
+        (ONE, None),  # the difference is 0
+    ],
+)
+def test_which_sum_is_taken(other: Form, inertia: list[int] | None) -> None:
+    found = narrowing_sum({3: ONE, 5: other}, [3, 5])
+    signs = None if found is None else sorted((1 if d > 0 else -1 for d, _ in found), reverse=True)
+    assert signs == inertia
+
+
+def test_one_form_or_five_are_not_summed() -> None:
+    definite = squares((-1, {0: 1}), (2, {1: 1}), (2, {2: 1}))
+    assert narrowing_sum({0: ONE}, [0]) is None
+    assert narrowing_sum({0: ONE, 1: definite}, [0, 1]) is not None
+    five = {k: definite if k else ONE for k in range(5)}
+    assert narrowing_sum(five, list(five)) is None
+
+
+def test_forms_that_vanish_only_at_zero() -> None:
+    cones = {
+        0: ONE,
+        1: squares((1, {1: 1}), (-1, {0: 1}), (-1, {2: 1})),
+        2: squares((1, {0: 1}), (2, {1: 1}), (-5, {2: 1})),
+    }
+    assert vanish_only_at_zero(cones, [0, 1, 2], 3)
+    assert not vanish_only_at_zero(cones, [0, 1], 3)
+    assert not vanish_only_at_zero(cones, [0, 1, 2], 4)
