@@ -75,8 +75,9 @@ def test_folds_held_flat() -> None:
         assert verified(inner)["second_order"] != KNOWN["crossing"]
 
 
+@pytest.mark.usefixtures("without_spaces")
 def test_no_certificate_of_what_is_not_decided() -> None:
-    """Three vertices with five folds round a panel: their forms are left."""
+    """The search for the spaces of three vertices with five folds each ends at once."""
     with pytest.raises(NotApplicableError, match="this one is undecided"):
         certificate_of_panels(decompose(ring_of_fives()))
 
