@@ -3,6 +3,18 @@
 At a branch point the stars of some vertices are flat, and other curves may cross the motion. The
 motion passes it on an arc of one analytic curve; a point of the arc lies on the tube before
 (docs/motion.md, 12).
+
+With four corners a motion that passes no branch point before meets the arc, on its last tube and in
+the direction of growing s, at a parameter s_1 < 0. Proof: for s not 0 the equations of the arc are
+independent combinations of all length equations and T . y = 1, and they are regular on the whole
+arc. So all its configurations but the branch point are regular. The branch point is not, because
+the wheel stress of a flat star is in the left kernel of J. All configurations of the motion but the
+flat state are regular. So s_1 is not 0. Let s_1 > 0. From the common point backwards, the motion
+and the arc are the one curve of regular configurations through it, the motion until the flat state,
+the arc until the branch point; so these are the same. But the flat state is no branch point: a
+patch that is the whole sheet is refused, and the height of a vertex outside the patch changes no
+length at the flat state to first order, so that the equations of the branch point are not regular
+there. With more corners this last step fails: the ties of docs/motion.md, 9 may fix this height.
 """
 
 from __future__ import annotations
@@ -83,7 +95,7 @@ class Node(BranchClaim):
         arc = arc_of(chain.equations, self.claims["node"]["flat"], entry)
         begin, end = parameter_of(entry["entry"]), Fraction(0)
         path.meet(*arc.configuration(begin))
-        # This can fail only after another branch point, or with a rim: docs/motion.md, Theorem 6.
+        # This can fail only after another branch point, or with a rim: see the module's docstring.
         require(begin < end, "an arc does not lead to its branch point")
         path.go(*arc.configuration(end))
         chain.steps.append(Arc(arc, begin, end))

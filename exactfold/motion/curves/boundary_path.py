@@ -1,4 +1,17 @@
-"""The path of boundary heights: linear equations that keep the boundary in a given ratio."""
+"""The path of boundary heights: linear equations that keep the boundary in a given ratio.
+
+Let the boundary be convex, with heights b, and let the condition of Theorem 5 of docs/motion.md
+hold for all 2^n sign vectors. Then all configurations on the path near the flat state lie on 2^n
+curves, one for each sign vector. Proof: let d_k -> 0 be configurations on the path, not flat. Their
+heights z are not all 0: otherwise U_e . d_e = -|d_e|^2 / 2, which no small d but 0 satisfies, since
+the map on the left is injective. With t = |z|, the displacements in the plane over t^2 are bounded,
+as in the proof of Theorem 3 (b). So a subsequence has limits u, h with |h| = 1 and
+U_e . u_e + h_e^2 / 2 = 0. Therefore K_v(h) = 0 at all interior v, and h = l b + a on the boundary
+with a number l and an affine function a. If l = 0, then h - a is a solution that vanishes on the
+boundary, so it is 0; h = a vanishes on the triangle held, so h = 0, which is false. Else h / l is,
+up to an affine function, the solution with the boundary heights b of some sign vector. By Theorem
+3 (b) almost all d_k of the subsequence lie on its curve.
+"""
 
 from __future__ import annotations
 

@@ -1,10 +1,11 @@
 """Panels placed one after the other by rotations that are polynomials, with proved errors.
 
 Let R and S be rotations. If |R - P| <= e and |S - Q| <= f in the spectral norm, then R S is within
-e + f + e f of P Q. So the errors of a product of many rotations add up (docs/motion.md, Theorem
-14). Polynomials are in y with |y| <= 1; their coefficients are floats along the last axis. With u =
-2^-53, a sum of n products has an error of at most 2 n u times the sum of their sizes. All errors
-are enlarged by the factor `_MORE`, which covers the rounding of the errors themselves.
+e + f + e f of P Q, because R S - P Q = (R - P) S + P (S - Q), |S| = 1 and |P| <= 1 + e. So the
+errors of a product of many rotations add up. Polynomials are in y with |y| <= 1; their coefficients
+are floats along the last axis. With u = 2^-53, a sum of n products has an error of at most 2 n u
+times the sum of their sizes. All errors are enlarged by the factor `_MORE`, which covers the
+rounding of the errors themselves.
 """
 
 from __future__ import annotations

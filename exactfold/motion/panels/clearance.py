@@ -64,7 +64,7 @@ def prove_contacts(motion: PanelMotion) -> PanelClearance:
     """The first contact of a motion of panels, proved (docs/motion.md, 20).
 
     The positions of all vertices are enclosed over intervals of time, computed from the exact
-    motion. Planes are found that separate all panels (docs/motion.md, Theorem 9). Panels touch
+    motion. Planes are found that separate all panels (docs/motion.md, Theorem 7). Panels touch
     where an edge runs through a panel, or at time pi, where all folds close.
 
     Raises `NotApplicableError` for a motion that is not proved to exist (`motion.exists`), and for

@@ -99,7 +99,7 @@ class FollowedCurve:
     """A mode with nonlinear transmissions, followed in floats by closed formulas.
 
     The formulas are in docs/panels.md, All fold angles. Until the first fold reaches 180 degrees,
-    all fold angles of a mode grow strictly with each other (docs/motion.md, Theorem 12). `driver`
+    all fold angles of a mode grow strictly with each other (docs/motion.md, Theorem 9). `driver`
     is found by trial: one fold is closed, and if some vertex cannot follow, a fold at that vertex
     closes earlier.
     """

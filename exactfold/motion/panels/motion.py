@@ -240,7 +240,7 @@ class PanelMotion(PanelsInMotion):
 
 
 def _continues(curve: FollowedCurve) -> bool:
-    """Whether docs/motion.md, Theorem 12, applies to a mode."""
+    """Whether docs/motion.md, Theorem 9, applies to a mode."""
     mode = curve.mode
     return mode.extends.verdict is PROVED and all(len(star.folds) <= 4 for star in mode.stars)
 

@@ -156,7 +156,7 @@ class PanelPieces:
         """A narrow piece with exactly this time in its middle, or None.
 
         None if the positions are not known, for example beyond a fold that is closed. If there is a
-        piece, the motion exists up to this time (docs/motion.md, Theorem 13).
+        piece, the motion exists up to this time (docs/motion.md, Theorem 10).
         """
         return self._about(time, _NARROWEST)
 

@@ -1,4 +1,26 @@
-"""Singular configurations that are no branch points, described in words (docs/motion.md, 13)."""
+"""Singular configurations that are no branch points, described in words (docs/motion.md, 13).
+
+Symmetry can make the lengths of edges depend on each other. Let a part of the sheet be mapped to
+itself by a half-turn of the plane. It exchanges m pairs of vertices and e pairs of edges, and may
+fix one vertex (k = 1, else k = 0), or one edge, whose ends it exchanges (l = 1, else l = 0). In a
+configuration of the part that a half-turn about a line in space maps to itself in the same way, the
+equations of its lengths split. On displacements that keep the symmetry they are e + l equations in
+3m + k unknowns, 2 of which are moved by motions of the whole part. On displacements that it
+reverses they are e equations in 3m + 2k unknowns, 4 of which are.
+
+Proof: displacements y with R y_v = +-y_v', where v' is the image of v and R the linear half-turn,
+are given by the y_v of one vertex of each pair and by that of the fixed vertex, which is along the
+line for + and perpendicular to it for -. The derivatives of the lengths of an edge and its image
+are equal for + and opposite for -: e equations each. A fixed edge v v' is perpendicular to the
+line. For - the difference y_v - y_v' = y_v + R y_v is along the line, so that its length has the
+derivative 0: it is an equation for + only. Of the infinitesimal motions of space the half-turn
+keeps the rotation about the line and the translation along it, and reverses the other four.
+
+If nothing is fixed and e = 3m - 4, as for a ring between two quadrilaterals (m = 4, e = 8), the
+equations on reversed displacements are square, and symmetric configurations form a surface as a
+rule. Where a motion in it meets the zeros of their determinant, asymmetric configurations branch
+off, and Theorem 1 of docs/motion.md cannot hold.
+"""
 
 from __future__ import annotations
 

@@ -182,7 +182,7 @@ def test_another_node_is_refused() -> None:
 
 @pytest.mark.slow
 def test_an_arc_that_leaves_its_node() -> None:
-    """The arc reversed: its point on the tube comes after the branch point (Theorem 6)."""
+    """The arc reversed: its point on the tube comes after the branch point."""
     forged = given()
     at = forged["evidence"]["node"]
     at["centre"], at["row"] = ([-x for x in at[key]] for key in ("centre", "row"))

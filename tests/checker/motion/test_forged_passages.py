@@ -122,7 +122,7 @@ def test_an_arc_goes_through_its_node() -> None:
 
 @pytest.mark.slow
 def test_a_motion_does_not_end_at_a_node_that_it_has_passed() -> None:
-    """Its arc, met after the branch point, leads away from it (docs/motion.md, Theorem 6)."""
+    """Its arc, met after the branch point, leads away from it (checker/motion/nodes.py)."""
     message = "an arc does not lead to its branch point"
     forged = given()
     steps = forged["evidence"]["tubes"]

@@ -118,7 +118,7 @@ def test_ties_hold_for_the_rim_and_planes_only(branch: Branch) -> None:
 
 
 def test_near_the_flat_state_each_sign_vector_has_one_configuration() -> None:
-    """Theorem 7 (c): random starts with a small factor end in 2^n configurations."""
+    """Random starts with a small factor end in 2^n configurations (docs/motion.md, 9)."""
     problem = problem_of(pentagon())
     framework = Framework.of(problem.sheet, None, ties_of(problem))
     functional = factor_functional(problem.sheet, problem.gauge.boundary_heights)

@@ -82,7 +82,7 @@ def test_what_folds_flat_is_what_reflections_close():
     ],
 )
 def test_lengths_split_where_a_half_turn_in_space_maps_a_part_to_itself(corners, edges, fixed):
-    """Exact ranks in a configuration with this symmetry: docs/motion.md, Proposition."""
+    """Exact ranks in a configuration with this symmetry: motion/tubes/singular.py."""
     rng, m = random.Random(3), len(corners)
     flat = [*corners, *((-x, -y) for x, y in corners)] + [(0, 0)] * fixed[0]
     middle = 2 * m

@@ -1,4 +1,13 @@
-"""Cutting panels into triangles, so that the tests for triangles can be used for panels."""
+"""Cutting panels into triangles, so that the tests for triangles can be used for panels.
+
+Every simple polygon with more than three corners has two ears: corners that turn left, strictly,
+with no other corner in their closed triangle. Proof: let v be a strictly convex corner with the
+neighbours u and w. A diagonal is u w or, if other corners are in the closed triangle u v w, the one
+from v to one of these that is farthest from the line u w. It runs in the inside, so that both parts
+are simple polygons. By induction diagonals cut the polygon into triangles. Two of these have two
+sides of the polygon each. They have no other corner in them, because all corners are corners of
+triangles, and these overlap in sides only.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +22,7 @@ def cut(sheet: PanelSheet, panel: tuple[int, ...]) -> list[Triangle]:
 
     Ears are cut off one after the other. An ear is a corner that turns left, with its two
     neighbours, such that no other remaining corner lies inside this triangle or on its sides. Every
-    simple polygon has an ear (docs/motion.md, Theorem 15).
+    simple polygon has an ear.
     """
     require(len(set(panel)) == len(panel), f"the panel {panel} passes a corner twice")
     left, triangles = list(panel), []

@@ -1,8 +1,9 @@
 """The positions of the vertices while a sheet of panels folds: polynomials with proved errors.
 
 The panels are placed one after the other. Each panel is turned about the fold to the panel before
-it. Rotations have norm 1, so that the error of a product is at most the sum of the errors
-(docs/motion.md, Theorem 14).
+it. Let R and S be rotations, and |R - P| <= e <= 1 and |S - Q| <= f in the spectral norm. Then
+|R S - P Q| <= e + f + e f <= e + 2 f, because R S - P Q = (R - P) S + P (S - Q), |S| = 1 and
+|P| <= 1 + e. So the error of a product of many rotations grows like the sum of the errors.
 """
 
 from __future__ import annotations
