@@ -16,7 +16,7 @@ from ..core import limits
 from ..core.reading import LimitError, at_most
 from ..core.towers import Number
 from ..sheets.panels import Edge
-from .forms import Forms, Motion, Space, Squares, folds_of
+from .forms import MOST_STEPS, Forms, Motion, Space, Squares, folds_of
 from .reduction import inside, reduced, zero
 
 MOST_LEAVES = limits.SPACE_LEAVES
@@ -52,7 +52,8 @@ class Spaces(Forms):
     def leaves(self) -> list[Leaf]:
         """All components of the motions; the flat state alone is not counted.
 
-        Two orders of vertices are tried in turns, each with more steps than the last time.
+        Two orders of vertices are tried in turns, each with more steps than the last time. What is
+        done with the components has all steps that are left.
         """
         before, steps = self.work.steps, FIRST_TURN
         while True:
@@ -60,7 +61,9 @@ class Spaces(Forms):
                 self.work.steps = before
                 more = self.work.turn(steps)
                 try:
-                    return [leaf for leaf in self._leaves(self.first_order) if leaf.basis]
+                    found = [leaf for leaf in self._leaves(self.first_order) if leaf.basis]
+                    self.work.turn(MOST_STEPS)
+                    return found
                 except LimitError:
                     if self.avoids_roots and not more:
                         raise

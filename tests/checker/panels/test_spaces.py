@@ -296,3 +296,11 @@ def test_forms_that_vanish_only_at_zero_leave_zero() -> None:
     assert not found.vanish_only_at_zero({0: forms[0], 2: forms[0]}, 2)
     assert not found.vanish_only_at_zero({0: forms[0]}, 2)
     assert not found.vanish_only_at_zero(forms, 1)
+
+
+def test_what_follows_the_search_has_the_steps_that_are_left() -> None:
+    found = spaces(half_crossed())
+    found.leaves()
+    found.work.count(panel_forms.MOST_STEPS - found.work.steps, number(1))
+    with pytest.raises(LimitError, match="the steps to the spaces of motions"):
+        found.work.count(1, number(1))
