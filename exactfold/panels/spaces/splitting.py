@@ -99,7 +99,7 @@ class Splitting:
         total: list[Leaf] = [Leaf({}, 0, ())]
         for part, part_size in independent_parts(rows, size, self.stars):
             whole = _Space(_on_folds(part, part_size), {})
-            found = maximal(self._in_turns(whole))
+            found = maximal(self._in_turns(whole), self.clock)
             total = [direct_sum(a, b) for a in total for b in found]
         return [leaf for leaf in total if leaf.size]
 
@@ -125,7 +125,7 @@ class Splitting:
             return self._split(space, settled)
         total: list[Leaf] = [Leaf({}, 0, ())]
         for part in parts:
-            part_leaves = maximal(self._split(part, settled))
+            part_leaves = maximal(self._split(part, settled), self.clock)
             total = [direct_sum(a, b) for a in total for b in part_leaves]
             self._count(len(total))
         return total

@@ -21,6 +21,7 @@ from exactfold.panels.spaces.quadratics import (
     Squares,
     Vector,
     is_semidefinite,
+    row_rank,
     row_space,
     squares_of,
 )
@@ -139,13 +140,16 @@ def direct_sum(a: Leaf, b: Leaf) -> Leaf:
     return Leaf(rows, a.size + b.size, tuple(sorted(a.vertices + b.vertices)))
 
 
-def maximal(candidates: Iterable[Leaf]) -> list[Leaf]:
-    """The leaves that lie in no other leaf; among equal leaves, the first."""
+def maximal(candidates: Iterable[Leaf], clock: Clock = UNLIMITED) -> list[Leaf]:
+    """The leaves that lie in no other leaf; among equal leaves, the first.
+
+    Raises `TooManyModesError` if the time is over.
+    """
     kept: list[_Enclosed] = []
     for leaf in sorted(candidates, key=lambda leaf: (-leaf.size, len(leaf.vertices))):
         one = _Enclosed(leaf)
         around = (other for other in kept if leaf.rows.keys() <= other.leaf.rows.keys())
-        if not any(not one.is_outside(other) and _inside(leaf, other.leaf) for other in around):
+        if not any(one.lies_in(other, clock) for other in around):
             kept.append(one)
     return [one.leaf for one in kept]
 
@@ -174,6 +178,15 @@ class _Enclosed:
     def _motion(self) -> dict[Edge, arb]:
         return {e: sum((x * (k + 1) for k, x in row), arb(0)) for e, row in self._rows.items()}
 
+    def lies_in(self, other: _Enclosed, clock: Clock) -> bool:
+        """Whether the motions of this leaf lie in the space of another, and so in the other leaf.
+
+        A leaf contains all motions in its space, because the remaining forms vanish at every
+        motion, too.
+        """
+        clock.check()
+        return not self.is_outside(other) and _inside(self.leaf, other.leaf, other._places)
+
     def is_outside(self, other: _Enclosed) -> bool:
         """Whether balls show that some motion of this leaf does not lie in the space of another."""
         places, zero = other._places, arb(0)
@@ -186,20 +199,24 @@ class _Enclosed:
         )
 
 
-def _inside(leaf: Leaf, other: Leaf) -> bool:
-    """Whether the motions of one leaf lie in the space of another, and so in the other leaf.
+def _inside(leaf: Leaf, other: Leaf, places: Mapping[int, Edge]) -> bool:
+    """Whether the motions of one leaf lie in the space of another.
 
-    A leaf contains all motions in its space, because the remaining forms vanish at every motion,
-    too.
+    `places` has a fold for each parameter of the other leaf, whose density it is, as far as there
+    are such folds. If all are there, their densities give those of all folds.
     """
-    if not set(leaf.rows) <= set(other.rows):
-        return False
     folds = list(other.rows)
     zero = (Fraction(0),) * leaf.size
     columns = [[*other.rows[edge], *leaf.rows.get(edge, zero)] for edge in folds]
     entries = [[entry(x) for x in row] for row in joined(columns)]
-    both, _ = row_space(_transposed(entries), len(folds))
-    return len(both) == other.size
+    if len(places) < other.size:
+        return row_rank(_transposed(entries), len(folds)) == other.size
+    at = dict(zip(folds, (row[other.size :] for row in entries), strict=True))
+    return all(
+        not sum((x * at[places[k]][j] for k, x in enumerate(row[: other.size]) if x), -value)
+        for row in entries
+        for j, value in enumerate(row[other.size :])
+    )
 
 
 def _transposed(rows: Sequence[Sequence[Entry]]) -> list[Vector]:
