@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 
 from exactfold._support.clock import QUICK, UNLIMITED, Clock
 from exactfold._support.plurals import counted
@@ -15,6 +15,7 @@ from exactfold.panels.spaces.found import FoundComponent, found_components
 from exactfold.panels.spaces.freedom import most_first_order, most_freedom
 from exactfold.panels.spaces.kernel import Rows, entry, first_order
 from exactfold.panels.spaces.regular import (
+    Balls,
     Forms,
     in_balls,
     is_component,
@@ -102,15 +103,21 @@ def _complete(
     spaces = search.leaves(small, left)
     together = 0
     counts: dict[int, int] = {}
+    zeros: list[list[Balls | None]] = []
     for leaf in spaces:
         clock.check()
-        together = max(together, _check_component(moving, leaf))
+        number, motions = _checked_component(moving, leaf)
+        together = max(together, number)
+        zeros.append(motions)
         counts[leaf.dimension] = counts.get(leaf.dimension, 0) + 1
     still = _still(moving, (edge for leaf in spaces for edge in leaf.rows))
     if not counts:
         return Part(vertices, "subspaces", {0: 1}, {0: 1}, dimension=size, still=still)
     ordered = dict(sorted(counts.items()))
-    folding = [not clock.passed and _extends(pattern, moving, leaf) for leaf in spaces]
+    folding = [
+        not clock.passed and _extends(pattern, moving, leaf, motions)
+        for leaf, motions in zip(spaces, zeros, strict=True)
+    ]
     alone = len(moving) == 1 or all(
         not clock.passed and _is_regular(moving, rows, size, leaf) for leaf in spaces
     )
@@ -139,21 +146,25 @@ def _complete(
     )
 
 
-def _check_component(moving: Mapping[int, Star], leaf: Leaf) -> int:
+def _checked_component(moving: Mapping[int, Star], leaf: Leaf) -> tuple[int, list[Balls | None]]:
     """The largest number of forms that remain together on an independent part of a leaf.
+
+    The second value has a common zero of the forms on each part with several.
 
     Raises `TooManyModesError` unless the motions of the leaf are shown to be one component.
     """
     together = 0
+    motions: list[Balls | None] = []
     for rows, size in independent_parts(_entries(leaf), leaf.size, moving):
         cones = [v for v in leaf.vertices if set(moving[v].folds) & set(rows)]
         together = max(together, len(cones))
-        if len(cones) > 1 and cone_motion(moving, rows, size, cones) is None:
+        motions.append(cone_motion(moving, rows, size, cones) if len(cones) > 1 else None)
+        if len(cones) > 1 and motions[-1] is None:
             raise TooManyModesError(
                 f"on a space of dimension {size} the second-order conditions of vertices "
                 f"{', '.join(map(str, cones))} remain, and exactfold could not solve them together"
             )
-    return together
+    return together, motions
 
 
 def _open(known: bool, fold: bool) -> str:
@@ -222,7 +233,12 @@ def _still(moving: Mapping[int, Star], active: Iterable[Edge]) -> tuple[Edge, ..
     return tuple(sorted({e for star in moving.values() for e in star.folds} - set(active)))
 
 
-def _extends(pattern: PanelPattern, moving: Mapping[int, Star], leaf: Leaf) -> bool:
+def _extends(
+    pattern: PanelPattern,
+    moving: Mapping[int, Star],
+    leaf: Leaf,
+    zeros: Sequence[Balls | None] = (),
+) -> bool:
     """Whether a space of motions is proved to be tangent to true motions.
 
     The space is split into independent parts. By Morse's lemma, a single vertex has true motions
@@ -230,14 +246,18 @@ def _extends(pattern: PanelPattern, moving: Mapping[int, Star], leaf: Leaf) -> b
     their conditions are independent at one of their points (`truly_folds`); for cones this is a
     point at which their forms vanish. A part that is a mode extends if the mode does. Other folds
     are held flat, so this can prove that a space extends but never that it does not: a true motion
-    might use those folds at a higher order.
+    might use those folds at a higher order. `zeros` are those of `_checked_component`, where they
+    are known.
     """
-    for rows, size in independent_parts(_entries(leaf), leaf.size, moving):
+    parts = independent_parts(_entries(leaf), leaf.size, moving)
+    for (rows, size), zero in zip(parts, zeros or [None] * len(parts), strict=True):
         active = [star.vertex for star in moving.values() if set(star.folds) & set(rows)]
         if len(active) == 1 and size == len(rows) - 2:
             continue
         cones = [v for v in active if v in leaf.vertices]
-        w = cone_motion(moving, rows, size, cones) if cones else point(rows, size)
+        w = zero
+        if w is None:
+            w = cone_motion(moving, rows, size, cones) if cones else point(rows, size)
         if w is not None and truly_folds(moving, w):
             continue
         if cones:

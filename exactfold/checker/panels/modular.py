@@ -141,7 +141,8 @@ def one_component(forms: Sequence[Matrix], p: int) -> bool:
 
 def _direction(form: Matrix, room: Matrix, generator: random.Random, p: int) -> Vector | None:
     """A vector u of a space with K(u) != 0, or with K(., u) != 0 if the form vanishes there."""
-    if not any(_dot(_times(form, a, p), b, p) for a in room for b in room):
+    slopes = (_times(form, a, p) for a in room)
+    if not any(_dot(slope, b, p) for slope in slopes for b in room):
         return next((u for u in room if any(_times(form, u, p))), None)
     while True:
         u = _shifted([0] * len(form), room, generator, p)
