@@ -201,7 +201,7 @@ def counted_with_letters(
 ) -> BranchCount | Decomposition:
     """The count, with the answer for the drawn letters where not all motions are known.
 
-    A quarter of the time is left for the letters.
+    A quarter of the time is left for the letters, and the last steps begin before it is over.
     """
     from exactfold.branches.values.result import BranchCount
 
@@ -213,7 +213,7 @@ def counted_with_letters(
         return result
     from exactfold.design.panels.drawn import with_drawn
 
-    known = with_drawn(result, opened, progress=progress, clock=clock)
+    known = with_drawn(result, opened, progress=progress, clock=clock.share(5 / 6))
     if opened.doubt:
         known = _with_proposal(known, opened, clock)
     return replace(known, seconds=time.perf_counter() - start)
