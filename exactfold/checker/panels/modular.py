@@ -11,7 +11,6 @@ from __future__ import annotations
 import random
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
-from functools import cache
 from itertools import combinations_with_replacement
 from math import isqrt
 
@@ -43,19 +42,12 @@ def reduced_forms(
 
 def _primes() -> Iterator[int]:
     """Yield primes p = 3 modulo 4, from the largest on."""
-    p = LARGEST_PRIME
-    for _ in range(PRIMES):
-        p = _prime_from(p)
-        yield p
+    found, p = 0, LARGEST_PRIME
+    while found < PRIMES:
+        if all(p % q for q in range(3, isqrt(p) + 1, 2)):
+            found += 1
+            yield p
         p -= 4
-
-
-@cache
-def _prime_from(p: int) -> int:
-    """The largest prime among p, p - 4, p - 8 and so on."""
-    while not all(p % q for q in range(3, isqrt(p) + 1, 2)):
-        p -= 4
-    return p
 
 
 def _roots(radicands: Sequence[Parts], p: int) -> list[int] | None:

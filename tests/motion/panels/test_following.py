@@ -125,7 +125,7 @@ def test_vertices_with_five_folds_on_a_line_that_closes():
     assert result.theory == "subspaces"
     assert result.modes == ()
     found = panel_modes(result)
-    assert len(found) == 2
+    assert len(found) == 3
     without = decompose(pattern)
     for mode in found:
         assert mode.extends.verdict is PROVED
