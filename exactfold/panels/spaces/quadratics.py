@@ -11,6 +11,7 @@ from exactfold._support.clock import UNLIMITED, Clock
 from exactfold.errors import TooManyModesError
 from exactfold.exact.surds import common_field, real_root, sign
 from exactfold.panels.spaces.kernel import Entry, Rows, entry
+from exactfold.panels.spaces.sparse import Row, diagonalised
 from exactfold.panels.vertex.stars import Star
 
 Vector: TypeAlias = list[Entry]
@@ -81,7 +82,7 @@ def squares_of(star: Star, rows: Rows, size: int, clock: Clock = UNLIMITED) -> S
                         term = c * left * coordinates[j][b]
                         form[a][b] = form[a][b] + term
                         form[b][a] = form[b][a] + term
-    return [(d, _combined(functional, basis, size)) for d, functional in _diagonalised(form, clock)]
+    return [(d, _combined(row, basis, size)) for d, row in diagonalised(form, clock)]
 
 
 def row_space(rows: Sequence[Sequence[Entry]], size: int) -> tuple[list[Vector], list[Vector]]:
@@ -119,35 +120,9 @@ def row_rank(rows: Sequence[Sequence[Entry]], size: int) -> int:
     return len(row_space(rows, size)[0])
 
 
-def _diagonalised(form: Sequence[Sequence[Entry]], clock: Clock) -> list[tuple[Entry, Vector]]:
-    """A symmetric matrix as sum d_i l_i^2 with d_i not 0, by completing squares."""
-    size = len(form)
-    work = [list(row) for row in form]
-    squares: list[tuple[Entry, Vector]] = []
-    while True:
-        pivot = next((k for k in range(size) if work[k][k]), None)
-        if pivot is None:
-            pair = next(((i, j) for i in range(size) for j in range(i) if work[i][j]), None)
-            if pair is None:
-                return squares
-            i, j = pair  # 2 m x y = m ((x + y)^2 - (x - y)^2) / 2, other terms included
-            functional = [work[i][k] + work[j][k] for k in range(size)]
-            value = 2 * work[i][j]
-        else:
-            functional, value = list(work[pivot]), work[pivot][pivot]
-        weight = 1 / value
-        squares.append((weight, functional))
-        for a in range(size):
-            clock.check()
-            for b in range(size):
-                if functional[a] and functional[b]:
-                    work[a][b] = work[a][b] - weight * functional[a] * functional[b]
-
-
-def _combined(weights: Sequence[Entry], vectors: Sequence[Vector], size: int) -> Vector:
+def _combined(weights: Row, vectors: Sequence[Vector], size: int) -> Vector:
     total: Vector = [fmpq(0)] * size
-    for weight, vector in zip(weights, vectors, strict=True):
-        if weight:
-            pairs = zip(total, vector, strict=True)
-            total = [x + weight * y if y else x for x, y in pairs]
+    for k, weight in weights.items():
+        pairs = zip(total, vectors[k], strict=True)
+        total = [x + weight * y if y else x for x, y in pairs]
     return total

@@ -8,6 +8,7 @@ from typing import TypeAlias
 
 from flint import fmpq
 
+from exactfold._support.clock import UNLIMITED, Clock
 from exactfold.exact.surds import Surd, SurdField, real_root
 from exactfold.panels.spaces.kernel import Entry, entry, increase
 
@@ -150,8 +151,13 @@ def zeros(size: int) -> list[list[Entry]]:
     return [[fmpq(0)] * size for _ in range(size)]
 
 
-def diagonalised(form: list[list[Entry]]) -> list[tuple[Entry, Row]]:
-    """A symmetric matrix as sum d_i l_i^2 with d_i not 0, by completing squares."""
+def diagonalised(
+    form: Sequence[Sequence[Entry]], clock: Clock = UNLIMITED
+) -> list[tuple[Entry, Row]]:
+    """A symmetric matrix as sum d_i l_i^2 with d_i not 0, by completing squares.
+
+    Raises `TooManyModesError` if the time is over.
+    """
     size = len(form)
     work = [list(line) for line in form]
     squares: list[tuple[Entry, Row]] = []
@@ -161,7 +167,7 @@ def diagonalised(form: list[list[Entry]]) -> list[tuple[Entry, Row]]:
             pair = next(((i, j) for i in range(size) for j in range(i) if work[i][j]), None)
             if pair is None:
                 return squares
-            i, j = pair
+            i, j = pair  # 2 m x y = m ((x + y)^2 - (x - y)^2) / 2, other terms included
             values = [work[i][k] + work[j][k] for k in range(size)]
             value = 2 * work[i][j]
         else:
@@ -170,6 +176,7 @@ def diagonalised(form: list[list[Entry]]) -> list[tuple[Entry, Row]]:
         functional = {k: x for k, x in enumerate(values) if x}
         squares.append((weight, functional))
         for a, x in functional.items():
+            clock.check()
             scaled = weight * x
             for b, y in functional.items():
                 work[a][b] = plain(work[a][b] - scaled * y)

@@ -28,6 +28,7 @@ from exactfold.panels.spaces.sparse import (
 )
 from exactfold.panels.spaces.subspaces import (
     Leaf,
+    LimitedSearch,
     direct_sum,
     independent_parts,
     made_leaf,
@@ -71,21 +72,13 @@ def leaves(
     return Splitting(stars, most, clock).leaves(rows, size)
 
 
-class Splitting:
-    """The splitting of spaces of motions, with a limit on its work; `TooManyModesError` beyond.
-
-    `sums` says whether a semidefinite form met was a sum of several squares. The complex zeros of
-    such a form have a larger dimension than its kernel.
-    """
+class Splitting(LimitedSearch):
+    """The splitting of spaces of motions; `TooManyModesError` beyond the limit of its work."""
 
     def __init__(self, stars: Mapping[int, Star], most: int, clock: Clock = UNLIMITED) -> None:
-        self.stars = stars
-        self.most = most
-        self.clock = clock
-        self.work = self._kept = self.nodes = 0
-        self._until = most
+        super().__init__(stars, most, clock)
+        self._kept = self.nodes = 0
         self._avoids_roots = False
-        self.sums = False
         self._field = common_field(x for star in stars.values() for d in star.directions for x in d)
         self._other_factors: dict[tuple[int, int], tuple[Form, Row, Row | None]] = {}
         self._local = {v: _local(star) for v, star in stars.items()}
@@ -107,7 +100,7 @@ class Splitting:
         work, sums = self.work, self.sums
         for most in (min(work + _FIRST_TURN, self.most), self.most):
             for self._avoids_roots in (False, True):
-                self.work, self.sums, self._until = work, sums, most
+                self.work, self.sums, self.until = work, sums, most
                 try:
                     return self._split(space, frozenset())
                 except TooManyModesError as caught:
@@ -127,19 +120,8 @@ class Splitting:
         for part in parts:
             part_leaves = maximal(self._split(part, settled), self.clock)
             total = [direct_sum(a, b) for a in total for b in part_leaves]
-            self._count(len(total))
+            self.count(len(total))
         return total
-
-    def _count(self, steps: int) -> None:
-        """Add to the work done. A limit of work makes the search end in the same way on every
-        machine, unless the clock ends it before.
-        """
-        self.clock.check()
-        self.work += steps
-        if self.work > self._until:
-            raise TooManyModesError(
-                "splitting its spaces of motions one by one takes more work than is allowed"
-            )
 
     def _split(self, space: _Space, settled: frozenset[int]) -> list[Leaf]:
         """The leaves of a part, without some that lie in leaves found before.
@@ -295,7 +277,7 @@ class Splitting:
         local = [rows.get(edge, {}) for edge in folds]
         numbers = (x for row in local for x in row.values())
         degree = max((x.field.dimension for x in numbers if isinstance(x, Surd)), default=1)
-        self._count(len(folds) ** 2 * degree)
+        self.count(len(folds) ** 2 * degree)
         if not are_independent(local):
             basis, coordinates = row_space(local)
             form = zeros(len(basis))

@@ -60,16 +60,17 @@ class Leaf:
         return tuple(sorted(self.rows))
 
 
-class SubspaceSearch:
-    """The replacing of semidefinite forms by their kernels, with a limit on its work.
+class LimitedSearch:
+    """A search through spaces of motions, with a limit on its work.
 
-    `sums` says whether a semidefinite form met was a sum of several squares. The complex zeros of
-    such a form have a larger dimension than its kernel.
+    `until` is the work at which it stops, at first `most`. `sums` says whether a semidefinite form
+    met was a sum of several squares. The complex zeros of such a form have a larger dimension than
+    its kernel.
     """
 
     def __init__(self, stars: Mapping[int, Star], most: int, clock: Clock = UNLIMITED) -> None:
         self.stars = stars
-        self.most = most
+        self.most = self.until = most
         self.clock = clock
         self.work = 0
         self.sums = False
@@ -80,10 +81,14 @@ class SubspaceSearch:
         """
         self.clock.check()
         self.work += steps
-        if self.work > self.most:
+        if self.work > self.until:
             raise TooManyModesError(
                 "splitting its spaces of motions one by one takes more work than is allowed"
             )
+
+
+class SubspaceSearch(LimitedSearch):
+    """The replacing of semidefinite forms by their kernels."""
 
     def reduced(self, rows: Rows, size: int) -> tuple[Rows, int, list[Squares], list[int]]:
         """The space after all semidefinite forms; the forms that split; the vertices with other
