@@ -15,7 +15,7 @@ from test_oracles import by_singular, degrees
 from exactfold._support.verdict import PROVED
 from exactfold.checker.core.reading import CertificateError
 from exactfold.checker.panels import certificate as checked
-from exactfold.checker.panels.forms import Forms
+from exactfold.checker.panels import spaces as checked_spaces
 from exactfold.panels.certificate import certificate_of_panels
 from exactfold.panels.decomposition import decompose
 from exactfold.panels.result import Decomposition
@@ -63,7 +63,7 @@ def test_a_sum_of_forms_splits_a_space(name: str) -> None:
 def test_the_checker_splits_the_same_spaces(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     made = certificate_of_panels(counted(name))
     verified(made)
-    monkeypatch.setattr(Forms, "narrowing_sum", lambda *_: [])
+    monkeypatch.setattr(checked_spaces, "narrowing_sum", lambda *_: [])
     with pytest.raises(CertificateError, match="may be several components"):
         checked.PANELS.check(made)
 
