@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 from collections.abc import Callable
 from fractions import Fraction
-from itertools import product
+from itertools import islice, product
 
 import pytest
 
@@ -89,6 +89,22 @@ def test_random_forms_that_contain_a_product_are_never_one_component() -> None:
 
 
 PAIRS = [(j, k) for j, k in product(range(3), repeat=2) if j <= k]
+
+
+@pytest.mark.parametrize("p", [3, 7, 11, 19])
+@pytest.mark.parametrize("name", [name for name in COMPONENTS if name.startswith("two ")])
+def test_a_discriminant_that_is_zero_is_no_square(name: str, p: int) -> None:
+    """Modulo a small prime, many points lie where two components meet."""
+    forms = [[[(2 * x % P - x) % p for x in row] for row in form] for form in COMPONENTS[name][0]]
+    assert not one_component(forms, p, Work())
+
+
+def test_the_primes_are_prime() -> None:
+    some = list(islice(modular._primes(), 5))
+    assert some == [2147483647, 2147483587, 2147483579, 2147483563, 2147483543]
+    for p in some:
+        assert p % 4 == 3
+        assert all(p % q for q in range(2, 46341))
 
 
 def test_primes_in_which_the_roots_have_values() -> None:
