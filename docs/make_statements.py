@@ -155,8 +155,19 @@ def entry(statement: Statement, proof: Proof) -> str:
         shown = "; ".join(part for part in shown.split("; ") if "in words: " not in part)
     else:
         note = sentence(statement.note)
-        says = mathematics(statement.source) + (f" \u2014 {note}" if note else ".")
-    return f"{wrapped(numbered(f'- {key}{place(statement)}: {says} *{shown}.*{code}'))}\n"
+        says = "" if is_numbered_formula(statement) else mathematics(statement.source)
+        says = f"{says} \u2014 {note}" if says and note else says or note
+        says += "" if says.endswith(".") or not says else "."
+    text = f"- {key}{place(statement)}: {says} *{shown}.*{code}".replace(":  *", ": *")
+    return f"{wrapped(numbered(text))}\n"
+
+
+def is_numbered_formula(statement: Statement) -> bool:
+    """Whether it is a formula without words that has a number in the paper."""
+    return bool(statement.equation) and not any(
+        is_prose and any(c.isalpha() for c in part)
+        for is_prose, part in pieces(" ".join(statement.source.split()))
+    )
 
 
 def sentence(note: str) -> str:
@@ -300,10 +311,10 @@ def section(key: str) -> str:
 
 def severities(statements: list[Statement]) -> str:
     """A table of the errata by how much is wrong."""
-    lines = ["| severity | what it means | statements |", "|---|---|---|"]
+    lines = ["| severity | what it means |", "|---|---|"]
     for severity, meaning in MEANINGS.items():
-        keys = [s.key for s in statements if s.severity is severity]
-        lines.append(f"| {severity.value} ({len(keys)}) | {meaning} | {', '.join(keys)} |")
+        number = sum(s.severity is severity for s in statements)
+        lines.append(f"| {severity.value} ({number}) | {meaning} |")
     return "\n".join(lines) + "\n\n"
 
 
@@ -322,7 +333,7 @@ Chen & Santangelo, "Branches of triangulated origami near the unfolded state", m
 statements. {printed} hold as printed and are listed here, {corrected} hold when corrected, and
 {false} is false: see the [errata](errata.md). Theorems of exactfold come last. Each entry links the
 script that checks the statement, and names the place. Then it gives what the paper prints, word
-by word, a condition, *what shows it*, and the code that uses it.
+by word (but no formula that has a number), a condition, *what shows it*, and the code that uses it.
 
 *Proved* means: a step holds in general. *Cases* are exact tests: evidence, and no proof. *In words*
 is a proof that no machine runs. `python -m proofs KEY` prints the whole statement, its note and its
