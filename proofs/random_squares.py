@@ -245,7 +245,7 @@ def _perturbations(script: Script) -> None:
         r"\text{``after perturbing, the solutions of most systems have many complex-conjugate "
         r"pairs and real solutions are not equidistributed''}",
         note=f"tested on 12 systems with Vi = 3, of which {complex_pairs} have such pairs; larger "
-        "samples: docs/control.md. Simple real solutions survive very small perturbations",
+        "samples: docs/studies.md. Simple real solutions survive very small perturbations",
         code="perturbed",
     )
 
