@@ -183,7 +183,7 @@ def sentence(note: str) -> str:
     if note.startswith("Remark: "):
         return ""
     text = re.split(r"(?<=[\w)])\. (?=[A-Z])", " ".join(note.split()))[0]
-    for mark, most in (("; ", 16), (": ", 20)):
+    for mark, most in (("; ", 8), (": ", 10), (" \u2014 ", 10)):
         head = text.partition(mark)[0]
         if len(text.split()) > most and len(head.split()) > 2:
             text = head
@@ -231,10 +231,9 @@ def erratum(statement: Statement, proof: Proof) -> str:
     """One erratum: place, severity, the proof, what is printed, what to print instead, and why."""
     severity = statement.severity.value if statement.severity else ""
     script = f"[{proof.name}](../proofs/{proof.name}.py)"
-    code = f" {code_links(statement.code)}" if statement.code else ""
     lines = [
         f"**{statement.key}** ({where(statement)}). *{severity.capitalize()}.* "
-        f"{script}: {basis(statement, proof)}.{code}",
+        f"{script}: {basis(statement, proof)}.",
         "",
         f"- printed: {mathematics(statement.source)}",
         f"- correct: {changed(mathematics(statement.source), mathematics(statement.corrected))}"

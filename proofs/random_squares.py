@@ -271,7 +271,8 @@ def _precision(script: Script) -> None:
         r"\text{``Accurate solutions seem to require very high precision arithmetic \dots\ up to "
         r"}690\text{ digits''}",
         r"\text{double precision finds them, and a test in integers proves them}",
-        "a remark on the method. The branches of random squares are far apart for double precision "
+        "a remark on the method. "
+        "Remark: the branches of random squares are far apart for double precision "
         "where all are simple; with starts at all sign vectors none is missed (docs/theorem.md, 7)",
         "count_branches",
         severity=Severity.REMARK,
