@@ -154,8 +154,8 @@ class PanelCountKeys(CountKeys):
     theory: _Theory
     distinct: None
     with_multiplicity: None
-    real: None
-    nonreal: None
+    real: Natural | None
+    nonreal: Natural | None
     true_bounds: None
     dimension: None
     degree: None

@@ -21,7 +21,6 @@ from exactfold.pattern.described import described
 from exactfold.pattern.near_degeneracy import near_degenerate, warnings
 from exactfold.rigidity.equations.branch_system import Chart
 from exactfold.rigidity.rigid_triangles import RigidTriangle
-from exactfold.solve.certify.algebraic import AlgebraicProof
 
 if TYPE_CHECKING:  # counting branches does not load what panels need
     from exactfold.branches.connected_components.result import ConnectedComponents
@@ -36,6 +35,7 @@ if TYPE_CHECKING:  # counting branches does not load what panels need
     from exactfold.panels.result import Decomposition
     from exactfold.pattern.meant import Meant
     from exactfold.pattern.opening import ReadDocument
+    from exactfold.solve.certify.algebraic import AlgebraicProof
 
 
 @dataclass(frozen=True)

@@ -199,7 +199,7 @@ def test_undecided_table_lists_what_is_open(tmp_path, monkeypatch):
     path = tmp_path / "flat.fold"
     write_fold(FAMILIES["flat-vertex"](), path)
     monkeypatch.setattr(
-        "exactfold.branches.counting.lines.flat_vertices", lambda chart, points: iter(())
+        "exactfold.branches.counting.in_chart.flat_vertices", lambda chart, points: iter(())
     )
     result = run("count", path, "--method", "popping")
     assert result.exit_code == UNDECIDED
