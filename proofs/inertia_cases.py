@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
+import random
 import sys
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from functools import lru_cache
-from itertools import product
+from itertools import combinations, product
 from pathlib import Path
 from typing import Any
 
 if not __package__:  # run as a file
     sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
+from sympy import QQ
+from sympy.polys.rings import ring
+
 from exactfold import BranchCount, CreasePattern, random_square
 from exactfold._support.verdict import PROVED
-from exactfold.exact.linalg import Inertia, inertia_by_elimination
+from exactfold.exact.linalg import Inertia, from_fmpq, inertia_by_elimination, to_flint
 from proofs.chambers import (
     Solutions,
     corner_sign,
@@ -52,12 +56,15 @@ def prove(change: str | None = None) -> Proof:
         "Statement of exactfold on two solutions whose signs differ at v alone",
         r"\text{same boundary heights and }k\ge0:\ "
         r"h_v\text{ is larger where }v\text{ is popped up}",
-        note="convex boundary, no flat vertex: the sign of the chord in the proof of Theorem 4",
+        note="convex boundary, no flat vertex",
         code="Branch.heights",
         words="docs/theorem.md, after Theorem 4",
     )
     _chambers(script)
     _branches(script)
+    _tensor(script)
+    _midpoints(script)
+    _half_turns(script)
     _popping_raises(script)
     return script.proof()
 
@@ -145,6 +152,98 @@ def _branches(script: Script) -> None:
         "both branches, J is positive on one and negative on the other",
         found == script.alter("the signs of the open sheet", {(1, 0, 0), (0, 1, 0)}, {(0, 1, 0)})
         and {b.sign_text for b in counted(DART).branches} == {"-"},
+        of="T.5",
+    )
+
+
+def _tensor(script: Script) -> None:
+    """The case K_u(a, b) = T(e_u, a, b), J = T(h, ., .), with any symmetric trilinear form T."""
+    sign = script.alter("w'^T J(h) w with the wrong sign", 1, -1)
+    count = script.alter("K_u(w) counted twice", 1, 2)
+    for n in (1, 2, 3, 4):
+        triples = [(i, j, k) for i, j, k in product(range(n), repeat=3) if i <= j <= k]
+        names = [f"t{i}{j}{k}" for i, j, k in triples]
+        names += [f"{name}{i}" for name in "hwxz" for i in range(n)]
+        _, *generators = ring(names, QQ)
+        entry = dict(zip(triples, generators, strict=False))
+        vectors = generators[len(triples) :]
+        h, w, dw, z = (vectors[k * n : k * n + n] for k in range(4))
+
+        def form(a: Any, b: Any, c: Any, entry: Any = entry, n: int = n) -> Any:
+            return sum(
+                entry[(t := sorted((i, j, k)))[0], t[1], t[2]] * a[i] * b[j] * c[k]
+                for i, j, k in product(range(n), repeat=3)
+            )
+
+        units = [[int(i == k) for i in range(n)] for k in range(n)]
+        moved = sum(w[u] * (form(units[u], z, w) + form(units[u], h, dw)) for u in range(n))
+        rest = sum(dw[u] * form(units[u], h, w) for u in range(n))
+        script.identity(
+            f"n = {n}: sum_u w_u (K_u(z, w) + K_u(h, w')) = T(z, w, w) + w'^T J(h) w; so if "
+            "J(h) w = 0, w_v = 0 and K_u(z, w) + K_u(h, w') = 0 for u != v, T(z, w, w) = 0",
+            moved - form(z, w, w) - sign * rest,
+            of="T.5",
+        )
+        script.identity(
+            f"n = {n}: T(z, w, w) = w^T J(z) w = sum_u z_u K_u(w)",
+            form(z, w, w) - count * sum(z[u] * form(units[u], w, w) for u in range(n)),
+            of="T.5",
+        )
+
+
+def _midpoints(script: Script) -> None:
+    _, *y = ring("a b c d e f p1 p2 p3 q1 q2 q3", QQ)
+    matrix = ((y[0], y[1], y[2]), (y[1], y[3], y[4]), (y[2], y[4], y[5]))
+
+    def polar(left: Any, right: Any) -> Any:
+        return sum(left[i] * matrix[i][j] * right[j] for i, j in product(range(3), repeat=2))
+
+    one, two = y[6:9], y[9:]
+    factor = script.alter("the midpoint without its factor", 1, 2)
+    total = [a + b for a, b in zip(one, two, strict=True)]
+    chord = [b - a for a, b in zip(one, two, strict=True)]
+    script.identity(
+        "K(q) - K(p) = 2 K((p + q)/2, q - p), K any quadratic form: a chord between points of "
+        "equal K_u is in the kernel of the row of u at its midpoint",
+        polar(two, two) - polar(one, one) - factor * polar(total, chord),
+        of="T.5",
+    )
+    _, p0, q0, *x = ring("p0 q0 p1 p2 p3 q1 q2 q3", QQ)
+    p, q = x[:3], x[3:]
+    dot = sum(a * b for a, b in zip(p, q, strict=True))
+    kp, kq = p0**2 - sum(a**2 for a in p), q0**2 - sum(b**2 for b in q)
+    squares = sum((p[i] * q[j] - p[j] * q[i]) ** 2 for i, j in combinations(range(3), 2))
+    sign = script.alter("the squares subtracted", 1, -1)
+    script.identity(
+        "(p0 q0)^2 - (p.q)^2 = K(p) q0^2 + |p|^2 K(q) + sum of squares, for K = x0^2 - |x|^2: on "
+        "one nappe K(p, q) = p0 q0 - p.q > 0 and K((p + q)/2) > 0",
+        (p0 * q0) ** 2 - dot**2 - (kp * q0**2 + sum(a**2 for a in p) * kq + sign * squares),
+        of="T.5",
+    )
+
+
+def _half_turns(script: Script) -> None:
+    """J w = x e_v: J is positive on more directions than its minor without v where x w_v > 0."""
+    up = script.alter("the sign of x w_v reversed", 1, -1)
+
+    def agree(pattern: CreasePattern, seed: int) -> Iterator[bool]:
+        source = random.Random(seed)
+        h = {v: Fraction(source.randint(-9, 9)) for v in range(len(pattern.vertices))}
+        matrix = jacobian(pattern, h)
+        whole = range(pattern.Vi)
+        for v in whole:
+            units = [[Fraction(k == v)] for k in whole]
+            minor = [[matrix[i][j] for j in whole if j != v] for i in whole if i != v]
+            part = inertia_by_elimination(minor)
+            if inertia_by_elimination(matrix)[2] or part[2]:
+                continue
+            w_v = from_fmpq(to_flint(matrix).solve(to_flint(units))[v, 0])  # here x = 1
+            yield inertia_by_elimination(matrix)[0] == part[0] + (up * w_v > 0)
+
+    script.cases(
+        "J w = x e_v: the number of positive eigenvalues of J is that of its minor without v, and "
+        "one more if x w_v > 0",
+        (ok for seed, p in enumerate(hostile_patterns(20)) for ok in agree(p, seed)),
         of="T.5",
     )
 
