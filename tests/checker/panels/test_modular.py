@@ -62,6 +62,14 @@ COMPONENTS = {
     "two conics modulo the cone": ([CONE, form(4, w33=1, w00=1, w11=-2, w22=-1)], False),
     "a graph": ([CONE, form(4, w03=1, w22=1)], True),
     "a cubic and a line": ([form(4, w00=1, w12=1), form(4, w13=1, w02=1)], False),
+    "two cones on a graph": (  # the last form is w4^2 - w1^2 where the others vanish
+        [
+            form(5, w00=1, w11=-1, w22=1),
+            form(5, w03=1, w22=1),
+            form(5, w44=1, w11=-1, w03=2, w22=2),
+        ],
+        False,
+    ),
     "a form that depends on the earlier ones": ([CONE, CONE], False),
     "no direction is left": ([CONE, form(4, w00=1, w11=2, w22=5)], False),
     "too small a space for a graph": ([form(3, w00=1, w11=1, w22=1), form(3, w01=1)], False),
