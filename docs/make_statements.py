@@ -155,11 +155,33 @@ def entry(statement: Statement, proof: Proof) -> str:
         shown = "; ".join(part for part in shown.split("; ") if "in words: " not in part)
     else:
         note = sentence(statement.note)
-        says = "" if is_numbered_formula(statement) else mathematics(statement.source)
+        says = "" if is_numbered_formula(statement) else shortened(mathematics(statement.source))
         says = f"{says} \u2014 {note}" if says and note else says or note
         says += "" if says.endswith(".") or not says else "."
     text = f"- {key}{place(statement)}: {says} *{shown}.*{code}".replace(":  *", ": *")
     return f"{wrapped(numbered(text))}\n"
+
+
+def shortened(text: str) -> str:
+    """The beginning and the end of a long text; a formula is one word.
+
+    >>> shortened("one two three four five six seven eight nine ten eleven")
+    'one two three four five six seven eight nine ten eleven'
+    >>> shortened("\u201ca b c d\u201d e f g h i \u201cj k l m n o\u201d")
+    '\u201ca b c d\u201d e f \u2026 \u201cl m n o\u201d'
+    """
+    parts = re.findall(r"(?:\$`.+?`\$|\S)+", text)
+    if len(parts) < 14:
+        return text
+    head, tail = " ".join(parts[:6]), " ".join(parts[-4:])
+    before, after = is_quoted(head), is_quoted(" ".join(parts[:-4]))
+    close, again = "\u201d" * (before and not after), "\u201c" * (after and not before)
+    return f"{head}{close} \u2026 {again}{tail}"
+
+
+def is_quoted(text: str) -> bool:
+    """Whether a quotation is open at the end of a text."""
+    return text.count("\u201c") > text.count("\u201d")
 
 
 def is_numbered_formula(statement: Statement) -> bool:
@@ -331,8 +353,9 @@ STATEMENTS = """# The paper, statement by statement
 Chen & Santangelo, "Branches of triangulated origami near the unfolded state", makes {papers}
 statements. {printed} hold as printed and are listed here, {corrected} hold when corrected, and
 {false} is false: see the [errata](errata.md). Theorems of exactfold come last. Each entry links the
-script that checks the statement, and names the place. Then it gives what the paper prints, word
-by word (but no formula that has a number), a condition, *what shows it*, and the code that uses it.
+script that checks the statement, and names the place. Then it gives what the paper prints (no
+formula that has a number; of long passages the beginning and the end), a condition, *what shows
+it*, and the code that uses it.
 
 *Proved* means: a step holds in general. *Cases* are exact tests: evidence, and no proof. *In words*
 is a proof that no machine runs. `python -m proofs KEY` prints the whole statement, its note and its
