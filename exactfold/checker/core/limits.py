@@ -67,6 +67,7 @@ MOST_MONOMIALS = 500  # monomials in the proof that a system has no zero
 
 # --- panels --------------------------------------------------------------------------------------
 MOST_SETS = 1 << 20  # steps of the search for components
+ISOLATED_FORMS = 12  # vertices of a part whose ways are all isolated
 CONE_FORMS = 64  # vertices whose curvature forms are left on one space
 MOST_CONDITIONS = 1 << 11  # closing conditions of a motion with given letters
 MOST_SHIFT = 1 << 10  # bits by which the numbers of such a motion are shifted

@@ -21,7 +21,7 @@ pairs i < j, sorted. The claims are
 
 from __future__ import annotations
 
-from typing import TypedDict
+from typing import Any, TypedDict
 
 
 class LeafClaim(TypedDict):
@@ -74,7 +74,7 @@ class SupportClaim(TypedDict):
     modes: list[ModeClaim] | None
 
 
-class PartClaim(TypedDict):
+class ListedPart(TypedDict):
     """A part of the sheet in which some vertex has more than four folds.
 
     `complete` says whether the leaves are all true motions near the flat state. If it is false,
@@ -84,6 +84,26 @@ class PartClaim(TypedDict):
     vertices: list[int]
     complete: bool
     leaves: list[LeafClaim]
+
+
+class IsolatedClaim(TypedDict):
+    """All complex motions of a part, each of which is isolated.
+
+    `chart` has a fold i-j and a weight in each entry. The sum of all weights times densities is 1;
+    the densities of all these folds but the last are the unknowns. `real` has a box for each real
+    motion, as in a listing. `nonreal` has a box for one of each pair of conjugate motions; the
+    imaginary parts of its unknowns follow the real parts.
+    """
+
+    chart: list[list[int]]
+    real: list[dict[str, Any]]
+    nonreal: list[dict[str, Any]]
+
+
+class PartClaim(ListedPart, total=False):
+    """The same claims, with all complex motions if these are isolated and were found by number."""
+
+    isolated: IsolatedClaim
 
 
 class TreeClaim(TypedDict):
