@@ -162,7 +162,7 @@ def entry(statement: Statement, proof: Proof) -> str:
     return f"{wrapped(numbered(text))}\n"
 
 
-def shortened(text: str) -> str:
+def shortened(text: str, first: int = 6, last: int = 4) -> str:
     """The beginning and the end of a long text; a formula is one word.
 
     >>> shortened("one two three four five six seven eight nine ten eleven")
@@ -171,10 +171,10 @@ def shortened(text: str) -> str:
     '\u201ca b c d\u201d e f \u2026 \u201cl m n o\u201d'
     """
     parts = re.findall(r"(?:\$`.+?`\$|\S)+", text)
-    if len(parts) < 14:
+    if len(parts) < first + last + 4:
         return text
-    head, tail = " ".join(parts[:6]), " ".join(parts[-4:])
-    before, after = is_quoted(head), is_quoted(" ".join(parts[:-4]))
+    head, tail = " ".join(parts[:first]), " ".join(parts[-last:])
+    before, after = is_quoted(head), is_quoted(" ".join(parts[:-last]))
     close, again = "\u201d" * (before and not after), "\u201c" * (after and not before)
     return f"{head}{close} \u2026 {again}{tail}"
 
@@ -257,7 +257,7 @@ def erratum(statement: Statement, proof: Proof) -> str:
         f"**{statement.key}** ({where(statement)}). *{severity.capitalize()}.* "
         f"{script}: {basis(statement, proof)}.",
         "",
-        f"- printed: {mathematics(statement.source)}",
+        f"- printed: {shortened(mathematics(statement.source), 12, 8)}",
         f"- correct: {changed(mathematics(statement.source), mathematics(statement.corrected))}"
         if statement.corrected
         else "- false, and not to be mended by a condition",
