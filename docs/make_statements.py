@@ -318,9 +318,7 @@ def pages() -> dict[str, str]:
     for title, group in groupby(stated, lambda pair: section(pair[0].key)):
         pairs = list(group)
         held = [entry(s, p) for s, p in pairs if s.ruling is Ruling.AS_PRINTED]
-        keys = [s.key for s, _ in pairs if s.ruling is not Ruling.AS_PRINTED]
         body += f"\n## {title}\n\n{''.join(held)}"
-        body += wrapped(f"- [Errata](errata.md): {', '.join(keys)}.") + "\n" if keys else ""
     errata += "".join(erratum(statement, proof) for statement, proof in wrong)
     return {"statements.md": body.rstrip() + "\n", "errata.md": errata.rstrip() + "\n"}
 
@@ -352,7 +350,7 @@ STATEMENTS = """# The paper, statement by statement
 
 Chen & Santangelo, "Branches of triangulated origami near the unfolded state", makes {papers}
 statements. {printed} hold as printed and are listed here, {corrected} hold when corrected, and
-{false} is false: see the [errata](errata.md). Theorems of exactfold come last. Each entry links the
+{false} is false: keys that are missing are [errata](errata.md). Theorems of exactfold come last. Each entry links the
 script that checks the statement, and names the place. Then it gives what the paper prints (no
 formula that has a number; of long passages the beginning and the end), a condition, *what shows
 it*, and the code that uses it.
