@@ -350,10 +350,10 @@ STATEMENTS = """# The paper, statement by statement
 
 Chen & Santangelo, "Branches of triangulated origami near the unfolded state", makes {papers}
 statements. {printed} hold as printed and are listed here, {corrected} hold when corrected, and
-{false} is false: keys that are missing are [errata](errata.md). Theorems of exactfold come last. Each entry links the
-script that checks the statement, and names the place. Then it gives what the paper prints (no
-formula that has a number; of long passages the beginning and the end), a condition, *what shows
-it*, and the code that uses it.
+{false} is false: keys that are missing are [errata](errata.md). Theorems of exactfold come last.
+Each entry links the script that checks the statement, and names the place. Then it gives what the
+paper prints (no formula that has a number; of long passages the beginning and the end), a
+condition, *what shows it*, and the code that uses it.
 
 *Proved* means: a step holds in general. *Cases* are exact tests: evidence, and no proof. *In words*
 is a proof that no machine runs. `python -m proofs KEY` prints the whole statement, its note and its

@@ -177,9 +177,8 @@ def _rim(script: Script) -> None:
         over=[wheel(4), wheel(5)],
         at=drawn(4, 5),
         note="the edges leave on opposite sides of the spoke, so equal magnitudes balance; "
-        "also the "
-        "subscript of the second eta has slipped to the line. "
-        "Remark: for example, cross of unit spokes",
+        "also the subscript of the second eta has slipped to the line. "
+        "Remark: for example, a cross of unit spokes",
         severity=Severity.TYPO,
     )
     total = script.alter("one cotangent lost", 1, 0)
