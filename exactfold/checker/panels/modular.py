@@ -96,7 +96,7 @@ def only_zero(forms: Sequence[Matrix], p: int, work: Work) -> bool:
     They do if the products of the forms with monomials span all forms of some degree.
     """
     size = len(forms[0])
-    if not size <= len(forms) or size > MOST_VARIABLES:
+    if size > MOST_VARIABLES:
         return False
     for degree in range(2, size + 2):
         columns = {m: k for k, m in enumerate(combinations_with_replacement(range(size), degree))}
@@ -201,8 +201,6 @@ def _apart(
     first = next(k for k, x in enumerate(u) if x)
     unit = [int(k == first) for k in range(size)]
     space = _kernel_of([b, unit], p, work)
-    if len(space) < number:
-        return False
     work.count_short(number**2 * size**2)
     basis = [_shifted([0] * size, space, generator, p) for _ in range(number)]
     inner = [
