@@ -133,6 +133,7 @@ class Decomposition(Page, Ways[Mode], Certified):
             "format": "exactfold count result",
             "version": 2,
             "pattern": described_panels(self.pattern, name),
+            "ways": self.ways,
             "reason": self.reason,
             "method": self.theory,
             "why": "",
@@ -222,10 +223,13 @@ class Decomposition(Page, Ways[Mode], Certified):
 
     @property
     def ways(self) -> int | None:
-        """The number of components that truly fold; 0 for a rigid sheet, None if not known."""
-        if self.true is None:
+        """The number of components that truly fold, or if `true` is None, of those to second order;
+        0 for a rigid sheet, None if neither is known.
+        """
+        known = self.second_order if self.true is None else self.true
+        if known is None:
             return None
-        return sum(number for dimension, number in self.true.items() if dimension)
+        return sum(number for dimension, number in known.items() if dimension)
 
     @property
     def warning(self) -> str | None:

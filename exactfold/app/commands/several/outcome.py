@@ -93,7 +93,8 @@ def line_for(job: Job, result: BranchCount | Decomposition | Exception) -> Line:
         known = _known(result)
         message = "; ".join([*known, result.reason])
         if result.status is PROVED:
-            message = _to_second_order(result)
+            second = not isinstance(result, BranchCount) and result.true is None
+            message = "to second order" if second else ""
         if (warning := result.warning) is not None and warning not in message:
             message = f"{message}{'; ' if message else ''}warning: {warning}"
         warned = warning is not None
@@ -151,24 +152,14 @@ def _known(result: BranchCount | Decomposition) -> list[str]:
     return known
 
 
-def _to_second_order(result: BranchCount | Decomposition) -> str:
-    """The number of ways that are proved to second order only, in words; else empty."""
-    if isinstance(result, BranchCount) or result.true is not None or result.second_order is None:
-        return ""
-    return f"{sum(result.second_order.values())} to second order"
-
-
 def _ways(result: BranchCount | Decomposition) -> str:
     """The number of branches, or of families that provably fold; a question mark if it is not
     known.
     """
-    if not isinstance(result, BranchCount):
-        number = result.ways
-    else:
-        number = result.distinct if result.families is None else result.families.ways
-        if number is None and result.status is PROVED:
-            return "infinite"
-    return "?" if number is None else str(number)
+    if result.ways is not None:
+        return str(result.ways)
+    proved = isinstance(result, BranchCount) and result.status is PROVED
+    return "infinite" if proved else "?"
 
 
 def _digest(job: Job) -> str | None:
