@@ -5,9 +5,14 @@ import os
 
 import pytest
 import typer.testing
+from hypothesis import settings
 
 # Tests start many processes. If they may not keep what they compile, each compiles exactfold again.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+
+# Each run draws other examples: some in every run find more than many in a few runs.
+settings.register_profile("some", max_examples=30)
+settings.load_profile("some")
 
 # Typer prepares all commands again for each command line: once is enough for those of one process.
 typer.testing._get_command = functools.cache(typer.testing._get_command)

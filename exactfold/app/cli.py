@@ -55,7 +55,7 @@ def count(**options: Any) -> int:
     of their exit codes.
     """
     if len(options["patterns"]) > 1 or options["jsonl"] or options["sheet"] == "all":
-        from exactfold.app.commands.batch import Batch
+        from exactfold.app.commands.several.batch import Batch
 
         return Batch(**options).run()
     from exactfold.app.commands.count import Asked

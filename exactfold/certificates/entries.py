@@ -88,11 +88,11 @@ def chart_evidence(chart: Chart, labels: Sequence[int]) -> Document | None:
 
 
 def box_entry(box: IsolatingBox) -> Document:
-    """A real isolating box."""
+    """An isolating box; the imaginary parts of its centre, if there are any, follow the real."""
     return {
         "bits": box.bits,
         "radius": format_integer(box.radius),
-        "center": [format_integer(m) for m in box.real],
+        "center": [format_integer(m) for m in (*box.real, *box.imag)],
     }
 
 

@@ -9,8 +9,8 @@ from dataclasses import replace
 
 from exactfold._support.clock import Clock
 from exactfold._support.verdict import PROVED, REFUTED
-from exactfold.app.commands.ways import given_letters
 from exactfold.app.options.branches import MatchOptions
+from exactfold.app.options.choosing import given_letters
 from exactfold.app.shell.patterns import read_any
 from exactfold.app.shell.shell import EXIT, Bar, name_of, say
 from exactfold.app.verbs.chosen import DRAWN

@@ -268,6 +268,7 @@ class BranchCount(Page, Ways[Branch], Certified):
             "format": "exactfold count result",
             "version": 2,
             "pattern": described(self.pattern, name, self.snapped),
+            "ways": self.ways,
             "reason": self.reason,
             "why": self.why,
             "true_branches": str(self.true_branches),
@@ -302,6 +303,13 @@ class BranchCount(Page, Ways[Branch], Certified):
             "distinct": self.distinct,
             "components": self._families()["components"],
         }
+
+    @property
+    def ways(self) -> int | None:
+        """The number of branches, or of families of motions with more than four corners; 0 for a
+        rigid sheet, None if the number is infinite or not known.
+        """
+        return self.distinct if self.families is None else self.families.ways
 
     def _families(self) -> MotionKeys:
         """The keys of the JSON output that belong to irreducible components."""

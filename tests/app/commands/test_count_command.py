@@ -34,7 +34,16 @@ PANEL_KEYS = {
     *("near_misses", "meant", "as_written", "proposal", "read", "still_folds", "pieces", "letters"),
     *("exceptional_vertices", "freedom", "drawn"),
 }
-EXTRA_KEYS = {"reason", "why", "open_questions", "settings", "dimension", "degree", "true_bounds"}
+EXTRA_KEYS = {
+    "ways",
+    "reason",
+    "why",
+    "open_questions",
+    "settings",
+    "dimension",
+    "degree",
+    "true_bounds",
+}
 BRANCH_KEYS = {"vertex_signs", "assignment", "multiplicity", "representative", "heights"}
 
 
