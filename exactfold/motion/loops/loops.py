@@ -15,7 +15,7 @@ from exactfold.motion.loops.proofs import ArcProof, Landing, LoopProof, named
 from exactfold.motion.loops.rays import Ray
 from exactfold.motion.tubes.branch_point_tube import BranchPointTube
 from exactfold.motion.tubes.chain import Chain, Step
-from exactfold.motion.tubes.links import Link
+from exactfold.motion.tubes.links import ROUGH, Link
 from exactfold.motion.tubes.tracks import ray
 from exactfold.motion.tubes.tube import Tube
 from exactfold.motion.tubes.tube_start import (
@@ -72,7 +72,7 @@ class LoopFinder:
         raise NotProvedAtTheFlatStateError(f"branch {branch.sign_text} has no ray {source}")
 
     def _proof(self, start: StartTube, progress: Progress | None = None) -> LoopProof:
-        chain = Chain.from_flat(start, self.problem.labels)
+        chain = Chain.from_flat(start, self.problem.labels, ROUGH)
         steps, landing, reason = self._followed(chain, progress=progress)
         return LoopProof(self.problem, start, tuple(steps), landing, reason)
 

@@ -34,7 +34,7 @@ from exactfold.panels.spaces.subspaces import (
     made_leaf,
     maximal,
 )
-from exactfold.panels.spaces.together import narrowing_sum, vanish_only_at_zero
+from exactfold.panels.spaces.together import independent, narrowing_sum, vanish_only_at_zero
 from exactfold.panels.vertex.stars import Star
 from exactfold.pattern.panel_pattern import Edge
 
@@ -141,6 +141,7 @@ class Splitting(LimitedSearch):
             v, one, other = self._chosen(space, settled, products)
             now = settled | {v}
         else:
+            left = independent(space.forms, left)
             total = narrowing_sum(space.forms, left)
             if total is None:
                 if vanish_only_at_zero(space.forms, left, len(space.parameters)):

@@ -118,6 +118,6 @@ def test_one_family_is_all_first_order_motions_with_all_forms() -> None:
 def test_too_much_work_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     found = spaces(crossed_stars())
     [first, _] = found.leaves()
-    monkeypatch.setattr("exactfold.checker.panels.forms.MOST_STEPS", found.work.steps)
+    monkeypatch.setattr("exactfold.checker.panels.reduction.MOST_STEPS", found.work.steps)
     with pytest.raises(LimitError, match="the steps to the spaces of motions, "):
         cone_motion(found, first.basis, first.cones)
