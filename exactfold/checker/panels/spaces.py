@@ -17,7 +17,7 @@ from ..core.reading import LimitError, at_most
 from ..core.towers import Number
 from ..sheets.panels import Edge
 from .forms import Forms, Motion, Space, Squares, folds_of
-from .reduction import MOST_STEPS, inside, reduced, zero
+from .reduction import MOST_STEPS, Rows, inside, reduced, rest_of, zero
 from .together import narrowing_sum, vanish_only_at_zero
 
 MOST_LEAVES = limits.SPACE_LEAVES
@@ -146,7 +146,7 @@ class Spaces(Forms):
         if not products and not total:
             if vanish_only_at_zero(self.work, forms, len(space)):
                 return [] if _kept(space) else [Leaf([], ())]
-            return [Leaf([_on_folds(motion) for motion in space], left)]
+            return [Leaf([_on_folds(motion) for motion in space], self._independent(forms))]
         v, one, other = self.factors(products or {left[0]: total}, space, settled)
         if products:
             settled |= {v}
@@ -159,6 +159,25 @@ class Spaces(Forms):
         leaves += self._within(kept, [other], settled)
         at_most(len(leaves), MOST_LEAVES, "the spaces of motions", "SPACE_LEAVES")
         return leaves
+
+    def _independent(self, forms: dict[int, Squares]) -> tuple[int, ...]:
+        """The vertices without those whose form is a sum of multiples of forms of earlier ones."""
+        rows: Rows = []
+        kept: list[int] = []
+        for v, form in forms.items():
+            terms: dict[Edge, Number] = {}
+            for d, values in form:
+                some = [(k, x) for k, x in enumerate(values) if not zero(x)]
+                self.work.count(len(some) ** 2, d)
+                for j, x in some:
+                    for k, y in some:
+                        term = d * x * y
+                        terms[j, k] = terms[j, k] + term if (j, k) in terms else term
+            rest = rest_of({key: x for key, x in terms.items() if not zero(x)}, rows)
+            if rest:
+                rows.append((min(rest), rest))
+                kept.append(v)
+        return tuple(kept)
 
     def narrowed(self, part: Space) -> tuple[Iterator[Space] | None, tuple[int, ...]]:
         """Smaller spaces that hold all motions of a part; or None, and the vertices of its forms.

@@ -14,9 +14,9 @@ from exactfold.checker.core.reading import LimitError
 from exactfold.checker.panels.modular import MOST_VARIABLES, only_zero, reduced_forms
 from exactfold.checker.panels.reduction import Work
 from exactfold.exact.surds import common_field, sign
-from exactfold.panels.spaces.kernel import Entry
+from exactfold.panels.spaces.kernel import Entry, increase
 from exactfold.panels.spaces.quadratics import Squares
-from exactfold.panels.spaces.sparse import Form, diagonalised, plain
+from exactfold.panels.spaces.sparse import Form, Row, diagonalised, plain, row_space
 
 MOST_SUMMED: Final = 4
 _NOISE: Final = 1e-9
@@ -62,6 +62,34 @@ def vanish_only_at_zero(forms: Mapping[int, Form], vertices: Sequence[int], size
         return len(names) == size and reduced is not None and only_zero(*reduced, work)
     except LimitError:
         return False
+
+
+def independent(forms: Mapping[int, Form], vertices: Sequence[int]) -> list[int]:
+    """The vertices without those whose form is a sum of multiples of forms of earlier vertices.
+
+    Where the forms of the others vanish, theirs vanish, too.
+
+    >>> one = fmpq(1)
+    >>> independent({1: [(one, {0: one})], 2: [(-one, {0: one})], 3: [(one, {1: one})]}, [1, 2, 3])
+    [1, 3]
+    """
+    names = sorted({k for v in vertices for _, row in forms[v] for k in row})
+    place = {k: n for n, k in enumerate(names)}
+    rows: list[Row] = []
+    for v in vertices:
+        terms: Row = {}
+        for d, row in forms[v]:
+            for (j, x), (k, y) in product(row.items(), repeat=2):
+                if place[j] <= place[k]:
+                    increase(terms, place[j] * len(names) + place[k], d * x * y)
+        rows.append(terms)
+    _, coordinates = row_space(rows)
+    first = {
+        min(row): v
+        for v, row in reversed(list(zip(vertices, coordinates, strict=True)))
+        if len(row) == 1
+    }
+    return sorted(first.values())
 
 
 def modulo_a_prime(
