@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
-from operator import mul
+from operator import itemgetter, mul
 from typing import NamedTuple
 
 from ..core.reading import require
@@ -146,8 +146,13 @@ def dot(a: Iterable[int], b: Iterable[int]) -> int:
 
 def product(p: list[Vector], columns: Columns) -> list[Vector]:
     """The product of P and a sparse matrix."""
-    places = [([e for e, _ in column], [x for _, x in column]) for column in columns]
-    return [[sum(map(mul, [row[e] for e in at], values)) for at, values in places] for row in p]
+    places = []
+    for column in columns:
+        # With further terms that are 0, `itemgetter` gives a tuple even for a single entry.
+        entries = column if len(column) > 1 else [(0, 0), (0, 0), *column]
+        at, values = zip(*entries, strict=True)
+        places.append((itemgetter(*at), values))
+    return [[sum(map(mul, at(row), values)) for at, values in places] for row in p]
 
 
 def less_one(matrix: list[Vector], one: int) -> list[Vector]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
-from operator import add, mul
+from operator import add
 from typing import NamedTuple
 
 from ..core.reading import CertificateError, require
@@ -226,8 +226,8 @@ class Tube(Piece):
 
 def near(slopes: Sequence[Rounded], bits: int) -> list[list[float]]:
     """|P M_1| + |P M_2| / 2 + |P M_3| / 4 in floats; only the choice of weights depends on it."""
-    scales = [2.0 ** (drop - INVERSE_BITS - bits - k) for k, (_, drop) in enumerate(slopes[1:4])]
+    x, y, z = (2.0 ** (slopes[k].drop - INVERSE_BITS - bits - k) for k in (1, 2, 3))
     return [
-        [sum(map(mul, scales, map(abs, entries))) for entries in zip(*rows, strict=True)]
+        [x * abs(a) + y * abs(b) + z * abs(c) for a, b, c in zip(*rows, strict=True)]
         for rows in zip(*(slope.rows for slope in slopes[1:4]), strict=True)
     ]

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import json
+import random
+from fractions import Fraction
+from typing import cast
 
 import pytest
 from forge import beyond, refused, verified
@@ -15,7 +18,7 @@ from exactfold.checker.core.reading import LimitError
 from exactfold.checker.panels import cones as panel_cones
 from exactfold.checker.panels.cones import Place, cone_motion
 from exactfold.checker.panels.leaves import complete
-from exactfold.checker.panels.reduction import BITS, enclosed, reduced, rest_of
+from exactfold.checker.panels.reduction import BITS, Work, enclosed, reduced, rest_of
 from exactfold.checker.panels.spaces import Leaf, Spaces
 from exactfold.panels.certificate import certificate_of_panels
 from exactfold.panels.decomposition import decompose
@@ -75,6 +78,45 @@ def test_both_signs_of_the_discriminant_are_needed(monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr(panel_cones, "one_component", lambda *_: False)
     refused(made, "the zeros of the forms of vertices 0, 1 may be several components")
     verified(certified("star"))  # one form has rank 3, and needs no sign
+
+
+class Difference:
+    """The form x^2 - y^2 of two densities in place of that of a vertex."""
+
+    work = Work()
+
+    def gradient(self, _: int, motion: Place, __: int) -> Place:
+        return {fold: x if fold == (0, 1) else -x for fold, x in motion.items()}
+
+
+def test_a_discriminant_that_vanishes_is_not_negative() -> None:
+    """The discriminant along x is y^2, which is 0 at some of the places and below 0 at none."""
+    x, y = ({(0, k): Interval.of(Fraction(1), BITS)} for k in (1, 2))
+    zeros, below = panel_cones._sides(cast(Spaces, Difference()), 0, [{}], [y], x)
+    assert zeros
+    assert not below
+
+
+def test_zeros_are_real_wherever_the_search_begins(monkeypatch: pytest.MonkeyPatch) -> None:
+    found, rng = spaces(ring_of_fives()), random.Random(0)
+    size, order = len(found.first_order), [0, 1, 2]
+    starts = [[rng.uniform(-1, 1) for _ in range(size)] for _ in range(12)]
+    monkeypatch.setattr(panel_cones, "near_zeros", lambda *_: starts)
+    rooms = [found.first_order]
+    for v in order:
+        rows = [[found.form(v, b, m) for m in rooms[-1]] for b in found.first_order]
+        rooms.append(found.vanishing(rooms[-1], rows))
+    placed = [
+        (v, room, found.squares(v, found.first_order))
+        for v, room in zip(order, rooms, strict=False)
+    ]
+    places = list(panel_cones._regular_zeros(found, found.first_order, placed))
+    assert 0 < len(places) < len(starts)
+    for place in places:
+        for v in order:
+            value = total(found.gradient(v, place, BITS), place)
+            assert value.low <= 0 <= value.high
+            assert value.high - value.low < 1 << 60  # of 2^256
 
 
 def test_a_form_of_rank_two_is_no_cone() -> None:
