@@ -52,22 +52,18 @@ USUAL: Final = (
 HEAD: Final = """# Gallery
 
 The patterns that come with exactfold, and one sheet of each family that it can build: all ways to
-fold it, up to twelve, drawn on the crease pattern, and one of them folded in space. Sheets that
-fold in families have no such list. Of panels round vertices with more than four folds, only the
-ways are drawn on which the tangents of half the fold angles stay in proportion.
+fold it, up to twelve, and one of them folded in space. Sheets that fold in families have no such
+list. Of panels round vertices with more than four folds, only the ways are drawn on which the
+tangents of half the fold angles stay in proportion.
 """
 READING: Final = f"""\
 Every number is proved. Where no more is said of a triangulated sheet, all branches are real, and
 each continues to a true motion. In numbers with multiplicity flat vertices count double. The
 dimension of a family is the number of folds that can be folded independently.
 
-Mountains are red, valleys blue and dashed, folds that stay flat grey; folds that go either way in a
-family have dashes and dots. Triangles mark vertices that pop up or down. The width of a line grows
-with the fold angle. Ways with the same letters are framed together: only the vertex signs tell them
-apart. A folded sheet is blue above and yellow below.
-
-These commands make the pictures of a pattern NAME, folded along way WAY. Without a list of ways the
-pattern alone is drawn, by `exactfold draw NAME -o NAME.svg`.
+[Pictures](viewer.md#pictures) explains lines and marks. These commands make the pictures of a
+pattern NAME, folded along way WAY. Without a list of ways the pattern alone is drawn, by
+`exactfold draw NAME -o NAME.svg`.
 
 ```sh
 exactfold count NAME
@@ -76,8 +72,7 @@ exactfold draw NAME --way WAY --folded {AMOUNT} -o NAME-folded.svg
 ```
 """
 IN_PYTHON: Final = """\
-The sheets from here on are no files. Each is built by the expression below its name, and a notebook
-shows what these lines return:
+The sheets from here on are no files. Each is built by the expression below its name:
 
 ```python
 import exactfold
@@ -102,8 +97,7 @@ bird bases are traditional forms. The Miura fold is Koryo Miura's; the Yoshimura
 after Yoshimaru Yoshimura, who described how thin tubes buckle. The files below "Drawn by others"
 were drawn by Amanda Ghassaei for
 [Origami Simulator](https://github.com/amandaghassaei/OrigamiSimulator), copyright 2018, with the
-MIT licence, which is installed beside them. All other files were drawn for exactfold and come with
-its licence.
+MIT licence, which is installed beside them. All other files come with the licence of exactfold.
 """
 DEGENERATES: Final = tuple(
     name for name in DEGENERATE if name not in ("flat-vertex", "hypar-straight")
@@ -192,7 +186,7 @@ class Card:
     def row(self) -> str:
         """A line of the table of degenerate sheets."""
         number, more = self.answer
-        small = image(f"{self.name}-small", f"{self.name}, folded along way {self.way}", SMALL)
+        small = image(f"{self.name}-small", f"{self.name}, folded", SMALL)
         count = f"{number}{more}".replace(" to start folding", "")
         return f"| {small} | {self.name}<br>{count} | {self.what} |\n"
 
@@ -201,11 +195,10 @@ class Card:
         """A section of its own."""
         number, more = self.answer
         wide = width(self.ways) if number_listed(self.found) else ALONE
-        pictures = [image(self.name, f"The ways to fold {self.name}", wide)]
+        pictures = [image(self.name, f"ways to fold {self.name}", wide)]
         told = f"**{number[:1].upper()}{number[1:]}**{more}."
         if self.still is not None:
-            about = f"{self.name}, folded along way {self.way}"
-            pictures.append(image(f"{self.name}-folded", about, STILL))
+            pictures.append(image(f"{self.name}-folded", f"{self.name}, folded", STILL))
             told += f" Folded: way {self.way}."
         what = f"`{BUILT[self.name]}`: {self.what}" if self.name in BUILT else self.what
         parts = [f"### {self.name}", fill(what, 100), fill(told, 100), "\n".join(pictures)]
@@ -216,7 +209,7 @@ class Card:
         """The place of the pattern in the table at the top."""
         number, _ = self.answer
         short = re.sub(r"( of ways)? to (start )?fold(ing)?|,.*", "", number)
-        shown = image(f"{self.name}-small", f"{self.name}, {short}", SMALL)
+        shown = image(f"{self.name}-small", self.name, SMALL)
         return f"[{shown}](#{self.name})<br>[{self.name}](#{self.name})<br>{short}"
 
 

@@ -155,8 +155,41 @@ def entry(statement: Statement, proof: Proof) -> str:
         shown = "; ".join(part for part in shown.split("; ") if "in words: " not in part)
     else:
         note = sentence(statement.note)
-        says = mathematics(statement.source) + (f" \u2014 {note}" if note else ".")
-    return f"{wrapped(numbered(f'- {key}{place(statement)}: {says} *{shown}.*{code}'))}\n"
+        says = "" if is_numbered_formula(statement) else shortened(mathematics(statement.source))
+        says = f"{says} \u2014 {note}" if says and note else says or note
+        says += "" if says.endswith(".") or not says else "."
+    text = f"- {key}{place(statement)}: {says} *{shown}.*{code}".replace(":  *", ": *")
+    return f"{wrapped(numbered(text))}\n"
+
+
+def shortened(text: str, first: int = 6, last: int = 4) -> str:
+    """The beginning and the end of a long text; a formula is one word.
+
+    >>> shortened("one two three four five six seven eight nine ten eleven")
+    'one two three four five six seven eight nine ten eleven'
+    >>> shortened("\u201ca b c d\u201d e f g h i \u201cj k l m n o\u201d")
+    '\u201ca b c d\u201d e f \u2026 \u201cl m n o\u201d'
+    """
+    parts = re.findall(r"(?:\$`.+?`\$|\S)+", text)
+    if len(parts) < first + last + 4:
+        return text
+    head, tail = " ".join(parts[:first]), " ".join(parts[-last:])
+    before, after = is_quoted(head), is_quoted(" ".join(parts[:-last]))
+    close, again = "\u201d" * (before and not after), "\u201c" * (after and not before)
+    return f"{head}{close} \u2026 {again}{tail}"
+
+
+def is_quoted(text: str) -> bool:
+    """Whether a quotation is open at the end of a text."""
+    return text.count("\u201c") > text.count("\u201d")
+
+
+def is_numbered_formula(statement: Statement) -> bool:
+    """Whether it is a formula without words that has a number in the paper."""
+    return bool(statement.equation) and not any(
+        is_prose and any(c.isalpha() for c in part)
+        for is_prose, part in pieces(" ".join(statement.source.split()))
+    )
 
 
 def sentence(note: str) -> str:
@@ -172,7 +205,7 @@ def sentence(note: str) -> str:
     if note.startswith("Remark: "):
         return ""
     text = re.split(r"(?<=[\w)])\. (?=[A-Z])", " ".join(note.split()))[0]
-    for mark, most in (("; ", 16), (": ", 20)):
+    for mark, most in (("; ", 8), (": ", 10), (" \u2014 ", 10)):
         head = text.partition(mark)[0]
         if len(text.split()) > most and len(head.split()) > 2:
             text = head
@@ -192,7 +225,7 @@ def place(statement: Statement) -> str:
 def basis(statement: Statement, proof: Proof) -> str:
     """What it rests on, without what is true of all that does not hold as printed."""
     text = re.sub(r"proved for all \(\d+ steps?\)", "proved", proof.basis(statement))
-    text = re.sub(r"tested on (\d+ cases?)", r"\1", text).replace("shown by an example", "example")
+    text = re.sub(r"tested on \d+ cases?", "cases", text).replace("shown by an example", "example")
     return re.sub(r"(^|; )the printed form refuted by an example$", "", text) or "refuted"
 
 
@@ -220,12 +253,11 @@ def erratum(statement: Statement, proof: Proof) -> str:
     """One erratum: place, severity, the proof, what is printed, what to print instead, and why."""
     severity = statement.severity.value if statement.severity else ""
     script = f"[{proof.name}](../proofs/{proof.name}.py)"
-    code = f" {code_links(statement.code)}" if statement.code else ""
     lines = [
         f"**{statement.key}** ({where(statement)}). *{severity.capitalize()}.* "
-        f"{script}: {basis(statement, proof)}.{code}",
+        f"{script}: {basis(statement, proof)}.",
         "",
-        f"- printed: {mathematics(statement.source)}",
+        f"- printed: {shortened(mathematics(statement.source), 12, 8)}",
         f"- correct: {changed(mathematics(statement.source), mathematics(statement.corrected))}"
         if statement.corrected
         else "- false, and not to be mended by a condition",
@@ -286,9 +318,7 @@ def pages() -> dict[str, str]:
     for title, group in groupby(stated, lambda pair: section(pair[0].key)):
         pairs = list(group)
         held = [entry(s, p) for s, p in pairs if s.ruling is Ruling.AS_PRINTED]
-        keys = [s.key for s, _ in pairs if s.ruling is not Ruling.AS_PRINTED]
         body += f"\n## {title}\n\n{''.join(held)}"
-        body += wrapped(f"- [Errata](errata.md): {', '.join(keys)}.") + "\n" if keys else ""
     errata += "".join(erratum(statement, proof) for statement, proof in wrong)
     return {"statements.md": body.rstrip() + "\n", "errata.md": errata.rstrip() + "\n"}
 
@@ -300,10 +330,10 @@ def section(key: str) -> str:
 
 def severities(statements: list[Statement]) -> str:
     """A table of the errata by how much is wrong."""
-    lines = ["| severity | what it means | statements |", "|---|---|---|"]
+    lines = ["| severity | what it means |", "|---|---|"]
     for severity, meaning in MEANINGS.items():
-        keys = [s.key for s in statements if s.severity is severity]
-        lines.append(f"| {severity.value} ({len(keys)}) | {meaning} | {', '.join(keys)} |")
+        number = sum(s.severity is severity for s in statements)
+        lines.append(f"| {severity.value} ({number}) | {meaning} |")
     return "\n".join(lines) + "\n\n"
 
 
@@ -320,9 +350,10 @@ STATEMENTS = """# The paper, statement by statement
 
 Chen & Santangelo, "Branches of triangulated origami near the unfolded state", makes {papers}
 statements. {printed} hold as printed and are listed here, {corrected} hold when corrected, and
-{false} is false: see the [errata](errata.md). Theorems of exactfold come last. Each entry links the
-script that checks the statement, and names the place. Then it gives what the paper prints, word
-by word, a condition, *what shows it*, and the code that uses it.
+{false} is false: keys that are missing are [errata](errata.md). Theorems of exactfold come last.
+Each entry links the script that checks the statement, and names the place. Then it gives what the
+paper prints (no formula that has a number; of long passages the beginning and the end), a
+condition, *what shows it*, and the code that uses it.
 
 *Proved* means: a step holds in general. *Cases* are exact tests: evidence, and no proof. *In words*
 is a proof that no machine runs. `python -m proofs KEY` prints the whole statement, its note and its

@@ -157,7 +157,8 @@ def _rigid_triangles(script: Script) -> None:
         r"\text{to planar projections of triangulated spheres; they are Schlegel diagrams iff they "
         r"have a convex lifting}",
         note="no convex lifting: corners (0,0), (4,0), (0,4), inner (1,1), (2,1), (1,2), diagonals "
-        "04, 15, 23. Up to combinatorial type the printed words hold (Steinitz), and nothing else "
+        "04, 15, 23. "
+        "Remark: up to combinatorial type the printed words hold (Steinitz), and nothing else "
         "is used",
         severity=Severity.CLAIM,
         cited="Steinitz (combinatorial type)",

@@ -111,7 +111,7 @@ def _rigid_folds(script: Script) -> None:
         r"D=V_e-3-E",
         at=_rigidified(),
         note="E = 0 must give Eq. (Dcount); a vertex of degree 5 with one rigid fold has D = "
-        "1. Like "
+        "1. Remark: like "
         "Eq. (Dcount) a count of equations: D can be larger (V.2), and smaller, if a rigid fold "
         "lies between angles of sum > pi: spokes (1,0), (0,1), (-2,-1), (-1,-2), (1,-1), fold "
         "(0,1), D = 0",
@@ -280,7 +280,7 @@ def _orthogonality(script: Script) -> None:
         r"\text{``setting the equilibrium dihedral angle of each fold to a nonzero value''}",
         r"\text{the equilibrium folding angle, the deviation of the dihedral angle from }\pi",
         note="the dihedral angle of a fold is pi in the unfolded state, so that it is not 0 "
-        "anyway. The formula that follows has folding angles, which are 0 there",
+        "anyway. Remark: the formula that follows has folding angles, which are 0 there",
         severity=Severity.TYPO,
         contradiction="unfolded if all dihedral angles are pi (Section II A), and the folding "
         "angle in the first displayed formula of Section V",

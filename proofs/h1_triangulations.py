@@ -265,7 +265,8 @@ def _counts(script: Script, levels: list[set[Triangulation]]) -> None:
             for p in map(families.h1_sequence, (3, 5, 8))
         ],
         mentions=True,
-        note="the seed included: 2 Vi + 2 triangles, two a butterfly. The figure counts so: (1) to "
+        note="the seed included: 2 Vi + 2 triangles, two a butterfly. "
+        "Remark: the figure counts so: (1) to "
         "(4) and the seed (5) for Vi = 4",
         severity=Severity.CONSTANT,
     )

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import random
 import sys
+from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
-from itertools import combinations, product
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -16,14 +17,16 @@ from sympy import QQ
 from sympy.polys.fields import field
 from sympy.polys.rings import ring
 
-from exactfold import CreasePattern, random_square
-from exactfold.exact.linalg import inertia_by_elimination
-from proofs.chambers import jacobian, vertex_signs
+from exactfold import CreasePattern
+from exactfold.exact.linalg import from_fmpq, inertia_by_elimination, to_flint
+from exactfold.pattern.crease_pattern import Edge
+from exactfold.rigidity import curvature_form
+from exactfold.rigidity.functionals import fold_functional
+from exactfold.rigidity.timelike import round_cone
+from proofs.chambers import jacobian, solve, vertex_signs
 from proofs.framework import Proof, Script, run
-from proofs.level_pairs import alternating, partners
-from proofs.patterns import flipped, hostile_patterns
+from proofs.patterns import hostile_patterns
 from proofs.potential import corner_polar
-from proofs.tutte import drawing, equal_weights, fold_weight, lifting, mixed, own_weights
 
 NAME = "inertia"
 TITLE = "The inertia of the Jacobian: vertices up, down, flat"
@@ -44,10 +47,9 @@ def prove(change: str | None = None) -> Proof:
     )
     _state(script)
     _laplace_matrix(script)
-    _all_up(script)
-    _tensor(script)
-    _midpoints(script)
-    _level_pairs(script)
+    _pencil(script)
+    _round_cones(script)
+    _count(script)
     return script.proof()
 
 
@@ -132,124 +134,161 @@ def _is_laplacian(pattern: CreasePattern, seed: int, sign: int) -> bool:
     )
 
 
-def _all_up(script: Script) -> None:
-    """Tutte's drawing, the drawings on the way to it, and its lifting, on sheets without chords."""
-    sheets = [p for p in hostile_patterns(24) if not p.chords]
-    sheets += [flipped(random_square(5, s), random.Random(s)) for s in range(6)]
-    stress = script.alter("a lifting that is no equilibrium", Fraction(1), Fraction(0))
-
-    def lifted(pattern: CreasePattern) -> bool:
-        own, equal = own_weights(pattern), equal_weights(pattern)
-        if drawing(pattern, own) != pattern or any(
-            x <= 0 for r in own.values() for x in r.values()
-        ):
-            return False
-        for t in (Fraction(1, 3), Fraction(2, 3)):
-            drawing(pattern, mixed(own, equal, t))  # raises if it is not a triangulation
-        last = drawing(pattern, mixed(own, equal, stress))
-        heights = lifting(last)
-        return (
-            all(fold_weight(last, fold, heights) == 1 for fold in last.folds)
-            and set(vertex_signs(last, heights)) == {1}
-            and inertia_by_elimination(jacobian(last, heights)) == (pattern.Vi, 0, 0)
-        )
-
-    script.cases(
-        "own weights are positive; the drawings on the way to Tutte's are triangulations; that has "
-        "heights with all fold weights 1: all vertices up, J positive definite",
-        (lifted(pattern) for pattern in sheets),
-        of="T.4",
-    )
+def fold_weight(pattern: CreasePattern, fold: Edge, heights: Mapping[int, Fraction]) -> Fraction:
+    """The weight -K_v(h, e_w) = fold / (2 length) of the fold vw; it is positive at a mountain."""
+    points, scale = pattern.integer_vertices
+    value = sum((c * heights[v] for v, c in fold_functional(pattern, fold).items()), Fraction(0))
+    areas = 1
+    for side, corner in zip((fold, fold[::-1]), pattern.opposite(fold), strict=True):
+        (ax, ay), (bx, by), (cx, cy) = (points[v] for v in (*side, corner))
+        areas *= (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
+    return -value * scale * scale / (2 * areas)
 
 
-def _tensor(script: Script) -> None:
-    """The case K_u(a, b) = T(e_u, a, b), J = T(h, ., .), with any symmetric trilinear form T."""
-    sign = script.alter("derivative of the tangent with the wrong sign", 1, -1)
-    count = script.alter("K_u(w) counted twice", 1, 2)
-    for n in (1, 2, 3, 4):
-        triples = [(i, j, k) for i, j, k in product(range(n), repeat=3) if i <= j <= k]
-        names = [f"t{i}{j}{k}" for i, j, k in triples]
-        names += [f"{name}{i}" for name in "hwxz" for i in range(n)]
-        _, *generators = ring(names, QQ)
-        entry = dict(zip(triples, generators, strict=False))
-        vectors = generators[len(triples) :]
-        h, w, dw, z = (vectors[k * n : k * n + n] for k in range(4))
-
-        def form(a: Any, b: Any, c: Any, entry: Any = entry, n: int = n) -> Any:
-            return sum(
-                entry[(t := sorted((i, j, k)))[0], t[1], t[2]] * a[i] * b[j] * c[k]
-                for i, j, k in product(range(n), repeat=3)
-            )
-
-        units = [[int(i == k) for i in range(n)] for k in range(n)]
-        moved = sum(w[u] * (form(units[u], z, w) + form(units[u], h, dw)) for u in range(n))
-        rest = sum(dw[u] * form(units[u], h, w) for u in range(n))
-        script.identity(
-            f"n = {n}: sum_u w_u d/ds K_u(h, w) = T(z, w, w) + sum_u w'_u K_u(h, w) along h' = z; "
-            "so where J w = 0 and K_u(h, w) = 0 stays for u != v, w_v x' = T(z, w, w)",
-            moved - form(z, w, w) - sign * rest,
-            of="T.4",
-        )
-        script.identity(
-            f"n = {n}: T(z, w, w) = w^T J(z) w = sum_u z_u K_u(w)",
-            form(z, w, w) - count * sum(z[u] * form(units[u], w, w) for u in range(n)),
-            of="T.4",
-        )
-
-
-def _midpoints(script: Script) -> None:
-    _, *y = ring("a b c d e f p1 p2 p3 q1 q2 q3", QQ)
+def _pencil(script: Script) -> None:
+    """The lemma: K(z, w) = i b K(a, w) with K(z) = K(a) = 1 gives K(Re w) + K(Im w) <= 0."""
+    _, *y = ring("k1 k2 k3 k4 k5 k6 z1 z2 z3 a1 a2 a3", QQ)
     matrix = ((y[0], y[1], y[2]), (y[1], y[3], y[4]), (y[2], y[4], y[5]))
 
     def polar(left: Any, right: Any) -> Any:
         return sum(left[i] * matrix[i][j] * right[j] for i, j in product(range(3), repeat=2))
 
-    one, two = y[6:9], y[9:]
-    factor = script.alter("the midpoint without its factor", 1, 2)
-    total = [a + b for a, b in zip(one, two, strict=True)]
-    chord = [b - a for a, b in zip(one, two, strict=True)]
+    z, a = y[6:9], y[9:]
+    double = script.alter("the parallelogram law without its factor", 2, 1)
+    s = [p + q for p, q in zip(z, a, strict=True)]
+    d = [p - q for p, q in zip(z, a, strict=True)]
     script.identity(
-        "K(q) - K(p) = 2 K((p + q)/2, q - p), K any quadratic form: a chord between points of "
-        "equal K_u is in the kernel of the row of u at its midpoint",
-        polar(two, two) - polar(one, one) - factor * polar(total, chord),
+        "s = z + a, d = z - a: K(s, d) = K(z) - K(a), K(s) + K(d) = 2 K(z) + 2 K(a)",
+        polar(s, d) - polar(z, z) + polar(a, a),
+        polar(s, s) + polar(d, d) - double * (polar(z, z) + polar(a, a)),
         of="T.4",
     )
-    _, p0, q0, *x = ring("p0 q0 p1 p2 p3 q1 q2 q3", QQ)
-    p, q = x[:3], x[3:]
-    dot = sum(a * b for a, b in zip(p, q, strict=True))
-    kp, kq = p0**2 - sum(a**2 for a in p), q0**2 - sum(b**2 for b in q)
-    squares = sum((p[i] * q[j] - p[j] * q[i]) ** 2 for i, j in combinations(range(3), 2))
-    sign = script.alter("the squares subtracted", 1, -1)
+    _, p, q, b = ring("p q b", QQ)  # K(a, w) = p + i q, K(z, w) = i b (p + i q)
+    turned = script.alter("a real factor for an imaginary one", -b * q, b * q)
     script.identity(
-        "(p0 q0)^2 - (p.q)^2 = K(p) q0^2 + |p|^2 K(q) + sum of squares, for K = x0^2 - |x|^2: on "
-        "one nappe K(p, q) = p0 q0 - p.q > 0 and K((p + q)/2) > 0",
-        (p0 * q0) ** 2 - dot**2 - (kp * q0**2 + sum(a**2 for a in p) * kq + sign * squares),
+        "K(z, w) = i b K(a, w) with b real: |K(s, w)| = |K(d, w)|",
+        (turned + p) ** 2 + (b * p + q) ** 2 - (turned - p) ** 2 - (b * p - q) ** 2,
+        of="T.4",
+    )
+    _, size, x, k, rest = field("S x k r", QQ)  # K(s), K(s, w), K(w), K(w')
+    mixed = script.alter("mixed term counted once", 2, 1)
+    script.identity(
+        "w' = w - (K(s, w) / K(s)) s: K(w) = K(s, w)^2 / K(s) + K(w')",
+        k - x**2 / size - (k - mixed * x / size * x + (x / size) ** 2 * size),
+        of="T.4",
+    )
+    total = script.alter("K(s) + K(d) = 0", 4, 0)
+    script.identity(
+        "with |K(s, w)|^2 <= K(d) K(w'), K(d) = 4 - K(s): the sum is at most 4 K(w') / K(s) <= 0",
+        (total - size) * rest / size + rest - 4 * rest / size,
+        of="T.4",
+    )
+    _, *y = ring("s1 s2 s3 s4 s5 s6 p1 p2 p3 q1 q2 q3", QQ)
+    other = script.alter("S not symmetric", y[4], 2 * y[4])
+    matrix = ((y[0], y[1], y[2]), (y[1], y[3], y[4]), (y[2], other, y[5]))
+    left, right = y[6:9], y[9:]
+    script.identity(
+        "w* S w is real for real symmetric S: S w = i y A w with A + A^T > 0 only for y = 0",
+        polar(left, right) - polar(right, left),
         of="T.4",
     )
 
 
-def _level_pairs(script: Script) -> None:
-    """The lemma on chords, for all orders of the critical values, on which alone it depends."""
-    lone = script.alter("a maximum left over", 0, 1)
-    checked = []
-    for count in (1, 3, 5, 7):
-        for values in alternating(count):
-            found = partners(values)
-            (free,) = (k for k, other in enumerate(found) if other is None)
-            checked.append(
-                free % 2 == lone
-                and all(
-                    other is None or (found[other] == k and (other - k) % 2 == 1)
-                    for k, other in enumerate(found)
-                )
-            )
+def _round_cones(script: Script) -> None:
+    """The matrix L of the round cones, and the matrix A = D L with A + A^T positive definite."""
+    _, one, two, u, x, y = field("L M u x y", QQ)
+    square = u**2 + 1
+    side = script.alter("a cone that points down", -1, 1)
+    script.identity(
+        "a face with angle a and spokes of lengths L, M adds -tan(a/2)/2 (x/L + y/M) to the row "
+        "K_v(t_v, .) of the round cone",
+        corner_polar(
+            (one, 0 * u), (two * (1 - u**2) / square, 2 * two * u / square), -one, -two, x, y
+        )
+        - side * u / 2 * (x / one + y / two),
+        of="T.4",
+    )
+    scaled = script.alter("L without the scales D", True, False)
     script.cases(
-        "level pairs a < b, f(a) = f(b), for every order of up to 7 different critical values: "
-        "each curve joins a minimum to a maximum, but one that joins a minimum to infinity (in "
-        "general: docs/theorem.md, 6, step 4)",
-        checked,
+        "A = D L with rational cones: entries off the diagonal at most 0, A + A^T positive "
+        "definite",
+        (_is_definite(p, scaled) for p in hostile_patterns(40)),
         of="T.4",
     )
+
+
+def _is_definite(pattern: CreasePattern, scaled: bool) -> bool:
+    matrix = round_matrix(pattern, scaled)
+    whole = range(pattern.Vi)
+    both = [[matrix[i][j] + matrix[j][i] for j in whole] for i in whole]
+    return all(both[i][j] <= 0 for i in whole for j in whole if i != j) and (
+        inertia_by_elimination(both) == (pattern.Vi, 0, 0)
+    )
+
+
+def round_matrix(pattern: CreasePattern, scaled: bool = True) -> list[list[Fraction]]:
+    """The matrix A = D L of the proof, or L, with rational vectors near the round cones."""
+    rows = []
+    for v in pattern.interior:
+        row = curvature_form(pattern, v).functional(round_cone(pattern, v, 64))
+        rows.append([row.get(u, Fraction(0)) for u in pattern.interior])
+    ones = to_flint([[Fraction(1)] for _ in rows])
+    x, y = to_flint(rows).solve(ones), to_flint(rows).transpose().solve(ones)
+    scales = [from_fmpq(y[k, 0] / x[k, 0]) if scaled else Fraction(1) for k in range(len(rows))]
+    return [[scale * entry for entry in row] for scale, row in zip(scales, rows, strict=True)]
+
+
+def _count(script: Script) -> None:
+    """Eigenvalues of A^-1 E M, where the rows of M and A belong to points of the nappes."""
+    wrong = script.alter("eigenvalues counted on the wrong side", 1, -1)
+    script.cases(
+        "A^-1 E M has as many eigenvalues with positive real part as E has signs + (Routh's "
+        "array), rows of M and A from points of all chambers",
+        (
+            right_roots(pencil) == signs.count(wrong)
+            for seed, p in enumerate(hostile_patterns(13))
+            for pencil, signs in _pencils(p, seed)
+        ),
+        of="T.4",
+    )
+
+
+def _pencils(pattern: CreasePattern, seed: int) -> Iterator[tuple[list[Fraction], list[int]]]:
+    """Characteristic polynomials of ten matrices A^-1 E M, highest coefficient first, and E."""
+    source = random.Random(seed)
+    points = solve(pattern, seed).points
+    rows: list[list[list[Fraction]]] = [[] for _ in pattern.interior]
+    for point in points:
+        signs, matrix = vertex_signs(pattern, point), jacobian(pattern, point)
+        for k, sign in enumerate(signs):
+            rows[k].append([sign * entry for entry in matrix[k]])
+    for _ in range(10):
+        first, second = ([source.choice(some) for some in rows] for _ in range(2))
+        signs = tuple(source.choice((1, -1)) for _ in rows)
+        scales = [e * source.randint(1, 999) for e in signs]
+        signed = [[c * entry for entry in row] for c, row in zip(scales, first, strict=True)]
+        found = (to_flint(second).inv() * to_flint(signed)).charpoly().coeffs()
+        yield [from_fmpq(c) for c in found[::-1]], list(signs)
+
+
+def right_roots(coefficients: Sequence[Fraction]) -> int:
+    """The number of roots with positive real part, by Routh's array.
+
+    Highest coefficient first. Raises `ArithmeticError` if an entry of the first column is 0.
+
+    >>> right_roots([Fraction(c) for c in (1, -3, 4, -2)])  # 1 and 1 + i, 1 - i
+    3
+    """
+    above, row = list(coefficients[::2]), list(coefficients[1::2])
+    changes = 0
+    while row:
+        if not row[0]:
+            raise ArithmeticError("an entry of the first column is 0")
+        changes += (above[0] > 0) != (row[0] > 0)
+        padded = [*row, Fraction(0)]
+        below = [a - above[0] / row[0] * b for a, b in zip(above[1:], padded[1:], strict=False)]
+        above, row = row, below
+    return changes
 
 
 if __name__ == "__main__":

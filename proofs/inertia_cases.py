@@ -1,21 +1,58 @@
-"""The inertia of the Jacobian on hostile patterns; popping a vertex up raises its height."""
+"""The inertia of the Jacobian on hostile patterns; popping a vertex up raises its height.
+
+Theorem (notation of docs/theorem.md). Let h and h' be solutions of Theorem 2 for the same boundary
+heights and the same k >= 0, without flat vertices, whose signs differ at v only: v is up in h. Then
+h_v > h'_v.
+
+Proof. 1. Kernels. Let K_u(g) > 0, or K_u(g) = 0 and the star of u not be flat, for all u != v. Let
+w in V_0 have K_u(g, w) = 0 for these u. By (L), K_u(w) <= 0. A plane of such w would contain a
+w != 0 with K_v(w) <= 0, against the key lemma. So they form a line, and K_v(w) > 0 for w != 0. If
+J(g) w = 0, then w_v != 0: otherwise take the multipliers m of the key lemma and a w' in V_0 with
+K_u(g, w') = -K_u(m, w) for u != v; then T(m, w, w) = sum_u w_u K_u(m, w) = -w^T J(g) w' = 0, but
+T(m, w, w) = sum_u m_u K_u(w) > 0.
+
+2. Chords. J((h + h')/2) (h - h') = (K(h) - K(h'))/2 = 0. So h_v != h'_v by 1, as in the proof of
+Theorem 2 (d) and (e). For k > 0 the solutions depend continuously on k and the boundary heights, so
+that h_v - h'_v has one sign for all of these, also in the limit k -> 0. Take boundary heights 0,
+and fix k_u > 0 for u != v.
+
+3. A curve from h' to h. The g in V_0 with K_u(g) = k_u and the given signs for u != v form a smooth
+curve C with the tangent w = w(g) of 1 that has K_v(w) = 1 and pops up at v. For a tangent w_0 the
+function K_v(w_0, .) increases along C, as two vectors of one nappe have a positive product; so no
+component is closed. On an unbounded sequence in C, f = K_v tends to infinity by the key lemma; and
+by Theorem 2 (d) C has two points with a given value f > 0, first one with v down, then one with v
+up. So C is connected.
+
+4. Half turns. The plane curve (g_v, f(g)), g in C, has the tangent (w_v, 2x) with x = K_v(g, w),
+which is never 0 by 1, and does not meet itself, by 2. J(g) is singular only where x = 0. Where
+w_v != 0, V_0 is the sum of the line of w and of {y_v = 0}, orthogonal for J(g), as J(g) w = x e_v;
+and J(g) is nonsingular on {y_v = 0}. So the number of positive eigenvalues grows by one where the
+tangent turns through the horizontal counter-clockwise, and falls by one where it turns clockwise.
+From end to end it grows by 1 (Theorem 4), so the tangent makes half a turn from down to up
+counter-clockwise. As the curve does not meet itself, its last end is to the right of its first, by
+Hopf's Umlaufsatz: h_v > h'_v.
+"""
 
 from __future__ import annotations
 
+import random
 import sys
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from functools import lru_cache
-from itertools import product
+from itertools import combinations, product
 from pathlib import Path
 from typing import Any
 
 if not __package__:  # run as a file
     sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
+from sympy import QQ
+from sympy.polys.rings import ring
+
 from exactfold import BranchCount, CreasePattern, random_square
 from exactfold._support.verdict import PROVED
-from exactfold.exact.linalg import Inertia, inertia_by_elimination
+from exactfold.exact.linalg import Inertia, from_fmpq, inertia_by_elimination, to_flint
 from proofs.chambers import (
     Solutions,
     corner_sign,
@@ -52,12 +89,15 @@ def prove(change: str | None = None) -> Proof:
         "Statement of exactfold on two solutions whose signs differ at v alone",
         r"\text{same boundary heights and }k\ge0:\ "
         r"h_v\text{ is larger where }v\text{ is popped up}",
-        note="convex boundary, no flat vertex: the sign of the chord in the proof of Theorem 4",
+        note="convex boundary, no flat vertex",
         code="Branch.heights",
-        words="docs/theorem.md, after Theorem 4",
+        words="theorem in proofs/inertia_cases.py",
     )
     _chambers(script)
     _branches(script)
+    _tensor(script)
+    _midpoints(script)
+    _half_turns(script)
     _popping_raises(script)
     return script.proof()
 
@@ -145,6 +185,98 @@ def _branches(script: Script) -> None:
         "both branches, J is positive on one and negative on the other",
         found == script.alter("the signs of the open sheet", {(1, 0, 0), (0, 1, 0)}, {(0, 1, 0)})
         and {b.sign_text for b in counted(DART).branches} == {"-"},
+        of="T.5",
+    )
+
+
+def _tensor(script: Script) -> None:
+    """The case K_u(a, b) = T(e_u, a, b), J = T(h, ., .), with any symmetric trilinear form T."""
+    sign = script.alter("w'^T J(h) w with the wrong sign", 1, -1)
+    count = script.alter("K_u(w) counted twice", 1, 2)
+    for n in (1, 2, 3, 4):
+        triples = [(i, j, k) for i, j, k in product(range(n), repeat=3) if i <= j <= k]
+        names = [f"t{i}{j}{k}" for i, j, k in triples]
+        names += [f"{name}{i}" for name in "hwxz" for i in range(n)]
+        _, *generators = ring(names, QQ)
+        entry = dict(zip(triples, generators, strict=False))
+        vectors = generators[len(triples) :]
+        h, w, dw, z = (vectors[k * n : k * n + n] for k in range(4))
+
+        def form(a: Any, b: Any, c: Any, entry: Any = entry, n: int = n) -> Any:
+            return sum(
+                entry[(t := sorted((i, j, k)))[0], t[1], t[2]] * a[i] * b[j] * c[k]
+                for i, j, k in product(range(n), repeat=3)
+            )
+
+        units = [[int(i == k) for i in range(n)] for k in range(n)]
+        moved = sum(w[u] * (form(units[u], z, w) + form(units[u], h, dw)) for u in range(n))
+        rest = sum(dw[u] * form(units[u], h, w) for u in range(n))
+        script.identity(
+            f"n = {n}: sum_u w_u (K_u(z, w) + K_u(h, w')) = T(z, w, w) + w'^T J(h) w; so if "
+            "J(h) w = 0, w_v = 0 and K_u(z, w) + K_u(h, w') = 0 for u != v, T(z, w, w) = 0",
+            moved - form(z, w, w) - sign * rest,
+            of="T.5",
+        )
+        script.identity(
+            f"n = {n}: T(z, w, w) = w^T J(z) w = sum_u z_u K_u(w)",
+            form(z, w, w) - count * sum(z[u] * form(units[u], w, w) for u in range(n)),
+            of="T.5",
+        )
+
+
+def _midpoints(script: Script) -> None:
+    _, *y = ring("a b c d e f p1 p2 p3 q1 q2 q3", QQ)
+    matrix = ((y[0], y[1], y[2]), (y[1], y[3], y[4]), (y[2], y[4], y[5]))
+
+    def polar(left: Any, right: Any) -> Any:
+        return sum(left[i] * matrix[i][j] * right[j] for i, j in product(range(3), repeat=2))
+
+    one, two = y[6:9], y[9:]
+    factor = script.alter("the midpoint without its factor", 1, 2)
+    total = [a + b for a, b in zip(one, two, strict=True)]
+    chord = [b - a for a, b in zip(one, two, strict=True)]
+    script.identity(
+        "K(q) - K(p) = 2 K((p + q)/2, q - p), K any quadratic form: a chord between points of "
+        "equal K_u is in the kernel of the row of u at its midpoint",
+        polar(two, two) - polar(one, one) - factor * polar(total, chord),
+        of="T.5",
+    )
+    _, p0, q0, *x = ring("p0 q0 p1 p2 p3 q1 q2 q3", QQ)
+    p, q = x[:3], x[3:]
+    dot = sum(a * b for a, b in zip(p, q, strict=True))
+    kp, kq = p0**2 - sum(a**2 for a in p), q0**2 - sum(b**2 for b in q)
+    squares = sum((p[i] * q[j] - p[j] * q[i]) ** 2 for i, j in combinations(range(3), 2))
+    sign = script.alter("the squares subtracted", 1, -1)
+    script.identity(
+        "(p0 q0)^2 - (p.q)^2 = K(p) q0^2 + |p|^2 K(q) + sum of squares, for K = x0^2 - |x|^2: on "
+        "one nappe K(p, q) = p0 q0 - p.q > 0 and K((p + q)/2) > 0",
+        (p0 * q0) ** 2 - dot**2 - (kp * q0**2 + sum(a**2 for a in p) * kq + sign * squares),
+        of="T.5",
+    )
+
+
+def _half_turns(script: Script) -> None:
+    """J w = x e_v: J is positive on more directions than its minor without v where x w_v > 0."""
+    up = script.alter("the sign of x w_v reversed", 1, -1)
+
+    def agree(pattern: CreasePattern, seed: int) -> Iterator[bool]:
+        source = random.Random(seed)
+        h = {v: Fraction(source.randint(-9, 9)) for v in range(len(pattern.vertices))}
+        matrix = jacobian(pattern, h)
+        whole = range(pattern.Vi)
+        for v in whole:
+            units = [[Fraction(k == v)] for k in whole]
+            minor = [[matrix[i][j] for j in whole if j != v] for i in whole if i != v]
+            part = inertia_by_elimination(minor)
+            if inertia_by_elimination(matrix)[2] or part[2]:
+                continue
+            w_v = from_fmpq(to_flint(matrix).solve(to_flint(units))[v, 0])  # here x = 1
+            yield inertia_by_elimination(matrix)[0] == part[0] + (up * w_v > 0)
+
+    script.cases(
+        "J w = x e_v: the number of positive eigenvalues of J is that of its minor without v, and "
+        "one more if x w_v > 0",
+        (ok for seed, p in enumerate(hostile_patterns(20)) for ok in agree(p, seed)),
         of="T.5",
     )
 

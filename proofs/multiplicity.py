@@ -131,7 +131,7 @@ def _multiplicity(script: Script) -> None:
         ),
         note="called conjectural in the paper, and not restricted to generic patterns. Square with "
         "inner vertices (1/2,1/2), (7/10,1/5), triangles 015, 125, 245, 405, 234, 304: Vt = 0 "
-        "and 3 branches. A straight crease path is the usual cause",
+        "and 3 branches. Remark: a straight crease path is the usual cause",
         code="BranchCount.distinct",
         equation="10",
         severity=Severity.CONDITION,
@@ -221,7 +221,7 @@ def _transversality(script: Script) -> None:
         r"\text{for a convex border, transversely along a branch iff no vertex star is flat on it; "
         r"for any border nowhere where }V_t>0",
         "triangulated triangles persist under small changes, and the paper's samples hold four. "
-        "The dimension is D all the same for a convex border (IIC.1). Remark: nonsingular where no "
+        "Remark: the dimension is D all the same for a convex border (IIC.1); nonsingular where no "
         "star is flat: docs/theorem.md, Theorem 2 (c), which is about convex borders; that generic "
         "patterns without triangulated triangles have no flat stars is not used here",
         "BranchSystem",

@@ -245,7 +245,7 @@ def _perturbations(script: Script) -> None:
         r"\text{``after perturbing, the solutions of most systems have many complex-conjugate "
         r"pairs and real solutions are not equidistributed''}",
         note=f"tested on 12 systems with Vi = 3, of which {complex_pairs} have such pairs; larger "
-        "samples: docs/control.md. Simple real solutions survive very small perturbations",
+        "samples: docs/studies.md. Simple real solutions survive very small perturbations",
         code="perturbed",
     )
 
@@ -271,7 +271,8 @@ def _precision(script: Script) -> None:
         r"\text{``Accurate solutions seem to require very high precision arithmetic \dots\ up to "
         r"}690\text{ digits''}",
         r"\text{double precision finds them, and a test in integers proves them}",
-        "a remark on the method. The branches of random squares are far apart for double precision "
+        "a remark on the method. "
+        "Remark: the branches of random squares are far apart for double precision "
         "where all are simple; with starts at all sign vectors none is missed (docs/theorem.md, 7)",
         "count_branches",
         severity=Severity.REMARK,

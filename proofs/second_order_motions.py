@@ -203,8 +203,8 @@ def _energy(script: Script) -> None:
         r"\text{with the in-plane displacements that belong to them they change the stretching "
         r"energy at eighth order, and without them at fourth}",
         "along X = U + t^2 u + t h z the energy is t^8 sum |u_n - u_m|^4 / (4 L^2) to lowest "
-        "order. It is of sixth order if arbitrary terms of third order are added, and of fourth if "
-        "the displacements are vertical only",
+        "order. Remark: it is of sixth order if arbitrary terms of third order are added, and of "
+        "fourth if the displacements are vertical only",
         severity=Severity.CONSTANT,
     )
 

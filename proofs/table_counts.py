@@ -126,7 +126,8 @@ def _appendix(script: Script) -> None:
         "Appendix D, Figs. (v6) and (distribution) against the text",
         r"\text{``The bin sizes are }\pi/32\text{'' \dots\ ``using bins of size }\pi/128\text{''}",
         r"\text{one of the two; the source does not say which}",
-        "nothing depends on it; the replacement makes the text agree with the captions. V=6 in the "
+        "nothing depends on it; the replacement makes the text agree with the captions. "
+        "Remark: V=6 in the "
         "text and V=2 -- 8 in a caption are values of Vi",
         severity=Severity.TYPO,
         contradiction="pi/32 in both captions, pi/128 twice in the text, of the same figures",

@@ -90,7 +90,8 @@ def _equal_angles(script: Script) -> None:
         quoted=r"\text{``for }m\text{ ranging from }1\text{ to }N-1\text{'' \dots\ }"
         r"\lambda_m=2\frac{\csc(2\pi/N)}{L^2}\left[\cos(\frac{2\pi}{N})-\cos("
         r"\frac{m\pi}{N-1})\right]",
-        note="the range is that of C.8, and too large by one. It follows from C.8 as corrected: "
+        note="the range is that of C.8, and too large by one. "
+        "Remark: it follows from C.8 as corrected: "
         "the printed line before it would give cos(2 pi/N) + cos(m pi/(N-1))",
         equation="C8",
         severity=Severity.CONSTANT,

@@ -71,7 +71,8 @@ def _popping(script: Script) -> None:
         r"\text{in a closed hemisphere; in an open one unless the vertex is folded along a "
         r"straight line only}",
         note="the trace has length 2 pi: if it holds antipodes it consists of two great "
-        "semicircles. Then, too, one side has area less than 2 pi, and the definition of popping "
+        "semicircles. "
+        "Remark: then, too, one side has area less than 2 pi, and the definition of popping "
         "is not affected. Remark: that all other closed curves of length 2 pi lie in an open "
         "hemisphere is classical and not checked here",
         severity=Severity.CONDITION,

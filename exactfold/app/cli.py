@@ -11,18 +11,6 @@ import typer
 
 from exactfold._support.processes import one_thread
 from exactfold._support.verdict import PROVED, UNDECIDED
-from exactfold.app.options.branches import (
-    AssignmentsOptions,
-    BranchOptions,
-    CertifyOptions,
-    ExportOptions,
-    MatchOptions,
-    VerticesOptions,
-)
-from exactfold.app.options.motions import ActuateOptions, FoldOptions, MotionsOptions
-from exactfold.app.options.patterns import ConvertOptions, CountOptions, InfoOptions
-from exactfold.app.options.pictures import DrawOptions, ServeOptions, ViewOptions
-from exactfold.app.options.studies import StudyOptions
 from exactfold.app.shell.parameters import (
     Json,
     flag,
@@ -58,7 +46,7 @@ app = typer.Typer(
 
 
 @app.command(cls=Command, rich_help_panel="Ask")
-@taking(CountOptions)
+@taking("patterns.CountOptions")
 def count(**options: Any) -> int:
     """Count the ways in which a pattern starts to fold (its branches), with proof.
 
@@ -67,7 +55,7 @@ def count(**options: Any) -> int:
     of their exit codes.
     """
     if len(options["patterns"]) > 1 or options["jsonl"] or options["sheet"] == "all":
-        from exactfold.app.commands.batch import Batch
+        from exactfold.app.commands.several.batch import Batch
 
         return Batch(**options).run()
     from exactfold.app.commands.count import Asked
@@ -113,7 +101,7 @@ def check(
 
 
 @app.command(cls=Command, rich_help_panel="See")
-@taking(DrawOptions)
+@taking("pictures.DrawOptions")
 def draw(**options: Any) -> int:
     """Draw a crease pattern, one way to fold it, or all ways, as SVG, PNG or PDF.
 
@@ -128,7 +116,7 @@ def draw(**options: Any) -> int:
 
 
 @app.command(cls=Command, rich_help_panel="See")
-@taking(ViewOptions)
+@taking("pictures.ViewOptions")
 def view(**options: Any) -> int:
     """Show a sheet and its ways to fold in the browser: one HTML file that needs no network.
 
@@ -143,7 +131,7 @@ def view(**options: Any) -> int:
 
 
 @app.command(cls=Command, rich_help_panel="See")
-@taking(ServeOptions)
+@taking("pictures.ServeOptions")
 def serve(**options: Any) -> int:
     """Serve the page of `view` on this machine, with the engine behind it.
 
@@ -158,7 +146,7 @@ def serve(**options: Any) -> int:
 
 
 @app.command(cls=Command, rich_help_panel="Ask")
-@taking(BranchOptions)
+@taking("branches.BranchOptions")
 def branch(**options: Any) -> int:
     """Find and prove one branch of a triangulated sheet, without finding the others.
 
@@ -175,7 +163,7 @@ def branch(**options: Any) -> int:
 
 
 @app.command(cls=Command, rich_help_panel="Ask")
-@taking(MatchOptions)
+@taking("branches.MatchOptions")
 def match(**options: Any) -> int:
     """Find the ways to start folding that have the mountains and valleys of a file, with proof.
 
@@ -189,7 +177,7 @@ def match(**options: Any) -> int:
 
 
 @app.command(cls=Command, rich_help_panel="Ask")
-@taking(VerticesOptions)
+@taking("branches.VerticesOptions")
 def vertices(**options: Any) -> int:
     """Say which vertices start to fold with their letters, with proof, and what to change.
 
@@ -204,7 +192,7 @@ def vertices(**options: Any) -> int:
 
 
 @app.command(cls=Command, rich_help_panel="Files")
-@taking(ExportOptions)
+@taking("branches.ExportOptions")
 def export(**options: Any) -> int:
     """Write one branch as a FOLD file, a sheet for Coq, or equations for other programs.
 
@@ -223,7 +211,7 @@ def export(**options: Any) -> int:
 
 
 @app.command(cls=Command, rich_help_panel="Prove")
-@taking(CertifyOptions)
+@taking("branches.CertifyOptions")
 def certify(**options: Any) -> int:
     """Prove solutions that another program found: one zero in a small box around each.
 
@@ -236,7 +224,7 @@ def certify(**options: Any) -> int:
 
 
 @app.command(cls=Command, rich_help_panel="Ask")
-@taking(AssignmentsOptions)
+@taking("branches.AssignmentsOptions")
 def assignments(**options: Any) -> int:
     """List every mountain-valley assignment with which a sheet starts to fold, with proof.
 
@@ -250,7 +238,7 @@ def assignments(**options: Any) -> int:
 
 
 @app.command(cls=Command, rich_help_panel="Fold")
-@taking(FoldOptions)
+@taking("motions.FoldOptions")
 def fold(**options: Any) -> int:
     """Fold a sheet with rigid faces in space, until faces touch or another event.
 
@@ -268,7 +256,7 @@ def fold(**options: Any) -> int:
 
 
 @app.command(cls=Command, rich_help_panel="Fold")
-@taking(MotionsOptions)
+@taking("motions.MotionsOptions")
 def motions(**options: Any) -> int:
     """Follow every branch, with proof, until the sheet is flat again.
 
@@ -282,7 +270,7 @@ def motions(**options: Any) -> int:
 
 
 @app.command(cls=Command, rich_help_panel="Fold")
-@taking(ActuateOptions)
+@taking("motions.ActuateOptions")
 def actuate(**options: Any) -> int:
     """Find torques on the creases that drive the sheet along one branch and not along the others.
 
@@ -296,7 +284,7 @@ def actuate(**options: Any) -> int:
 
 
 @app.command(cls=Command, rich_help_panel="Studies")
-@taking(StudyOptions)
+@taking("studies.StudyOptions")
 def study(**options: Any) -> int:
     """Run a study: a table or figure of the paper, each number in it proved.
 
@@ -337,17 +325,18 @@ def random_(
 
 
 @app.command(cls=Command, rich_help_panel="Ask")
-@taking(InfoOptions)
+@taking("patterns.InfoOptions")
 def info(**options: Any) -> int:
     """Report exact facts about a pattern that are known without solving for its ways to fold."""
     from exactfold.app.commands.info import show_info
+    from exactfold.app.options.patterns import InfoOptions
 
     show_info(InfoOptions(**options))
     return 0
 
 
 @app.command(cls=Command, rich_help_panel="Files")
-@taking(ConvertOptions)
+@taking("patterns.ConvertOptions")
 def convert(**options: Any) -> int:
     """Write a drawing of any format as a FOLD file with exact coordinates.
 

@@ -82,12 +82,12 @@ DOCUMENTS: Final = {
     "studies": ("exactfold study --json", "app.commands.study:StudiesDocument"),
     "batch-line": (
         "a line of exactfold count --jsonl",
-        "app.commands.batch_document:CountedLine",
-        "app.commands.batch_document:FailedLine",
+        "app.commands.several.document:CountedLine",
+        "app.commands.several.document:FailedLine",
     ),
     "batch": (
         "exactfold count --jsonl OUT.jsonl --json",
-        "app.commands.batch_document:BatchDocument",
+        "app.commands.several.document:BatchDocument",
     ),
     "error": (
         "what any command prints with --json if it fails",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Collection, Iterable, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from exactfold._support.plurals import counted
 from exactfold.checker.core.lines import chained
@@ -15,9 +15,11 @@ from exactfold.pattern.writing.fold_writing import write_text
 from exactfold.rigidity.equations.branch_system import Chart
 from exactfold.rigidity.equations.flat_sheets import FlatSheets
 from exactfold.rigidity.rigid_triangles import RigidTriangle
-from exactfold.solve.algebraic.exact_solution import RootClass
-from exactfold.solve.certify.algebraic import AlgebraicProof
 from exactfold.solve.certify.box import IsolatingBox
+
+if TYPE_CHECKING:  # most counts do not need the exact engine
+    from exactfold.solve.algebraic.exact_solution import RootClass
+    from exactfold.solve.certify.algebraic import AlgebraicProof
 
 Document = dict[str, Any]
 
@@ -86,11 +88,11 @@ def chart_evidence(chart: Chart, labels: Sequence[int]) -> Document | None:
 
 
 def box_entry(box: IsolatingBox) -> Document:
-    """A real isolating box."""
+    """An isolating box; the imaginary parts of its centre, if there are any, follow the real."""
     return {
         "bits": box.bits,
         "radius": format_integer(box.radius),
-        "center": [format_integer(m) for m in box.real],
+        "center": [format_integer(m) for m in (*box.real, *box.imag)],
     }
 
 

@@ -8,6 +8,7 @@ from exactfold._support.clock import QUICK, UNLIMITED, Clock
 from exactfold._support.plurals import counted
 from exactfold.errors import TooManyModesError
 from exactfold.panels.folding_modes import folding_mode, folding_modes
+from exactfold.panels.isolated import isolated_ways
 from exactfold.panels.modes.trees import tree_components
 from exactfold.panels.result import Part
 from exactfold.panels.spaces.cones import cone_motion, is_one_family
@@ -45,6 +46,9 @@ def by_spaces(pattern: PanelPattern, moving: Mapping[int, Star], clock: Clock = 
         rows, size = first_order(moving, clock.share(1 / 2).at_least(QUICK))
     except TooManyModesError as error:
         return _without_space(pattern, moving, str(error), clock)
+    isolated = _isolated(moving, rows, size, clock.share(1 / 2))
+    if isolated is not None:
+        return isolated
     small, left, sums = reduced(moving, rows, size, MOST_REDUCTION, clock)
     if left == 0:
         still = tuple(sorted({edge for star in moving.values() for edge in star.folds}))
@@ -58,6 +62,29 @@ def by_spaces(pattern: PanelPattern, moving: Mapping[int, Star], clock: Clock = 
         reason = f"{where} {next(iter(moving))}: {error}"
         components, _ = _found(pattern, moving, small, left, clock)
         return _partial(pattern, moving, (rows, size), (small, left), components, reason, clock)
+
+
+def _isolated(moving: Mapping[int, Star], rows: Rows, size: int, clock: Clock) -> Part | None:
+    """A part all of whose ways are isolated; None for other parts, or if that is not proved."""
+    try:
+        found = isolated_ways(moving, rows, size, clock)
+    except TooManyModesError:
+        return None
+    if found is None:
+        return None
+    ways, leaves = found
+    counts = {1: len(leaves)} if leaves else {0: 1}
+    return Part(
+        tuple(moving),
+        "subspaces",
+        counts,
+        counts,
+        spaces=tuple(leaves),
+        spaces_fold=(True,) * len(leaves),
+        dimension=size,
+        still=_still(moving, (edge for leaf in leaves for edge in leaf.rows)),
+        isolated=ways,
+    )
 
 
 def by_tree(moving: Mapping[int, Star], size: int) -> Part | None:

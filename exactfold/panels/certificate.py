@@ -7,9 +7,10 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED
-from exactfold.certificates.entries import Document
+from exactfold.certificates.entries import Document, box_entry
 from exactfold.checker.panels.certificate import PANELS
 from exactfold.checker.panels.claims import (
+    IsolatedClaim,
     LeafClaim,
     ModeClaim,
     PanelsClaims,
@@ -19,6 +20,7 @@ from exactfold.checker.panels.claims import (
 )
 from exactfold.errors import NotApplicableError, TooManyModesError
 from exactfold.panels.decomposition import MOST_LISTED
+from exactfold.panels.isolated import IsolatedWays
 from exactfold.panels.modes.elementary import ModeSearch, Support
 from exactfold.panels.modes.extension import FOREST, Loops, extension
 from exactfold.panels.result import Counts, Decomposition, Mode, Part
@@ -107,8 +109,23 @@ def _spaces(part: Part) -> PartClaim:
         }
         for (folds, dimension, cones), each in kinds.items()
     ]
-    complete = part.true is not None
-    return {"vertices": list(part.vertices), "complete": complete, "leaves": leaves}
+    claim: PartClaim = {
+        "vertices": list(part.vertices),
+        "complete": part.true is not None,
+        "leaves": leaves,
+    }
+    if part.isolated is not None:
+        claim["isolated"] = _isolated(part.isolated)
+    return claim
+
+
+def _isolated(ways: IsolatedWays) -> IsolatedClaim:
+    """All complex motions of a part; of two conjugate motions only one is written."""
+    return {
+        "chart": [[*fold, weight] for fold, weight in zip(ways.folds, ways.chart, strict=True)],
+        "real": [box_entry(box) for box in ways.real],
+        "nonreal": [box_entry(box) for box in ways.nonreal],
+    }
 
 
 @dataclass(frozen=True)

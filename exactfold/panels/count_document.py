@@ -123,6 +123,8 @@ class CountKeys(MotionKeys):
 
     format: Literal["exactfold count result"]
     version: Literal[2]
+    ways: Natural | None
+    """The number in the first line of the answer; null if infinite or unknown."""
     reason: str
     why: str
     """Why the method was chosen."""
@@ -154,8 +156,8 @@ class PanelCountKeys(CountKeys):
     theory: _Theory
     distinct: None
     with_multiplicity: None
-    real: None
-    nonreal: None
+    real: Natural | None
+    nonreal: Natural | None
     true_bounds: None
     dimension: None
     degree: None

@@ -21,6 +21,7 @@ from exactfold.panels.count_document import (
     PanelCountKeys,
     ProposalDocument,
 )
+from exactfold.panels.isolated import IsolatedWays
 from exactfold.panels.modes.elementary import Support
 from exactfold.panels.modes.extension import Extension
 from exactfold.panels.modes.near_misses import NearMiss, near_limit
@@ -127,17 +128,19 @@ class Decomposition(Page, Ways[Mode], Certified):
 
         Fields that only branches of triangulated sheets have are null.
         """
+        isolated = None if self.free or len(self.parts) != 1 else self.parts[0].isolated
         keys: PanelCountKeys = {
             "format": "exactfold count result",
             "version": 2,
             "pattern": described_panels(self.pattern, name),
+            "ways": self.ways,
             "reason": self.reason,
             "method": self.theory,
             "why": "",
             "distinct": None,
             "with_multiplicity": None,
-            "real": None,
-            "nonreal": None,
+            "real": None if isolated is None else len(isolated.real),
+            "nonreal": None if isolated is None else 2 * len(isolated.nonreal),
             "true_branches": str(UNDECIDED if self.true is None else PROVED),
             "true_bounds": None,
             "dimension": None,
@@ -220,10 +223,13 @@ class Decomposition(Page, Ways[Mode], Certified):
 
     @property
     def ways(self) -> int | None:
-        """The number of components that truly fold; 0 for a rigid sheet, None if not known."""
-        if self.true is None:
+        """The number of components that truly fold, or if `true` is None, of those to second order;
+        0 for a rigid sheet, None if neither is known.
+        """
+        known = self.second_order if self.true is None else self.true
+        if known is None:
             return None
-        return sum(number for dimension, number in self.true.items() if dimension)
+        return sum(number for dimension, number in known.items() if dimension)
 
     @property
     def warning(self) -> str | None:
@@ -287,7 +293,8 @@ class Part:
     these are not all known. `found` are the components that were found, if not all are known
     or not all are known to fold. `still` are the folds that are flat in every motion to second
     order. `by_tree` says that the vertices form a tree along which the components were counted;
-    then each of them is known to fold, and none is listed.
+    then each of them is known to fold, and none is listed. `isolated` are all complex motions, if
+    these were found by their number (docs/panels.md, Isolated ways).
     """
 
     vertices: tuple[int, ...]
@@ -305,6 +312,7 @@ class Part:
     found: tuple[FoundComponent, ...] = ()
     still: tuple[Edge, ...] = ()
     by_tree: bool = False
+    isolated: IsolatedWays | None = None
 
     @property
     def at_least(self) -> Counts | None:

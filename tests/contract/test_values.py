@@ -16,6 +16,7 @@ from flint import fmpq, fmpq_mat
 import exactfold
 from exactfold import errors
 from exactfold.motion.loops.loops import LoopFinder
+from exactfold.panels.isolated import IsolatedWays
 from exactfold.pattern.families import H1Triangulation, sample_h1_sequence, single_vertex
 from exactfold.pattern.opening import panels
 from exactfold.pattern.triangulating.random_squares import sample_random_square
@@ -25,7 +26,7 @@ from exactfold.rigidity.equations.sheet import VertexEquations
 from exactfold.rigidity.kapovich_millson import kapovich_millson
 from exactfold.solve.algebraic.exact_solution import RootClass
 from exactfold.solve.algebraic.quotient import QuotientAlgebra
-from exactfold.solve.certify.box import Uncertified
+from exactfold.solve.certify.box import IsolatingBox, Uncertified
 from exactfold.solve.numeric.candidates import Candidates
 
 PATTERN = exactfold.pattern.read_fold(exactfold.pattern.data.example_path("two-vertex"))
@@ -182,6 +183,7 @@ VALUES = {
     "extension": MOTIONS.modes[0].extends,
     "support": MOTIONS.parts[0].supports[0],
     "leaf": SPACES.parts[0].spaces[0],
+    "isolated ways": IsolatedWays(((0, 1), (0, 2)), (1, -1), (IsolatingBox((3,), (), 1, 2),), ()),
     "count": COUNT,
     "exact count": EXACT,
     "count with flat vertices": exactfold.branches.count_branches(FLAT),

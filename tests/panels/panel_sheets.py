@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import random
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from fractions import Fraction
 from itertools import pairwise
-from math import atan2
+from math import atan2, cos, pi, sin
 
+from exactfold.errors import InputError
 from exactfold.exact.surds import RATIONALS, Number
-from exactfold.panels.vertex.stars import Star, star_at
+from exactfold.panels.vertex.stars import Star, star_at, stars
 from exactfold.pattern.panel_pattern import Edge, PanelPattern, Point
 
 Place = Callable[[int, int], tuple[Number, Number]]
@@ -196,3 +198,31 @@ def star_of(sheet: PanelPattern | Sequence[Point]) -> Star:
     if isinstance(sheet, PanelPattern):
         return star_at(sheet, sheet.interior[0])
     return Star(0, tuple((0, k + 1) for k in range(len(sheet))), tuple(sheet))
+
+
+def ring(seed: int, degrees: Sequence[int] = (4, 4, 4, 5)) -> PanelPattern:
+    """A panel whose corners have these numbers of folds, in a ring of panels on the boundary.
+
+    The other folds end at a vertex of the boundary each. Every sector is less than a half turn.
+    """
+    count = len(degrees)
+    for number in range(1000 * seed, 1000 * seed + 1000):
+        rng = random.Random(number)
+        corners = [
+            (rng.uniform(60, 140), 2 * pi * (k + rng.uniform(-0.25, 0.25)) / count)
+            for k in range(count)
+        ]
+        folds = [(k, (k + 1) % count) for k in range(count)]
+        ends: list[tuple[float, float]] = []
+        for k, (_, angle) in enumerate(corners):
+            spread = 0.9 * pi / count
+            for turn in sorted(rng.uniform(-spread, spread) for _ in range(degrees[k] - 2)):
+                folds.append((k, count + len(ends)))
+                ends.append((rng.uniform(380, 420), angle + turn))
+        points = [(round(r * cos(t)), round(r * sin(t))) for r, t in (*corners, *ends)]
+        exact = [(Fraction(x), Fraction(y)) for x, y in points]
+        with suppress(InputError):
+            sheet = outlined(exact, folds, count)
+            if [len(star.folds) for star in stars(sheet).values()] == list(degrees):
+                return sheet
+    raise ValueError(f"no ring was found with seed {seed}")

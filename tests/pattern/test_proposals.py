@@ -40,7 +40,9 @@ def by_hand(name: str, seed: int = 0) -> dict[str, object]:
     }
 
 
-@pytest.mark.parametrize(("name", "seed"), [("miura", 0), ("map-fold", 1)])
+@pytest.mark.parametrize(
+    ("name", "seed"), [("miura", 0), pytest.param("map-fold", 1, marks=pytest.mark.slow)]
+)
 def test_proposals_are_what_their_noise_level_gives(name: str, seed: int) -> None:
     document = by_hand(name, seed)
     opened = exactfold.read(document)

@@ -6,7 +6,7 @@ import json
 from fractions import Fraction
 from pathlib import Path
 
-from exactfold.app.commands.ways import choice_of
+from exactfold.app.options.choosing import choice_of
 from exactfold.app.options.motions import ActuateOptions
 from exactfold.app.shell.json_numbers import numbers_by_name
 from exactfold.app.shell.patterns import in_doubt, read, tell_doubt, verdict

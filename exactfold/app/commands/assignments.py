@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 
 from exactfold._support.clock import Clock
-from exactfold.app.commands.ways import given_letters
 from exactfold.app.options.branches import AssignmentsOptions
+from exactfold.app.options.choosing import given_letters
 from exactfold.app.shell.patterns import read_any, verdict
 from exactfold.app.shell.shell import EXIT, Bar, name_of, say
 from exactfold.certificates.entries import write_certificate

@@ -8,9 +8,9 @@ from pathlib import Path
 
 from exactfold._support.plurals import counted
 from exactfold._support.verdict import PROVED
-from exactfold.app.commands.driving import Angles, driven_angles
-from exactfold.app.commands.ways import choice_of, indices, lines
 from exactfold.app.options.branches import BranchOptions
+from exactfold.app.options.choosing import choice_of, indices, lines
+from exactfold.app.options.driving import Angles, driven_angles
 from exactfold.app.shell.given import Given
 from exactfold.app.shell.patterns import in_doubt, read, tell_doubt
 from exactfold.app.shell.shell import Bar, name_of, say

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from exactfold._support.plurals import counted
 from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
-from exactfold.app.commands.ways import choice_of
+from exactfold.app.options.choosing import choice_of
 from exactfold.app.options.pictures import DrawOptions
 from exactfold.app.pictures.crease_drawing import pattern_picture
 from exactfold.app.pictures.drawn_ways import branch_way

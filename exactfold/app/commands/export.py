@@ -23,8 +23,8 @@ from exactfold._support.documents import (
     VertexSigns,
 )
 from exactfold._support.verdict import PROVED, UNDECIDED
-from exactfold.app.commands.ways import choice_of
 from exactfold.app.options.branches import ExportOptions
+from exactfold.app.options.choosing import choice_of
 from exactfold.app.shell.given import Given
 from exactfold.app.shell.patterns import in_doubt, read, read_any, tell_doubt, verdict
 from exactfold.app.shell.shell import EXIT, Bar, name_of, say, tell

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.app.commands.branch import also_found
-from exactfold.app.commands.driving import driven_angles
-from exactfold.app.commands.ways import choice_of
+from exactfold.app.options.choosing import choice_of
+from exactfold.app.options.driving import driven_angles
 from exactfold.app.options.motions import FoldOptions
 from exactfold.app.pictures.film import FILMS, checked_encoder, checked_film, write_film
 from exactfold.app.pictures.picture_files import checked_picture, write_picture

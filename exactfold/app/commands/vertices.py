@@ -36,6 +36,6 @@ class Asked(VerticesOptions):
     def _letters(self, opened: Opened) -> Mapping[Edge, str] | None:
         if self.letters is None:
             return None
-        from exactfold.app.commands.ways import given_letters
+        from exactfold.app.options.choosing import given_letters
 
         return given_letters(opened.sheet, self.letters)

@@ -11,7 +11,7 @@ from rich.text import Text
 from exactfold._support.plurals import counted, visible
 from exactfold._support.processes import available_cores
 from exactfold._support.verdict import PROVED
-from exactfold.app.commands.ways import choice_of
+from exactfold.app.options.choosing import choice_of
 from exactfold.app.options.pictures import ServeOptions, ViewOptions
 from exactfold.app.report.terminal import show
 from exactfold.app.shell.patterns import located, read_any

@@ -5,15 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from exactfold.app.shell.json_numbers import numbers_by_name
-from exactfold.branches.counting.find import BranchFinder, branch_finder
 from exactfold.errors import (
     BadCurvatureError,
     BoundaryHeightsError,
 )
-from exactfold.pattern.crease_pattern import CreasePattern
+
+if TYPE_CHECKING:  # a count of all branches does not need it
+    from exactfold.branches.counting.find import BranchFinder
+    from exactfold.pattern.crease_pattern import CreasePattern
 
 
 @dataclass(frozen=True)
@@ -42,6 +44,8 @@ class Given:
         If the pattern needs boundary heights and none are given, default heights are used. Raises
         `UnreadableFileError`, and the errors of `BranchFinder` with the name of the file in front.
         """
+        from exactfold.branches.counting.find import branch_finder
+
         boundary_heights = self.heights
         curvature = None
         if self.curvature is not None:

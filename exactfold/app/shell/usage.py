@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from inspect import Parameter, signature
-from typing import Annotated, Any
+from functools import wraps
+from importlib import import_module
+from inspect import Parameter, Signature, signature
+from typing import Annotated, Any, get_args
 
 import typer
+import typer.main
 from typer.core import TyperCommand, TyperGroup
 
 from exactfold._support.plurals import either
@@ -16,8 +19,11 @@ from exactfold.app.shell.shell import reported, say
 _WRONG_USAGE: type[Exception] = typer.BadParameter.__bases__[0]  # typer does not export it
 
 
-def taking(options: type[Any]) -> Callable[[Callable[..., int]], Callable[..., None]]:
+def taking(options: str) -> Callable[[Callable[..., int]], Callable[..., None]]:
     """A decorator that makes a command whose options are the fields of a dataclass.
+
+    `options` names the dataclass in `exactfold.app.options`, such as "patterns.CountOptions". It is
+    imported when the command is chosen, as one command needs no other's options.
 
     The decorated function returns the exit code. Each field is an option or argument of typer, and
     the help lists them in the order of the fields. The options of a base class with a `panel` stand
@@ -29,21 +35,41 @@ def taking(options: type[Any]) -> Callable[[Callable[..., int]], Callable[..., N
             raise typer.Exit(run(**given))
 
         command.__name__, command.__doc__ = run.__name__, run.__doc__
-        taken_by = signature(options, eval_str=True)
         wrapped = reported(command)
-        panels = {
-            name: vars(base)["panel"]
-            for base in options.__mro__
-            if "panel" in vars(base)
-            for name in base.__annotations__
-        }
-        taken = [
-            _for_typer(field, panels.get(field.name, "")) for field in taken_by.parameters.values()
-        ]
-        wrapped.__signature__ = taken_by.replace(parameters=taken)  # type: ignore[attr-defined]
+        wrapped.__signature__ = Signature()  # type: ignore[attr-defined]
+        wrapped.taking = options  # type: ignore[attr-defined]
         return wrapped
 
     return made
+
+
+def _with_options(command: Any) -> Callable[..., None]:
+    """A command of `taking` with the parameters that its options make."""
+
+    @wraps(command.__wrapped__)
+    def whole(**given: Any) -> None:
+        command.__wrapped__(**given)
+
+    del whole.taking  # type: ignore[attr-defined]
+    whole.__signature__ = _signature(command.taking)  # type: ignore[attr-defined]
+    return whole
+
+
+def _signature(options: str) -> Signature:
+    """The parameters of the command that takes these options."""
+    module, name = options.split(".")
+    dataclass = getattr(import_module(f"exactfold.app.options.{module}"), name)
+    taken_by = signature(dataclass, eval_str=True)
+    panels = {
+        name: vars(base)["panel"]
+        for base in dataclass.__mro__
+        if "panel" in vars(base)
+        for name in base.__annotations__
+    }
+    taken = [
+        _for_typer(field, panels.get(field.name, "")) for field in taken_by.parameters.values()
+    ]
+    return taken_by.replace(parameters=taken)
 
 
 def _for_typer(field: Parameter, panel: str) -> Parameter:
@@ -67,13 +93,27 @@ class Command(TyperCommand):
         if self.help:  # the lines of its paragraphs are broken anew
             self.help = re.sub(r"(?<!\n)\n(?!\n)", " ", self.help)
 
+    @property
+    def params(self) -> Any:
+        """The options and arguments; those of a dataclass are made when they are asked for."""
+        if hasattr(self.callback, "taking"):
+            whole = typer.Typer(add_completion=False)
+            whole.command()(_with_options(self.callback))
+            made = typer.main.get_command(whole)
+            self._params, self.callback = made.params, made.callback
+        return self._params
+
+    @params.setter
+    def params(self, parameters: Any) -> None:
+        self._params = parameters
+
     def get_help_option(self, ctx: Any) -> Any:
         """The option --help, or None if the command has none."""
         return _bare(super().get_help_option(ctx))
 
     def get_params(self, ctx: Any) -> Any:
         """All parameters; the help shows arguments without a type."""
-        parameters = super().get_params(ctx)
+        parameters = _without_pydantic(super().get_params(ctx))
         for parameter in parameters:
             if parameter.param_type_name == "argument":
                 setattr(parameter, "display_type_rich", _no_type)  # noqa: B010 - typer's own name
@@ -104,7 +144,7 @@ class Group(TyperGroup):
 
     def get_params(self, ctx: Any) -> Any:
         """All options; the help shows the options for completion as flags, too."""
-        parameters = super().get_params(ctx)
+        parameters = _without_pydantic(super().get_params(ctx))
         for parameter in parameters:
             if parameter.name in ("install_completion", "show_completion"):
                 _bare(parameter)
@@ -154,6 +194,37 @@ _RENAMED = {
     "--serve": "`exactfold serve PATTERN`",
 }
 """Options of earlier versions, and what does the same now."""
+
+
+class _Reader:
+    """Makes the value of a parameter from its text, as typer does, but without pydantic.
+
+    Pydantic takes longer to load than most commands take. No option here needs it: each has a
+    parser, or is a path, a text, a flag, or a list of these.
+    """
+
+    def __init__(self, kind: Any, parser: Callable[[object], Any] | None) -> None:
+        self._make = parser or (get_args(kind) or (kind,))[0]
+
+    def __call__(self) -> _Reader:
+        """This reader: typer asks a parameter for it."""
+        return self
+
+    def coerce(self, value: Any, param: Any, ctx: Any) -> Any:
+        """The value of one text or of several; None or () if none was given."""
+        if param.multiple or param.nargs == -1:
+            return () if value is None else [self._make(text) for text in value]
+        return None if value is None else self._make(value)
+
+
+def _without_pydantic(parameters: list[Any]) -> list[Any]:
+    """The same parameters, with readers of their own if typer would take pydantic for them."""
+    for parameter in parameters:
+        if hasattr(parameter, "get_runtime_param"):  # typer 0.29
+            told = parameter.type_descriptor
+            reader = _Reader(told.annotation, told.parameter_info.parser)
+            parameter.get_runtime_param = reader
+    return parameters
 
 
 def _no_type(ctx: Any) -> None:

@@ -11,16 +11,11 @@ from typing import TYPE_CHECKING, Final, TypeGuard, cast, overload
 
 from exactfold._support.clock import LIMIT, Clock
 from exactfold._support.progress import Progress
-from exactfold.app.verbs.choosing import the_branch
-from exactfold.app.verbs.chosen import Choice
-from exactfold.branches.counting.batch import count_many
 from exactfold.branches.counting.doubted import doubted_branch
-from exactfold.branches.counting.find import BoundaryHeights, Deficits, Signs
 from exactfold.branches.counting.registry import choose
 from exactfold.branches.counting.ways import count_opened, decompose_opened
-from exactfold.branches.values.branch import Branch
 from exactfold.errors import UsageError
-from exactfold.pattern.crease_pattern import CreasePattern, Edge
+from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.drawing.drawing import Drawing, Snap, Steps
 from exactfold.pattern.fold import FoldFile
 from exactfold.pattern.loading import PatternLike, open_sheet
@@ -29,11 +24,14 @@ from exactfold.pattern.reading import Reading
 
 _PROPOSING: Final = 5.0
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # counting one sheet does not need them
     from typing import TypeAlias
 
+    from exactfold.branches.counting.find import BoundaryHeights, Deficits, Signs
+    from exactfold.branches.values.branch import Branch
     from exactfold.branches.values.result import BranchCount
     from exactfold.panels.result import Decomposition
+    from exactfold.pattern.crease_pattern import Edge
 
     Many: TypeAlias = "Iterator[tuple[str, BranchCount | Decomposition | Exception]]"
 
@@ -172,6 +170,8 @@ def count(
             )
         choose(method)
         return _counted(sheet, Reading(snap, number), method, seed, Clock(limit), progress)
+    from exactfold.branches.counting.batch import count_many
+
     return count_many(
         cast("Iterable[PatternLike]", sheet),
         jobs=workers,
@@ -296,6 +296,9 @@ def branch(
     >>> exactfold.branch("two-vertex", way=3).sign_text
     '+-'
     """
+    from exactfold.app.verbs.choosing import the_branch
+    from exactfold.app.verbs.chosen import Choice
+
     choice = Choice(way, signs, up, letters, boundary_heights, curvature)
     opened = open_sheet(sheet)
     return doubted_branch(the_branch(opened, choice, progress).branch, opened)

@@ -112,6 +112,10 @@ def _point_of(
     edges = sorted(leaf.rows)
     rows = np.array([[float(x) for x in leaf.rows[edge]] for edge in edges])
     wish = np.array([{"M": -1.0, "V": 1.0}.get(letters.get(edge, ""), 0.0) for edge in edges])
+    if leaf.motion:
+        w = np.array([float(sum(leaf.densities[edge])) for edge in edges])
+        side = -1.0 if (np.sign(w) * wish).sum() < 0 else 1.0
+        return dict(zip(edges, (side * w / np.abs(w).max()).tolist(), strict=True))
     forms = [_form(moving[v], edges, rows) for v in leaf.vertices]
     generator = np.random.default_rng(0)
     starts = [np.linalg.lstsq(rows, wish, rcond=None)[0]] if wish.any() else []

@@ -21,7 +21,6 @@ from exactfold.pattern.described import described
 from exactfold.pattern.near_degeneracy import near_degenerate, warnings
 from exactfold.rigidity.equations.branch_system import Chart
 from exactfold.rigidity.rigid_triangles import RigidTriangle
-from exactfold.solve.certify.algebraic import AlgebraicProof
 
 if TYPE_CHECKING:  # counting branches does not load what panels need
     from exactfold.branches.connected_components.result import ConnectedComponents
@@ -36,6 +35,7 @@ if TYPE_CHECKING:  # counting branches does not load what panels need
     from exactfold.panels.result import Decomposition
     from exactfold.pattern.meant import Meant
     from exactfold.pattern.opening import ReadDocument
+    from exactfold.solve.certify.algebraic import AlgebraicProof
 
 
 @dataclass(frozen=True)
@@ -268,6 +268,7 @@ class BranchCount(Page, Ways[Branch], Certified):
             "format": "exactfold count result",
             "version": 2,
             "pattern": described(self.pattern, name, self.snapped),
+            "ways": self.ways,
             "reason": self.reason,
             "why": self.why,
             "true_branches": str(self.true_branches),
@@ -302,6 +303,13 @@ class BranchCount(Page, Ways[Branch], Certified):
             "distinct": self.distinct,
             "components": self._families()["components"],
         }
+
+    @property
+    def ways(self) -> int | None:
+        """The number of branches, or of families of motions with more than four corners; 0 for a
+        rigid sheet, None if the number is infinite or not known.
+        """
+        return self.distinct if self.families is None else self.families.ways
 
     def _families(self) -> MotionKeys:
         """The keys of the JSON output that belong to irreducible components."""

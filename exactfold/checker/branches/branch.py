@@ -1,14 +1,21 @@
 """Certificates of one branch with given vertex signs (docs/branch.md).
 
 Why it is a proof: the file gives heights with K_v > 0 at every interior vertex. Theorem 5 of
-docs/branch.md (which also describes the file) then bounds the distance to the only solution with
-the same signs. Heights that solve the equations exactly are this solution. The boundary must be
-convex, or it is a quadrilateral whose notch is closed here. Vertices inside a 3-cycle of edges stay
-flat (Theorem 2 (a), applied to the triangle) and are removed. In version 2 the boundary heights are
-given, and the curvatures K_v are the claimed angle deficits instead of 0; Theorem 5 holds without
-change, and a vertex with a positive deficit is not flat. Any other fold is proved flat in one of
-two ways: the heights are exact and do not bend it, or K_v = 0 at one of its vertices leaves it no
-other choice (`close_flat`).
+docs/branch.md then bounds the distance to the only solution with the same signs. Heights that solve
+the equations exactly are this solution. The boundary must be convex, or it is a quadrilateral whose
+notch is closed here. Vertices inside a 3-cycle of edges stay flat (Theorem 2 (a), applied to the
+triangle) and are removed. In version 2 the boundary heights are given, and the curvatures K_v are
+the claimed angle deficits instead of 0; Theorem 5 holds without change, and a vertex with a
+positive deficit is not flat. Any other fold is proved flat in one of two ways: the heights are
+exact and do not bend it, or K_v = 0 at one of its vertices leaves it no other choice
+(`close_flat`).
+
+The claims are the `gauge` ("saddle", or "rim": about the rim of the heights); `vertex_signs` in the
+order of the interior vertices (0 where the star is flat); `assignment` in the order of the folds
+("U" claims nothing); `squared_distance` (0 if the heights are exact); and in version 2, of which
+the gauge is "rim", `curvature`, rationals in the order of the interior vertices. The evidence has
+`emptied`, the triangulated triangles as `corners` and `inside`, and `heights`, numerators of all
+vertices over `denominator`, null for the vertices inside.
 """
 
 from __future__ import annotations

@@ -10,6 +10,21 @@ leaves out their folds, makes the flat closure, and finds the solutions that rem
 Each of these joins all sign vectors that agree with its signs. If all such solutions are found for
 a vertex, nothing else is joined at this vertex; for the lower bound, all sign vectors that differ
 at any other vertex are taken to be joined. A fold from boundary to boundary joins everything.
+
+The claims are the `vertices` that can pop, in increasing order; `at_least` and `at_most`, bounds of
+the number of pieces; `joints`, the signs of all solutions with flat stars that the evidence shows
+("+", "-", or "0" where the star is flat; one of each and its reflection, and none that joins only
+sign vectors that another one joins; no list with a `chord`); and `complete`, the vertices of which
+it is shown that no other sign vectors that differ there only are joined. The evidence has
+`emptied`, the triangulated triangles; `chord`, null or a fold from boundary to boundary; and
+`flat`, a list of sets of stars that are held flat. Each has `held`, these vertices; `complete`,
+those of which this shows all joints, because the same folds are left with the star of that vertex
+flat alone; and `parts`. An entry of `parts` has `folds`, whose densities p_1, ..., p_m are
+coordinates of a part that is not decided without it, and one of these: `chart`, the numbers c_k of
+the chart p_m + sum_{k<m} c_k p_k = 1, and `roots`, 2^(m-1) boxes as in listings for the other
+coordinates (a box of a zero that is not real has the centres of all real parts and then those of
+all imaginary parts; some imaginary part differs from 0 on it); or `points`, boxes for the
+coordinates `free`, one for each form, all others being `fixed`.
 """
 
 from __future__ import annotations

@@ -110,20 +110,28 @@ class Krawczyk:
 
 
 def inverse(matrix: list[list[Any]]) -> list[list[Any]]:
-    """Gauss-Jordan inverse with partial pivoting, in the numbers of the matrix."""
+    """Gauss-Jordan inverse with partial pivoting, in the numbers of the matrix.
+
+    Step k solves the equation of row k for unknown k: the column of the unknown becomes that of the
+    right side.
+    """
     n = len(matrix)
-    one = matrix[0][0] * 0 + 1
-    work = [list(row) + [one * (i == j) for j in range(n)] for i, row in enumerate(matrix)]
+    zero, order = matrix[0][0] * 0, list(range(n))
+    one, work = zero + 1, [list(row) for row in matrix]
     for k in range(n):
         pivot = max(range(k, n), key=lambda i: abs(work[i][k]))
         work[k], work[pivot] = work[pivot], work[k]
-        lead = work[k][k]
-        work[k] = [x / lead for x in work[k]]
+        order[k], order[pivot] = order[pivot], order[k]
+        row = work[k]
+        lead, row[k] = row[k], one
+        row = work[k] = [x / lead for x in row]
         for i in range(n):
             factor = work[i][k]
             if i != k and factor:
-                work[i] = [x - factor * y for x, y in zip(work[i], work[k], strict=True)]
-    return [row[n:] for row in work]
+                work[i][k] = zero
+                work[i] = [x - factor * y for x, y in zip(work[i], row, strict=True)]
+    places = sorted(range(n), key=order.__getitem__)
+    return [[row[k] for k, _ in zip(places, row, strict=True)] for row in work]
 
 
 def _inverse_or_none(matrix: list[list[Any]]) -> list[list[Any]] | None:

@@ -67,6 +67,7 @@ MOST_MONOMIALS = 500  # monomials in the proof that a system has no zero
 
 # --- panels --------------------------------------------------------------------------------------
 MOST_SETS = 1 << 20  # steps of the search for components
+ISOLATED_FORMS = 12  # vertices of a part whose ways are all isolated
 CONE_FORMS = 64  # vertices whose curvature forms are left on one space
 MOST_CONDITIONS = 1 << 11  # closing conditions of a motion with given letters
 MOST_SHIFT = 1 << 10  # bits by which the numbers of such a motion are shifted
@@ -75,7 +76,7 @@ MODE_STEPS = 1 << 20  # steps of one search for supports
 MODE_ROWS = 1 << 16  # rows of one table of modes
 MODE_ROOTS = 7  # square roots that are adjoined to prove that one number is 0
 SPACE_ROOTS = 8  # square roots that are adjoined to hold the numbers of two spaces in one field
-SPACE_STEPS = 1 << 22  # products of densities in one search
+SPACE_STEPS = 1 << 24  # products of densities in one search
 SPACE_LEAVES = 1 << 12  # spaces of motions of one part
 MOST_LISTED = 1 << 12  # modes of one support that are checked one by one
 MOST_SUPPORTS = 1 << 15  # supports of a sheet

@@ -11,6 +11,7 @@ near a polynomial, for every x* in its box.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
 from math import lcm
 
@@ -27,9 +28,12 @@ from .bounds import (
     product,
     weights_of,
 )
-from .equations import Curve, LengthEquations, Parts, convolved, extended
+from .equations import ORDER, LengthEquations, extended, images, inverse_of, largest, rounded
+from .packed import Lanes
 from .patches import Patch, wheel_stress
-from .tubes import ROW_BITS, Ball, Piece, slopes
+from .tubes import ROW_BITS, Ball, Piece, near
+
+Rows = Sequence[Sequence[int]]
 
 
 class Stresses:
@@ -91,65 +95,70 @@ class BranchPointTube(Piece):
             for u, d in zip(equations.flat, equations.along(branch_point.centre), strict=True)
         ]
 
-        def derivative(parts: Parts, k: int) -> Columns:
-            """The coefficient of s^k of DH, over 2^(bits + more)."""
-            rows = x if k == 0 else parts[k - 1]
-            last = [t << bits + more - ROW_BITS for t in row]
+        def derivative(rows: Rows, terms: Rows, last: Sequence[Sequence[int]]) -> Columns:
+            """DH over 2^(bits + more), for the rows of the kept edges and of the stresses.
+
+            `last` are the rows after these. The entries may be packed polynomials.
+            """
             scaled = [[a * m << more for a in e] for m, e in zip(kept, rows, strict=True)]
-            columns = equations.columns(scaled, () if k else equations.last_rows(last, more))
+            columns = equations.columns(scaled, last)
             for edge, stress in zip(replaced, stresses.rows, strict=True):
-                terms = parts[k] if k < len(parts) else [(0, 0, 0)] * len(x)
                 here = [[a * stress.get(e, 0) for a in y] for e, y in enumerate(terms)]
                 for column, added in zip(columns, equations.columns(here), strict=True):
                     if total := sum(value for _, value in added):
                         column.append((edge, total))
             return columns
 
-        def coefficient(curve: Curve, parts: Parts, k: int) -> Vector:
-            """The coefficient of s^k of H, over 2^(2 bits + more + 1)."""
-            total = [0] * len(x)
-            if k < len(curve):
-                total = [2 * dot(a, y) for a, y in zip(x, parts[k], strict=True)]
-            if k:
-                bent = convolved(parts, slice(0, 3), k - 1)
-                total = [a + b for a, b in zip(total, bent, strict=True)]
-            total = [a << more for a in total]
-            squares = convolved(parts, slice(0, 3), k)
+        def residual(y: Vector, width: int) -> Vector:
+            """H over 2^(2 bits + more + 1)."""
+            edges = equations.along(y)
+            squares = [dot(e, e) for e in edges]
+            total = [
+                2 * dot(a, e) + (square << width) << more
+                for a, e, square in zip(x, edges, squares, strict=True)
+            ]
             for edge, stress in zip(replaced, stresses.rows, strict=True):
                 total[edge] = sum(w * squares[e] for e, w in stress.items())
-            here = curve[k] if k < len(curve) else [0] * equations.size
-            ties = [t << more + 1 for t in equations.tied(here)]
-            last = dot(row, here) - (int(k == 0) << bits + ROW_BITS)
+            ties = [t << more + 1 for t in equations.tied(y)]
+            last = dot(row, y) - (1 << bits + ROW_BITS)
             return [*total, *ties, last << bits + more - ROW_BITS + 1]
 
-        columns = derivative([equations.along(centre)], 0)
-        p = equations.approximate_inverse(columns, bits + more)
-        curve = extended(equations, centre, p, coefficient, bits + more + 1)
+        last = equations.last_rows([t << bits + more - ROW_BITS for t in row], more)
+        p = rounded(inverse_of(derivative(x, equations.along(centre), last), bits + more))
+        curve = extended(equations, centre, p, residual, bits + more + 1)
         parts = [equations.along(a) for a in curve]
-        matrices = [product(p, derivative(parts, k)) for k in range(len(curve) + 1)]
-        weights = weights_of(slopes(matrices, bits + more))
+        rows: list[Rows] = [x, *parts]
+        wheel = max(sum(map(abs, stress.values())) for stress in stresses.rows)
+        sizes = [max(largest(x) << more, largest(last)), *(largest(y) << more for y in parts)]
+        stressed_sizes = [*(wheel * largest(y) for y in parts), 0]
+        sizes = list(map(max, sizes, stressed_sizes))
+        lanes = Lanes(p, sizes)
+        columns = derivative(lanes.table(rows), lanes.table(parts), lanes.table([last]))
+        slopes = lanes.read(product(p, columns), 1 << INVERSE_BITS + bits + more)
+        weights = weights_of(near(slopes, bits + more))
         sums = equations.weight_sums(weights)
         square = [dot(e, e) for e in sums]
         stressed = [0] * len(x)
         for edge, stress in zip(replaced, stresses.rows, strict=True):
             stressed[edge] = (sum(abs(w) * square[e] for e, w in stress.items()) >> more) + 1
+        room = equations.beyond([*curve, *x, *last], more)
         proof = bounds(
             p,
-            [coefficient(curve, parts, k) for k in range(2 * len(curve))],
+            images(equations, curve, p, residual, room, 2 * ORDER + 1),
             2 * bits + more + 1,
-            matrices,
+            slopes,
             bits + more,
             [stressed, [a * m for a, m in zip(square, kept, strict=True)]],
             weights,
         )
         # X_e lies in a box about x_e: how much that changes the equations and their derivatives.
         spread = equations.weight_sums(branch_point.radii)
-        sizes = [[abs(a) * m for a, m in zip(line, kept, strict=False)] for line in p]
+        kept_p = [[abs(a) * m for a, m in zip(line, kept, strict=False)] for line in p]
 
-        def off(rows: list[tuple[int, ...]], places: int) -> Fraction:
+        def off(rows: Rows, places: int) -> int:
             """A bound of |P v|: v_e = spread_e . rows_e if the equation of e is kept, else 0."""
             most = [dot(r, map(abs, a)) for r, a in zip(spread, rows, strict=True)]
-            return norm([dot(line, most) for line in sizes], weights, INVERSE_BITS + places)
+            return norm([dot(line, most) for line in kept_p], weights, INVERSE_BITS + places)
 
         for k, part in enumerate(parts):
             proof.b[k] += off(part, 2 * bits)

@@ -2,26 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
+from itertools import chain
 from math import lcm
 from operator import add, mul, sub
+from typing import Any, TypeVar
 
 from ..core.krawczyk import inverse
 from ..core.reading import require
 from ..sheets.sheet import Sheet
-from .bounds import INVERSE_BITS, Columns, Vector, dot
+from .bounds import INVERSE_BITS, Columns, Rounded, Vector, dot, product
+from .packed import Lanes, coefficient, packed, unpacked, wide_enough
 from .restriction import Restriction, Tie
+
+Number = TypeVar("Number", int, float)
 
 ORDER = 8  # the degree of the polynomial of a piece
 SPARE = 60  # bits before the binary point
 Curve = list[Vector]
 """A polynomial in s with vector coefficients; row k is the coefficient of s^k."""
 
-Parts = list[list[tuple[int, ...]]]
-"""For every coefficient of a curve, the differences a_e = a_i - a_j of all bars e = (i, j)."""
-
-Coefficient = Callable[[Curve, Parts, int], Vector]
+Residual = Callable[[Vector, int], Vector]
+"""The values of all equations on unknowns that are polynomials, packed with the given width."""
 
 
 class LengthEquations:
@@ -67,6 +70,7 @@ class LengthEquations:
             for i, j in self.bars
         ]
         self.ties = [self._tie(tie, bits - added.tie_bits) for tie in added.ties]
+        self.factor = max([1 << self.more, *(sum(map(abs, row)) for row in self.mixed)])
 
     def _tie(self, tie: Tie, up: int) -> Vector:
         row = [0] * self.size
@@ -92,15 +96,25 @@ class LengthEquations:
             *(x << self.more for x in linear),
         ]
 
+    def beyond(self, rows: Iterable[Sequence[int]], more: int = 0) -> int:
+        """A bound for all coefficients of the equations on a curve of degree `ORDER`.
+
+        They are over 2^(2 bits + `more` + 1). `rows` are the curve and the vectors with which it is
+        multiplied, with numbers below 2^top. A coefficient of one bar is less than 120 products of
+        such numbers, and no value has more such parts than there are unknowns.
+        """
+        top = max(self.bits + 1, largest(rows).bit_length())
+        return self.factor << 2 * top + 9 + self.size.bit_length() + more
+
     def largest(self, squares: Sequence[int]) -> Vector:
         """Bounds for the equations that are not linear, from bounds for the bars."""
         diagonals = squares[len(self.edges) :]
         mixed = [dot(map(abs, row), diagonals) for row in self.mixed]
         return [*squares[: len(self.edges)], *(-(-x >> self.more) for x in mixed)]
 
-    def along(self, row: Sequence[int]) -> list[tuple[int, ...]]:
+    def along(self, row: Sequence[Number]) -> list[tuple[Number, ...]]:
         """The differences a_e of a vector a, for all bars e."""
-        at: dict[int, tuple[int, ...]] = dict.fromkeys(self.pinned, (0, 0, 0))
+        at: dict[int, tuple[Any, ...]] = dict.fromkeys(self.pinned, (0, 0, 0))
         at |= {v: tuple(row[k : k + 3]) for v, k in self.place.items()}
         return [tuple(map(sub, at[i], at[j])) for i, j in self.bars]
 
@@ -122,6 +136,24 @@ class LengthEquations:
                     columns[k].append((n, x * one))
         return columns
 
+    def slopes(
+        self,
+        p: list[Vector],
+        rows: Sequence[Sequence[Sequence[int]]],
+        last: Sequence[Sequence[int]],
+        bits: int,
+    ) -> list[Rounded]:
+        """The coefficients of P DH - 1, by powers of s.
+
+        `rows[k]` are the vectors of the bars in the coefficient of s^k of DH, and `last` the rows
+        after these, for s = 0. All are over 2^bits.
+        """
+        sizes = [self.factor * largest(row) for row in rows]
+        sizes[0] = max(sizes[0], largest(last) << self.more)
+        lanes = Lanes(p, sizes)
+        columns = self.columns(lanes.table(rows), lanes.table([last]))
+        return lanes.read(product(p, columns), 1 << INVERSE_BITS + bits + self.more)
+
     def _factors(self, k: int) -> list[tuple[int, int]]:
         """The equations that contain diagonal k, each with the factor of the diagonal."""
         rows = enumerate(self.mixed, len(self.edges))
@@ -133,66 +165,107 @@ class LengthEquations:
         at |= {v: tuple(weights[k : k + 3]) for v, k in self.place.items()}
         return [tuple(map(add, at[i], at[j])) for i, j in self.bars]
 
-    def approximate_inverse(self, columns: Columns, bits: int) -> list[Vector]:
-        """A matrix P for a matrix over 2^(bits + more); the test that uses P is valid for any P."""
-        return approximate_inverse(columns, bits + self.more)
+    def inverse(self, columns: Columns, bits: int) -> list[list[float]]:
+        """Nearly the inverse of a matrix over 2^(bits + more), in floats."""
+        return inverse_of(columns, bits + self.more)
+
+    def taylor(self, inverse: list[list[float]]) -> list[list[float]]:
+        """The coefficients of s, s^2, ... of the curve with T(x - c) = s, in floats.
+
+        `inverse` is that of DH at c. The tests that use the result are valid for any curve.
+        """
+        rows = [[line[-1] for line in inverse]]
+        parts: list[list[float]] = [[] for _ in range(3 * len(self.bars))]
+        for _ in range(1, ORDER):
+            flat = chain.from_iterable(self.along(rows[-1]))
+            for part, x in zip(parts, flat, strict=True):
+                part.append(x)
+            squares = [sum(map(mul, part, reversed(part))) for part in parts]
+            bars = [-sum(squares[e : e + 3]) / 2 for e in range(0, len(squares), 3)]
+            right, diagonals = bars[: len(self.edges)], bars[len(self.edges) :]
+            right += [sum(map(mul, row, diagonals)) / (1 << self.more) for row in self.mixed]
+            rows.append([sum(map(mul, line, right)) for line in inverse])
+        return rows
 
 
-def approximate_inverse(columns: Columns, bits: int) -> list[Vector]:
-    """An approximate inverse, over 2^INVERSE_BITS, of a square matrix over 2^bits."""
-    size = len(columns)
+def inverse_of(columns: Columns, bits: int) -> list[list[float]]:
+    """Nearly the inverse of a square matrix over 2^bits, in floats."""
+    size, one = len(columns), 1 << bits
     matrix = [[0.0] * size for _ in range(size)]
     for k, column in enumerate(columns):
         for e, x in column:
-            matrix[e][k] += x / (1 << bits)
-    nearly = [[round(x * 2**INVERSE_BITS) for x in row] for row in inverse(matrix)]
-    largest = max(abs(x) for row in nearly for x in row)
-    require(largest >> INVERSE_BITS + SPARE == 0, "a Jacobian is nearly singular")
+            matrix[e][k] += x / one
+    return inverse(matrix)
+
+
+def rounded(matrix: list[list[float]]) -> list[Vector]:
+    """An inverse over 2^INVERSE_BITS, called P; the test that uses P is valid for any P."""
+    nearly = [[round(x * 2**INVERSE_BITS) for x in row] for row in matrix]
+    require(largest(nearly) >> INVERSE_BITS + SPARE == 0, "a Jacobian is nearly singular")
     return nearly
-
-
-def convolved(parts: Parts, axes: slice, k: int) -> Vector:
-    """The coefficient of s^k of |e|^2 for every edge vector e = sum_k parts[k] s^k.
-
-    Only the coordinates in `axes` count.
-    """
-    total = [0] * len(parts[0])
-    top = len(parts) - 1
-    for i in range(max(0, k - top), k // 2 + 1):
-        twice = 1 if 2 * i == k else 2
-        for n, (a, b) in enumerate(zip(parts[i], parts[k - i], strict=True)):
-            total[n] += twice * sum(map(mul, a[axes], b[axes]))
-    return total
 
 
 def extended(
     equations: LengthEquations,
     centre: Vector,
     p: list[Vector],
-    coefficient: Coefficient,
+    residual: Residual,
     extra: int,
 ) -> Curve:
     """Compute a curve from its centre, coefficient by coefficient, by Newton's method with P.
 
-    `coefficient(curve, parts, k)` is the coefficient of s^k of the equations, over
-    2^(bits + extra + more). The result is approximate; the tests that use it are valid for any
-    curve.
+    The values of `residual` are integers over 2^(bits + extra + more). The result is approximate;
+    the tests that use it are valid for any curve.
     """
-    curve, parts = [centre], [equations.along(centre)]
+    down = INVERSE_BITS + extra + equations.more
+    width = (equations.bits + extra + equations.more + SPARE + 23) // 8 * 8
+    curve, x = [centre], centre
     for k in range(1, ORDER + 1):
-        curve.append([0] * len(centre))
-        parts.append(equations.along(curve[k]))
+        row = [0] * len(centre)
         for _ in range(2):
-            g = coefficient(curve, parts, k)
-            down = INVERSE_BITS + extra + equations.more
-            curve[k] = [x - (dot(row, g) >> down) for x, row in zip(curve[k], p, strict=True)]
-            parts[k] = equations.along(curve[k])
+            g = [coefficient(value, width, k) for value in residual(x, width)]
+            step = [dot(line, g) >> down for line in p]
+            row = [a - d for a, d in zip(row, step, strict=True)]
+            x = [a - (d << width * k) for a, d in zip(x, step, strict=True)]
+        curve.append(row)
     return curve
+
+
+def images(
+    equations: LengthEquations,
+    curve: Curve,
+    p: list[Vector],
+    residual: Residual,
+    most: int,
+    degree: int,
+) -> list[Vector]:
+    """The coefficients of P H(p(s), s), for the values H of `residual`, a polynomial in s.
+
+    Its coefficients are at most `most` in size.
+    """
+    width = wide_enough(p, most)
+    values = residual([packed(column, width) for column in zip(*curve, strict=True)], width)
+    rows = [unpacked(dot(line, values), width, degree + 1) for line in p]
+    return [list(column) for column in zip(*rows, strict=True)]
+
+
+def nearest(centre: Vector, series: list[list[float]], bits: int) -> Curve:
+    """The curve with this centre and the nearest integers over 2^bits to these coefficients."""
+    return [centre, *([round(x * 2.0**60) << bits - 60 for x in row] for row in series)]
+
+
+def largest(rows: Iterable[Sequence[int]]) -> int:
+    """The largest size of an entry."""
+    return max(max(max(row), -min(row)) for row in rows)
 
 
 def at(curve: Curve, s: Fraction) -> Vector:
     """The value of the curve at s, rounded down to whole units."""
-    powers = [s**k for k in range(len(curve))]
-    low = powers[-1].denominator
-    whole = [int(x * low) for x in powers]
-    return [dot(column, whole) // low for column in zip(*curve, strict=True)]
+    powers = powers_of(s, len(curve) - 1)
+    return [dot(column, powers) // powers[0] for column in zip(*curve, strict=True)]
+
+
+def powers_of(s: Fraction, top: int) -> Vector:
+    """The powers of s from 0 to `top`, all multiplied by that power of its denominator."""
+    a, b = s.numerator, s.denominator
+    return [a**k * b ** (top - k) for k in range(top + 1)]

@@ -14,8 +14,18 @@ from math import lcm
 
 from ..core.reading import require
 from ..sheets.sheet import Edge, Sheet, turn
-from .bounds import WEIGHT_BITS, Columns, Vector, bounds, dot, product
-from .equations import LengthEquations, approximate_inverse
+from .bounds import (
+    INVERSE_BITS,
+    WEIGHT_BITS,
+    Columns,
+    Rounded,
+    Vector,
+    bounds,
+    dot,
+    less_one,
+    product,
+)
+from .equations import LengthEquations, inverse_of, rounded
 from .tubes import Ball
 
 
@@ -84,12 +94,13 @@ class Patch:
             residual.append(sum(c * z[3 * m + 2] for m, c in line.items()) << k // 2 + 1)
             for m, c in line.items():
                 columns[3 * m + 2].append((e, c << k // 2))
-        p = approximate_inverse(columns, bits + k)
+        p = rounded(inverse_of(columns, bits + k))
+        slope = less_one(product(p, columns), 1 << INVERSE_BITS + bits + k)
         proof = bounds(
             p,
-            [residual],
+            [[dot(row, residual) for row in p]],
             2 * bits + k + 1,
-            [product(p, columns)],
+            [Rounded(slope, 0)],
             bits + k,
             [squares],
             [1 << WEIGHT_BITS] * size,

@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
+from operator import add
 from typing import NamedTuple
 
-from ..core.reading import require
-from .bounds import (
-    INVERSE_BITS,
-    WEIGHT_BITS,
-    Bounds,
-    Vector,
-    bounds,
-    dot,
-    product,
-    weights_of,
+from ..core.reading import CertificateError, require
+from .bounds import INVERSE_BITS, WEIGHT_BITS, Bounds, Rounded, Vector, bounds, dot, weights_of
+from .equations import (
+    ORDER,
+    Curve,
+    LengthEquations,
+    at,
+    extended,
+    images,
+    nearest,
+    powers_of,
+    rounded,
 )
-from .equations import Curve, LengthEquations, Parts, at, convolved, extended
 
 ROW_BITS = 20
 
@@ -55,8 +58,8 @@ class Piece:
         return Ball(at(slope, s), self._radii(rate))
 
     def _radii(self, radius: Fraction) -> Vector:
-        one = 1 << self.bits
-        return [int(radius * Fraction(w * one, 1 << WEIGHT_BITS)) + 2 for w in self.weights]
+        over, whole = radius.numerator << self.bits, radius.denominator << WEIGHT_BITS
+        return [over * w // whole + 2 for w in self.weights]
 
 
 class Start(Piece):
@@ -71,51 +74,44 @@ class Start(Piece):
         self, equations: LengthEquations, centre: Vector, halvings: int, held: int, reach: Fraction
     ) -> None:
         self.halvings, up, bits = halvings, 1 << 2 * halvings, equations.bits
-        none = [0] * equations.size
-        last = [int(k == held) << bits + 2 * halvings for k in range(equations.size)]
-        edges = equations.along(centre)
-        pairs = zip(equations.flat, edges, strict=True)
-        tilted = [(x * up, y * up, e[2] * up) for (x, y, _), e in pairs]
-        columns = equations.columns(tilted, equations.last_rows(last, 2 * halvings))
-        p = equations.approximate_inverse(columns, bits + 2 * halvings)
+        scale = bits + 2 * halvings
+        tilted = [
+            (x * up, y * up, e[2] * up)
+            for (x, y, _), e in zip(equations.flat, equations.along(centre), strict=True)
+        ]
+        held_row = [int(k == held) << scale for k in range(equations.size)]
+        last = equations.last_rows(held_row, 2 * halvings)
+        p = rounded(equations.inverse(equations.columns(tilted, last), scale))
 
-        def coefficient(curve: Curve, parts: Parts, k: int) -> Vector:
-            """The coefficient of s^k of the equations, over 2^(2 bits + 2 halvings + more + 1)."""
-            total = [0] * len(equations.bars)
-            if k < len(curve):
-                total = [
-                    2 * (x * a + y * b)
-                    for (x, y, _), (a, b, _) in zip(equations.flat, parts[k], strict=True)
-                ]
-            if k <= 2 * len(curve) - 2:
-                heights = convolved(parts, slice(2, 3), k)
-                total = [x + y for x, y in zip(total, heights, strict=True)]
-            total = [x * up for x in total]
-            if k:
-                plane = convolved(parts, slice(0, 2), k - 1)
-                total = [x + y for x, y in zip(total, plane, strict=True)]
-            here = curve[k][held] if 0 < k < len(curve) else 0
-            ties = equations.tied(curve[k] if k < len(curve) else none)
-            ties = [x << 2 * halvings + 1 for x in ties]
-            return equations.stacked(total, [*ties, here << bits + 2 * halvings + 1])
+        def residual(x: Vector, width: int) -> Vector:
+            """The equations, over 2^(2 bits + 2 halvings + more + 1)."""
+            bars = [
+                ((2 * (a * u + b * v) + c * c) * up) + (a * a + b * b << width)
+                for (u, v, _), (a, b, c) in zip(equations.flat, equations.along(x), strict=True)
+            ]
+            ties = [t << 2 * halvings + 1 for t in equations.tied(x)]
+            return equations.stacked(bars, [*ties, x[held] - centre[held] << scale + 1])
 
-        curve = extended(equations, centre, p, coefficient, bits + 2 * halvings + 1)
+        curve = extended(equations, centre, p, residual, scale + 1)
         parts = [equations.along(row) for row in curve]
-        matrices = [product(p, columns)]
-        for k in range(1, len(curve) + 1):
-            plane = [e[:2] for e in parts[k - 1]]
-            heights = [e[2] * up for e in parts[k]] if k < len(curve) else [0] * len(plane)
-            rows = [(x, y, z) for (x, y), z in zip(plane, heights, strict=True)]
-            matrices.append(product(p, equations.columns(rows)))
-        weights = weights_of(slopes(matrices, bits + 2 * halvings + equations.more))
+        plane = [[(u * up, v * up) for u, v, _ in equations.flat]]
+        plane += [[(a, b) for a, b, _ in part] for part in parts]
+        heights = [[c * up for _, _, c in part] for part in parts] + [[0] * len(tilted)]
+        rows = [
+            [(a, b, c) for (a, b), c in zip(*both, strict=True)]
+            for both in zip(plane, heights, strict=True)
+        ]
+        slopes = equations.slopes(p, rows, last, scale)
+        weights = weights_of(near(slopes, scale + equations.more))
         sums = equations.weight_sums(weights)
         squares = [[z * z for _, _, z in sums], [(x * x + y * y) // up + 1 for x, y, _ in sums]]
+        most = equations.beyond([*curve, *equations.flat, *equations.ties], 2 * halvings)
         proof = bounds(
             p,
-            [coefficient(curve, parts, k) for k in range(2 * len(curve))],
-            2 * (bits + halvings) + equations.more + 1,
-            matrices,
-            bits + 2 * halvings + equations.more,
+            images(equations, curve, p, residual, most, 2 * ORDER + 1),
+            bits + scale + equations.more + 1,
+            slopes,
+            scale + equations.more,
             [equations.largest(square) for square in squares],
             weights,
         )
@@ -145,46 +141,47 @@ class Tube(Piece):
     def __init__(
         self, equations: LengthEquations, centre: Vector, row: Vector, reach: Fraction
     ) -> None:
-        self.row, bits, none = row, equations.bits, [0] * equations.size
-        edges = equations.along(centre)
+        self.row, bits = row, equations.bits
         here = [
-            tuple(x + y for x, y in zip(u, e, strict=True))
-            for u, e in zip(equations.flat, edges, strict=True)
+            tuple(map(add, u, e))
+            for u, e in zip(equations.flat, equations.along(centre), strict=True)
         ]
-        last_row = [t << bits - ROW_BITS for t in row]
-        columns = equations.columns(here, equations.last_rows(last_row))
-        p = equations.approximate_inverse(columns, bits)
+        last = equations.last_rows([t << bits - ROW_BITS for t in row])
+        inverse = equations.inverse(equations.columns(here, last), bits)
+        p = rounded(inverse)
 
-        def coefficient(curve: Curve, parts: Parts, k: int) -> Vector:
-            """The coefficient of s^k of the equations, over 2^(2 bits + more + 1)."""
-            total = convolved(parts, slice(0, 3), k)
-            last = 0
-            if k < len(curve):
-                linear = [2 * dot(u, e) for u, e in zip(equations.flat, parts[k], strict=True)]
-                total = [x + y for x, y in zip(total, linear, strict=True)]
-                if k:
-                    last = dot(row, curve[k])
-            last -= int(k == 1) << bits + ROW_BITS
-            ties = [2 * x for x in equations.tied(curve[k] if k < len(curve) else none)]
-            return equations.stacked(total, [*ties, last << bits - ROW_BITS + 1])
+        def residual(x: Vector, width: int) -> Vector:
+            """The equations, over 2^(2 bits + more + 1)."""
+            bars = [
+                (2 * u + a) * a + (2 * v + b) * b + c * c
+                for (u, v, _), (a, b, c) in zip(equations.flat, equations.along(x), strict=True)
+            ]
+            ties = [2 * t for t in equations.tied(x)]
+            along = dot(row, x) - dot(row, centre) - (1 << width + bits + ROW_BITS)
+            return equations.stacked(bars, [*ties, along << bits - ROW_BITS + 1])
 
-        curve = extended(equations, centre, p, coefficient, bits + 1)
-        parts = [equations.along(a) for a in curve]
-        matrices = [product(p, columns)]
-        matrices += [product(p, equations.columns(part)) for part in parts[1:]]
-        weights = weights_of(slopes(matrices, bits + equations.more))
-        squares = [[sum(x * x for x in e) for e in equations.weight_sums(weights)]]
-        proof = bounds(
-            p,
-            [coefficient(curve, parts, k) for k in range(2 * len(curve) - 1)],
-            2 * bits + equations.more + 1,
-            matrices,
-            bits + equations.more,
-            [equations.largest(square) for square in squares],
-            weights,
-        )
-        Piece.__init__(self, equations, curve, weights, proof, reach)
-        self.apart = proof.uniqueness(reach)
+        def prove(curve: Curve) -> None:
+            rows = [here, *(equations.along(a) for a in curve[1:])]
+            slopes = equations.slopes(p, rows, last, bits)
+            weights = weights_of(near(slopes, bits + equations.more))
+            squares = [dot(e, e) for e in equations.weight_sums(weights)]
+            most = equations.beyond([*curve, *equations.flat, *last])
+            proof = bounds(
+                p,
+                images(equations, curve, p, residual, most, 2 * ORDER),
+                2 * bits + equations.more + 1,
+                slopes,
+                bits + equations.more,
+                [equations.largest(squares)],
+                weights,
+            )
+            Piece.__init__(self, equations, curve, weights, proof, reach)
+
+        try:
+            prove(nearest(centre, equations.taylor(inverse), bits))
+        except (ArithmeticError, ValueError, CertificateError):  # near a singular configuration
+            prove(extended(equations, centre, p, residual, bits + 1))
+        self.apart = self.proof.uniqueness(reach)
 
     def entered(self, ball: Ball, velocity: Ball) -> Fraction:
         """An upper bound of the parameter s at which a motion enters this tube.
@@ -205,22 +202,32 @@ class Tube(Piece):
         middle = Fraction(dot(self.row, gaps), one)
         spread = Fraction(dot(map(abs, self.row), ball.radii), one)
         require(abs(middle) + spread <= self.reach, "a motion enters a tube beyond its reach")
-        point = at(self.curve, middle)
-        for i, (x, y) in enumerate(zip(point, ball.centre, strict=True)):
-            fast = sum(k * abs(a[i]) * self.reach ** (k - 1) for k, a in enumerate(self.curve) if k)
-            gap = abs(x - y) + 1 + ball.radii[i] + spread * fast
-            room = self.apart * Fraction(self.weights[i] << self.bits, 1 << WEIGHT_BITS)
-            require(gap < room, "a motion does not enter the next tube where zeros are unique")
+        point, top = at(self.curve, middle), len(self.curve) - 1
+        powers = powers_of(self.reach, top - 1)
+        speeds = [k * power for k, power in enumerate(powers, 1)]
+        whole = powers[0] * spread.denominator
+        room, least = self.apart.numerator << self.bits, self.apart.denominator << WEIGHT_BITS
+        columns = zip(*self.curve[1:], strict=True)
+        for x, y, r, w, column in zip(
+            point, ball.centre, ball.radii, self.weights, columns, strict=True
+        ):
+            # |x - y| + 1 + r + spread |p'|, multiplied by `whole`
+            gap = (abs(x - y) + 1 + r) * whole
+            gap += spread.numerator * dot(map(abs, column), speeds)
+            require(
+                gap * least < room * w * whole,
+                "a motion does not enter the next tube where zeros are unique",
+            )
         forwards = dot(self.row, velocity.centre)
         against = dot(map(abs, self.row), velocity.radii)
         require(forwards > against, "a motion may enter a tube backwards")
         return middle - spread, middle + spread
 
 
-def slopes(matrices: list[list[Vector]], bits: int) -> list[list[float]]:
+def near(slopes: Sequence[Rounded], bits: int) -> list[list[float]]:
     """|P M_1| + |P M_2| / 2 + |P M_3| / 4 in floats; only the choice of weights depends on it."""
-    one = 1 << INVERSE_BITS + bits
+    x, y, z = (2.0 ** (slopes[k].drop - INVERSE_BITS - bits - k) for k in (1, 2, 3))
     return [
-        [(abs(x) + abs(y) / 2 + abs(z) / 4) / one for x, y, z in zip(*rows, strict=True)]
-        for rows in zip(*matrices[1:4], strict=True)
+        [x * abs(a) + y * abs(b) + z * abs(c) for a, b, c in zip(*rows, strict=True)]
+        for rows in zip(*(slope.rows for slope in slopes[1:4]), strict=True)
     ]

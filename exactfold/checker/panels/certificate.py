@@ -18,11 +18,11 @@ from ..core.kinds import DocumentKind
 from ..core.reading import at_most, counted, items, keys, keys_of, natural, refusing, require, same
 from ..sheets.panels import Edge, Near, PanelSheet, connected, pair, read_edges, read_panels
 from .claims import (
+    ListedPart,
     ModeClaim,
     ModesClaims,
     PanelFacts,
     PanelsClaims,
-    PartClaim,
     SupportClaim,
 )
 from .components import components, times
@@ -103,7 +103,8 @@ def _parts(sheet: PanelSheet, large: list[Near], given: list[Any]) -> list[PartC
     """Verify each part that has a vertex with more than four folds; return its components."""
     entries: dict[tuple[int, ...], Any] = {}
     for entry in given:
-        keys(entry, keys_of(PartClaim), "a part")
+        more = ["isolated"] if isinstance(entry, dict) and entry.get("isolated") else []
+        keys(entry, " ".join([keys_of(ListedPart), *more]), "a part")
         vertices = tuple(natural(v, "a vertex") for v in items(entry["vertices"], "vertices"))
         entries[vertices] = entry
     require(len(entries) == len(given), "a part of the sheet appears twice")

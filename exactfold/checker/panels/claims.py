@@ -1,8 +1,27 @@
-"""The claims in a certificate of a sheet of rigid panels (docs/certificate.md, panels)."""
+"""The claims in a certificate of a sheet of rigid panels (docs/certificate.md, panels).
+
+The pattern has the `radicands` of its field, one after the other: for the k-th, counted from 0, the
+2^k coefficients of the number that it is the root of; of each of the `vertices` the coefficients of
+x and of y, 2^m rationals for m roots, where bit i of the place stands for root i; and the `edges`,
+pairs i < j, sorted. The claims are
+
+- `interior`, `border`, `folds`, `sha256`: numbers of vertices and folds, and the digest;
+- `held`: folds that were not to fold; everything else holds if they are held flat;
+- `flat`, `free`: folds that are flat in every motion by the flat closure; folds from boundary to
+  boundary, which are in no condition;
+- `second_order`, `true`: {dimension: number} of the components, to second order and truly; `true`
+  is null if it is not known;
+- `rigid`: "proved", "refuted" or, which claims nothing, "undecided";
+- `modes`: the number of elementary modes; null if vertices have more than four folds that may fold,
+  or if there are `trees`;
+- `supports`: all sets of vertices that move together;
+- `spaces`, `trees`: the parts that have vertices with more than four folds that may fold, and those
+  whose components are counted along a tree; left out if there are none.
+"""
 
 from __future__ import annotations
 
-from typing import TypedDict
+from typing import Any, TypedDict
 
 
 class LeafClaim(TypedDict):
@@ -55,7 +74,7 @@ class SupportClaim(TypedDict):
     modes: list[ModeClaim] | None
 
 
-class PartClaim(TypedDict):
+class ListedPart(TypedDict):
     """A part of the sheet in which some vertex has more than four folds.
 
     `complete` says whether the leaves are all true motions near the flat state. If it is false,
@@ -65,6 +84,26 @@ class PartClaim(TypedDict):
     vertices: list[int]
     complete: bool
     leaves: list[LeafClaim]
+
+
+class IsolatedClaim(TypedDict):
+    """All complex motions of a part, each of which is isolated.
+
+    `chart` has a fold i-j and a weight in each entry. The sum of all weights times densities is 1;
+    the densities of all these folds but the last are the unknowns. `real` has a box for each real
+    motion, as in a listing. `nonreal` has a box for one of each pair of conjugate motions; the
+    imaginary parts of its unknowns follow the real parts.
+    """
+
+    chart: list[list[int]]
+    real: list[dict[str, Any]]
+    nonreal: list[dict[str, Any]]
+
+
+class PartClaim(ListedPart, total=False):
+    """The same claims, with all complex motions if these are isolated and were found by number."""
+
+    isolated: IsolatedClaim
 
 
 class TreeClaim(TypedDict):

@@ -13,6 +13,7 @@ from ..sheets.panels import Edge, PanelSheet, pair
 from .claims import LeafClaim
 from .cones import Place, cone_motion
 from .forms import Motion, folds_of
+from .isolated import isolated_ways
 from .loops import Loops
 from .modes import Modes, Support
 from .reduction import BITS, enclosed, reduced
@@ -43,6 +44,8 @@ def verified_part(sheet: PanelSheet, near: Mapping[int, list[int]], given: Any) 
     """
     what = f"the part of vertex {next(iter(near))}"
     spaces = Spaces(sheet, near)
+    if "isolated" in given:
+        return _all_isolated(spaces, given, what)
     by_kind: dict[LeafKind, list[Leaf]] = {}
     for leaf in spaces.leaves():
         _check_component(spaces, leaf)
@@ -70,6 +73,16 @@ def verified_part(sheet: PanelSheet, near: Mapping[int, list[int]], given: Any) 
         require(regular, f"{what} may have other true motions")
         true = second
     return PartComponents(second, true, folding > 0)
+
+
+def _all_isolated(spaces: Spaces, given: Any, what: str) -> PartComponents:
+    """The components of a part whose ways are all isolated; each extends to true motions."""
+    folds, full, number = isolated_ways(spaces, given["isolated"])
+    kinds = [((folds, 1, full), (number, number))] if number else []
+    require(list(_kinds(given["leaves"])) == kinds, f"{what} has other ways than those listed")
+    require(given["complete"] is True, f"{what} has isolated ways, so that these are complete")
+    counts = {1: number} if number else {0: 1}
+    return PartComponents(counts, counts, number > 0)
 
 
 def _kinds(given: Any) -> Iterable[tuple[LeafKind, tuple[int, int]]]:
@@ -208,6 +221,7 @@ def _rank(spaces: Spaces, place: Place) -> int:
         row = {}
         for k, motion in enumerate(basis):
             terms = (weights[fold] * motion[fold] for fold in weights.keys() & motion.keys())
+            spaces.work.count(len(weights), None)
             row[k, k] = sum(terms, start=Interval.of(Fraction(0), BITS))
         rows.append(row)
-    return len(reduced(rows))
+    return len(reduced(rows, spaces.work))

@@ -5,6 +5,8 @@ from __future__ import annotations
 import random
 from collections.abc import Iterator, Sequence
 
+from .reduction import Work
+
 STARTS = 40
 STEPS = 60
 NEAR = 1e-13
@@ -13,7 +15,7 @@ REGULAR = 1e-5
 Matrix = Sequence[Sequence[float]]
 
 
-def near_zeros(forms: Sequence[Matrix]) -> Iterator[list[float]]:
+def near_zeros(forms: Sequence[Matrix], work: Work) -> Iterator[list[float]]:
     """Yield vectors of length 1 at which all forms nearly vanish, with independent derivatives.
 
     Newton's method starts at `STARTS` points. Each step is the shortest one that solves the linear
@@ -28,6 +30,7 @@ def near_zeros(forms: Sequence[Matrix]) -> Iterator[list[float]]:
         generator = random.Random(number)
         w = _unit([generator.uniform(-1, 1) for _ in range(size)])
         for _ in range(STEPS):
+            work.count_short(len(forms) * (size + len(forms)) ** 2)
             slopes = [[2 * _dot(row, w) for row in form] for form in scaled]
             values = [_dot(slope, w) / 2 for slope in slopes]
             weights = _solved([[_dot(a, b) for b in slopes] for a in slopes], values)

@@ -221,6 +221,8 @@ def _joined(
 
 def _letters_on(result: Decomposition, leaf: Leaf) -> Mapping[Edge, str]:
     """The letters of the folds on a line of motions; U for each fold of a larger space."""
+    if leaf.motion:
+        return {edge: "V" if low > 0 else "M" for edge, (low, _) in leaf.densities.items()}
     if leaf.size == 1 and not leaf.vertices:
         return line_mode(result, leaf, stars(result.pattern, result.held)).letters
     return dict.fromkeys(leaf.folds, "U")

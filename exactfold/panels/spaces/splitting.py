@@ -34,7 +34,7 @@ from exactfold.panels.spaces.subspaces import (
     made_leaf,
     maximal,
 )
-from exactfold.panels.spaces.together import narrowing_sum, vanish_only_at_zero
+from exactfold.panels.spaces.together import independent, narrowing_sum, vanish_only_at_zero
 from exactfold.panels.vertex.stars import Star
 from exactfold.pattern.panel_pattern import Edge
 
@@ -145,7 +145,7 @@ class Splitting(LimitedSearch):
             if total is None:
                 if vanish_only_at_zero(space.forms, left, len(space.parameters)):
                     return [] if any(map(is_kept, space.rows)) else [Leaf({}, 0, ())]
-                return [_leaf(space, left)]
+                return [_leaf(space, independent(space.forms, left))]
             if len({sign(d) for d, _ in total}) == 1:
                 self.sums = True
                 smaller = self._imposed(space, [row for _, row in total])

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import Final
+from typing import Final, TypeAlias
 
 import networkx as nx
 from flint import arb
@@ -15,7 +15,7 @@ from exactfold._support.clock import UNLIMITED, Clock
 from exactfold._support.plurals import counted
 from exactfold.errors import TooManyModesError
 from exactfold.exact.joined_fields import joined
-from exactfold.exact.surds import Number, ball, common_field
+from exactfold.exact.surds import Number, ball, common_field, rational
 from exactfold.panels.spaces.kernel import Entry, Rows, entry, imposed, number
 from exactfold.panels.spaces.quadratics import (
     Squares,
@@ -31,6 +31,10 @@ from exactfold.pattern.panel_pattern import Edge
 _BITS: Final = 53
 
 
+Bounds: TypeAlias = tuple[Fraction, Fraction]
+"""A lower and an upper bound of a number."""
+
+
 @dataclass(frozen=True)
 class Leaf:
     """A part of the motions: a linear space, or its points at which the remaining forms vanish.
@@ -39,13 +43,19 @@ class Leaf:
     `vertices` are those whose form does not vanish on the space; each of these forms has one sign
     once and the other sign at least twice. `dimension` is that of the real solutions if they are
     one component; with two or more forms this has to be shown (docs/panels.md, Double covers).
+
+    If those points are several lines, there is a leaf for each line, and `motion` has bounds of the
+    parameters of one point of this line.
     """
 
     rows: Mapping[Edge, tuple[Number, ...]]
     size: int
     vertices: tuple[int, ...]
+    motion: tuple[Bounds, ...] = ()
 
     def __repr__(self) -> str:
+        if self.motion:
+            return f"<Leaf: {counted(len(self.rows), 'fold')}, one line>"
         left = f", {counted(len(self.vertices), 'form')} left" if self.vertices else ""
         return f"<Leaf: {counted(len(self.rows), 'fold')}, dimension {self.size}{left}>"
 
@@ -58,6 +68,28 @@ class Leaf:
     def folds(self) -> tuple[Edge, ...]:
         """The folds that are not flat on the whole leaf."""
         return tuple(sorted(self.rows))
+
+    @property
+    def densities(self) -> Mapping[Edge, Bounds]:
+        """Bounds of the densities at `motion`; empty unless the leaf is one of several lines."""
+        if not self.motion:
+            return {}
+        return {edge: bounds_of(map(rational, row), self.motion) for edge, row in self.rows.items()}
+
+
+def bounds_of(row: Iterable[Fraction | int], known: Sequence[Bounds]) -> Bounds:
+    """Bounds of a linear function of numbers with these bounds.
+
+    >>> one = Fraction(1)
+    >>> bounds_of([2, -1], [(one, one + 1), (one, one + 2)])
+    (Fraction(-1, 1), Fraction(3, 1))
+    """
+    low = high = Fraction(0)
+    for x, (least, most) in zip(row, known, strict=True):
+        if x:
+            low += x * (least if x > 0 else most)
+            high += x * (most if x > 0 else least)
+    return low, high
 
 
 class LimitedSearch:

@@ -10,11 +10,13 @@ from typing import Final
 import numpy as np
 from flint import fmpq
 
+from exactfold.checker.core.reading import LimitError
 from exactfold.checker.panels.modular import MOST_VARIABLES, only_zero, reduced_forms
+from exactfold.checker.panels.reduction import Work
 from exactfold.exact.surds import common_field, sign
-from exactfold.panels.spaces.kernel import Entry
+from exactfold.panels.spaces.kernel import Entry, increase
 from exactfold.panels.spaces.quadratics import Squares
-from exactfold.panels.spaces.sparse import Form, diagonalised, plain
+from exactfold.panels.spaces.sparse import Form, Row, diagonalised, plain, row_space
 
 MOST_SUMMED: Final = 4
 _NOISE: Final = 1e-9
@@ -54,19 +56,56 @@ def vanish_only_at_zero(forms: Mapping[int, Form], vertices: Sequence[int], size
     names = sorted({k for v in vertices for _, row in forms[v] for k in row})
     zero = fmpq(0)
     squares = [[(d, [row.get(k, zero) for k in names]) for d, row in forms[v]] for v in vertices]
-    reduced = modulo_a_prime(squares)
-    return len(names) == size and reduced is not None and only_zero(*reduced)
+    work = Work()
+    try:
+        reduced = modulo_a_prime(squares, work)
+        return len(names) == size and reduced is not None and only_zero(*reduced, work)
+    except LimitError:
+        return False
 
 
-def modulo_a_prime(forms: Sequence[Squares]) -> tuple[list[list[list[int]]], int] | None:
-    """The matrices of the forms modulo a prime, and the prime."""
+def independent(forms: Mapping[int, Form], vertices: Sequence[int]) -> list[int]:
+    """The vertices without those whose form is a sum of multiples of forms of earlier vertices.
+
+    Where the forms of the others vanish, theirs vanish, too.
+
+    >>> one = fmpq(1)
+    >>> independent({1: [(one, {0: one})], 2: [(-one, {0: one})], 3: [(one, {1: one})]}, [1, 2, 3])
+    [1, 3]
+    """
+    names = sorted({k for v in vertices for _, row in forms[v] for k in row})
+    place = {k: n for n, k in enumerate(names)}
+    rows: list[Row] = []
+    for v in vertices:
+        terms: Row = {}
+        for d, row in forms[v]:
+            for (j, x), (k, y) in product(row.items(), repeat=2):
+                if place[j] <= place[k]:
+                    increase(terms, place[j] * len(names) + place[k], d * x * y)
+        rows.append(terms)
+    _, coordinates = row_space(rows)
+    first = {
+        min(row): v
+        for v, row in reversed(list(zip(vertices, coordinates, strict=True)))
+        if len(row) == 1
+    }
+    return sorted(first.values())
+
+
+def modulo_a_prime(
+    forms: Sequence[Squares], work: Work
+) -> tuple[list[list[list[int]]], int] | None:
+    """The matrices of the forms modulo a prime, and the prime.
+
+    The checker counts the work. `LimitError` is raised where it would not check as much.
+    """
     field = common_field(x for form in forms for d, row in form for x in (d, *row))
 
     def parts(x: Entry) -> Sequence[Fraction]:
         return field.number(x).coefficients
 
     weighted = [[(parts(d), [parts(x) for x in row]) for d, row in form] for form in forms]
-    return reduced_forms(weighted, field.radicands)
+    return reduced_forms(weighted, field.radicands, work)
 
 
 def _signs(number: int) -> Iterator[tuple[int, ...]]:

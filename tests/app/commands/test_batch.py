@@ -26,7 +26,7 @@ from running import (
 from sheets import DENTED, scrambled
 
 from exactfold import random_square
-from exactfold.app.commands import batch
+from exactfold.app.commands.several import batch
 from exactfold.app.shell.shell import Bar
 from exactfold.branches import count_branches
 from exactfold.branches.counting.batch import count_many

@@ -34,7 +34,16 @@ PANEL_KEYS = {
     *("near_misses", "meant", "as_written", "proposal", "read", "still_folds", "pieces", "letters"),
     *("exceptional_vertices", "freedom", "drawn"),
 }
-EXTRA_KEYS = {"reason", "why", "open_questions", "settings", "dimension", "degree", "true_bounds"}
+EXTRA_KEYS = {
+    "ways",
+    "reason",
+    "why",
+    "open_questions",
+    "settings",
+    "dimension",
+    "degree",
+    "true_bounds",
+}
 BRANCH_KEYS = {"vertex_signs", "assignment", "multiplicity", "representative", "heights"}
 
 
@@ -199,7 +208,7 @@ def test_undecided_table_lists_what_is_open(tmp_path, monkeypatch):
     path = tmp_path / "flat.fold"
     write_fold(FAMILIES["flat-vertex"](), path)
     monkeypatch.setattr(
-        "exactfold.branches.counting.lines.flat_vertices", lambda chart, points: iter(())
+        "exactfold.branches.counting.in_chart.flat_vertices", lambda chart, points: iter(())
     )
     result = run("count", path, "--method", "popping")
     assert result.exit_code == UNDECIDED

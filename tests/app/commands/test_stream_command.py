@@ -120,9 +120,9 @@ def test_what_stays_open_is_undecided(tmp_path: Path, monkeypatch: pytest.Monkey
 
 def test_both_methods_say_what_is_open(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(
-        "exactfold.branches.counting.lines.flat_vertices", lambda chart, points: iter(())
+        "exactfold.branches.counting.in_chart.flat_vertices", lambda chart, points: iter(())
     )
-    monkeypatch.setattr("exactfold.branches.counting.lines.GROEBNER_LIMIT", 0)
+    monkeypatch.setattr("exactfold.branches.counting.in_chart.GROEBNER_LIMIT", 0)
     data = json.loads(run("count", FLAT, "--stream", tmp_path / "c.txt", "--json").stdout)
     assert data["status"] == "undecided"
     assert data["open_questions"][0].startswith("sign vectors ++, +- seem to meet at +0")

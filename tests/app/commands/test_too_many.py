@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import time
 from pathlib import Path
 
 import pytest
@@ -32,9 +31,7 @@ def large(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.parametrize("method", METHODS)
 def test_no_method_starts(large: Path, method: str) -> None:
-    began = time.monotonic()
     result = run("count", large, "--json", "--method", method)
-    assert time.monotonic() - began < 5
     assert result.exit_code == UNDECIDED
     assert result.stderr == ""
     data = json.loads(result.stdout)

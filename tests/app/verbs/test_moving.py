@@ -206,6 +206,7 @@ def test_letters_of_a_drawing_in_a_family_are_followed_as_match_proves_them():
     assert all((last[f] > 0) == (x == "V") for f, x in letters.items() if x in "MV")
 
 
+@pytest.mark.slow
 def test_a_motion_has_no_more_free_folds_than_its_way_has_dimensions():
     """Along one of these ways two folds seem free to first order, but the way is one curve."""
     result = exactfold.count("flapping-bird")

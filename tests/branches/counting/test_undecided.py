@@ -10,7 +10,7 @@ from sheets import TRIANGLE, scrambled, two_triangles
 
 from exactfold import PROVED, UNDECIDED, checker
 from exactfold.branches import count_branches
-from exactfold.branches.counting import lines, multiple_roots
+from exactfold.branches.counting import in_chart, multiple_roots
 from exactfold.branches.values import classify
 from exactfold.checker.branches import listing
 from exactfold.pattern.degenerate import DEGENERATE
@@ -78,7 +78,7 @@ def test_open_folds_cost_their_letters_and_not_the_count(monkeypatch, name):
     pattern = DEGENERATE[name]()
     known = count_branches(pattern)
     assert not known.undecided_folds
-    monkeypatch.setattr(lines, "recognised", lambda chart, found, undecided: None)
+    monkeypatch.setattr(in_chart, "recognised", lambda chart, found, undecided: None)
     monkeypatch.setattr(classify, "flat_folds", lambda pattern, signs: frozenset())
     result = count_branches(pattern, method="popping")
     assert result.status is PROVED

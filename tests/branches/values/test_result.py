@@ -127,7 +127,7 @@ def test_to_dict_is_json_with_exact_numbers(pattern):
 
 def test_keys_of_the_json_are_fixed():
     data = count_branches(two_vertex()).to_dict()
-    more = {"format", "version", "by", "why", "open_questions", "settings", "warnings"}
+    more = {"ways", "format", "version", "by", "why", "open_questions", "settings", "warnings"}
     more |= {"theory", "rigid", "components", "modes_count", "modes", "flat_folds", "free_folds"}
     more |= {"exceptional_vertices", "freedom", "drawn"}
     more |= {"letters", "near_misses", "read", "still_folds", "meant", "as_written", "proposal"}

@@ -21,10 +21,10 @@ from exactfold.checker.core.reading import (
     LimitError,
     UnfinishedError,
 )
+from exactfold.checker.motion import bounds as motion_bounds
 from exactfold.checker.motion import branch_points as motion_nodes
 from exactfold.checker.motion import loops as motion_loops
 from exactfold.checker.motion import patches as motion_patches
-from exactfold.checker.motion.bounds import value as polynomial
 from exactfold.checker.motion.branch_points import BranchPointTube, Stresses, independent
 from exactfold.checker.motion.chain import through
 from exactfold.checker.motion.equations import LengthEquations, at
@@ -666,6 +666,10 @@ def test_an_arc_holds_the_curve_of_every_node_in_its_box(seed: int) -> None:
             assert max(box.radii) < size << 16
 
 
+def bound(coefficients: list[int], at_most: Fraction) -> Fraction:
+    return Fraction(motion_bounds.value(coefficients, at_most), 1 << 128)
+
+
 def test_what_the_box_of_a_node_does_to_an_arc_is_counted() -> None:
     """With exact numbers: the equations and their slope, at every corner that was tried."""
     sheet, entry = _node()[0], node()
@@ -723,7 +727,7 @@ def test_what_the_box_of_a_node_does_to_an_arc_is_counted() -> None:
             values[edge] = value / 2
         last = sum((t * a for t, a in zip(entry["row"], point, strict=True)), 0) * one
         rounding = Fraction(1, 1 << 40)
-        assert norm([*values, last / 2**20 - 1]) <= polynomial(arc.proof.b, abs(s)) + rounding
+        assert norm([*values, last / 2**20 - 1]) <= bound(arc.proof.b, abs(s)) + rounding
         z = [choose.choice((-1, 1)) * w for w in weights]
         dz = [[a / one for a in e] for e in vectors(cast("list[int]", z))]
         slope = [a + s * b for a, b in zip(dots(x, dz), dots(y, dz), strict=True)]
@@ -735,15 +739,15 @@ def test_what_the_box_of_a_node_does_to_an_arc_is_counted() -> None:
             abs(a - sum(map(mul, line, image), Fraction(0)) / 2**40) / w
             for a, line, w in zip(z, kept["p"], weights, strict=True)
         )
-        assert off <= polynomial(arc.proof.q, abs(s)) + rounding, trial
+        assert off <= bound(arc.proof.q, abs(s)) + rounding, trial
         again = [choose.choice((-1, 1)) * w for w in weights]
         da = [[a / one for a in e] for e in vectors(cast("list[int]", again))]
         far = Fraction(choose.randint(-1000, 1000))
         bend = [far * a for a in dots(dz, da)]
         for edge, value in zip(stresses.replaced, stressed(dots(dz, da)), strict=True):
             bend[edge] = value
-        assert norm([*bend, Fraction(0)]) <= polynomial(arc.proof.kappa, abs(far))
-    assert polynomial(arc.proof.q, Fraction(0)) > Fraction(size) * one
+        assert norm([*bend, Fraction(0)]) <= bound(arc.proof.kappa, abs(far))
+    assert bound(arc.proof.q, Fraction(0)) > Fraction(size) * one
 
 
 def test_the_bars_of_a_panel_bend_as_much_as_is_counted() -> None:

@@ -254,7 +254,7 @@ def test_a_reach_that_is_too_long_is_refused() -> None:
 
 def test_bounds_that_prove_nothing_are_refused() -> None:
     def bounds(b: Any, q: Any, kappa: Any) -> Bounds:
-        return Bounds([Fraction(b)], [Fraction(q)], [Fraction(kappa)])
+        return Bounds(*([round(Fraction(x) * (1 << 128))] for x in (b, q, kappa)))
 
     assert 1 < bounds(1, 0, "1/100").radius(Fraction(1)) < Fraction(11, 10)
     for q in (1, 2):
@@ -269,7 +269,8 @@ def test_bounds_that_prove_nothing_are_refused() -> None:
         assert Fraction(q) + Fraction(kappa) * room > Fraction(q) + (1 - Fraction(q)) * Fraction(
             9, 10
         )
-    steep = Bounds([Fraction(0), Fraction(2)], [Fraction(0), Fraction(1, 4)], [Fraction(1)])
+    one = 1 << 128
+    steep = Bounds([0, 2 * one], [0, one // 4], [one])
     assert steep.velocity(Fraction(1), Fraction(1, 4)) == Fraction(2 + Fraction(1, 16)) * 2
 
 
@@ -424,7 +425,8 @@ def test_the_start_is_that_of_its_branch() -> None:
 
 
 def test_roundings_go_up() -> None:
-    for x in (Fraction(1, 3), Fraction(-1, 3), Fraction(5), Fraction(1, 3**200)):
-        found = motion_bounds.rounded(x, 20)
-        assert 0 <= found - x <= max(abs(x), Fraction(1)) / (1 << 18)
-    assert motion_bounds.rounded(Fraction(0), 20) == 0
+    for h in (Fraction(1, 3), Fraction(7, 4), Fraction(0), Fraction(1, 3**200)):
+        for coefficients in ([5], [0, 1], [1, 2, 3], [1 << 128, 0, 1 << 130]):
+            exact = sum((c * h**k for k, c in enumerate(coefficients)), Fraction(0))
+            assert 0 <= motion_bounds.value(coefficients, h) - exact < 4 * max(1, h) ** 2
+    assert [motion_bounds.up(x, 2) for x in (-5, -4, -3, 0, 1, 4, 5)] == [-1, -1, 0, 0, 1, 1, 2]

@@ -15,7 +15,8 @@ from test_oracles import by_singular, degrees
 from exactfold._support.verdict import PROVED
 from exactfold.checker.core.reading import CertificateError
 from exactfold.checker.panels import certificate as checked
-from exactfold.checker.panels.forms import Forms
+from exactfold.checker.panels import spaces as checked_spaces
+from exactfold.checker.panels.spaces import Spaces
 from exactfold.panels.certificate import certificate_of_panels
 from exactfold.panels.decomposition import decompose
 from exactfold.panels.result import Decomposition
@@ -38,11 +39,48 @@ TURNED = [
     *[(3, 8), (3, 4), (8, 13), (8, 9), (8, 14), (13, 18), (13, 19), (18, 23), (18, 19), (23, 24)],
     *[(4, 8), (4, 9), (9, 14), (14, 19), (19, 24)],
 ]
-SHEETS = {"squares": (SQUARES, {3: 8, 4: 2, 5: 3}), "turned": (TURNED, {2: 1, 3: 4, 4: 2})}
+DEPENDENT = [
+    *[(0, 1), (0, 5), (1, 2), (1, 6), (2, 3), (2, 6), (2, 7), (2, 8), (3, 4), (3, 8)],
+    *[(4, 9), (5, 6), (5, 10), (5, 11), (6, 7), (6, 11), (7, 8), (8, 9), (8, 13), (9, 13)],
+    *[
+        (9, 14),
+        (10, 15),
+        (11, 12),
+        (11, 16),
+        (11, 17),
+        (12, 13),
+        (13, 17),
+        (13, 18),
+        (14, 19),
+        (15, 16),
+    ],
+    *[
+        (15, 20),
+        (16, 20),
+        (16, 21),
+        (17, 22),
+        (18, 19),
+        (18, 23),
+        (18, 24),
+        (19, 24),
+        (20, 21),
+        (21, 22),
+    ],
+    *[(22, 23), (23, 24)],
+]
+SHEETS = {
+    "squares": (SQUARES, {3: 8, 4: 2, 5: 3}),
+    "turned": (TURNED, {2: 1, 3: 4, 4: 2}),
+    "dependent": (DEPENDENT, {2: 2, 3: 1}),
+}
 """Creases on a grid of 5 x 5 points, and the numbers of components by dimension."""
 
 
-REAL = {"squares": {3: 3, 2: 4, 1: 8}, "turned": {4: 6, 3: 8, 2: 1}}
+REAL = {
+    "squares": {3: 3, 2: 4, 1: 8},
+    "turned": {4: 6, 3: 8, 2: 1},
+    "dependent": {3: 4, 2: 4},
+}
 """The sums of the degrees of these components by dimension, free folds apart."""
 
 
@@ -59,11 +97,11 @@ def test_a_sum_of_forms_splits_a_space(name: str) -> None:
     assert result.second_order == SHEETS[name][1]
 
 
-@pytest.mark.parametrize("name", SHEETS)
+@pytest.mark.parametrize("name", ["squares", "turned"])
 def test_the_checker_splits_the_same_spaces(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     made = certificate_of_panels(counted(name))
     verified(made)
-    monkeypatch.setattr(Forms, "narrowing_sum", lambda *_: [])
+    monkeypatch.setattr(checked_spaces, "narrowing_sum", lambda *_: [])
     with pytest.raises(CertificateError, match="may be several components"):
         checked.PANELS.check(made)
 
@@ -71,7 +109,12 @@ def test_the_checker_splits_the_same_spaces(name: str, monkeypatch: pytest.Monke
 @pytest.mark.slow
 @pytest.mark.skipif(shutil.which("Singular") is None, reason="Singular is not installed")
 @pytest.mark.parametrize(
-    ("name", "over_q"), [("squares", {3: 3, 2: 4, 1: 8}), ("turned", {4: 6, 3: 8 + 2})]
+    ("name", "over_q"),
+    [
+        ("squares", {3: 3, 2: 4, 1: 8}),
+        ("turned", {4: 6, 3: 8 + 2}),
+        ("dependent", {3: 4, 2: 4}),
+    ],
 )
 def test_singular_finds_the_same_components(name: str, over_q: dict[int, int]) -> None:
     """A sum of two squares is a pair of planes that are not real, and meet in a real one of one
@@ -85,6 +128,21 @@ def test_singular_finds_the_same_components(name: str, over_q: dict[int, int]) -
 def test_without_sums_the_sheet_is_not_decided(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(splitting, "narrowing_sum", lambda *_: None)
     assert decompose(counted("squares").pattern).second_order is None
+
+
+def test_a_form_that_others_determine_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two forms that are multiples of each other leave one cone, of one dimension less."""
+    made = certificate_of_panels(counted("dependent"))
+    verified(made)
+    assert [leaf.vertices for leaf in counted("dependent").parts[0].spaces if leaf.size == 3] == [
+        (6,),
+        (6,),
+    ]
+    monkeypatch.setattr(Spaces, "_independent", lambda _, forms: tuple(forms))
+    with pytest.raises(CertificateError, match="may be several components"):
+        checked.PANELS.check(made)
+    monkeypatch.setattr(splitting, "independent", lambda _, vertices: vertices)
+    assert decompose(counted("dependent").pattern).second_order is None
 
 
 def squares(*rows: tuple[int, Mapping[int, int]]) -> Form:

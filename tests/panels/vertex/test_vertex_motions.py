@@ -174,7 +174,9 @@ def starts_to_second_order(star: Star, letters: str) -> bool:
     return {1, -1} <= signs or signs == {0}
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize(
+    "seed", [pytest.param(k, marks=[pytest.mark.slow] * (k > 2)) for k in range(12)]
+)
 def test_agrees_with_the_second_order(seed: int) -> None:
     """All letterings of random vertices, with straight pairs and crossings, sectors of any size."""
     rng = random.Random(seed)

@@ -1,0 +1,1 @@
+"""`exactfold count` of several files."""
