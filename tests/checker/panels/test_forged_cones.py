@@ -16,6 +16,7 @@ from test_forged_spaces import certified, leaves_of, spaces_of
 from exactfold.checker.core.intervals import Interval
 from exactfold.checker.core.reading import LimitError
 from exactfold.checker.panels import cones as panel_cones
+from exactfold.checker.panels import reduction as panel_reduction
 from exactfold.checker.panels.cones import Place, cone_motion
 from exactfold.checker.panels.leaves import complete
 from exactfold.checker.panels.reduction import BITS, Work, enclosed, reduced, rest_of
@@ -163,3 +164,17 @@ def test_too_much_work_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("exactfold.checker.panels.reduction.MOST_STEPS", found.work.steps)
     with pytest.raises(LimitError, match="the steps to the spaces of motions, "):
         cone_motion(found, first.basis, first.cones)
+
+
+@pytest.mark.parametrize("missing", [0, 1])
+def test_a_proof_modulo_a_prime_keeps_to_the_limit(
+    missing: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found, other = (spaces(ring_of_fives()) for _ in range(2))
+    assert cone_motion(found, found.first_order, [0, 1, 2]) is not None
+    monkeypatch.setattr(panel_reduction, "MOST_STEPS", found.work.steps - missing)
+    if not missing:
+        assert cone_motion(other, other.first_order, [0, 1, 2]) is not None
+        return
+    with pytest.raises(LimitError, match=f"motions, {found.work.steps}, are more than the limit"):
+        cone_motion(other, other.first_order, [0, 1, 2])
