@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from itertools import product
 
 import pytest
@@ -52,3 +53,14 @@ def test_the_names_of_vertices_do_not_matter() -> None:
     assert {way.status for way in ways} == {PROVED}
     # The saddle is positive on one of the two sides of the sheet.
     assert sorted(way.vertex_signs[inside] == 0 for way in ways) == [False, True]
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_what_is_nearly_flat_is_proved_not_to_be(side: int) -> None:
+    # Vertex 7 lies 1e-60 off the side, and the triangle bends about as much.
+    pattern = larger_triangle((5, Fraction(5, 2) + side * Fraction(1, 10**60)))
+    branch = find_branch(pattern, "++++-+")
+    assert branch.status is PROVED
+    assert branch.vertex_signs[9] == 1
+    inside = [branch.assignment[fold] for fold in pattern.folds if 9 in fold]
+    assert set(inside) == {"M", "V"}
