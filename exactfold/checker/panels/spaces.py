@@ -173,7 +173,8 @@ class Spaces(Forms):
                     for k, y in some:
                         term = d * x * y
                         terms[j, k] = terms[j, k] + term if (j, k) in terms else term
-            rest = rest_of({key: x for key, x in terms.items() if not zero(x)}, rows)
+            terms = {key: x for key, x in terms.items() if not zero(x)}
+            rest = rest_of(terms, rows, self.work)
             if rest:
                 rows.append((min(rest), rest))
                 kept.append(v)
