@@ -52,14 +52,15 @@ def contraction_in_floats(
 ) -> tuple[Contraction, Row] | None:
     """The bounds for the curve with this centre and this series, and weights that suit it.
 
-    The equations are those of a `Tube`, without ties and without a coupling. `stretch` is twice
+    The equations are those of a `Tube`, without ties and without a coupling, and the flat
+    coordinates are exact in doubles. `stretch` is twice
     their exact value at the centre, over 2^(2 bits), and `row` is T. None if some number is too
     large.
     """
     order, n = series.shape
     inside, size, incidence = inverse[:, :-1], np.abs(inverse), equations.incidence
     flat, at = equations.framework.flat_edges, equations.floats(centre)
-    # DH: the centre has two roundings, U one, and their sum one. The parts have one.
+    # DH: the centre has two roundings, U_e one, and their sum one. The parts have one.
     rows = np.concatenate([[flat + (incidence @ at).reshape(flat.shape)], parts])
     sizes = np.abs(rows)
     sizes[0] = np.abs(flat) + (np.abs(incidence) @ np.abs(at)).reshape(flat.shape)

@@ -37,8 +37,9 @@ ROW_BITS = 20
 
 _MOST_REACH = 4 << REACH_BITS
 _STEEPEST = 7 << SCALE >> 3
-_IN_FLOATS = 64
-"""Bounds of tubes with more bits than these are computed in integers alone."""
+_EXACT, _IN_FLOATS = 53, 64
+"""Bounds of tubes with more bits, of the flat coordinates and of all numbers, are computed in
+integers alone: flat coordinates have to be exact in doubles."""
 _MOST_ROUNDING = 2.0**-6
 """Roundings may be this share of the largest radius of a tube."""
 
@@ -241,7 +242,8 @@ def prove_tube(
         return None
     (centre,) = corrected(inverse, [centre], [_stretch(equations, centre, 0)], more)
     stretch = _stretch(equations, centre, 0)
-    if bits <= _IN_FLOATS and not (framework.ties or framework.coupling.rows):
+    exact = framework.bits <= _EXACT and bits <= _IN_FLOATS
+    if exact and not (framework.ties or framework.coupling.rows):
         tube = _proved_in_floats(equations, inverse, centre, stretch, row, order, thickness)
         if tube is not None:
             return tube

@@ -11,6 +11,7 @@ import pytest
 
 from exactfold.branches.counting.find import find_branch
 from exactfold.motion.tubes import contraction as module
+from exactfold.motion.tubes import tube as tube_module
 from exactfold.motion.tubes.arclength import length_between, shifted
 from exactfold.motion.tubes.contraction import (
     INVERSE_BITS,
@@ -189,6 +190,26 @@ def test_numbers_that_are_too_large_are_left_to_integers() -> None:
                 equations, inverse * scale, centre, [0] * size, row, series, parts * scale
             )
         assert (found is not None) == bounded
+
+
+@pytest.mark.parametrize(
+    ("denominator", "bits", "doubles"), [(1 << 52, 64, True), (1 << 58, 64, False), (64, 70, False)]
+)
+def test_coordinates_that_are_no_doubles_are_left_to_integers(
+    denominator: int, bits: int, doubles: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    used = []
+
+    def told(*given: object) -> object:
+        used.append(1)
+        return contraction_in_floats(*given)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(tube_module, "contraction_in_floats", told)
+    sheet = random_square(1, seed=1, denominator=denominator)
+    track = follow_proved(find_branch(sheet, "+"), most=2, bits=bits)
+    assert len(track.links) == 2
+    assert (track.framework.bits > 53) == (denominator > 1 << 53)
+    assert bool(used) == doubles
 
 
 def test_radii_and_uniqueness_are_those_of_the_theorem() -> None:
