@@ -178,3 +178,28 @@ def test_a_proof_modulo_a_prime_keeps_to_the_limit(
         return
     with pytest.raises(LimitError, match=f"motions, {found.work.steps}, are more than the limit"):
         cone_motion(other, other.first_order, [0, 1, 2])
+
+
+TWICE = [
+    *[(0, 5), (0, 1), (5, 10), (1, 5), (10, 15), (10, 11), (6, 10), (10, 16), (15, 20), (15, 21)],
+    *[(1, 6), (1, 2), (1, 7), (6, 11), (6, 7), (11, 16), (11, 12), (16, 21), (16, 17), (20, 21)],
+    *[(2, 7), (2, 3), (7, 12), (7, 8), (12, 17), (12, 13), (17, 21), (17, 22), (17, 18), (17, 23)],
+    *[(3, 7), (3, 8), (3, 4), (3, 9), (8, 13), (8, 14), (13, 18), (13, 14), (18, 23), (21, 22)],
+    *[(22, 23), (4, 9), (9, 14), (14, 18), (14, 19), (19, 23), (19, 24), (23, 24)],
+]
+"""Creases on a grid of 5 x 5 points."""
+
+
+def test_a_zero_is_taken_at_which_the_folds_fold(monkeypatch: pytest.MonkeyPatch) -> None:
+    """At the first zero that is found of the form of vertex 7, some folds stay flat.
+
+    The sheet has families, so that no homotopy looks for isolated ways.
+    """
+
+    def fail(*_: object, **__: object) -> None:
+        raise AssertionError
+
+    monkeypatch.setattr("exactfold.panels.isolated.homotopy", fail)
+    points = [(Fraction(x), Fraction(y)) for y in range(5) for x in range(5)]
+    made = json.loads(json.dumps(certificate_of_panels(decompose(PanelPattern(points, TWICE)))))
+    verified(made)
