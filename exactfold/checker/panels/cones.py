@@ -21,7 +21,7 @@ from ..sheets.panels import Edge
 from .forms import Space, Squares
 from .modular import one_component
 from .proposed import near_zeros
-from .reduction import BITS, Work, enclosed, reduced, rest_of
+from .reduction import BITS, Work, enclosed, reduced, rest_of, zero
 from .spaces import Spaces
 from .together import modulo_a_prime
 
@@ -148,7 +148,10 @@ def _ordered(spaces: Spaces, space: Space, vertices: Sequence[int]) -> list[int]
     forms = {}
     for v in vertices:
         squares = spaces.squares(v, space)
-        rows = [{(0, k): x.enclosed(BITS) for k, x in enumerate(values)} for _, values in squares]
+        rows = [
+            {(0, k): x.enclosed(BITS) for k, x in enumerate(values) if not zero(x)}
+            for _, values in squares
+        ]
         forms[v] = list(zip((d.enclosed(BITS) for d, _ in squares), rows, strict=True))
     waiting, order = list(vertices), list[int]()
     while waiting:
@@ -156,7 +159,7 @@ def _ordered(spaces: Spaces, space: Space, vertices: Sequence[int]) -> list[int]
         for v in waiting:
             others = reduced((row for u in waiting if u != v for _, row in forms[u]), spaces.work)
             rests = [(d, dict(rest_of(row, others, spaces.work))) for d, row in forms[v]]
-            spaces.work.count(len(rests) * len(space) ** 2, None)
+            spaces.work.count(sum(len(row) ** 2 for _, row in rests), None)
             ranks[v] = _rank(rests, spaces.work)
         order.insert(0, max(waiting, key=ranks.__getitem__))
         waiting.remove(order[0])
