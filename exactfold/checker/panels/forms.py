@@ -5,7 +5,8 @@ A space of first-order motions is given by a basis, and a basis vector is {fold:
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from fractions import Fraction
 from itertools import combinations, product
 from typing import Any
 
@@ -14,7 +15,8 @@ from ..core.reading import at_most
 from ..core.towers import Number, Tower
 from ..sheets.panels import Edge, PanelSheet, cross, pair
 from .modular import MOST_VARIABLES, Matrix, only_zero, reduced_forms
-from .reduction import Vector, zero
+from .proposed import definite_weights
+from .reduction import Vector, in_floats, zero
 
 MOST_STEPS = limits.SPACE_STEPS
 MOST_SUMMED = 4
@@ -174,16 +176,17 @@ class Forms:
             ]
 
     def narrowing_sum(self, forms: Mapping[int, Squares], size: int) -> Squares:
-        """A sum of forms with signs that is semidefinite, or a product of two linear functions.
+        """A sum of forms that is semidefinite, or a product of two linear functions; or [].
 
-        It vanishes where the forms do. It is empty if there is none. At most `MOST_SUMMED` forms
-        are added.
+        It vanishes where the forms do. At most `MOST_SUMMED` forms are added: first with signs, and
+        then with weights that floating point proposes.
         """
         if not 1 < len(forms) <= MOST_SUMMED:
             return []
+        number = self.sheet.tower.number
         for signs in product((0, 1, -1), repeat=len(forms)):
-            used = [(s, form) for s, form in zip(signs, forms.values(), strict=True) if s]
-            if len(used) < 2 or used[0][0] < 0:
+            used = [(number(s), form) for s, form in zip(signs, forms.values(), strict=True) if s]
+            if len(used) < 2 or used[0][0].sign() < 0:
                 continue
             found: Squares = []
             for d, values in self._squares(self._added(used, size)):
@@ -193,7 +196,10 @@ class Forms:
             else:
                 if found:
                     return found
-        return []
+        weights = definite_weights([in_floats(form) for form in forms.values()]) or ()
+        used = [(number(Fraction(x)), f) for x, f in zip(weights, forms.values(), strict=False)]
+        found = list(self._squares(self._added(used, size)))
+        return found if len({d.sign() for d, _ in found}) == 1 else []
 
     def vanish_only_at_zero(self, forms: Mapping[int, Squares], size: int) -> bool:
         """Whether the forms are shown to vanish together only at 0.
@@ -205,8 +211,8 @@ class Forms:
         reduced = modulo_a_prime(list(forms.values()))
         return reduced is not None and only_zero(*reduced)
 
-    def _added(self, forms: Sequence[tuple[int, Squares]], size: int) -> list[list[Number]]:
-        """The matrix of a sum of forms with signs, on a basis of so many motions."""
+    def _added(self, forms: Iterable[tuple[Number, Squares]], size: int) -> list[list[Number]]:
+        """The matrix of a sum of forms, each times a number, on a basis of so many motions."""
         nothing = self.sheet.tower.number(0)
         total = [[nothing] * size for _ in range(size)]
         for s, form in forms:
@@ -214,7 +220,7 @@ class Forms:
                 some = [(k, x) for k, x in enumerate(values) if not zero(x)]
                 self.work.count(len(some) ** 2, d)
                 for j, x in some:
-                    scaled = d * x if s > 0 else -(d * x)
+                    scaled = s * (d * x)
                     for k, y in some:
                         total[j][k] = total[j][k] + scaled * y
         return total

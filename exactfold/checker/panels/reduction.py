@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from fractions import Fraction
 from typing import Any
 
 from ..core import limits
@@ -53,6 +54,23 @@ def reduced(vectors: Iterable[Vector]) -> Rows:
 def enclosed(vector: Mapping[Edge, Number]) -> dict[Edge, Interval]:
     """The vector with an interval in place of each number."""
     return {fold: value.enclosed(BITS) for fold, value in vector.items()}
+
+
+def in_floats(form: Sequence[tuple[Number, Sequence[Number]]]) -> list[list[float]]:
+    """The matrix of a sum of squares d l^2 in floating point; l is given by its values."""
+    size = len(form[0][1])
+    total = [[0.0] * size for _ in range(size)]
+    for weight, values in form:
+        d, row = _float(weight), [_float(x) for x in values]
+        for j, x in enumerate(row):
+            for k, y in enumerate(row):
+                total[j][k] += d * x * y
+    return total
+
+
+def _float(x: Number) -> float:
+    interval = x.enclosed(BITS)
+    return float(Fraction(interval.low + interval.high, 2 << BITS))
 
 
 def inside(space: Sequence[Mapping[Edge, Number]], other: Sequence[Mapping[Edge, Number]]) -> bool:
