@@ -162,7 +162,7 @@ def entry(statement: Statement, proof: Proof) -> str:
     return f"{wrapped(numbered(text))}\n"
 
 
-def shortened(text: str) -> str:
+def shortened(text: str, first: int = 6, last: int = 4) -> str:
     """The beginning and the end of a long text; a formula is one word.
 
     >>> shortened("one two three four five six seven eight nine ten eleven")
@@ -171,10 +171,10 @@ def shortened(text: str) -> str:
     '\u201ca b c d\u201d e f \u2026 \u201cl m n o\u201d'
     """
     parts = re.findall(r"(?:\$`.+?`\$|\S)+", text)
-    if len(parts) < 14:
+    if len(parts) < first + last + 4:
         return text
-    head, tail = " ".join(parts[:6]), " ".join(parts[-4:])
-    before, after = is_quoted(head), is_quoted(" ".join(parts[:-4]))
+    head, tail = " ".join(parts[:first]), " ".join(parts[-last:])
+    before, after = is_quoted(head), is_quoted(" ".join(parts[:-last]))
     close, again = "\u201d" * (before and not after), "\u201c" * (after and not before)
     return f"{head}{close} \u2026 {again}{tail}"
 
@@ -225,7 +225,7 @@ def place(statement: Statement) -> str:
 def basis(statement: Statement, proof: Proof) -> str:
     """What it rests on, without what is true of all that does not hold as printed."""
     text = re.sub(r"proved for all \(\d+ steps?\)", "proved", proof.basis(statement))
-    text = re.sub(r"tested on (\d+ cases?)", r"\1", text).replace("shown by an example", "example")
+    text = re.sub(r"tested on \d+ cases?", "cases", text).replace("shown by an example", "example")
     return re.sub(r"(^|; )the printed form refuted by an example$", "", text) or "refuted"
 
 
@@ -257,7 +257,7 @@ def erratum(statement: Statement, proof: Proof) -> str:
         f"**{statement.key}** ({where(statement)}). *{severity.capitalize()}.* "
         f"{script}: {basis(statement, proof)}.",
         "",
-        f"- printed: {mathematics(statement.source)}",
+        f"- printed: {shortened(mathematics(statement.source), 12, 8)}",
         f"- correct: {changed(mathematics(statement.source), mathematics(statement.corrected))}"
         if statement.corrected
         else "- false, and not to be mended by a condition",
@@ -318,9 +318,7 @@ def pages() -> dict[str, str]:
     for title, group in groupby(stated, lambda pair: section(pair[0].key)):
         pairs = list(group)
         held = [entry(s, p) for s, p in pairs if s.ruling is Ruling.AS_PRINTED]
-        keys = [s.key for s, _ in pairs if s.ruling is not Ruling.AS_PRINTED]
         body += f"\n## {title}\n\n{''.join(held)}"
-        body += wrapped(f"- [Errata](errata.md): {', '.join(keys)}.") + "\n" if keys else ""
     errata += "".join(erratum(statement, proof) for statement, proof in wrong)
     return {"statements.md": body.rstrip() + "\n", "errata.md": errata.rstrip() + "\n"}
 
@@ -352,10 +350,10 @@ STATEMENTS = """# The paper, statement by statement
 
 Chen & Santangelo, "Branches of triangulated origami near the unfolded state", makes {papers}
 statements. {printed} hold as printed and are listed here, {corrected} hold when corrected, and
-{false} is false: see the [errata](errata.md). Theorems of exactfold come last. Each entry links the
-script that checks the statement, and names the place. Then it gives what the paper prints (no
-formula that has a number; of long passages the beginning and the end), a condition, *what shows
-it*, and the code that uses it.
+{false} is false: keys that are missing are [errata](errata.md). Theorems of exactfold come last.
+Each entry links the script that checks the statement, and names the place. Then it gives what the
+paper prints (no formula that has a number; of long passages the beginning and the end), a
+condition, *what shows it*, and the code that uses it.
 
 *Proved* means: a step holds in general. *Cases* are exact tests: evidence, and no proof. *In words*
 is a proof that no machine runs. `python -m proofs KEY` prints the whole statement, its note and its

@@ -177,8 +177,8 @@ def _rim(script: Script) -> None:
         over=[wheel(4), wheel(5)],
         at=drawn(4, 5),
         note="the edges leave on opposite sides of the spoke, so equal magnitudes balance; "
-        "also the "
-        "subscript of the second eta has slipped to the line. Example: cross of unit spokes",
+        "also the subscript of the second eta has slipped to the line. "
+        "Remark: for example, a cross of unit spokes",
         severity=Severity.TYPO,
     )
     total = script.alter("one cotangent lost", 1, 0)
@@ -362,7 +362,8 @@ def _small_triangle(script: Script) -> None:
         r"\text{the side lengths are }|\Delta\sigma_{i-1}|\text{, }|\Delta\sigma_{i+1}|\text{ and "
         r"}|\sigma_i|\text{; where }\sigma_i>0\text{ both differences are negative}",
         "as sigma_i/sin beta_i = -Delta sigma_{i-1}/sin alpha_{i,i+1} (B.20), and the sines are "
-        "positive if alpha_{i-1,i} + alpha_{i,i+1} < pi (B.22). Example: five unit spokes (1,0), "
+        "positive if alpha_{i-1,i} + alpha_{i,i+1} < pi (B.22). "
+        "Remark: for example, five unit spokes (1,0), "
         "(4/5,3/5), (7/25,24/25), (-1,0), (0,-1), the second taken out: 2/3, -5/12, -5/12",
         severity=Severity.TYPO,
         rests="B.20",

@@ -123,7 +123,8 @@ def _base_case(script: Script) -> None:
         r"_1}+\frac{\csc\alpha_{2,3}\csc\alpha_{1,2}}{L_2}",
         over=[wheel(3)],
         at=drawn(3),
-        note="index: cot alpha_31, not cot alpha_23. Example: cosines -3/5, -4/5, 0 of alpha_12, "
+        note="index: cot alpha_31, not cot alpha_23. "
+        "Remark: for example, cosines -3/5, -4/5, 0 of alpha_12, "
         "alpha_23, alpha_31, where the coefficients of 1/L_1 differ by csc(alpha_23) 4/3",
         equation="B14",
         severity=Severity.TYPO,
@@ -281,7 +282,8 @@ def _induction_step(script: Script) -> None:
         over=[without(5)],
         at=[without(5, numbers=True)],
         note="sin(beta_i) is +sin(alpha_{i-1,i} + alpha_{i,i+1}); in the last display only the "
-        "leftmost side needs the sign. Example: five unit spokes (1,0), (4/5,3/5), (7/25,24/25), "
+        "leftmost side needs the sign. "
+        "Remark: for example, five unit spokes (1,0), (4/5,3/5), (7/25,24/25), "
         "(-1,0), (0,-1), the second taken out: 25/36 against -25/36. Remark: or beta_i = "
         "alpha_{i-1,i} + alpha_{i,i+1} - pi, which mends both. For the sides see B.26",
         equation="B20",

@@ -1,4 +1,37 @@
-"""The inertia of the Jacobian on hostile patterns; popping a vertex up raises its height."""
+"""The inertia of the Jacobian on hostile patterns; popping a vertex up raises its height.
+
+Theorem (notation of docs/theorem.md). Let h and h' be solutions of Theorem 2 for the same boundary
+heights and the same k >= 0, without flat vertices, whose signs differ at v only: v is up in h. Then
+h_v > h'_v.
+
+Proof. 1. Kernels. Let K_u(g) > 0, or K_u(g) = 0 and the star of u not be flat, for all u != v. Let
+w in V_0 have K_u(g, w) = 0 for these u. By (L), K_u(w) <= 0. A plane of such w would contain a
+w != 0 with K_v(w) <= 0, against the key lemma. So they form a line, and K_v(w) > 0 for w != 0. If
+J(g) w = 0, then w_v != 0: otherwise take the multipliers m of the key lemma and a w' in V_0 with
+K_u(g, w') = -K_u(m, w) for u != v; then T(m, w, w) = sum_u w_u K_u(m, w) = -w^T J(g) w' = 0, but
+T(m, w, w) = sum_u m_u K_u(w) > 0.
+
+2. Chords. J((h + h')/2) (h - h') = (K(h) - K(h'))/2 = 0. So h_v != h'_v by 1, as in the proof of
+Theorem 2 (d) and (e). For k > 0 the solutions depend continuously on k and the boundary heights, so
+that h_v - h'_v has one sign for all of these, also in the limit k -> 0. Take boundary heights 0,
+and fix k_u > 0 for u != v.
+
+3. A curve from h' to h. The g in V_0 with K_u(g) = k_u and the given signs for u != v form a smooth
+curve C with the tangent w = w(g) of 1 that has K_v(w) = 1 and pops up at v. For a tangent w_0 the
+function K_v(w_0, .) increases along C, as two vectors of one nappe have a positive product; so no
+component is closed. On an unbounded sequence in C, f = K_v tends to infinity by the key lemma; and
+by Theorem 2 (d) C has two points with a given value f > 0, first one with v down, then one with v
+up. So C is connected.
+
+4. Half turns. The plane curve (g_v, f(g)), g in C, has the tangent (w_v, 2x) with x = K_v(g, w),
+which is never 0 by 1, and does not meet itself, by 2. J(g) is singular only where x = 0. Where
+w_v != 0, V_0 is the sum of the line of w and of {y_v = 0}, orthogonal for J(g), as J(g) w = x e_v;
+and J(g) is nonsingular on {y_v = 0}. So the number of positive eigenvalues grows by one where the
+tangent turns through the horizontal counter-clockwise, and falls by one where it turns clockwise.
+From end to end it grows by 1 (Theorem 4), so the tangent makes half a turn from down to up
+counter-clockwise. As the curve does not meet itself, its last end is to the right of its first, by
+Hopf's Umlaufsatz: h_v > h'_v.
+"""
 
 from __future__ import annotations
 
@@ -58,7 +91,7 @@ def prove(change: str | None = None) -> Proof:
         r"h_v\text{ is larger where }v\text{ is popped up}",
         note="convex boundary, no flat vertex",
         code="Branch.heights",
-        words="docs/theorem.md, after Theorem 4",
+        words="theorem in proofs/inertia_cases.py",
     )
     _chambers(script)
     _branches(script)

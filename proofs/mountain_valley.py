@@ -293,7 +293,8 @@ def _examples(script: Script) -> None:
         r"\text{the three angles from }c_1\text{ to }c_2\text{, from }c_2\text{ to }c_3\text{ and "
         r"from }c_3\text{ to }c_1\text{ are between 0 and }\pi",
         "which angles are meant is not said. With the first two alone three folds within a right "
-        "angle would do, and no vertex folds so. The third holds c_4: the directions of one sign "
+        "angle would do, and no vertex folds so. "
+        "Remark: the third holds c_4: the directions of one sign "
         "lie in no closed half-plane",
         severity=Severity.CONDITION,
         words="theorem in proofs/mountain_valley.py",

@@ -20,7 +20,7 @@ from exactfold.design.assignments.boundary_result import BoundaryMatch
 from exactfold.design.assignments.certificate import match_certificate
 from exactfold.design.assignments.nearest import nearest_branches
 from exactfold.design.assignments.result import Match
-from exactfold.design.assignments.search import match
+from exactfold.design.assignments.search import MOST, match
 from exactfold.design.panels.match import PanelMatch, match_panels
 from exactfold.design.panels.vertex.vertices import open_vertices
 from exactfold.errors import (
@@ -32,8 +32,6 @@ from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.opening import Opened, triangles
 from exactfold.pattern.panel_pattern import PanelPattern
 
-_HALVES = 256
-"""Default of --most: the number of sign vectors whose branches are compared."""
 _RIMS = 16
 """Default of --most if boundary heights are looked for: the number of sign vectors tried."""
 
@@ -74,7 +72,7 @@ class Asked(MatchOptions):
             pattern = triangles(opened, "match")
             _in_reach(pattern)
             bar("signs")
-            matched = match(pattern, letters, most=self.most or _HALVES, progress=bar)
+            matched = match(pattern, letters, most=self.most or MOST, progress=bar)
             if nearly := open_vertices(opened, letters):
                 say(f"warning: {nearly}")
             matched = matched.about(opened.meant, nearly)

@@ -73,7 +73,7 @@ class MatchOptions(ReadingOptions):
     most: Annotated[
         int | None,
         number(
-            "Compare the branches of at most N sign vectors. Default: 256; 16 if boundary heights "
+            "Compare the branches of at most N sign vectors. Default: 4096; 16 if boundary heights "
             "have to be found.",
             least=1,
         ),

@@ -18,7 +18,7 @@ from functools import cached_property
 
 import numpy as np
 
-from exactfold._support.arrays import BoolArray
+from exactfold._support.arrays import BoolArray, FloatArray
 from exactfold.branches.counting.exact_roots import ExactProver
 from exactfold.branches.values.blocks import ExactRoot, OpenEnd, ProvedBlock
 from exactfold.branches.values.branch import Branch
@@ -120,12 +120,16 @@ class BranchBlocks:
 
         Floats with bounded rounding errors prove most roots; integers decide those left open.
         """
-        count = self.block_size
         self.ends(index)
         ends, solving = self._solved.pop(index)
+        signs = sign_vectors(index * self.block_size, self.block_size, self.size)
+        return self._proved(index, signs, ends, solving)
+
+    def _proved(
+        self, index: int, signs: FloatArray, ends: SweptPoints, solving: float
+    ) -> ProvedBlock:
         start = time.process_time()
         boxes = self._test.isolate(ends.points, BITS)
-        signs = sign_vectors(index * count, count, self.size)
         vertices, folds = self._vertices.on(boxes), self._folds.on(boxes)
         good = boxes.proved & (vertices == signs).all(axis=1) & (folds != 0).all(axis=1)
         good &= boxes.exponents <= _WIDEST
@@ -161,17 +165,36 @@ class BranchBlocks:
 
     def branches(self, block: ProvedBlock) -> Iterator[Branch]:
         """The proved branches of a block, in the order of the sign vectors."""
-        count, boxes = self.block_size, block.boxes
-        signs = sign_vectors(block.index * count, count, self.size).astype(int).tolist()
+        signs = sign_vectors(block.index * self.block_size, self.block_size, self.size)
+        return (branch for branch in self._named(block, signs) if branch is not None)
+
+    def with_signs(self, signs: FloatArray) -> Iterator[Branch | None]:
+        """The branch for each row of `signs`, 1 or -1 in the order of the foldable vertices.
+
+        It is None for a row that stays open.
+
+        >>> from exactfold.pattern.triangulating.random_squares import random_square
+        >>> branch_blocks = BranchBlocks.of(random_square(3, seed=0))
+        >>> list(branch_blocks.with_signs(np.array([[1.0, -1.0, 1.0]])))
+        [<Branch +-+: proved, VVMVMVMVMV>]
+        """
+        for first in range(0, len(signs), BLOCK):
+            rows = signs[first : first + BLOCK]
+            yield from self._named(self._proved(0, rows, self._nappes.ends(rows), 0.0), rows)
+
+    def _named(self, block: ProvedBlock, rows: FloatArray) -> Iterator[Branch | None]:
+        signs, boxes = rows.astype(int).tolist(), block.boxes
         centers, exponents = boxes.centers.tolist(), boxes.exponents.tolist()
         letters = letter_rows(block.valleys)
-        for j in range(count):
+        for j in range(len(signs)):
             if j in block.exact:
                 root = block.exact[j]
                 yield self._maker.branch(self._root(root.box), signs[j], root.assignment)
             elif exponents[j] != UNPROVED:
                 box = IsolatingBox(tuple(centers[j]), (), 1 << exponents[j], boxes.bits)
                 yield self._maker.branch(self._root(box), signs[j], letters[j])
+            else:
+                yield None
 
 
 def letter_rows(valleys: BoolArray) -> list[str]:

@@ -16,6 +16,7 @@ from exactfold.rigidity.equations.problem import Problem
 from exactfold.rigidity.equations.sheet import VertexEquations
 from exactfold.rigidity.functionals import saddle_functional
 from exactfold.solve.certify.enclosure import Enclosure, height_radius, root_above, round_up
+from exactfold.solve.certify.merged import heights_inside
 
 
 def of_enclosure(
@@ -33,10 +34,16 @@ def of_enclosure(
     """
     problem, labels, unit = sheet.problem, sheet.labels, sheet.height_unit
     squared = round_up(proof.squared_distance * unit**2)
-    centres = problem.all_heights(
-        {v: Fraction(int(h), proof.denominator) * unit for v, h in enumerate(proof.heights)}
+    heights = {v: Fraction(int(h), proof.denominator) * unit for v, h in enumerate(proof.heights)}
+    if proof.merged:
+        heights |= heights_inside(sheet.pattern.integer_vertices[0], proof.merged, heights)
+    merged = tuple(
+        ((labels[a], labels[b], labels[c]), tuple(labels[v] for v in others))
+        for (a, b, c), others in proof.merged
     )
-    root = EnclosedRoot(centres, height_radius(sheet, squared), squared)
+    root = EnclosedRoot(
+        problem.all_heights(heights), height_radius(sheet, squared), squared, merged
+    )
     loose = tuple(labels[v] for v in proof.loose)
     flat = tuple(labels[v] for v in proof.flat_vertices)
     error = root_above(squared) if squared else Fraction(0)

@@ -227,11 +227,14 @@ class EnclosedRoot:
 
     Its heights lie within `radius` of `centres`, and the integral of |grad(h - centres)|^2 over the
     sheet is at most `squared_distance`. If that is 0, `centres` are the heights themselves.
+    `merged` are the larger triangles that stay flat because the branch is folded along their sides,
+    each with its corners and its other vertices (docs/branch.md, Merged faces).
     """
 
     centres: Mapping[int, Fraction]
     radius: Fraction
     squared_distance: Fraction
+    merged: tuple[tuple[tuple[int, int, int], tuple[int, ...]], ...] = ()
 
     @cached_property
     def heights(self) -> dict[int, tuple[Fraction, Fraction]]:

@@ -11,6 +11,20 @@ There are four kinds of evidence:
   rigid          A positive definite stress shows that the sheet cannot fold.
   single vertex  One curvature form has inertia (1, N - 3, 3) with N >= 5, so that the solutions are
                  one double cone.
+
+Every kind has `triangles`: for each maximal triangulated triangle its `corners`, the vertices
+`inside`, and positive `multipliers` for which the sum of multiplier times K_v is positive definite
+on the heights inside. The rest is about the pattern without rigid parts. `roots` are boxes, with
+`center` (n integers), `radius`, both over 2^bits, and `bits`; or those of `algebraic`. `chart` is
+null for the chart "boundary saddle = 1"; for a sheet with a reflex corner it may be a functional by
+vertex (interior vertices and that corner) that is 1 in the chart, the other three corners being
+pinned.
+
+Each branch has `vertex_signs`, "+", "-" or "0" for every interior vertex, in increasing order;
+`assignment`, M, V, F (flat) or U (undecided: nothing is claimed) for every fold (i, j), i < j, in
+lexicographic order; its `multiplicity`; and its `representative`, the side that is shown: "saddle",
+whose boundary saddle is proved positive, or "either" where the saddle is not proved to differ from
+0, for a reflex corner only; the signs then hold for one of the two mirror images.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Certificates of all mountain-valley assignments, five corners (docs/any_border.md).
 
 Why it is a proof: for each sign vector the solutions are a circle over the directions of the
-boundary heights (Theorem 1 there). The evidence goes round this circle by points; a point is a
+boundary heights (Theorem 6 there). The evidence goes round this circle by points; a point is a
 height vector inside the nappes of these signs. From each point to the next, the letters of all
 solutions are known except at some folds (`arcs`). The letters at the points themselves are shown to
 occur. If all letters that are possible between two points are shown to occur somewhere, no other
@@ -9,6 +9,14 @@ assignment occurs. Sign vectors that begin with a minus are reflections of the o
 boundary to boundary bends independently. In this case the checker looks at the sheet without the
 corner behind this fold. That sheet has four corners, and one point on each of the two sides of the
 flat state is enough.
+
+`assignments` has the letters of all folds, in order, of all solutions that bend every fold but
+those in triangulated triangles, which are F. The evidence has `emptied`, the triangulated
+triangles, and `circles`, a list of points for each sign vector that begins with a plus; of these
+the last sign changes first, plus before minus. A point has integers as texts, up to a positive
+factor: heights of the boundary vertices but three, and then of the vertices that can pop, in
+increasing order. All other heights are 0. The three are the boundary vertex with the smallest
+number, the next one counter-clockwise, and the first after it that is not on a line with them.
 """
 
 from __future__ import annotations

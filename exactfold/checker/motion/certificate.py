@@ -2,6 +2,10 @@
 
 The evidence is a chain of verified pieces of one curve (`chain`). `CLAIMS` lists the claims that a
 file may make about this curve. Each claim is a class in the module that knows why it holds.
+
+The evidence has the `start` tube and the `tubes`, of each its centre `c`, row `T`, reach `h` and
+the parameter `exit` at which the motion leaves it; and for the end the arc to a `node` or the start
+tube of the `landing`. No matrix and no polynomial is taken from the file.
 """
 
 from __future__ import annotations
@@ -18,8 +22,7 @@ from .claims import BranchClaim, read_claims, words
 from .contacts import Contacts, TouchingFaces
 from .drive import DriveClaim, DrivenFolds
 from .nodes import FlatStars, Node, Through
-from .ray import Length, NamedHalf, Ray
-from .returns import Return
+from .ray import Length, NamedHalf, Ray, Return
 
 CLAIMS: tuple[type[BranchClaim], ...] = (
     Ray,

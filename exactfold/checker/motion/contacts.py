@@ -1,11 +1,17 @@
 """The first contact of a motion: until when no faces touch, and by when some do.
 
-The claims and the evidence are in docs/motion.md, 17.
+See docs/motion.md, 16 and 17.
 
 Two faces without a common vertex do not touch if a plane parts them. Two faces with one common
 vertex touch only there if a plane through this vertex parts them. Two faces at a fold touch only
 there unless the fold is closed. Near the flat state the same is shown for the projections to the
 plane of the held face.
+
+The claims are `clear`, a time before which no two faces touch, and `contact`, with its `kind`,
+bounds of its `time`, the `faces`, and the `folds` that close. The evidence names the `tube`,
+numbered from 1 on with arcs through branch points included, and the parameter `clear` in it up to
+which the faces are separated. With a contact it also has `from` and `to`: the edge runs through the
+face at `to`, or the fold closes between them.
 """
 
 from __future__ import annotations
@@ -22,8 +28,7 @@ from .chain import Chain
 from .claims import BranchClaim, Document
 from .equations import LengthEquations
 from .faces import FacePairs, Hinge
-from .lengths import GRID, Path
-from .stretches import Step, stretches_of
+from .lengths import GRID, Path, Step, stretches_of
 from .tubes import Start
 
 _KINDS = "contact", "flat-fold"

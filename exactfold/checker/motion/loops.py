@@ -5,6 +5,13 @@ to tube, and through branch points on arcs that are analytic there (`branch_poin
 start tube of another ray lies on the last tube, and the two go in opposite directions there. So the
 loop ends in the flat state along this other ray. Only one curve begins along each ray. So the loops
 match rays in pairs, and the matching is complete if all 2^(n + 1) rays occur in it.
+
+The first line has the sheet. Each loop has the rays `from` and `to` at its ends, a lower bound of
+its `length`, and the evidence: `start`, `steps`, which are tubes or branch points, and `landing`. A
+branch point has its vertices `flat`, its displacements, nearly (`node`), the `centre`, `row` and
+`reach` of the arc, and the parameters `entry` below 0 and `exit` above 0. The last line claims how
+many `loops` there are, how many rays they match (`matched`) of how many (`half_branches`), and
+whether the matching is `complete`.
 """
 
 from __future__ import annotations
@@ -32,8 +39,7 @@ from ..core.reading import (
 from ..sheets.reduced import emptied_sheet
 from ..sheets.sheet import read_sheet
 from .chain import Chain, check_work, equations_of
-from .ray import names
-from .returns import land
+from .ray import land, names
 from .tubes import Start
 
 Ray = tuple[tuple[int, ...], int]

@@ -17,11 +17,12 @@ from ..core import limits
 from ..core.intervals import Interval
 from ..core.reading import at_most
 from ..sheets.panels import Edge
-from .forms import Space, Squares, modulo_a_prime
+from .forms import Space, Squares
 from .modular import one_component
 from .proposed import near_zeros
-from .reduction import BITS, enclosed, in_floats, reduced, rest_of
+from .reduction import BITS, Work, enclosed, in_floats, reduced, rest_of
 from .spaces import Spaces
+from .together import modulo_a_prime
 
 SHIFTS = 40
 DIRECTIONS = 24
@@ -54,15 +55,19 @@ def cone_motion(spaces: Spaces, space: Space, vertices: Sequence[int]) -> Place 
         return None
     place = _by_signs(spaces, ordered, rooms)
     if place is None:
-        reduced = modulo_a_prime(forms)
-        if reduced is not None and one_component(*reduced):
+        reduced = modulo_a_prime(forms, spaces.work)
+        if reduced is not None and one_component(*reduced, spaces.work):
             placed = list(zip(ordered, rooms, forms, strict=True))
             return next(_regular_zeros(spaces, space, placed), None)
     return place
 
 
 def _by_signs(spaces: Spaces, ordered: Sequence[int], rooms: Sequence[Space]) -> Place | None:
-    """A common zero of the forms, if each discriminant is shown to have both signs."""
+    """A common zero of the forms, if each discriminant is shown to have both signs.
+
+    Of the zeros found it is the one at which the most folds are shown to fold. At others the
+    conditions may depend on each other.
+    """
     places: list[Place] = [{}]
     for number, (v, room) in enumerate(zip(ordered, rooms, strict=True)):
         vectors = [enclosed(motion) for motion in room]
@@ -73,7 +78,7 @@ def _by_signs(spaces: Spaces, ordered: Sequence[int], rooms: Sequence[Space]) ->
                 break
         else:
             return None
-    return places[0]
+    return max(places, key=lambda place: sum(value.sign() != 0 for value in place.values()))
 
 
 def _regular_zeros(
@@ -83,7 +88,7 @@ def _regular_zeros(
 
     One form after the other is solved along a vector on which no earlier form depends.
     """
-    for near in near_zeros([in_floats(form) for _, _, form in ordered]):
+    for near in near_zeros([in_floats(form) for _, _, form in ordered], spaces.work):
         place: Place | None = {}
         for x, motion in zip(near, space, strict=True):
             place = _plus(place or {}, Interval.of(Fraction(x), BITS), enclosed(motion))
@@ -132,14 +137,16 @@ def _ordered(spaces: Spaces, space: Space, vertices: Sequence[int]) -> list[int]
     while waiting:
         ranks = {}
         for v in waiting:
-            others = reduced(row for u in waiting if u != v for _, row in forms[u])
-            ranks[v] = _rank([(d, dict(rest_of(row, others))) for d, row in forms[v]])
+            others = reduced((row for u in waiting if u != v for _, row in forms[u]), spaces.work)
+            rests = [(d, dict(rest_of(row, others, spaces.work))) for d, row in forms[v]]
+            spaces.work.count(len(rests) * len(space) ** 2, None)
+            ranks[v] = _rank(rests, spaces.work)
         order.insert(0, max(waiting, key=ranks.__getitem__))
         waiting.remove(order[0])
     return order
 
 
-def _rank(squares: Sequence[tuple[Interval, Place]]) -> int:
+def _rank(squares: Sequence[tuple[Interval, Place]], work: Work) -> int:
     """A lower bound of the rank of a sum of squares with weights."""
     folds = {fold for _, row in squares for fold in row}
     matrix = []
@@ -149,7 +156,7 @@ def _rank(squares: Sequence[tuple[Interval, Place]]) -> int:
             if fold in row:
                 total = _plus(total, d * row[fold], row)
         matrix.append(total)
-    return len(reduced(matrix))
+    return len(reduced(matrix, work))
 
 
 def _directions(spaces: Spaces, v: int, room: Sequence[Place]) -> Iterator[Place]:
@@ -178,6 +185,7 @@ def _sides(
         for number in range(SHIFTS):
             w = place
             for k, vector in enumerate(room):
+                spaces.work.count(len(vector), None)
                 w = _plus(w, _shift(number, k), vector)
             middle = _value(slopes, w)
             first = _value(spaces.gradient(v, w, BITS), w)

@@ -5,21 +5,13 @@ A space of first-order motions is given by a basis, and a basis vector is {fold:
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from fractions import Fraction
-from itertools import combinations, product
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import combinations
 from typing import Any
 
-from ..core import limits
-from ..core.reading import at_most
 from ..core.towers import Number, Tower
 from ..sheets.panels import Edge, PanelSheet, cross, pair
-from .modular import MOST_VARIABLES, Matrix, only_zero, reduced_forms
-from .proposed import definite_weights
-from .reduction import Vector, in_floats, zero
-
-MOST_STEPS = limits.SPACE_STEPS
-MOST_SUMMED = 4
+from .reduction import Vector, Work, zero
 
 Motion = dict[Edge, Number]
 """A motion, as the densities of the folds; densities that are 0 are left out."""
@@ -36,26 +28,6 @@ def tower_of(basis: Space) -> Tower:
     """The largest field of the densities of a basis."""
     towers = (value.tower for motion in basis for value in motion.values())
     return max(towers, key=lambda tower: tower.size)
-
-
-class Work:
-    """Counts products of densities; a product of numbers with n coefficients counts n^2 steps."""
-
-    def __init__(self) -> None:
-        self.steps = 0
-        self._turn = MOST_STEPS
-
-    def turn(self, steps: int) -> bool:
-        """Allow so many steps more, if the limit does; say whether it allows more than these."""
-        self._turn = self.steps + steps
-        return self._turn < MOST_STEPS
-
-    def count(self, products: int, value: Any) -> None:
-        """Count products with this number or interval; raises `LimitError` if they are too many."""
-        size = value.tower.size if isinstance(value, Number) else 1
-        self.steps += products * size * size
-        most = min(self._turn, MOST_STEPS)
-        at_most(self.steps, most, "the steps to the spaces of motions", "SPACE_STEPS")
 
 
 class Forms:
@@ -78,16 +50,44 @@ class Forms:
     def _first_order(self) -> Space:
         """The space of all densities with sum_j w_j d_j = 0 at each vertex.
 
-        The conditions are imposed one after the other.
+        The conditions are imposed one after the other. `holders` says which motions of the basis
+        move a fold.
         """
         one = self.sheet.tower.number(1)
         folds = sorted({pair(v, u) for v, around in self.near.items() for u in around})
-        space: Space = [{fold: one} for fold in folds]
+        space: dict[int, Motion] = {k: {fold: one} for k, fold in enumerate(folds)}
+        holders = {fold: {k} for k, fold in enumerate(folds)}
         for v, around in self.near.items():
             for axis in (0, 1):
                 weights = {pair(v, u): self.sheet.vector(v, u)[axis] for u in around}
-                space = self.vanishing(space, [[self._value(weights, m) for m in space]])
-        return space
+                touched = sorted(set[int]().union(*(holders[fold] for fold in weights)))
+                row = {k: self._value(weights, space[k]) for k in touched}
+                gone, changed = self._solved(space, row)
+                for fold in gone:
+                    holders[fold].difference_update(changed)
+                    holders[fold].update(k for k in changed if fold in space.get(k, ()))
+        return list(space.values())
+
+    def _solved(
+        self, space: dict[int, Motion], row: Mapping[int, Number]
+    ) -> tuple[Motion, dict[int, Number]]:
+        """Impose one condition, whose row has the values of a linear function on the basis.
+
+        The shortest motion at which the function is not 0 is taken out, and multiples of it are
+        added to the others. Returns this motion, and its weight in each motion that changes; its
+        own weight is -1.
+        """
+        active = {k: x for k, x in row.items() if not zero(x)}
+        if not active:
+            return {}, {}
+        pivot = min(active, key=lambda k: (len(space[k]), k))
+        over = self.sheet.tower.number(-1) / active[pivot]
+        changed = {k: x * over for k, x in active.items()}
+        self.work.count(len(changed), over)
+        gone = space.pop(pivot)
+        for k in changed.keys() & space.keys():
+            space[k] = self.plus(space[k], changed[k], gone)
+        return gone, changed
 
     def _value(self, weights: Mapping[Edge, Number], motion: Motion) -> Number:
         total = self.sheet.tower.number(0)
@@ -99,23 +99,30 @@ class Forms:
     def vanishing(self, space: Space, rows: Sequence[Sequence[Number]]) -> Space:
         """The subspace on which linear functions vanish; each row has the values of one function
         on the basis."""
-        todo = [list(row) for row in rows]
+        left = dict(enumerate(space))
+        todo = [{k: x for k, x in enumerate(row) if not zero(x)} for row in rows]
         for n, row in enumerate(todo):
-            active = [k for k, value in enumerate(row) if not zero(value)]
-            if not active:
-                continue
-            pivot = min(active, key=lambda k: len(space[k]))
-            changed = {k: -(row[k] / row[pivot]) for k in active if k != pivot}
-            space = [
-                self.plus(motion, changed[k], space[pivot]) if k in changed else motion
-                for k, motion in enumerate(space)
-                if k != pivot
-            ]
-            for later in todo[n + 1 :]:
-                for k, weight in changed.items():
-                    later[k] = later[k] + weight * later[pivot]
-                del later[pivot]
-        return space
+            _, changed = self._solved(left, row)
+            for later in todo[n + 1 :] if changed else ():
+                self._eliminate(later, changed, left)
+        return list(left.values())
+
+    def _eliminate(
+        self, row: dict[int, Number], changed: Mapping[int, Number], left: Mapping[int, Motion]
+    ) -> None:
+        """Take the motion that was taken out of the basis out of the row of a function, too."""
+        value = next((row.pop(k) for k in changed if k not in left and k in row), None)
+        if value is None:
+            return
+        self.work.count(len(changed), value)
+        for k in changed.keys() & left.keys():
+            total = changed[k] * value
+            if k in row:
+                total = row[k] + total
+            if zero(total):
+                row.pop(k, None)
+            else:
+                row[k] = total
 
     def plus(self, motion: Motion, weight: Number, other: Motion) -> Motion:
         """The sum of a motion and a multiple of another."""
@@ -133,15 +140,13 @@ class Forms:
 
     def squares(self, v: int, space: Space) -> Squares:
         """The form of a vertex as sum d_k l_k^2; each l_k is given by its values on the basis."""
-        folds = {pair(v, u) for u in self.near[v]}
-        touching = [k for k, motion in enumerate(space) if not folds.isdisjoint(motion)]
+        folds = [pair(v, u) for u in self.near[v]]
+        touching = [k for k, motion in enumerate(space) if any(fold in motion for fold in folds)]
         motions = [space[k] for k in touching]
         key = v, *map(id, motions)
         if key not in self._found:  # the motions are kept, so that no others get their numbers
-            local = [{fold: x for fold, x in motion.items() if fold in folds} for motion in motions]
-            gradients = [self.gradient(v, motion) for motion in local]
-            work = [[self._value(weights, motion) for motion in local] for weights in gradients]
-            self._found[key] = motions, list(self._squares(work))
+            local = [{fold: motion[fold] for fold in folds if fold in motion} for motion in motions]
+            self._found[key] = motions, self._local_squares(v, local)
         nothing = self.sheet.tower.number(0)
         result: Squares = []
         for d, values in self._found[key][1]:
@@ -151,7 +156,36 @@ class Forms:
             result.append((d, all_values))
         return result
 
-    def _squares(self, work: list[list[Number]]) -> Iterator[tuple[Number, list[Number]]]:
+    def _local_squares(self, v: int, local: Sequence[Motion]) -> Squares:
+        """The form of a vertex on motions of its folds.
+
+        The span of the motions has a basis in which each vector has the density 1 at one fold and 0
+        at those of the others. So the densities of a motion at these folds are its coordinates.
+        """
+        basis: dict[Edge, Motion] = {}
+        for motion in local:
+            if len(basis) == len(self.near[v]) - 2 > 1:
+                break
+            rest = motion
+            for lead, vector in basis.items():
+                if lead in rest:
+                    rest = self.plus(rest, -rest[lead], vector)
+            if rest:
+                lead = min(rest)
+                one = self.plus({}, self.sheet.tower.number(1) / rest[lead], rest)
+                for other, vector in basis.items():
+                    if lead in vector:
+                        basis[other] = self.plus(vector, -vector[lead], one)
+                basis[lead] = one
+        gradients = [self.gradient(v, motion) for motion in basis.values()]
+        work = [[self._value(slopes, motion) for motion in basis.values()] for slopes in gradients]
+        found: Squares = []
+        for d, values in self.diagonalised(work):
+            weights = dict(zip(basis, values, strict=True))
+            found.append((d, [self._value(weights, motion) for motion in local]))
+        return found
+
+    def diagonalised(self, work: list[list[Number]]) -> Iterator[tuple[Number, list[Number]]]:
         """Write a symmetric matrix as sum d l^2, one square after the other."""
         while True:
             k = next((k for k, row in enumerate(work) if not zero(row[k])), None)
@@ -174,56 +208,6 @@ class Forms:
                 ]
                 for row, a in zip(work, values, strict=True)
             ]
-
-    def narrowing_sum(self, forms: Mapping[int, Squares], size: int) -> Squares:
-        """A sum of forms that is semidefinite, or a product of two linear functions; or [].
-
-        It vanishes where the forms do. At most `MOST_SUMMED` forms are added: first with signs, and
-        then with weights that floating point proposes.
-        """
-        if not 1 < len(forms) <= MOST_SUMMED:
-            return []
-        number = self.sheet.tower.number
-        for signs in product((0, 1, -1), repeat=len(forms)):
-            used = [(number(s), form) for s, form in zip(signs, forms.values(), strict=True) if s]
-            if len(used) < 2 or used[0][0].sign() < 0:
-                continue
-            found: Squares = []
-            for d, values in self._squares(self._added(used, size)):
-                found.append((d, values))
-                if len(found) > 2 and len({weight.sign() for weight, _ in found}) > 1:
-                    break
-            else:
-                if found:
-                    return found
-        weights = definite_weights([in_floats(form) for form in forms.values()]) or ()
-        used = [(number(Fraction(x)), f) for x, f in zip(weights, forms.values(), strict=False)]
-        found = list(self._squares(self._added(used, size)))
-        return found if len({d.sign() for d, _ in found}) == 1 else []
-
-    def vanish_only_at_zero(self, forms: Mapping[int, Squares], size: int) -> bool:
-        """Whether the forms are shown to vanish together only at 0.
-
-        There must be at least as many forms as the space has dimensions.
-        """
-        if not 1 < size <= min(len(forms), MOST_VARIABLES):
-            return False
-        reduced = modulo_a_prime(list(forms.values()))
-        return reduced is not None and only_zero(*reduced)
-
-    def _added(self, forms: Iterable[tuple[Number, Squares]], size: int) -> list[list[Number]]:
-        """The matrix of a sum of forms, each times a number, on a basis of so many motions."""
-        nothing = self.sheet.tower.number(0)
-        total = [[nothing] * size for _ in range(size)]
-        for s, form in forms:
-            for d, values in form:
-                some = [(k, x) for k, x in enumerate(values) if not zero(x)]
-                self.work.count(len(some) ** 2, d)
-                for j, x in some:
-                    scaled = s * (d * x)
-                    for k, y in some:
-                        total[j][k] = total[j][k] + scaled * y
-        return total
 
     def gradient(self, v: int, motion: Vector, bits: int | None = None) -> dict[Edge, Any]:
         """The derivatives of sum_{k<j} w_k w_j [d_k, d_j] by each density, at a motion.
@@ -287,14 +271,3 @@ class Forms:
             [x + r * y for x, y in zip(first, second, strict=True)] for r in (root, -root)
         )
         return v, one, other
-
-
-def modulo_a_prime(forms: Sequence[Squares]) -> tuple[list[Matrix], int] | None:
-    """The matrices of forms modulo a prime, and the prime; None if no prime is found."""
-    towers = [x.tower for form in forms for d, row in form for x in (d, *row)]
-    tower = max(towers, key=lambda tower: tower.size)
-    weighted = [
-        [(tower.number(d).parts, [tower.number(x).parts for x in row]) for d, row in form]
-        for form in forms
-    ]
-    return reduced_forms(weighted, tower.radicands)

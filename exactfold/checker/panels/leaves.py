@@ -221,6 +221,7 @@ def _rank(spaces: Spaces, place: Place) -> int:
         row = {}
         for k, motion in enumerate(basis):
             terms = (weights[fold] * motion[fold] for fold in weights.keys() & motion.keys())
+            spaces.work.count(len(weights), None)
             row[k, k] = sum(terms, start=Interval.of(Fraction(0), BITS))
         rows.append(row)
-    return len(reduced(rows))
+    return len(reduced(rows, spaces.work))

@@ -14,6 +14,8 @@ from fractions import Fraction
 from itertools import combinations_with_replacement
 from math import isqrt
 
+from .reduction import Work
+
 Parts = Sequence[Fraction]
 Vector = list[int]
 Matrix = list[Vector]
@@ -27,14 +29,15 @@ MOST_VARIABLES = 5
 
 
 def reduced_forms(
-    forms: Sequence[Weighted], radicands: Sequence[Parts]
+    forms: Sequence[Weighted], radicands: Sequence[Parts], work: Work
 ) -> tuple[list[Matrix], int] | None:
     """The matrices of forms modulo a prime, and the prime; None if no prime is found."""
     for p in _primes():
+        work.count_short(isqrt(p) // 2)
         try:
             roots = _roots(radicands, p)
             if roots is not None:
-                return [_matrix(form, roots, p) for form in forms], p
+                return [_matrix(form, roots, p, work) for form in forms], p
         except ZeroDivisionError:
             continue
     return None
@@ -73,8 +76,10 @@ def _residue(parts: Parts, roots: Sequence[int], p: int) -> int:
     return (_residue(parts[:half], roots, p) + root * _residue(parts[half:], roots, p)) % p
 
 
-def _matrix(form: Weighted, roots: Sequence[int], p: int) -> Matrix:
+def _matrix(form: Weighted, roots: Sequence[int], p: int, work: Work) -> Matrix:
     size = len(form[0][1])
+    work.count(len(form) * (size << len(roots)), None)
+    work.count_short(len(form) * size**2)
     total = [[0] * size for _ in range(size)]
     for weight, values in form:
         d = _residue(weight, roots, p)
@@ -85,13 +90,13 @@ def _matrix(form: Weighted, roots: Sequence[int], p: int) -> Matrix:
     return total
 
 
-def only_zero(forms: Sequence[Matrix], p: int) -> bool:
+def only_zero(forms: Sequence[Matrix], p: int, work: Work) -> bool:
     """Whether it is proved that the forms vanish together only at 0, over the complex numbers.
 
     They do if the products of the forms with monomials span all forms of some degree.
     """
     size = len(forms[0])
-    if not size <= len(forms) or size > MOST_VARIABLES:
+    if size > MOST_VARIABLES:
         return False
     for degree in range(2, size + 2):
         columns = {m: k for k, m in enumerate(combinations_with_replacement(range(size), degree))}
@@ -99,17 +104,18 @@ def only_zero(forms: Sequence[Matrix], p: int) -> bool:
         for form in forms:
             for monomial in combinations_with_replacement(range(size), degree - 2):
                 row = [0] * len(columns)
+                work.count_short(size**2 * degree)
                 for j in range(size):
                     for k in range(size):
                         place = columns[tuple(sorted((*monomial, j, k)))]
                         row[place] = (row[place] + form[j][k]) % p
                 rows.append(row)
-        if len(_echelon(rows, p)) == len(columns):
+        if len(_echelon(rows, p, work)) == len(columns):
             return True
     return False
 
 
-def one_component(forms: Sequence[Matrix], p: int) -> bool:
+def one_component(forms: Sequence[Matrix], p: int, work: Work) -> bool:
     """Whether it is proved that the forms generate a prime ideal over the complex numbers.
 
     The first form has rank 3 or more. Each later form K gets a vector u on which no earlier form
@@ -120,10 +126,11 @@ def one_component(forms: Sequence[Matrix], p: int) -> bool:
     size = len(forms[0])
     generator = random.Random(size)
     points = [[generator.randrange(p) for _ in range(size)] for _ in range(POINTS)]
-    if len(_echelon(forms[0], p)) < 3:
+    if len(_echelon(forms[0], p, work)) < 3:
         return False
     room = [[int(j == k) for k in range(size)] for j in range(size)]
     for number, form in enumerate(forms):
+        work.count_short((POINTS + len(room)) * size * (size + len(room)))
         u = _direction(form, room, generator, p)
         if u is None:
             return False
@@ -131,11 +138,11 @@ def one_component(forms: Sequence[Matrix], p: int) -> bool:
         last = _dot(slopes, u, p)
         moved = [_shifted(point, room, generator, p) for point in points]
         points, classes = _zeros(form, slopes, last, u, moved, p)
-        if number and (
-            len(classes) < 2 if last else not _apart(forms[:number], form, slopes, u, generator, p)
-        ):
+        if number and last and len(classes) < 2:
             return False
-        room = _kernel(form, room, p)
+        if not last and not _apart(forms[:number], form, slopes, generator, p, work):
+            return False
+        room = _kernel(form, room, p, work)
     return True
 
 
@@ -177,37 +184,34 @@ def _zeros(
 
 
 def _apart(
-    earlier: Sequence[Matrix], form: Matrix, b: Vector, u: Vector, generator: random.Random, p: int
+    earlier: Sequence[Matrix], form: Matrix, b: Vector, generator: random.Random, p: int, work: Work
 ) -> bool:
     """Whether earlier forms, b and K have, without u, the common zeros of a regular sequence.
 
     They have if on some space of as many dimensions as there are forms, on which b vanishes, the
-    forms vanish together only at 0.
+    forms vanish together only at 0. Where b vanishes, no form depends on u, so that u may stay.
     """
     size, number = len(form), len(earlier) + 1
-    first = next(k for k, x in enumerate(u) if x)
-    unit = [int(k == first) for k in range(size)]
-    space = _kernel_of([b, unit], p)
-    if len(space) < number:
-        return False
+    space = _kernel_of([b], p, work)
+    work.count_short(number**2 * size**2)
     basis = [_shifted([0] * size, space, generator, p) for _ in range(number)]
     inner = [
         [[_dot(_times(k, a, p), c, p) for c in basis] for a in basis] for k in (*earlier, form)
     ]
-    return only_zero(inner, p)
+    return only_zero(inner, p, work)
 
 
-def _kernel(form: Matrix, room: Matrix, p: int) -> Matrix:
+def _kernel(form: Matrix, room: Matrix, p: int, work: Work) -> Matrix:
     """The vectors of a space on which the form does not depend."""
     values = [_times(form, vector, p) for vector in room]
-    weights = _kernel_of([list(column) for column in zip(*values, strict=True)], p)
+    weights = _kernel_of([list(column) for column in zip(*values, strict=True)], p, work)
     return [_combined(row, room, p) for row in weights]
 
 
-def _kernel_of(rows: Matrix, p: int) -> Matrix:
+def _kernel_of(rows: Matrix, p: int, work: Work) -> Matrix:
     """A basis of the vectors at which linear functions vanish."""
     size = len(rows[0]) if rows else 0
-    echelon = _echelon(rows, p)
+    echelon = _echelon(rows, p, work)
     basis = []
     for free in (k for k in range(size) if k not in echelon):
         vector = [0] * size
@@ -219,13 +223,14 @@ def _kernel_of(rows: Matrix, p: int) -> Matrix:
     return basis
 
 
-def _echelon(rows: Sequence[Vector], p: int) -> dict[int, Vector]:
+def _echelon(rows: Sequence[Vector], p: int, work: Work) -> dict[int, Vector]:
     """Independent rows by their first column, which has a 1 there."""
     echelon: dict[int, Vector] = {}
     for given in rows:
         row = [x % p for x in given]
         for k in range(len(row)):
             if row[k]:
+                work.count_short(len(row))
                 if k not in echelon:
                     over = pow(row[k], -1, p)
                     echelon[k] = [x * over % p for x in row]

@@ -11,6 +11,8 @@ from itertools import combinations, product
 from math import atan2, cos, sin
 from operator import mul
 
+from .reduction import Work
+
 STARTS, FEW_STARTS = 40, 5
 CUTS, BALANCED, SWEEPS = 60, 6, 8
 STEPS = 60
@@ -20,31 +22,29 @@ REGULAR = 1e-5
 Matrix = Sequence[Sequence[float]]
 
 
-def near_zeros(forms: Sequence[Matrix]) -> Iterator[list[float]]:
+def near_zeros(forms: Sequence[Matrix], work: Work) -> Iterator[list[float]]:
     """Yield vectors of length 1 at which all forms nearly vanish, with independent derivatives.
 
     They are looked for in the given coordinates, and then in those in which the forms are balanced.
     """
-    yield from _zeros(forms, STARTS)
-    balanced, change = _balanced(forms)
-    for w in _zeros(balanced, STARTS):
+    yield from _zeros(forms, STARTS, work)
+    balanced, change = _balanced(forms, work)
+    for w in _zeros(balanced, STARTS, work):
         yield _unit([_dot(w, column) for column in zip(*change, strict=True)])
 
 
-def _zeros(forms: Sequence[Matrix], starts: int) -> Iterator[list[float]]:
+def _zeros(forms: Sequence[Matrix], starts: int, work: Work) -> Iterator[list[float]]:
     """Newton's method starts at so many points.
 
     Each step is the shortest one that solves the linear equations.
     """
     size = len(forms[0])
-    largest = [max(abs(x) for row in form for x in row) for form in forms]
-    scaled = [
-        [[x / most for x in row] for row in form] for form, most in zip(forms, largest, strict=True)
-    ]
+    scaled = _scaled(forms)
     for number in range(starts):
         generator = random.Random(number)
         w = _unit([generator.uniform(-1, 1) for _ in range(size)])
         for _ in range(STEPS):
+            work.count_short(len(forms) * (size + len(forms)) ** 2)
             slopes = [[2 * _dot(row, w) for row in form] for form in scaled]
             values = [_dot(slope, w) / 2 for slope in slopes]
             weights = _solved([[_dot(a, b) for b in slopes] for a in slopes], values)
@@ -59,7 +59,7 @@ def _zeros(forms: Sequence[Matrix], starts: int) -> Iterator[list[float]]:
             w = _unit([x - y for x, y in zip(w, step, strict=True)])
 
 
-def definite_weights(forms: Sequence[Matrix]) -> list[float] | None:
+def definite_weights(forms: Sequence[Matrix], work: Work) -> list[float] | None:
     """Weights of at least two forms whose sum seems to be positive definite; None if none is found.
 
     For weights t whose sum is not, some vector x has a value that is not positive there. So the
@@ -68,18 +68,19 @@ def definite_weights(forms: Sequence[Matrix]) -> list[float] | None:
     Algorithms and Combinatorial Optimization, 1993, 3.2). There are no such weights if the forms
     have a common zero.
     """
-    if next(_zeros(forms, FEW_STARTS), None) is not None:
+    if next(_zeros(forms, FEW_STARTS, work), None) is not None:
         return None
     count = len(forms)
-    scaled, _ = _balanced(forms)
-    if next(_zeros(scaled, FEW_STARTS), None) is not None:
+    scaled, _ = _balanced(forms, work)
+    if next(_zeros(scaled, FEW_STARTS, work), None) is not None:
         return None
     t = [0.0] * count
     shape = [[float(i == j) for j in range(count)] for i in range(count)]
     for _ in range(CUTS * count * count):
+        work.count_short(len(scaled[0]) ** 2 * (count + len(scaled[0])))
         x = _not_positive(scaled, t)
         if x is None:
-            return t
+            return [a / _largest(form) for a, form in zip(t, forms, strict=True)]
         cut = _unit([_dot(x, [_dot(row, x) for row in form]) for form in scaled])
         ahead = [_dot(row, cut) for row in shape]
         length = max(_dot(cut, ahead), 0.0) ** 0.5
@@ -96,15 +97,18 @@ def definite_weights(forms: Sequence[Matrix]) -> list[float] | None:
     return None
 
 
-def _balanced(forms: Sequence[Matrix]) -> tuple[list[list[list[float]]], list[list[float]]]:
+def _balanced(
+    forms: Sequence[Matrix], work: Work
+) -> tuple[list[list[list[float]]], list[list[float]]]:
     """The forms in coordinates in which the sum of their squares is nearly a multiple of 1.
 
     The second value has the vectors of these coordinates.
     """
     size = len(forms[0])
-    balanced = [[list(row) for row in form] for form in forms]
+    balanced = _scaled(forms)
     change = [[float(i == j) for j in range(size)] for i in range(size)]
     for _ in range(BALANCED):
+        work.count_short((3 * len(forms) + 2 * SWEEPS) * size**3)
         total = [[0.0] * size for _ in range(size)]
         for form in balanced:
             length = sum(_dot(row, row) for row in form)
@@ -119,6 +123,17 @@ def _balanced(forms: Sequence[Matrix]) -> tuple[list[list[list[float]]], list[li
         halves = [[[_dot(row, b) for row in form] for b in step] for form in balanced]
         balanced = [[[_dot(a, b) for b in half] for a in step] for half in halves]
     return balanced, change
+
+
+def _largest(form: Matrix) -> float:
+    return max(abs(x) for row in form for x in row)
+
+
+def _scaled(forms: Sequence[Matrix]) -> list[list[list[float]]]:
+    largest = map(_largest, forms)
+    return [
+        [[x / most for x in row] for row in form] for form, most in zip(forms, largest, strict=True)
+    ]
 
 
 def _eigen(matrix: list[list[float]]) -> tuple[list[float], list[list[float]]]:

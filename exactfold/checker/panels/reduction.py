@@ -1,4 +1,7 @@
-"""Gaussian elimination for vectors of fold densities, exactly in one field or in intervals."""
+"""Gaussian elimination for vectors of fold densities, exactly in one field or in intervals.
+
+The work of a search is counted here, too.
+"""
 
 from __future__ import annotations
 
@@ -13,6 +16,8 @@ from ..core.towers import Number, Parts, Tower
 from ..sheets.panels import Edge
 
 MOST_ROOTS = limits.SPACE_ROOTS
+MOST_STEPS = limits.SPACE_STEPS
+SHORT = 16
 BITS = 256
 
 Vector = Mapping[Edge, Any]
@@ -20,31 +25,61 @@ Vector = Mapping[Edge, Any]
 Rows = list[tuple[Edge, Vector]]
 
 
+class Work:
+    """Counts products of densities; a product of numbers with n coefficients counts n^2 steps.
+
+    A product of two intervals is one step, and so are `SHORT` products of short numbers: residues
+    modulo a prime, or numbers in floating point.
+    """
+
+    def __init__(self) -> None:
+        self.steps = 0
+        self._turn = MOST_STEPS
+
+    def turn(self, steps: int) -> bool:
+        """Allow so many steps more, if the limit does; say whether it allows more than these."""
+        self._turn = self.steps + steps
+        return self._turn < MOST_STEPS
+
+    def count(self, products: int, value: Any) -> None:
+        """Count products with this number or interval; raises `LimitError` if they are too many."""
+        size = value.tower.size if isinstance(value, Number) else 1
+        self.steps += products * size * size
+        most = min(self._turn, MOST_STEPS)
+        at_most(self.steps, most, "the steps to the spaces of motions", "SPACE_STEPS")
+
+    def count_short(self, products: int) -> None:
+        """Count products of residues, or of numbers in floating point."""
+        self.count(-(-products // SHORT), None)
+
+
 def zero(value: Any) -> bool:
     """Whether a value is known to be 0; an interval never is."""
     return isinstance(value, Number) and not any(value.parts)
 
 
-def rest_of(vector: Vector, rows: Rows) -> Vector:
+def rest_of(vector: Vector, rows: Rows, work: Work | None = None) -> Vector:
     """The vector minus multiples of the rows, so that the leading folds of all rows vanish."""
     rest = dict(vector)
     for lead, row in rows:
         if lead in rest:
             factor = rest[lead] / row[lead]
+            if work is not None:
+                work.count(len(row), factor)
             for fold, value in row.items():
                 rest[fold] = rest[fold] - factor * value if fold in rest else -(factor * value)
             rest = {fold: value for fold, value in rest.items() if fold != lead and not zero(value)}
     return rest
 
 
-def reduced(vectors: Iterable[Vector]) -> Rows:
+def reduced(vectors: Iterable[Vector], work: Work | None = None) -> Rows:
     """A basis of the span; the leading fold of each row does not occur in the later rows.
 
     A vector of intervals is left out if it is not proved to be independent of the earlier rows.
     """
     rows: Rows = []
     for vector in vectors:
-        rest = rest_of(vector, rows)
+        rest = rest_of(vector, rows, work)
         lead = next((fold for fold in sorted(rest) if rest[fold].sign()), None)
         if lead is not None:
             rows.append((lead, rest))
@@ -73,7 +108,11 @@ def _float(x: Number) -> float:
     return float(Fraction(interval.low + interval.high, 2 << BITS))
 
 
-def inside(space: Sequence[Mapping[Edge, Number]], other: Sequence[Mapping[Edge, Number]]) -> bool:
+def inside(
+    space: Sequence[Mapping[Edge, Number]],
+    other: Sequence[Mapping[Edge, Number]],
+    work: Work | None = None,
+) -> bool:
     """Whether the span of `space` lies in the span of `other`, whose vectors are independent.
 
     Intervals refute it if they show that a vector of `space` is independent of `other`. Otherwise
@@ -82,14 +121,14 @@ def inside(space: Sequence[Mapping[Edge, Number]], other: Sequence[Mapping[Edge,
     folds = {fold for vector in other for fold in vector}
     if any(fold not in folds for vector in space for fold in vector):
         return False
-    rows = reduced(map(enclosed, other))
+    rows = reduced(map(enclosed, other), work)
     if len(rows) == len(other):
-        rests = [rest_of(enclosed(vector), rows) for vector in space]
+        rests = [rest_of(enclosed(vector), rows, work) for vector in space]
         if any(value.sign() for rest in rests for value in rest.values()):
             return False
     joined = Joined()
-    exact = reduced([joined.vector(vector) for vector in other])
-    return not any(rest_of(joined.vector(vector), exact) for vector in space)
+    exact = reduced([joined.vector(vector) for vector in other], work)
+    return not any(rest_of(joined.vector(vector), exact, work) for vector in space)
 
 
 class Joined:

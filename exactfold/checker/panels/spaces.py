@@ -16,8 +16,9 @@ from ..core import limits
 from ..core.reading import LimitError, at_most
 from ..core.towers import Number
 from ..sheets.panels import Edge
-from .forms import MOST_STEPS, Forms, Motion, Space, Squares, folds_of
-from .reduction import Rows, inside, reduced, rest_of, zero
+from .forms import Forms, Motion, Space, Squares, folds_of
+from .reduction import MOST_STEPS, Rows, inside, reduced, rest_of, zero
+from .together import narrowing_sum, vanish_only_at_zero
 
 MOST_LEAVES = limits.SPACE_LEAVES
 FIRST_TURN, GROWTH = 1 << 17, 8
@@ -92,7 +93,11 @@ class Spaces(Forms):
         """
         kept: list[Leaf] = []
         for leaf in sorted(leaves, key=lambda leaf: (-len(leaf.basis), len(leaf.cones))):
-            if not any(inside(leaf.basis, other.basis) for other in kept):
+            for other in kept:
+                self.work.count(1, None)
+                if inside(leaf.basis, other.basis, self.work):
+                    break
+            else:
                 kept.append(leaf)
         return kept
 
@@ -121,7 +126,7 @@ class Spaces(Forms):
         parts = []
         for group in groups:
             cut = [{fold: m[fold] for fold in m if fold in group} for m in space]
-            parts.append([dict(motion) for _, motion in reduced(cut)])
+            parts.append([dict(motion) for _, motion in reduced(cut, self.work)])
         return parts if sum(map(len, parts)) == len(space) else [space]
 
     def _split(self, space: Space, settled: frozenset[int]) -> list[Leaf]:
@@ -131,15 +136,15 @@ class Spaces(Forms):
         because the others are zeros of the first. So the values of the first factor are kept as
         densities of a fold (v, -n), which is not in the sheet.
         """
-        kernel, products, left, settled = self._forms(space, settled)
+        kernel, products, left, settled = self._forms(space, settled, every=True)
         if kernel:
             return self._within(space, kernel, settled)
         forms = {v: self.squares(v, space) for v in left if not products}
-        total = self.narrowing_sum(forms, len(space))
+        total = narrowing_sum(self, forms, len(space))
         if len({d.sign() for d, _ in total}) == 1:
             return self._within(space, [values for _, values in total], settled)
         if not products and not total:
-            if self.vanish_only_at_zero(forms, len(space)):
+            if vanish_only_at_zero(self.work, forms, len(space)):
                 return [] if _kept(space) else [Leaf([], ())]
             return [Leaf([_on_folds(motion) for motion in space], self._independent(forms))]
         v, one, other = self.factors(products or {left[0]: total}, space, settled)
@@ -168,7 +173,8 @@ class Spaces(Forms):
                     for k, y in some:
                         term = d * x * y
                         terms[j, k] = terms[j, k] + term if (j, k) in terms else term
-            rest = rest_of({key: x for key, x in terms.items() if not zero(x)}, rows)
+            terms = {key: x for key, x in terms.items() if not zero(x)}
+            rest = rest_of(terms, rows, self.work)
             if rest:
                 rows.append((min(rest), rest))
                 kept.append(v)
@@ -188,25 +194,31 @@ class Spaces(Forms):
         return (self.vanishing(part, [values]) for values in both), ()
 
     def _forms(
-        self, part: Space, settled: frozenset[int] = frozenset()
+        self, part: Space, settled: frozenset[int] = frozenset(), *, every: bool = False
     ) -> tuple[list[list[Number]], dict[int, Squares], tuple[int, ...], frozenset[int]]:
         """Functions that vanish with a semidefinite form; the forms that split; the vertices of
         other forms; and those of forms that vanish, also where the functions do.
+
+        The functions are those of the first semidefinite form, or of every one.
         """
+        kernel: list[list[Number]] = []
         products: dict[int, Squares] = {}
         left: list[int] = []
         touched = {v for fold in folds_of(part) for v in fold if v in self.near}
         for v in sorted(touched - settled):
             squares = self.squares(v, part)
             signs = [d.sign() for d, _ in squares]
-            if signs and abs(sum(signs)) == len(signs):
-                return [values for _, values in squares], {}, (), settled | {v}
-            if not signs:
+            if abs(sum(signs)) == len(signs):
                 settled |= {v}
+                kernel += [values for _, values in squares]
+                if kernel and not every:
+                    break
             elif len(signs) == 2:
                 products[v] = squares
             else:
                 left.append(v)
+        if kernel:
+            return kernel, {}, (), settled
         return [], products, tuple(left), settled
 
     def _within(

@@ -3,6 +3,12 @@
 A file has the points of a drawing as they were written, and an exact sheet with the same edges. The
 checker finds that both have the same panels, that no vertex lies further from its written point
 than claimed, and that the exact sheet has every relation of angles that is claimed (`relations`).
+
+`drawn` is the drawing, without square roots, and `pattern` the exact sheet with the same vertices
+and edges. The claims are numbers of vertices inside (`interior`) and on the boundary (`border`), of
+`folds` and `panels`; the digests of both sheets, `drawn` and `sha256`; `within`, so many times the
+larger side of the drawing; and the `relations`, each with its `kind`, its `name`, its `terms`
+[i, j, n] and its `parts`. There is no other evidence.
 """
 
 from __future__ import annotations

@@ -6,6 +6,8 @@ from math import lcm
 
 from exactfold._support.verdict import PROVED
 from exactfold.branches.certificates.single import branch_certificate, heights_evidence
+from exactfold.branches.counting.find import BranchFinder
+from exactfold.branches.values.roots import EnclosedRoot
 from exactfold.certificates.entries import Document, emptied_evidence, pattern_document
 from exactfold.checker.letters.letters import LETTERS, LettersClaims
 from exactfold.design.assignments.boundary_result import BoundaryMatch
@@ -47,7 +49,8 @@ def match_certificate(matched: Match | BoundaryMatch | PanelMatch) -> Document:
         )
     if isinstance(matched, Match):
         emptied = emptied_evidence(matched.pattern)
-        leaves = [[_ray(ray, emptied) for ray in both] for _, both in matched.tree.leaves]
+        finder = BranchFinder(matched.pattern)
+        leaves = [[_ray(ray, finder, emptied) for ray in both] for _, both in matched.tree.leaves]
         return _letters(matched, matched.matches, leaves)
     if matched.branch is not None:
         return branch_certificate(matched.branch)
@@ -117,6 +120,10 @@ def _step(matched: Match | BoundaryMatch, step: Step) -> list[str | int]:
     return [kind, *at]
 
 
-def _ray(ray: MatchedRay, emptied: list[Document]) -> Document:
-    heights, denominator = heights_evidence(ray.branch, emptied)
+def _ray(ray: MatchedRay, finder: BranchFinder, emptied: list[Document]) -> Document:
+    """The heights of the branch; one that was proved with many others is proved by itself first."""
+    branch = ray.branch
+    if not isinstance(branch.root, EnclosedRoot):
+        branch = finder.find({v: branch.vertex_signs[v] for v in finder.poppable})
+    heights, denominator = heights_evidence(branch, emptied)
     return {"heights": heights, "denominator": denominator}

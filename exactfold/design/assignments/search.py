@@ -5,23 +5,34 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import cached_property
 
+import numpy as np
+
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.branches.counting.branch_blocks import BranchBlocks
 from exactfold.branches.counting.find import BranchFinder
+from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.letters import differing
+from exactfold.checker.core.limits import MOST_UNKNOWNS
 from exactfold.design.assignments.result import Compared, Match, MatchedRay
 from exactfold.design.refutations.asked import by_fold
 from exactfold.design.refutations.cone_program import ConeProgram
-from exactfold.design.refutations.sign_tree import SignSearch
+from exactfold.design.refutations.sign_tree import SignSearch, Tree
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.loading import PatternLike, as_pattern
+
+MOST = 4096
+"""Most sign vectors whose branches are compared, by default."""
+
+_MANY = 8
+"""From so many sign vectors on, the branches of all are found at once."""
 
 
 def match(
     pattern: PatternLike,
     letters: Mapping[Edge, str] | str,
     *,
-    most: int = 256,
+    most: int = MOST,
     progress: Progress | None = None,
 ) -> Match:
     """All rays with given letters, on a sheet with four corners and no chord.
@@ -50,8 +61,10 @@ def match(
     return _AssignmentSearch(sheet, by_fold(sheet.folds, letters), most, progress).result()
 
 
-class _AssignmentSearch(SignSearch[Compared]):
+class _AssignmentSearch(SignSearch[dict[int, int]]):
     """The search whose leaves are the two rays with given signs."""
+
+    compared_at_once = 3  # eight sign vectors take less time than a cone program
 
     def __init__(
         self, pattern: CreasePattern, letters: dict[Edge, str], most: int, progress: Progress | None
@@ -69,6 +82,7 @@ class _AssignmentSearch(SignSearch[Compared]):
 
     def result(self) -> Match:
         self.searched()
+        compared = self._compared()
         tree = self.tree()
         return Match(
             self.pattern,
@@ -80,28 +94,55 @@ class _AssignmentSearch(SignSearch[Compared]):
             tree.refutations,
             tuple(self.reasons),
             tuple(self.open),
-            len(tree.leaves),
-            tree,
-            tree.leaves,
+            len(compared),
+            Tree(tree.refuted, tree.steps, compared),
+            compared,
         )
 
-    def _at_leaf(self, signs: dict[int, int]) -> Compared:
-        """Find the two rays with these signs of all vertices, and compare their letters."""
+    def _at_leaf(self, signs: dict[int, int]) -> dict[int, int]:
+        """Keep these signs of all vertices; the branches of all leaves are found together."""
         if self.progress is not None:
             self.progress("sign vectors", len(self.leaves) + 1, 0)
-        up, down = (self._ray(signs, side) for side in (1, -1))
-        named = self.named(signs)
-        agreed = [self._agrees(ray) for ray in (up, down)]
-        if None in agreed:
-            self.open.append(named)
-        for ray, agrees in zip((up, down), agreed, strict=True):
-            if agrees and ray.names not in {m.names for m in self.matches}:
-                self.matches.append(ray)
-        return named, (up, down)
+        return self.named(signs)
 
-    def _ray(self, signs: dict[int, int], side: int) -> MatchedRay:
-        branch = self.finder.find({v: side * sign for v, sign in self.named(signs).items()})
-        return MatchedRay(branch, side)
+    def _compared(self) -> tuple[Compared, ...]:
+        """Find the two rays with the signs of each leaf, and compare their letters."""
+        known = self._known()
+        compared: list[Compared] = []
+        for k, signs in enumerate(self.leaves):
+            if self.progress is not None:
+                self.progress("branches", k + 1, len(self.leaves))
+            up, down = (self._ray(signs, side, known) for side in (1, -1))
+            agreed = [self._agrees(ray) for ray in (up, down)]
+            if None in agreed:
+                self.open.append(signs)
+            for ray, agrees in zip((up, down), agreed, strict=True):
+                if agrees and ray.names not in {m.names for m in self.matches}:
+                    self.matches.append(ray)
+            compared.append((signs, (up, down)))
+        return tuple(compared)
+
+    def _known(self) -> dict[tuple[int, ...], Branch]:
+        """Proved branches of the leaves, by vertex signs; many are found faster all at once."""
+        problem, leaves = self.finder.problem, self.leaves
+        if len(leaves) < _MANY or problem.size > MOST_UNKNOWNS or problem.triangles is None:
+            return {}
+        ups = [tuple(signs[v] for v in problem.foldable) for signs in leaves]
+        rows = list(dict.fromkeys([*ups, *(tuple(-sign for sign in up) for up in ups)]))
+        found = BranchBlocks.of(problem).with_signs(np.array(rows, dtype=np.float64))
+        return {row: branch for row, branch in zip(rows, found, strict=True) if branch is not None}
+
+    def _ray(
+        self, signs: Mapping[int, int], side: int, known: Mapping[tuple[int, ...], Branch]
+    ) -> MatchedRay:
+        """The ray with these signs on one side; if it may have the letters, `find` proves it."""
+        named = {v: side * sign for v, sign in signs.items()}
+        branch = known.get(tuple(named[v] for v in self.finder.poppable))
+        if branch is not None:
+            ray = MatchedRay(branch, side)
+            if self._agrees(ray) is False:
+                return ray
+        return MatchedRay(self.finder.find(named), side)
 
     def _agrees(self, ray: MatchedRay) -> bool | None:
         """Whether a ray has the letters; None if the ray or one of its letters is not proved."""

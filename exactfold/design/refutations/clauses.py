@@ -35,11 +35,21 @@ class Forced(NamedTuple):
     contradicted: int | None
 
 
+def bits_of(signs: Signs) -> int:
+    """The signs as bits of an integer: bit 2 v stands for v down, bit 2 v + 1 for v up.
+
+    >>> bin(bits_of({0: 1, 2: -1}))
+    '0b10010'
+    """
+    return sum(1 << (2 * v + (sign > 0)) for v, sign in signs.items())
+
+
 class Clauses:
     """The refuted sets of signs, numbered in the order in which they were learned."""
 
     def __init__(self) -> None:
         self.known: list[Refuted] = []
+        self._bits: list[int] = []
         self._with: dict[tuple[int, int], list[int]] = defaultdict(list)
         self._alone: list[int] = []
         self.weight: dict[int, float] = defaultdict(float)
@@ -50,6 +60,7 @@ class Clauses:
         """Keep a refuted set of signs."""
         number = len(self.known)
         self.known.append(refuted)
+        self._bits.append(bits_of(refuted.signs))
         self._step *= _LATER
         for v, sign in refuted.signs.items():
             self._with[v, sign].append(number)
@@ -62,16 +73,19 @@ class Clauses:
         opposite.
         """
         known_signs, steps, fresh = dict(signs), list[tuple[int, int]](), list(signs.items())
+        held = bits_of(known_signs)
         numbers = list(self._alone)
         while True:
             for number in numbers:
-                clause = self.known[number].signs
-                left = [v for v, sign in clause.items() if known_signs.get(v) != sign]
+                left = self._bits[number] & ~held
                 if not left:
                     return Forced(known_signs, steps, number)
-                if len(left) == 1 and left[0] not in known_signs:
-                    (v,) = left
-                    known_signs[v] = -clause[v]
+                if left & (left - 1):  # more than one sign of the set does not hold
+                    continue
+                v, up = divmod(left.bit_length() - 1, 2)
+                if v not in known_signs:
+                    known_signs[v] = -1 if up else 1
+                    held |= 1 << (2 * v + 1 - up)
                     steps.append((number, v))
                     fresh.append((v, known_signs[v]))
             if not fresh:

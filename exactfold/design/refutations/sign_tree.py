@@ -8,10 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Generic, Protocol, TypeVar
 
-import numpy as np
-import numpy.typing as npt
-
-from exactfold.design.refutations.clauses import Clauses, Refuted
+from exactfold.design.refutations.clauses import Clauses, Refuted, bits_of
 from exactfold.design.refutations.cone_program import Witness
 from exactfold.design.refutations.refutation import Letters, Refutation, refuted_at
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
@@ -20,7 +17,8 @@ _REMEMBERED = 512
 """Sign vectors that seem possible are kept, so that no cone program is solved for a part of them.
 """
 
-SignArray = npt.NDArray[np.int8]
+_MANY = 16
+"""So many leaves are many: with fewer, time hardly matters, and refutations say more."""
 
 Step = tuple[Any, ...]
 """The kind of a step of a `Tree`, followed by its numbers."""
@@ -69,6 +67,11 @@ class SignSearch(ABC, Generic[Leaf]):
     the question remains open.
     """
 
+    compared_at_once = -1
+    """Once there are many leaves and no more vertices than this are without a sign, no program is
+    solved: all signs of them that the known refuted sets leave become leaves.
+    """
+
     def __init__(
         self,
         sheet: CreasePattern,
@@ -78,9 +81,8 @@ class SignSearch(ABC, Generic[Leaf]):
     ) -> None:
         self.sheet, self.labels, self.letters, self.most = sheet, labels, letters, most
         self.own = {(i, j): letters[_fold(labels[i], labels[j])] for i, j in sheet.folds}
-        self.place = {v: k for k, v in enumerate(sheet.interior)}
         self.clauses = Clauses()
-        self.possible: deque[SignArray] = deque(maxlen=_REMEMBERED)
+        self.possible: deque[int] = deque(maxlen=_REMEMBERED)
         self.steps: list[Step] = []
         self.reasons: list[str] = []
         self.open: list[dict[int, int]] = []
@@ -166,6 +168,9 @@ class SignSearch(ABC, Generic[Leaf]):
         signs = self._forced(before)
         if signs is None:
             return None
+        unknown = len(self.sheet.interior) - len(signs)
+        if unknown <= self.compared_at_once and len(self.leaves) >= _MANY:
+            return signs
         if not self._seems_possible(signs):
             return self._forced(signs)
         for v in self._by_weight([v for v in self.sheet.interior if v not in signs]):
@@ -192,19 +197,15 @@ class SignSearch(ABC, Generic[Leaf]):
 
     def _seems_possible(self, signs: dict[int, int]) -> bool:
         """False if the program refutes the signs; the refutation is then learned."""
-        at = [self.place[v] for v in signs]
-        values = np.array(list(signs.values()), dtype=np.int8)
-        if any(np.array_equal(known[at], values) for known in self.possible):
+        wanted = bits_of(signs)
+        if any(wanted & known == wanted for known in self.possible):
             return True
         answer = self.program.solved(signs)
         if isinstance(answer, Refutation):
             self.clauses.learn(Refuted(answer.signs, answer))
             return False
         if answer is not None:
-            known = np.zeros(len(self.place), dtype=np.int8)
-            for v, sign in answer.items():
-                known[self.place[v]] = sign
-            self.possible.appendleft(known)
+            self.possible.appendleft(bits_of(answer))
         return True
 
 

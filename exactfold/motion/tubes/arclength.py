@@ -11,7 +11,7 @@ import numpy as np
 
 from exactfold._support.arrays import FloatArray
 from exactfold.exact.surds import float_bounds
-from exactfold.motion.tubes.length_equations import Row, squared
+from exactfold.motion.tubes.length_equations import Row, squared_length
 
 _DEGREE = 10
 _COMMON = lcm(*range(1, _DEGREE + 2))
@@ -27,6 +27,7 @@ def length_between(
     places: int,
     low: int,
     high: int,
+    enough: int = 0,
     depth: int = 5,
 ) -> Interval:
     """Bounds of the length of x(s) for low <= s <= high, where these are integers over 2^`places`.
@@ -38,7 +39,7 @@ def length_between(
 
     Both the maximum and the minimum are bounded by the absolute values of the coefficients, and the
     integral of S is exact. Where the speed changes a lot, the interval is halved, up to `depth`
-    times.
+    times, unless the bound above is at most `enough` over 2^bits.
 
     >>> [float(x) for x in length_between([(3, 4)], 0, (0, 0), 1, 0, 1)]
     [2.5, 2.5]
@@ -59,7 +60,8 @@ def length_between(
     least = 2 * root[0] - largest(root)
     off = isqrt(sum(r * r for r in error)) + 1 if any(error) else 0
     span = Fraction(high - low, 1 << places)
-    poor = 2 * least < root[0] or -(-largest(misfit) // least) > root[0] >> _CLOSE
+    most_misfit = max(root[0] >> _CLOSE, enough << extra)
+    poor = 2 * least < root[0] or -(-largest(misfit) // least) > most_misfit
     if poor and depth:  # the speed changes a lot: treat both halves, expanded at their middles
         total = [Fraction(0), Fraction(0)]
         middle = (low + high) // 2
@@ -73,6 +75,7 @@ def length_between(
                 places,
                 begin - at,
                 end - at,
+                enough << more,
                 depth - 1,
             )
             total = [x + y for x, y in zip(total, part, strict=True)]
@@ -92,8 +95,7 @@ def length_between(
 @lru_cache(maxsize=64)
 def _speed(velocity: tuple[Row, ...]) -> tuple[list[int], list[int], int]:
     """The polynomial S near |p'|, the difference S^2 - |p'|^2, and the extra bits that S has."""
-    curve = np.array(velocity, dtype=object)[:, None, :]
-    speed = [int(x[0]) for x in squared(curve)]
+    speed = squared_length(velocity)
     # S gets extra binary places, so that slow curves keep their digits.
     extra = max(0, 64 - speed[0].bit_length() // 2)
     speed = [x << 2 * extra for x in speed]

@@ -14,12 +14,14 @@ from exactfold.certificates.entries import Document
 from exactfold.motion.tubes.arclength import Interval
 from exactfold.motion.tubes.branch_point_tube import BranchPointTube
 from exactfold.motion.tubes.length_equations import LengthEquations
-from exactfold.motion.tubes.links import Link, onwards
+from exactfold.motion.tubes.links import FINE, ROUGH, Link, onwards
 from exactfold.motion.tubes.passages import Passage, passage_ahead
 from exactfold.motion.tubes.piece import Ball
 from exactfold.motion.tubes.singular import singular_at
 from exactfold.motion.tubes.tube import sharpened
 from exactfold.motion.tubes.tube_start import StartTube
+
+_NARROW, _NARROWER = 8, 0.75
 
 Step = Link | Passage
 """A tube, or an arc through a branch point."""
@@ -29,28 +31,30 @@ Step = Link | Passage
 class Chain:
     """The steps of a motion as they are proved, each linked with the previous one.
 
-    Vertex v of the framework is vertex `labels[v]` of the pattern.
+    Vertex v of the framework is vertex `labels[v]` of the pattern. `share` is that of `onwards`.
     """
 
     equations: LengthEquations
     labels: Sequence[int]
     ahead: Iterator[Link | str] = field(repr=False)
+    share: float = FINE
     steps: list[Step] = field(default_factory=list)
 
     @classmethod
-    def from_flat(cls, start: StartTube, labels: Sequence[int]) -> Chain:
+    def from_flat(cls, start: StartTube, labels: Sequence[int], share: float = FINE) -> Chain:
         """The chain that continues from the end of a start tube."""
         equations, last = LengthEquations.of(start.framework, start.bits), start.last
         time = start.length(0, last)
         point, velocity = start.ball(last), start.ball_velocity(last)
-        return cls(equations, labels, onwards(equations, point, velocity, time, float(time[0]) / 2))
+        ahead = onwards(equations, point, velocity, time, float(time[0]) / 2, share)
+        return cls(equations, labels, ahead, share)
 
     @classmethod
     def from_branch_point(cls, tube: BranchPointTube, labels: Sequence[int]) -> Chain:
         """The chain that leaves a branch point forwards along an arc; its time begins there."""
         equations, at = LengthEquations.of(tube.framework), tube.longest * 3 // 4
         left = tube.length(0, at)
-        return cls(equations, labels, _after(equations, tube, at, left, left))
+        return cls(equations, labels, _after(equations, tube, at, left, left, ROUGH), ROUGH)
 
     def extend(self) -> Step | str:
         """Prove one more step and return it, or return the reason why there is none.
@@ -59,24 +63,50 @@ class Chain:
         continues along the same arc.
         """
         link = next(self.ahead)
+        replacement = None
         if isinstance(link, Link):
             self.steps.append(link)
-            return link
-        replacement = passage_ahead(self.labels, self.steps)
-        if replacement is None:
-            return singular_at(self.labels, self.steps, link)
+            if self._narrows():
+                replacement = passage_ahead(self.labels, self.steps, early=True)
+            if replacement is None:
+                return link
+        else:
+            replacement = passage_ahead(self.labels, self.steps)
+            if replacement is None:
+                return singular_at(self.labels, self.steps, link)
         kept, passage = replacement
         self.steps[kept:] = [passage]
         tube, at = passage.tube, passage.exit
-        self.ahead = _after(self.equations, tube, at, passage.left, tube.length(0, at))
+        length = tube.length(0, at)
+        self.ahead = _after(self.equations, tube, at, passage.left, length, self.share)
         return passage
+
+    def _narrows(self) -> bool:
+        """Whether each of the last links is clearly shorter than the one before it.
+
+        Ahead of a branch point this goes on until the tubes are too short. Every `_NARROW` links
+        are worth a look ahead.
+        """
+        run, longer = 0, 0.0
+        for step in reversed(self.steps):
+            length = float(step.left[0] - step.entered[0])
+            if isinstance(step, Passage) or length < longer:
+                break
+            longer = length / _NARROWER
+            run += 1
+        return run > 1 and not run % _NARROW
 
 
 def _after(
-    equations: LengthEquations, tube: BranchPointTube, at: int, time: Interval, length: Interval
+    equations: LengthEquations,
+    tube: BranchPointTube,
+    at: int,
+    time: Interval,
+    length: Interval,
+    share: float,
 ) -> Iterator[Link | str]:
     """The links that follow a point of an arc; the first one is about as long as `length`."""
-    return onwards(equations, tube.ball(at), tube.ball_velocity(at), time, float(length[0]))
+    return onwards(equations, tube.ball(at), tube.ball_velocity(at), time, float(length[0]), share)
 
 
 def point_near(start: StartTube, steps: Sequence[Step], time: Fraction) -> tuple[Interval, Ball]:
@@ -139,10 +169,12 @@ def chords(
             balls.append(step.tube.enclosure(0))
         if leaving:
             balls.append(step.tube.enclosure(step.exit))
-    none = np.zeros((1, start.framework.size))
-    points = [none] + [ball.floats[0][None] for ball in balls]
     if landing is not None:
-        points += [landing.floats[0][None], none]
-    ways = np.diff(np.concatenate(points), axis=0)
-    total = float(np.linalg.norm(ways, axis=1).sum())
-    return Fraction(int(total * (1 - 1e-5) * (1 << 30)), 1 << 30)
+        balls.append(landing)
+    floats = np.array([ball.floats for ball in balls])
+    ends = np.zeros((1, start.framework.size))
+    points = np.concatenate([ends, floats[:, 0], *([] if landing is None else [ends])])
+    total = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
+    # Each point is an end of at most two chords; the boxes of the checker may be a little wider.
+    total -= 4 * float(np.linalg.norm(floats[:, 1], axis=1).sum())
+    return Fraction(int(max(total, 0.0) * (1 - 1e-5) * (1 << 30)), 1 << 30)

@@ -14,6 +14,8 @@ from exactfold.motion.tubes.contraction import WEIGHT_BITS, Places
 
 Row = tuple[int, ...]
 _LEAST = (1 << WEIGHT_BITS) // 100
+ENOUGH, _MOST_ROUNDS = 1 / 64, 30
+"""Weights that change by this share in one round are near enough as a rule."""
 Curve = tuple[Row, ...]
 """The curve sum_k a_k s^k: row k is a_k, with an integer over a power of two for each unknown."""
 
@@ -98,6 +100,16 @@ class LengthEquations:
         return np.asarray(d[:, framework.bars[:, 0], :] - d[:, framework.bars[:, 1], :])
 
     @cached_property
+    def incidence(self) -> FloatArray:
+        """The matrix that takes unknowns to their differences along the bars.
+
+        The shape is (3 bars, unknowns), with the coordinates of each bar in turn.
+        """
+        framework = self.framework
+        every = framework.along(np.eye(framework.size))
+        return np.ascontiguousarray(every.reshape(framework.size, -1).T)
+
+    @cached_property
     def places(self) -> Places:
         """The positions of the ends of the bars among the unknowns."""
         framework = self.framework
@@ -156,6 +168,26 @@ def squared(e: BigArray) -> list[BigArray]:
     return coefficients
 
 
+def squared_length(curve: Sequence[Row]) -> list[int]:
+    """The coefficients of |p|^2 for a curve p, by Kronecker's substitution in `int`.
+
+    >>> squared_length([(1, 2), (-3, 0), (0, 1)])
+    [5, -6, 13, 0, 1]
+    """
+    count = 2 * len(curve) - 1
+    longest = max(abs(x).bit_length() for row in curve for x in row)
+    bits = 2 * longest + (len(curve) * len(curve[0])).bit_length() + 2
+    total = 0
+    for column in zip(*curve, strict=True):
+        packed = 0
+        for x in reversed(column):
+            packed = (packed << bits) + x
+        total += packed * packed
+    half, mask = 1 << bits - 1, (1 << bits) - 1
+    total += ((1 << bits * count) - 1) // mask * half
+    return [(total >> bits * k & mask) - half for k in range(count)]
+
+
 def corrected(
     inverse: FloatArray,
     curve: Sequence[Sequence[int]],
@@ -176,15 +208,19 @@ def corrected(
     return tuple(coefficients)
 
 
-def weights_of(matrix: FloatArray) -> Row:
+def weights_of(matrix: FloatArray, enough: float = 0.0) -> Row:
     """Positive weights over 2^WEIGHT_BITS, near the Perron vector of a nonnegative matrix.
 
     No weight is below 1/100: even if the motion leaves an unknown at rest, its weight must not
-    vanish.
+    vanish. The vector is improved until it changes by at most the share `enough`, but not for ever.
     """
     vector = np.ones(len(matrix))
-    for _ in range(30):
+    for _ in range(_MOST_ROUNDS):
         image = matrix @ vector
-        vector = vector + image / max(float(image.max()), 1e-300)
-        vector = vector / vector.max()
+        after = vector + image / max(float(image.max()), 1e-300)
+        after /= after.max()
+        near = bool((np.abs(after - vector) <= enough * after).all())
+        vector = after
+        if near:
+            break
     return tuple(max(_LEAST, int(x)) for x in vector * 2.0**WEIGHT_BITS)

@@ -15,12 +15,15 @@ from exactfold.motion.tubes.tube import Tube, prove_tube
 
 _LEAST = 1e-7  # the shortest step, in the unit of the framework
 _EXIT = 3, 4  # the motion enters the next tube at this fraction of the reach
-_AHEAD = 0.7  # the next tube has its centre about this share of the reach beyond the exit
+_AHEAD = 0.6  # the next tube has its centre about this share of the reach beyond the exit
 _GROWTH = 0.5, 1.2  # the expected growth of the reach from tube to tube lies between these
-_THICKNESS, _OF_STEP, _THINNEST, _SHORT = 1e-8, 1e-7, 1e-10, 1e-5
-"""The largest radius of a tube: absolutely, and as a share of its length. It limits the error with
-which the ends of tubes are known. It is not reduced for short tubes: where curves nearly cross,
-thin tubes would become shorter and shorter."""
+FINE, ROUGH = 1e-7, 1e-5
+"""The largest radius of a tube as a share of its length. It limits the error with which the ends of
+tubes are known. Loops have rough tubes, which are longer."""
+_MOST_STEP, _THINNEST, _SHORT = 0.1, 1e-10, 1e-5
+"""The radius does not grow with tubes longer than the first. It is not reduced for tubes shorter
+than the last, of which it may be 1e-8: where curves nearly cross, thin tubes would become shorter
+and shorter."""
 _FAR = 64.0  # larger unknowns, in the unit of the framework, cannot be those of the sheet
 
 
@@ -51,15 +54,21 @@ class Link:
 
 
 def onwards(
-    equations: LengthEquations, ball: Ball, velocity: Ball, time: Interval, step: float
+    equations: LengthEquations,
+    ball: Ball,
+    velocity: Ball,
+    time: Interval,
+    step: float,
+    share: float = FINE,
 ) -> Iterator[Link | str]:
     """The links that follow a configuration in a box; its velocity lies in the box `velocity`.
 
-    The first tube is about `step` long. If there is no next link, the last value is the reason.
+    The first tube is about `step` long. The radius of a tube is at most `share` of its length,
+    which is `FINE` or `ROUGH`. If there is no next link, the last value is the reason.
     """
     place: _Place | None = None
     while True:
-        tube, entry = _next(equations, ball, velocity, step, place)
+        tube, entry = _next(equations, ball, velocity, step, share, place)
         if tube is None or entry is None:
             yield (
                 "no tube longer than 1e-7 of the sheet was proved here: the configuration is "
@@ -101,7 +110,12 @@ def _place(equations: LengthEquations, tube: Tube, parameter: int) -> _Place | N
 
 
 def _next(
-    equations: LengthEquations, ball: Ball, velocity: Ball, step: float, place: _Place | None
+    equations: LengthEquations,
+    ball: Ball,
+    velocity: Ball,
+    step: float,
+    share: float,
+    place: _Place | None,
 ) -> tuple[Tube | None, tuple[int, int] | None]:
     """A tube that contains the configuration in a box and that the motion passes forwards.
 
@@ -109,13 +123,13 @@ def _next(
     about the centre of the box.
     """
     if place is not None and step > _LEAST:
-        tube = prove_tube(equations, *place, step, thickness=_thickness(step))
+        tube = prove_tube(equations, *place, step, thickness=_thickness(step, share))
         entry = None if tube is None else _entered(tube, ball, velocity)
         if entry is not None:
             return tube, entry
     centre, along = ball.finer(equations.bits).centre, velocity.floats[0]
     while step > _LEAST:
-        tube = prove_tube(equations, centre, along, step, thickness=_thickness(step))
+        tube = prove_tube(equations, centre, along, step, thickness=_thickness(step, share))
         entry = None if tube is None else _entered(tube, ball, velocity)
         if entry is not None:
             return tube, entry
@@ -123,9 +137,9 @@ def _next(
     return None, None
 
 
-def _thickness(step: float) -> float:
+def _thickness(step: float, share: float) -> float:
     """The largest radius of a tube that is about `step` long."""
-    return _THICKNESS if step < _SHORT else min(_THICKNESS, max(_OF_STEP * step, _THINNEST))
+    return 1e-8 if step < _SHORT else max(share * min(step, _MOST_STEP), _THINNEST)
 
 
 def _entered(tube: Tube, ball: Ball, velocity: Ball) -> tuple[int, int] | None:

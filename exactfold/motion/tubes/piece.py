@@ -133,16 +133,34 @@ class Piece:
 
         Raises `ArithmeticError` beyond the reach.
         """
-        centre = evaluated(self.coefficients, parameter)
-        return Ball(self.bits, centre, self.lengths(self.radius_within(abs(parameter))))
+        ball = self._enclosures.get(parameter)
+        if ball is None:
+            centre = evaluated(self.coefficients, parameter)
+            ball = Ball(self.bits, centre, self.lengths(self.radius_within(abs(parameter))))
+            self._enclosures[parameter] = ball
+        return ball
+
+    @cached_property
+    def _enclosures(self) -> dict[int, Ball]:
+        """The boxes that were computed so far; the end of a tube is looked at several times."""
+        return {}
 
     def velocity(self, parameter: int) -> Ball:
         """A box that contains x'(s)."""
-        most = abs(parameter)
-        error = self.contraction.velocity(
-            most << (SCALE - PARAMETER_BITS), self.radius_within(most)
-        )
-        return Ball(self.bits, evaluated(self.slope, parameter), self.lengths(error))
+        ball = self._velocities.get(parameter)
+        if ball is None:
+            most = abs(parameter)
+            error = self.contraction.velocity(
+                most << (SCALE - PARAMETER_BITS), self.radius_within(most)
+            )
+            ball = Ball(self.bits, evaluated(self.slope, parameter), self.lengths(error))
+            self._velocities[parameter] = ball
+        return ball
+
+    @cached_property
+    def _velocities(self) -> dict[int, Ball]:
+        """The same for velocities."""
+        return {}
 
     def unique_near(self, point: Row, radius: int, middle: Row) -> bool:
         """Whether a ball about a point lies where zeros are unique for the parameter of `middle`.

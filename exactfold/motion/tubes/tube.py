@@ -21,6 +21,7 @@ from exactfold.motion.tubes.contraction import (
     polynomial,
     up,
 )
+from exactfold.motion.tubes.float_bounds import contraction_in_floats, series_at
 from exactfold.motion.tubes.length_equations import (
     Curve,
     LengthEquations,
@@ -36,6 +37,10 @@ ROW_BITS = 20
 
 _MOST_REACH = 4 << REACH_BITS
 _STEEPEST = 7 << SCALE >> 3
+_IN_FLOATS = 64
+"""Bounds of tubes with more bits than these are computed in integers alone."""
+_MOST_ROUNDING = 2.0**-6
+"""Roundings may be this share of the largest radius of a tube."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -82,7 +87,6 @@ class Tube(Piece):
         rows = self.slope
         middle = (entry[0] + entry[1]) // 2
         none = (0,) * len(self.weights)
-        low, high = length_between(rows, self.bits, none, PARAMETER_BITS, middle, end)
         radius = self.radius_within(max(abs(middle), abs(end)))
         off = sum(
             self.contraction.drift(most << (SCALE - PARAMETER_BITS), radius)
@@ -90,6 +94,9 @@ class Tube(Piece):
         )
         size = isqrt(sum(w * w for w in self.weights)) + 1
         slack = Fraction(off * size, 1 << (SCALE + WEIGHT_BITS))
+        span = Fraction(max(end - middle, 1), 1 << PARAMETER_BITS)
+        enough = int(slack / span * (1 << self.bits))
+        low, high = length_between(rows, self.bits, none, PARAMETER_BITS, middle, end, enough)
         slack += Fraction(
             (entry[1] - entry[0] + 1) * self._fastest, 1 << (PARAMETER_BITS + self.bits)
         )
@@ -232,8 +239,13 @@ def prove_tube(
         return None
     if not np.abs(inverse).max() < 2.0**40:
         return None
-    for _ in range(2):
-        (centre,) = corrected(inverse, [centre], [_stretch(equations, centre, 0)], more)
+    (centre,) = corrected(inverse, [centre], [_stretch(equations, centre, 0)], more)
+    stretch = _stretch(equations, centre, 0)
+    if bits <= _IN_FLOATS and not (framework.ties or framework.coupling.rows):
+        tube = _proved_in_floats(equations, inverse, centre, stretch, row, order, thickness)
+        if tube is not None:
+            return tube
+    (centre,) = corrected(inverse, [centre], [stretch], more)
     series = _taylor(framework, inverse, order)
     weights = weights_of(_slopes(equations, inverse, series))
     curve = (centre, *(equations.nearest(a) for a in series))
@@ -245,6 +257,30 @@ def prove_tube(
             return Tube(framework, bits, curve, weights, proof, reach, row)
         curve = (centre, *corrected(inverse, curve, residuals, more)[1:])
     return None
+
+
+def _proved_in_floats(
+    equations: LengthEquations,
+    inverse: FloatArray,
+    centre: Row,
+    stretch: list[int],
+    row: Row,
+    order: int,
+    thickness: float,
+) -> Tube | None:
+    """A tube whose bounds are computed in floats; None if these are not near enough."""
+    series, parts = series_at(equations, inverse, order)
+    along = np.array(row) * 2.0**-ROW_BITS
+    found = contraction_in_floats(equations, inverse, centre, stretch, along, series, parts)
+    if found is None:
+        return None
+    proof, weights = found
+    most = _MOST_ROUNDING * thickness * 2.0**SCALE
+    reach = longest(proof, thickness)
+    if not reach or proof.residual[0] + proof.residual[1] > most:
+        return None
+    curve = (centre, *(equations.nearest(a) for a in series))
+    return Tube(equations.framework, equations.bits, curve, weights, proof, reach, row)
 
 
 def longest(proof: Contraction, thickness: float, most: int = _MOST_REACH) -> int:

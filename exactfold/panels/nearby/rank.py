@@ -1,4 +1,11 @@
-"""Full rank of a matrix and of every matrix near it, proved in whole numbers."""
+"""Full rank of a matrix and of every matrix near it, proved in whole numbers.
+
+A matrix stays of full rank under a change whose spectral norm is below its least singular value. In
+the matrix of the first-order conditions of a sheet, with the column of each fold divided by its
+drawn length l, a block of two entries differs in another sheet, whose vertices lie within 3 d, by a
+vector of length at most 6 d / l. The spectral norm of the change is at most that of the matrix of
+these bounds.
+"""
 
 from __future__ import annotations
 

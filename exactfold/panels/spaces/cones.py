@@ -11,8 +11,10 @@ import numpy as np
 from flint import arb, ctx
 from scipy.linalg import null_space
 
+from exactfold.checker.core.reading import LimitError
 from exactfold.checker.panels.modular import one_component
 from exactfold.checker.panels.proposed import near_zeros
+from exactfold.checker.panels.reduction import Work
 from exactfold.exact.surds import ball
 from exactfold.panels.spaces.kernel import Entry, Rows, imposed
 from exactfold.panels.spaces.quadratics import Squares, squares_of
@@ -56,9 +58,7 @@ def cone_motion(
             return None
         start: Balls = {edge: arb(0) for edge in rows}
         motion = _by_signs(forms, ordered, start)
-        if motion is None and _one_component([one.squares for one in ordered]):
-            motion = next(_regular_zeros(forms, ordered, rows, size), None)
-        return motion
+        return motion or _modulo_a_prime(forms, ordered, rows, size)
     finally:
         ctx.prec = before
 
@@ -78,7 +78,7 @@ def _by_signs(forms: Forms, ordered: Sequence[_Placed], start: Balls) -> Balls |
 
 
 def _regular_zeros(
-    forms: Forms, ordered: Sequence[_Placed], rows: Rows, size: int
+    forms: Forms, ordered: Sequence[_Placed], rows: Rows, size: int, work: Work
 ) -> Iterator[Balls]:
     """Common zeros of the forms, near points that floating point proposes.
 
@@ -90,7 +90,7 @@ def _regular_zeros(
         vectors = np.array([[float(x) for x in row] for _, row in one.squares])
         matrices.append((vectors.T @ np.diag(weights) @ vectors).tolist())
     basis = _basis(rows, size)
-    for near in near_zeros(matrices):
+    for near in near_zeros(matrices, work):
         w: Balls | None = {}
         for x, motion in zip(near, basis, strict=True):
             w = _plus(w or {}, arb(x), motion)
@@ -118,10 +118,21 @@ def _next_zero(forms: Forms, one: _Placed, w: Balls) -> Balls | None:
     return None
 
 
-def _one_component(forms: Sequence[Squares]) -> bool:
-    """Whether the forms generate a prime ideal, which is shown modulo a prime."""
-    reduced = modulo_a_prime(forms)
-    return reduced is not None and one_component(*reduced)
+def _modulo_a_prime(
+    forms: Forms, ordered: Sequence[_Placed], rows: Rows, size: int
+) -> Balls | None:
+    """A common zero of forms that generate a prime ideal modulo a prime.
+
+    None if they are not shown to, or if that is more work than the checker does.
+    """
+    work = Work()
+    try:
+        reduced = modulo_a_prime([one.squares for one in ordered], work)
+        if reduced is None or not one_component(*reduced, work):
+            return None
+        return next(_regular_zeros(forms, ordered, rows, size, work), None)
+    except LimitError:
+        return None
 
 
 @dataclass(frozen=True)

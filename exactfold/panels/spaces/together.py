@@ -10,8 +10,10 @@ from typing import Final
 import numpy as np
 from flint import fmpq
 
+from exactfold.checker.core.reading import LimitError
 from exactfold.checker.panels.modular import MOST_VARIABLES, only_zero, reduced_forms
 from exactfold.checker.panels.proposed import definite_weights
+from exactfold.checker.panels.reduction import Work
 from exactfold.exact.root_tower import to_fmpq
 from exactfold.exact.surds import common_field, sign
 from exactfold.panels.spaces.kernel import Entry, increase
@@ -45,7 +47,10 @@ def narrowing_sum(forms: Mapping[int, Form], vertices: Sequence[int]) -> Form | 
         form = _sum([(s, forms[v]) for s, v in zip(signs, vertices, strict=True) if s], names)
         if form and (len(form) == 2 or len({sign(d) for d, _ in form}) == 1):
             return form
-    weights = definite_weights(floats.tolist())
+    try:
+        weights = definite_weights(floats.tolist(), Work())
+    except LimitError:
+        weights = None
     if weights is None:
         return None
     exact = [to_fmpq(Fraction(x)) for x in weights]
@@ -63,8 +68,12 @@ def vanish_only_at_zero(forms: Mapping[int, Form], vertices: Sequence[int], size
     names = sorted({k for v in vertices for _, row in forms[v] for k in row})
     zero = fmpq(0)
     squares = [[(d, [row.get(k, zero) for k in names]) for d, row in forms[v]] for v in vertices]
-    reduced = modulo_a_prime(squares)
-    return len(names) == size and reduced is not None and only_zero(*reduced)
+    work = Work()
+    try:
+        reduced = modulo_a_prime(squares, work)
+        return len(names) == size and reduced is not None and only_zero(*reduced, work)
+    except LimitError:
+        return False
 
 
 def independent(forms: Mapping[int, Form], vertices: Sequence[int]) -> list[int]:
@@ -95,15 +104,20 @@ def independent(forms: Mapping[int, Form], vertices: Sequence[int]) -> list[int]
     return sorted(first.values())
 
 
-def modulo_a_prime(forms: Sequence[Squares]) -> tuple[list[list[list[int]]], int] | None:
-    """The matrices of the forms modulo a prime, and the prime."""
+def modulo_a_prime(
+    forms: Sequence[Squares], work: Work
+) -> tuple[list[list[list[int]]], int] | None:
+    """The matrices of the forms modulo a prime, and the prime.
+
+    The checker counts the work. `LimitError` is raised where it would not check as much.
+    """
     field = common_field(x for form in forms for d, row in form for x in (d, *row))
 
     def parts(x: Entry) -> Sequence[Fraction]:
         return field.number(x).coefficients
 
     weighted = [[(parts(d), [parts(x) for x in row]) for d, row in form] for form in forms]
-    return reduced_forms(weighted, field.radicands)
+    return reduced_forms(weighted, field.radicands, work)
 
 
 def _signs(number: int) -> Iterator[tuple[int, ...]]:

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
 from exactfold._support.arrays import FloatArray
 from exactfold._support.progress import Progress
 from exactfold.rigidity.equations.sheet import VertexEquations
 from exactfold.solve.certify.enclosed_flat import deduced, rational
 from exactfold.solve.certify.enclosure import Enclosure, enclose
-from exactfold.solve.certify.refinement import exact, refine
+from exactfold.solve.certify.merged import Merged, merged
+from exactfold.solve.certify.refinement import Heights, exact, refine
 from exactfold.solve.numeric.sparse_sheet import FloatSheet
 
-_LEVELS = (80, 160, 320)
+_LEVELS = (160, 320, 640)
 """Heights have excess curvatures 2^-level; levels are tried in turn until all folds are decided."""
 
 
@@ -28,9 +34,20 @@ def enclosed(
     and, as far as they are known, the vertices where it fails. That says nothing against the
     branch.
     """
+    return _enclosed(sheet, floats, signs, exact(sheet, floats, x), progress)
+
+
+def _enclosed(
+    sheet: VertexEquations,
+    floats: FloatSheet,
+    signs: FloatArray,
+    heights: Heights,
+    progress: Progress | None,
+    fewer: bool = True,
+) -> tuple[Enclosure | None, tuple[int, ...]]:
+    """`enclosed` from integer heights; `fewer` says whether faces may be merged."""
     wanted = dict(zip(sheet.unknowns, signs.astype(int).tolist(), strict=True))
-    heights = exact(sheet, floats, x)
-    best, failed = None, tuple[int, ...]()
+    best, failed, tried = None, tuple[int, ...](), None
     for k, level in enumerate(_LEVELS):
         if progress is not None:
             progress("proof", k, len(_LEVELS))
@@ -45,9 +62,25 @@ def enclosed(
         best = deduced(sheet, outcome)
         if best.complete:
             break
+        part = merged(sheet, best) if fewer else None
+        if part is not None and part.faces != tried:
+            tried = part.faces
+            lifted = _lifted(part, wanted, heights)
+            if lifted is not None:
+                return lifted, ()
     if best is not None and not best.complete:
         best = rational(sheet, best, wanted) or best
     if best is None and not failed:
         rough = enclose(sheet, heights.values, heights.denominator, heights.bits)
         failed = rough if isinstance(rough, tuple) else ()
     return best, failed
+
+
+def _lifted(part: Merged, wanted: Mapping[int, int], heights: Heights) -> Enclosure | None:
+    """The enclosure of the branch with all folds decided, from the sheet with merged faces."""
+    sheet = part.sheet
+    signs = np.array([float(wanted[part.labels[v]]) for v in sheet.unknowns])
+    start = replace(heights, values=heights.values[list(part.labels)])
+    proof, _ = _enclosed(sheet, FloatSheet.of(sheet), signs, start, None, fewer=False)
+    lifted = None if proof is None else part.lifted(proof, wanted)
+    return lifted if lifted is not None and lifted.complete else None

@@ -37,7 +37,7 @@ def deduced(sheet: VertexEquations, proof: Enclosure) -> Enclosure:
     open_ = {fold: decided[fold] or None for fold in folds}
     known_flat = flat_folds(sheet.unclosed, open_, sheet.targets)
     flat = frozenset(k for k, fold in enumerate(sheet.pattern.folds) if fold in known_flat)
-    return _with_flat(sheet, proof, flat)
+    return with_flat(sheet, proof, flat)
 
 
 def rational(
@@ -74,10 +74,10 @@ def rational(
     exact = Enclosure(
         heights, denominator, signs, Fraction(0), tuple((b > 0) - (b < 0) for b in bends), ()
     )
-    return _with_flat(sheet, exact, frozenset(np.flatnonzero(bends == 0).tolist()))
+    return with_flat(sheet, exact, frozenset(np.flatnonzero(bends == 0).tolist()))
 
 
-def _with_flat(sheet: VertexEquations, proof: Enclosure, flat: frozenset[int]) -> Enclosure:
+def with_flat(sheet: VertexEquations, proof: Enclosure, flat: frozenset[int]) -> Enclosure:
     """The enclosure with these flat folds, and with flat and loose vertices.
 
     `loose` are the vertices at which no fold is known to bend, but some may; k_v = 0 at all of

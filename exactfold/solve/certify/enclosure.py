@@ -25,7 +25,10 @@ class Enclosure:
     |grad(h - heights)|^2 for the only solution h in these closed nappes. `letters` lists the folds
     of the sheet in order: h has a valley (+1) or a mountain (-1), or the letter is undecided (0).
     `loose` are the vertices at which no fold is decided. `flat_folds` (indices of folds with letter
-    0) and `flat_vertices` are proved flat (`exactfold.solve.certify.enclosed_flat`).
+    0) and `flat_vertices` are proved flat (`exactfold.solve.certify.enclosed_flat`). `merged` are
+    larger triangles that are proved flat, each with its corners and the other vertices in it or on
+    it (`exactfold.solve.certify.merged`); these vertices have no entry in `heights`, but lie in the
+    planes of the corners.
     """
 
     heights: BigArray
@@ -36,6 +39,7 @@ class Enclosure:
     loose: tuple[int, ...]
     flat_folds: frozenset[int] = frozenset()
     flat_vertices: tuple[int, ...] = ()
+    merged: tuple[tuple[tuple[int, int, int], tuple[int, ...]], ...] = ()
 
     @property
     def complete(self) -> bool:

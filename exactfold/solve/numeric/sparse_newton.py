@@ -19,6 +19,18 @@ from exactfold.solve.numeric.sparse_sheet import FloatSheet, SingularError
 _ITERATIONS = 200
 _HALVINGS = 30
 _DECREASE = 0.1
+_EXCESS = 2.0**-70
+"""Curvatures aimed at, in units of the sheet's size, where they vanish on the branch.
+
+Steps towards a flat star would gain one bit each. The enclosure aims at an excess, too.
+"""
+_FAST = 0.75
+_SMALL = 0.05
+_RINGS = 4
+_FEW = 0.05
+_PATCH_STEPS = 20
+_PATCH_HALVINGS = 20
+_PATCH_GAIN = 0.01
 _CONVERGED = 1e-10
 _NOISE = 1e-6
 _APEX = 1e-14
@@ -39,7 +51,7 @@ class End:
 
 @dataclass(frozen=True)
 class Point:
-    """The values omega_e, l_v and K_v - k_v at heights x of the unknowns."""
+    """The values omega_e, l_v and K_v - k_v, less `_EXCESS`, at heights x of the unknowns."""
 
     x: FloatArray
     omega: FloatArray
@@ -52,7 +64,7 @@ class Point:
         h = sheet.heights(x)
         omega = sheet.bends(h)
         forms = sheet.forms(omega * sheet.differences(h))
-        return cls(x, omega, sheet.lines(omega), forms - sheet.target)
+        return cls(x, omega, sheet.lines(omega), forms - sheet.target - _EXCESS * sheet.scale)
 
 
 def equations(
@@ -89,7 +101,10 @@ def solve(
     """The zero of all g_v (docs/mathematics.md, Nappes) by damped Newton steps.
 
     g is a homeomorphism with one zero for each sign vector. The steps start at the solution of the
-    linear system l_v = e_v c, or at `start`, such as a neighbouring branch.
+    linear system l_v = e_v c, or at `start`, such as a neighbouring branch. The sum of all |g_v|
+    decreases with every step. The largest |g_v| is no such measure on a large sheet, as one place
+    would then shorten the steps everywhere. Where a step leaves a few large |g_v|, steps in small
+    patches around them follow, each patch with its own length.
     """
     try:
         point = Point.at(sheet, _start(sheet, signs) if start is None else start)
@@ -100,9 +115,9 @@ def solve(
             size = 1.0 + np.abs(point.x).max()
             if length == 1.0 and change <= _CONVERGED * size:
                 return End(point.x, step, "")
-            if length == 0.0:  # no progress: because of rounding errors, or a failure
-                if change <= _NOISE * size:
-                    return End(point.x, step, "")
+            if length < 1.0 and change <= _NOISE * size:  # the rest is rounding errors
+                return End(point.x, step, "")
+            if length == 0.0:
                 worst = _worst(sheet, point, signs)
                 return End(point.x, step, "Newton's method makes no more progress", worst)
     except SingularError as error:
@@ -128,12 +143,63 @@ def _step(sheet: FloatSheet, point: Point, signs: FloatArray) -> tuple[Point, fl
     value, of_lines, of_forms = equations(sheet, point, signs)
     change = sheet.solve(point.omega, of_lines, of_forms, value)
     full = float(np.abs(change).max())
-    before = np.abs(value).max()
+    before = np.abs(value).sum()
     length = 1.0
     for _ in range(_HALVINGS):
         trial = Point.at(sheet, point.x - length * change)
-        after = np.abs(equations(sheet, trial, signs)[0]).max()
-        if after <= (1.0 - _DECREASE * length) * before:
+        after = np.abs(equations(sheet, trial, signs)[0])
+        if after.sum() > _FAST * before:
+            mended = _mended(sheet, trial, signs, after)
+            if mended is not None:
+                trial, after = mended
+        if after.sum() <= (1.0 - _DECREASE * length) * before:
             return trial, full, length
         length /= 2.0
     return point, full, 0.0
+
+
+def _mended(
+    sheet: FloatSheet, point: Point, signs: FloatArray, values: FloatArray
+) -> tuple[Point, FloatArray] | None:
+    """The point after steps in patches where |g_v| is large, and its |g_v|, given as `values`.
+
+    None if there are no small patches, or if the sum of all |g_v| does not decrease.
+    """
+    ascending = np.sort(values)
+    small = np.searchsorted(np.cumsum(ascending), _SMALL * ascending.sum())
+    chosen = np.flatnonzero(sheet.near(values >= ascending[small], _RINGS))
+    if len(chosen) > _FEW * sheet.n:
+        return None
+    part = sheet.part(chosen, point.x)
+    x = point.x.copy()
+    x[chosen] = _patched(part, x[chosen], signs[chosen])
+    mended = Point.at(sheet, x)
+    after = np.abs(equations(sheet, mended, signs)[0])
+    return (mended, after) if after.sum() < values.sum() else None
+
+
+def _patched(sheet: FloatSheet, x: FloatArray, signs: FloatArray) -> FloatArray:
+    """Damped steps on a sheet of several patches; each patch has its own length of a step."""
+    count, patch = sheet.patches
+    point = Point.at(sheet, x)
+    value, of_lines, of_forms = equations(sheet, point, signs)
+    first = before = np.bincount(patch, np.abs(value), count)
+    for _ in range(_PATCH_STEPS):
+        try:
+            change = sheet.solve(point.omega, of_lines, of_forms, value)
+        except SingularError:
+            break
+        length = np.where(np.bincount(patch, ~np.isfinite(change), count) > 0, 0.0, 1.0)
+        change = np.nan_to_num(change, posinf=0.0, neginf=0.0)
+        for halving in range(_PATCH_HALVINGS + 1):
+            trial = Point.at(sheet, point.x - length[patch] * change)
+            value, of_lines, of_forms = equations(sheet, trial, signs)
+            after = np.bincount(patch, np.abs(value), count)
+            failed = ~(after <= (1.0 - _DECREASE * length) * before)
+            if not failed.any():
+                break
+            length[failed] = length[failed] / 2.0 if halving + 1 < _PATCH_HALVINGS else 0.0
+        point, before = trial, after
+        if (before <= _PATCH_GAIN * first).all() or not length.any():
+            break
+    return point.x

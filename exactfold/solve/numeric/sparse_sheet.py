@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
-from exactfold._support.arrays import BigArray, FloatArray, IndexArray, IntArray
+from exactfold._support.arrays import BigArray, BoolArray, FloatArray, IndexArray, IntArray
 from exactfold.rigidity.equations.sheet import VertexEquations
 
 _DENSE = 150
+"""SciPy takes a while to load, so that small sheets do without."""
 
 
 class SingularError(ArithmeticError):
@@ -35,6 +37,8 @@ class FloatSheet:
     line_factor: FloatArray
     boundary_heights: FloatArray
     target: FloatArray
+    dense: int = _DENSE
+    """Up to so many unknowns, systems are solved as dense ones."""
 
     @classmethod
     def of(cls, sheet: VertexEquations) -> FloatSheet:
@@ -153,27 +157,73 @@ class FloatSheet:
         if not np.isfinite(data).all():
             raise SingularError("an entry is beyond the range of floats")
         p = self._pattern
-        if self.n <= _DENSE:
+        if self.n <= self.dense:
             matrix = np.zeros((self.n, self.n))
             matrix[p.rows, p.columns] = data
             try:
                 return np.asarray(np.linalg.solve(matrix, right))
             except np.linalg.LinAlgError as error:
                 raise SingularError(str(error)) from None
-        from scipy.sparse import csc_matrix  # here: it takes a while to load
-        from scipy.sparse.linalg import splu
+        order, places = self._elimination
+        factors = _factors(data[places.entries], places.rows, places.pointers, "NATURAL")
+        x = np.empty_like(right)
+        x[order] = factors.solve(right[order])
+        return x
 
-        sparse = csc_matrix((data, p.rows, p.pointers), shape=(self.n, self.n), copy=False)
-        try:
-            factors = splu(
-                sparse,
-                permc_spec="MMD_AT_PLUS_A",
-                diag_pivot_thresh=0.0,
-                options={"SymmetricMode": True},
-            )
-        except RuntimeError as error:
-            raise SingularError(str(error)) from None
-        return np.asarray(factors.solve(right))
+    @cached_property
+    def _elimination(self) -> tuple[IndexArray, _Columns]:
+        """The unknowns in minimum-degree order, and the pattern of the Jacobian in this order.
+
+        SuperLU finds the order when it factors a matrix. All Jacobians have one pattern, so that
+        the order is found once.
+        """
+        p = self._pattern
+        data = abs(self._line_data) + np.where(p.rows == p.columns, 1.0, 0.0)
+        place = _factors(data, p.rows, p.pointers, "MMD_AT_PLUS_A").perm_c
+        order = np.argsort(place)
+        return order, _Columns.of(place[p.rows], place[p.columns], self.n)
+
+    def part(self, chosen: IndexArray, x: FloatArray) -> FloatSheet:
+        """The equations of the chosen unknowns alone; all other heights are as in `x`.
+
+        Unknown k of the part is unknown `chosen[k]` of this sheet.
+        """
+        vertices = self.unknowns[chosen]
+        inside = np.zeros(len(self.boundary_heights), dtype=bool)
+        inside[vertices] = True
+        near = inside[self.corners[:, :2]].any(axis=1)
+        names, places = np.unique(self.corners[near], return_inverse=True)
+        return FloatSheet(
+            np.searchsorted(names, vertices),
+            places.reshape(-1, 4),
+            self.weights[near],
+            self.lengths[near],
+            self.scale[chosen],
+            self.line_factor[chosen],
+            self.heights(x)[names],
+            self.target[chosen],
+            dense=0,  # the matrix of several patches is sparse
+        )
+
+    def near(self, chosen: BoolArray, rings: int) -> BoolArray:
+        """The unknowns at most `rings` folds away from the chosen ones, in masks."""
+        inside = np.zeros(len(self.boundary_heights), dtype=bool)
+        inside[self.unknowns] = chosen
+        ends = self.corners[:, :2]
+        for _ in range(rings):
+            inside[ends[inside[ends].any(axis=1)]] = True
+        return inside[self.unknowns]
+
+    @cached_property
+    def patches(self) -> tuple[int, IntArray]:
+        """The number of connected patches of unknowns, and the patch of each unknown."""
+        from scipy.sparse import csr_matrix
+        from scipy.sparse.csgraph import connected_components
+
+        p = self._pattern
+        graph = csr_matrix((np.ones(len(p.rows)), (p.rows, p.columns)), shape=(self.n, self.n))
+        count, labels = connected_components(graph, directed=False)
+        return int(count), labels
 
     def jacobian(self, omega: FloatArray, of_lines: FloatArray, of_forms: FloatArray) -> FloatArray:
         """The entries of J, in compressed columns."""
@@ -202,6 +252,41 @@ def _cone_curvature(sheet: VertexEquations) -> FloatArray:
         dot = ((d[:, 0] * e[:, 0] + d[:, 1] * e[:, 1]) / unit).astype(np.float64)
         total += np.bincount(v, np.tan(np.arctan2(cross, dot) / 2), len(points))
     return total
+
+
+def _factors(data: FloatArray, rows: IndexArray, pointers: IndexArray, order: str) -> Any:
+    """The sparse LU factors of a matrix in compressed columns, by SuperLU."""
+    from scipy.sparse import csc_matrix  # here: it takes a while to load
+    from scipy.sparse.linalg import splu
+
+    n = len(pointers) - 1
+    matrix = csc_matrix((data, rows, pointers), shape=(n, n), copy=False)
+    try:
+        return splu(
+            matrix,
+            permc_spec=order,
+            diag_pivot_thresh=0.0,
+            panel_size=1,  # columns of a planar graph share little, so that panels do not pay
+            options={"SymmetricMode": True},
+        )
+    except RuntimeError as error:
+        raise SingularError(str(error)) from None
+
+
+@dataclass(frozen=True)
+class _Columns:
+    """Compressed columns: entry k of the matrix is entry `entries[k]` of the data, in `rows[k]`."""
+
+    entries: IndexArray
+    rows: IndexArray
+    pointers: IndexArray
+
+    @classmethod
+    def of(cls, rows: IndexArray, columns: IndexArray, n: int) -> _Columns:
+        """The entries in the given rows and columns of a matrix of n columns."""
+        entries = np.argsort(columns.astype(np.int64) * n + rows)
+        pointers = np.concatenate([[0], np.cumsum(np.bincount(columns, minlength=n))])
+        return cls(entries, rows[entries].astype(np.intc), pointers.astype(np.intc))
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,6 @@ from panel_sheets import (
 from exactfold.checker.core.reading import CertificateError, LimitError
 from exactfold.checker.core.towers import Number, Tower
 from exactfold.checker.panels import certificate as panels_of_checker
-from exactfold.checker.panels import forms as panel_forms
 from exactfold.checker.panels import reduction as panel_reduction
 from exactfold.checker.panels import spaces as panel_spaces
 from exactfold.checker.panels.leaves import complete, extends
@@ -258,7 +257,7 @@ def test_what_a_leaf_is(change: Document, message: str) -> None:
 @pytest.mark.parametrize(
     ("module", "bound", "message"),
     [
-        (panel_forms, "MOST_STEPS", "the steps to the spaces of motions, "),
+        (panel_reduction, "MOST_STEPS", "the steps to the spaces of motions, "),
         (panel_spaces, "MOST_LEAVES", "the spaces of motions, "),
     ],
 )
@@ -303,7 +302,7 @@ def test_products_in_larger_fields_are_more_work() -> None:
     rational = Tower()
     two, _ = rational.adjoined(rational.number(2))
     above, root = two.adjoined(two.number(3))
-    work = panel_forms.Work()
+    work = panel_reduction.Work()
     work.count(2, rational.number(1))
     work.count(3, root)
     work.count(5, root.enclosed(64))

@@ -14,13 +14,13 @@ from exactfold.checker import check, load
 from exactfold.checker.core.intervals import Interval
 from exactfold.checker.core.reading import LimitError
 from exactfold.checker.core.towers import Number, Tower
-from exactfold.checker.panels import forms as panel_forms
 from exactfold.checker.panels import reduction as panel_reduction
 from exactfold.checker.panels import spaces as panel_spaces
 from exactfold.checker.panels.cones import cone_motion
-from exactfold.checker.panels.leaves import _folds, _independent, _rank, _sum, extends
+from exactfold.checker.panels.leaves import _closes, _folds, _independent, _rank, _sum, extends
 from exactfold.checker.panels.reduction import BITS, Joined, enclosed, inside, reduced, rest_of
 from exactfold.checker.panels.spaces import Motion, Spaces
+from exactfold.checker.panels.together import vanish_only_at_zero
 from exactfold.panels.certificate import certificate_of_panels
 from exactfold.panels.decomposition import decompose
 from exactfold.pattern.panel_entries import panels_document
@@ -163,17 +163,17 @@ def test_bounds_are_kept_at_their_last_value(monkeypatch: pytest.MonkeyPatch) ->
     assert len(found.leaves()) == 8
     used = found.work.steps
     monkeypatch.setattr(panel_spaces, "MOST_LEAVES", 8)
-    monkeypatch.setattr(panel_forms, "MOST_STEPS", used)
+    monkeypatch.setattr(panel_reduction, "MOST_STEPS", used)
     assert len(spaces(triangle()).leaves()) == 8
-    monkeypatch.setattr(panel_forms, "MOST_STEPS", used - 1)
+    monkeypatch.setattr(panel_reduction, "MOST_STEPS", used - 1)
     other = spaces(triangle())
     assert len(other.leaves()) == 8  # in the other order, which is quicker here
     least = other.work.steps
     assert least < used
-    monkeypatch.setattr(panel_forms, "MOST_STEPS", least - 1)
+    monkeypatch.setattr(panel_reduction, "MOST_STEPS", least - 1)
     with pytest.raises(LimitError, match=f"steps to the spaces of motions, {least}, are more than"):
         spaces(triangle()).leaves()
-    monkeypatch.setattr(panel_forms, "MOST_STEPS", used)
+    monkeypatch.setattr(panel_reduction, "MOST_STEPS", used)
     monkeypatch.setattr(panel_spaces, "MOST_LEAVES", 7)
     with pytest.raises(LimitError, match="the spaces of motions, 8, are more than the limit, 7"):
         spaces(triangle()).leaves()
@@ -228,6 +228,9 @@ def test_conditions_of_first_order_that_depend_on_each_other() -> None:
     found = spaces(sheet(points, folds, 6))
     assert len(found.first_order) == 15 - 2 * 6 + 1
     assert not _independent(found, enclosed(found.first_order[0]))
+    turning = _sum(found, found.first_order)
+    assert len(turning) == 15
+    assert not _folds(found, [turning], [])  # five folds at the hub make no mode
     # Three folds that are no straight pair have no motions, and are not counted on.
     [star] = spaces_of(certified("star")["pattern"])
     three = Spaces(star.sheet, {6: star.near[6][::2]})
@@ -246,6 +249,14 @@ def test_a_part_with_two_parameters_is_no_mode(pattern: PanelPattern, folds: boo
         assert not _independent(found, enclosed(motion))
         assert not _folds(found, [motion, twice], [])
         assert _folds(found, [motion], []) is folds
+
+
+def test_a_motion_that_is_no_mode_does_not_close() -> None:
+    found = spaces(tiling(2, 2))
+    [motion] = next(leaf.basis for leaf in found.leaves() if len(leaf.folds) == 12)
+    fold = min(motion)
+    assert _closes(found.sheet, found.near, motion)
+    assert not _closes(found.sheet, found.near, {**motion, fold: motion[fold] + motion[fold]})
 
 
 def test_spaces_that_are_no_sums_are_one_part() -> None:
@@ -292,15 +303,15 @@ def test_forms_that_vanish_only_at_zero_leave_zero() -> None:
         v: [(number(d), row) for d, row in zip(pair, rows, strict=True)]
         for v, pair in values.items()
     }
-    assert found.vanish_only_at_zero(forms, 2)
-    assert not found.vanish_only_at_zero({0: forms[0], 2: forms[0]}, 2)
-    assert not found.vanish_only_at_zero({0: forms[0]}, 2)
-    assert not found.vanish_only_at_zero(forms, 1)
+    assert vanish_only_at_zero(found.work, forms, 2)
+    assert not vanish_only_at_zero(found.work, {0: forms[0], 2: forms[0]}, 2)
+    assert not vanish_only_at_zero(found.work, {0: forms[0]}, 2)
+    assert not vanish_only_at_zero(found.work, forms, 1)
 
 
 def test_what_follows_the_search_has_the_steps_that_are_left() -> None:
     found = spaces(half_crossed())
     found.leaves()
-    found.work.count(panel_forms.MOST_STEPS - found.work.steps, number(1))
+    found.work.count(panel_reduction.MOST_STEPS - found.work.steps, number(1))
     with pytest.raises(LimitError, match="the steps to the spaces of motions"):
         found.work.count(1, number(1))

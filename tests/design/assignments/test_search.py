@@ -4,12 +4,14 @@ import random
 from fractions import Fraction
 
 import pytest
-from sheets import dart
+from sheets import dart, reflex_corners, scrambled
 
 from exactfold import CreasePattern, random_square
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.branches import count_branches, find_branch
+from exactfold.checker import check
 from exactfold.design import Refutation, match
+from exactfold.design.assignments import search
 from exactfold.design.refutations.cone_program import ConeProgram
 from exactfold.design.refutations.refutation import refuted_at
 from exactfold.errors import UsageError
@@ -19,6 +21,7 @@ from exactfold.pattern.families import single_vertex
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.timelike import round_cone
 
+NOTCHED = scrambled(3, reflex_corners(3), 5, loose=True)
 TURNED = str.maketrans("+-MV", "-+VM")
 
 
@@ -203,6 +206,22 @@ def test_a_sheet_with_a_reflex_corner():
     pattern = dart()
     for _, own in halves(pattern):
         compared(pattern, own)
+
+
+@pytest.mark.parametrize("sheet", [random_square(5, seed=4), NOTCHED], ids=["square", "notched"])
+def test_branches_that_are_found_together_are_those_found_one_by_one(sheet, monkeypatch):
+    """Few letters leave many sign vectors."""
+    letters = {sheet.folds[0]: "M", sheet.folds[-1]: "V"}
+    together = compared(sheet, dict.fromkeys(sheet.folds, "U") | letters)
+    monkeypatch.setattr(search, "_MANY", 1 << 20)
+    alone = match(sheet, letters)
+    assert together.leaves == alone.leaves > 8
+    for (signs, rays), (others, other_rays) in zip(together.compared, alone.compared, strict=True):
+        assert signs == others
+        assert [(ray.names, ray.assignment) for ray in rays] == [
+            (ray.names, ray.assignment) for ray in other_rays
+        ]
+    assert len(check(together.certificate())["halves"]) == len(alone.matches) > 0
 
 
 @pytest.mark.parametrize(

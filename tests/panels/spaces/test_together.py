@@ -18,9 +18,10 @@ from test_oracles import by_singular, degrees
 from exactfold._support.verdict import PROVED
 from exactfold.checker.core.reading import CertificateError
 from exactfold.checker.panels import certificate as checked
-from exactfold.checker.panels import forms as forms_of_checker
-from exactfold.checker.panels.forms import Forms
+from exactfold.checker.panels import spaces as checked_spaces
+from exactfold.checker.panels import together as checked_sums
 from exactfold.checker.panels.proposed import definite_weights
+from exactfold.checker.panels.reduction import Work
 from exactfold.checker.panels.spaces import Spaces
 from exactfold.panels.certificate import certificate_of_panels
 from exactfold.panels.decomposition import decompose
@@ -108,7 +109,7 @@ def test_a_sum_of_forms_splits_a_space(name: str) -> None:
 def test_the_checker_splits_the_same_spaces(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     made = certificate_of_panels(counted(name))
     verified(made)
-    monkeypatch.setattr(Forms, "narrowing_sum", lambda *_: [])
+    monkeypatch.setattr(checked_spaces, "narrowing_sum", lambda *_: [])
     with pytest.raises(CertificateError, match="may be several components"):
         checked.PANELS.check(made)
 
@@ -200,11 +201,11 @@ def test_weights_for_which_a_sum_is_definite() -> None:
         [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1e-8]],
         [[-0.9, 0, 0], [0, -0.9, 0], [0, 0, 1e-8]],
     ]
-    weights = definite_weights(narrow)
+    weights = definite_weights(narrow, Work())
     assert weights is not None
     assert (np.tensordot(weights, np.diagonal(narrow, axis1=1, axis2=2), 1) > 0).all()
     crossed = [[[1.0, 0, 0], [0, -1, 0], [0, 0, 0]], [[0.0, 0, 1], [0, 0, 0], [1, 0, 0]]]
-    assert definite_weights(crossed) is None
+    assert definite_weights(crossed, Work()) is None
 
 
 def _without_real_zeros(pattern: PanelPattern) -> int:
@@ -247,6 +248,6 @@ def test_forms_without_common_zeros_on_one_of_two_spaces(monkeypatch: pytest.Mon
     made = certificate_of_panels(result)
     verified(made)
     for weights in (None, [1.0, 1.0]):  # what is proposed proves nothing
-        monkeypatch.setattr(forms_of_checker, "definite_weights", lambda *_, w=weights: w)
+        monkeypatch.setattr(checked_sums, "definite_weights", lambda *_, w=weights: w)
         with pytest.raises(CertificateError, match="may be several components"):
             checked.PANELS.check(made)

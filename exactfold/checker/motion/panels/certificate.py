@@ -3,6 +3,13 @@
 All positions are analytic functions of a parameter x, which determines the time (`times`). The
 evidence proves that the panels fold (`folding`). `CLAIMS` lists the claims that a file may make
 about this motion, one class for each (docs/motion.md, 20 and 21).
+
+The claims are `assignment`, with a letter for each fold in lexicographic order; the `drivers`, a
+fold of each mode that moves and each free fold that does, which at time t have the angle t; in
+version 2 their different `rates`, the largest 1; and `clear` and `contact` as for branches. The
+evidence has the `densities` of the active folds at each interior vertex, numbers of the field of
+the sheet or with the square root of one `radicand` more, and the parameters x until which panels
+are parted, and at which an edge runs through a panel.
 """
 
 from __future__ import annotations
