@@ -16,12 +16,11 @@ from itertools import chain, combinations, islice
 from ..core import limits
 from ..core.intervals import Interval
 from ..core.reading import at_most
-from ..core.towers import Number
 from ..sheets.panels import Edge
 from .forms import Space, Squares
 from .modular import one_component
 from .proposed import near_zeros
-from .reduction import BITS, Work, enclosed, reduced, rest_of, zero
+from .reduction import BITS, Work, enclosed, in_floats, reduced, rest_of, zero
 from .spaces import Spaces
 from .together import modulo_a_prime
 
@@ -89,7 +88,7 @@ def _regular_zeros(
 
     One form after the other is solved along a vector on which no earlier form depends.
     """
-    for near in near_zeros([_in_floats(form) for _, _, form in ordered], spaces.work):
+    for near in near_zeros([in_floats(form) for _, _, form in ordered], spaces.work):
         place: Place | None = {}
         for x, motion in zip(near, space, strict=True):
             place = _plus(place or {}, Interval.of(Fraction(x), BITS), enclosed(motion))
@@ -121,22 +120,6 @@ def _next_zero(spaces: Spaces, v: int, room: Space, w: Place) -> Place | None:
             root = square.root() if middle.sign() > 0 else -square.root()
             return _plus(w, (root - middle) / last, u)
     return None
-
-
-def _in_floats(form: Squares) -> list[list[float]]:
-    size = len(form[0][1])
-    total = [[0.0] * size for _ in range(size)]
-    for weight, values in form:
-        d, row = _float(weight), [_float(x) for x in values]
-        for j, x in enumerate(row):
-            for k, y in enumerate(row):
-                total[j][k] += d * x * y
-    return total
-
-
-def _float(x: Number) -> float:
-    interval = x.enclosed(BITS)
-    return float(Fraction(interval.low + interval.high, 2 << BITS))
 
 
 def _ordered(spaces: Spaces, space: Space, vertices: Sequence[int]) -> list[int]:

@@ -6,6 +6,7 @@ The work of a search is counted here, too.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from fractions import Fraction
 from typing import Any
 
 from ..core import limits
@@ -88,6 +89,23 @@ def reduced(vectors: Iterable[Vector], work: Work | None = None) -> Rows:
 def enclosed(vector: Mapping[Edge, Number]) -> dict[Edge, Interval]:
     """The vector with an interval in place of each number."""
     return {fold: value.enclosed(BITS) for fold, value in vector.items()}
+
+
+def in_floats(form: Sequence[tuple[Number, Sequence[Number]]]) -> list[list[float]]:
+    """The matrix of a sum of squares d l^2 in floating point; l is given by its values."""
+    size = len(form[0][1])
+    total = [[0.0] * size for _ in range(size)]
+    for weight, values in form:
+        d, row = _float(weight), [_float(x) for x in values]
+        for j, x in enumerate(row):
+            for k, y in enumerate(row):
+                total[j][k] += d * x * y
+    return total
+
+
+def _float(x: Number) -> float:
+    interval = x.enclosed(BITS)
+    return float(Fraction(interval.low + interval.high, 2 << BITS))
 
 
 def inside(

@@ -3,27 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from fractions import Fraction
 from itertools import product
 
 from ..core.towers import Number
 from .forms import Forms, Squares
 from .modular import MOST_VARIABLES, Matrix, only_zero, reduced_forms
-from .reduction import Work, zero
+from .proposed import definite_weights
+from .reduction import Work, in_floats, zero
 
 MOST_SUMMED = 4
 
 
 def narrowing_sum(spaces: Forms, forms: Mapping[int, Squares], size: int) -> Squares:
-    """A sum of forms with signs that is semidefinite, or a product of two linear functions.
+    """A sum of forms that is semidefinite, or a product of two linear functions; or [].
 
-    It vanishes where the forms do. It is empty if there is none. At most `MOST_SUMMED` forms
-    are added.
+    It vanishes where the forms do. At most `MOST_SUMMED` forms are added: first with signs, and
+    then with weights that floating point proposes.
     """
     if not 1 < len(forms) <= MOST_SUMMED:
         return []
+    number = spaces.sheet.tower.number
     for signs in product((0, 1, -1), repeat=len(forms)):
-        used = [(s, form) for s, form in zip(signs, forms.values(), strict=True) if s]
-        if len(used) < 2 or used[0][0] < 0:
+        used = [(number(s), form) for s, form in zip(signs, forms.values(), strict=True) if s]
+        if len(used) < 2 or used[0][0].sign() < 0:
             continue
         found: Squares = []
         for d, values in spaces.diagonalised(_added(spaces, used, size)):
@@ -33,7 +36,12 @@ def narrowing_sum(spaces: Forms, forms: Mapping[int, Squares], size: int) -> Squ
         else:
             if found:
                 return found
-    return []
+    weights = definite_weights([in_floats(form) for form in forms.values()], spaces.work)
+    if weights is None:
+        return []
+    used = [(number(Fraction(x)), form) for x, form in zip(weights, forms.values(), strict=True)]
+    found = list(spaces.diagonalised(_added(spaces, used, size)))
+    return found if len({d.sign() for d, _ in found}) == 1 else []
 
 
 def vanish_only_at_zero(work: Work, forms: Mapping[int, Squares], size: int) -> bool:
@@ -47,8 +55,8 @@ def vanish_only_at_zero(work: Work, forms: Mapping[int, Squares], size: int) -> 
     return reduced is not None and only_zero(*reduced, work)
 
 
-def _added(spaces: Forms, forms: Sequence[tuple[int, Squares]], size: int) -> list[list[Number]]:
-    """The matrix of a sum of forms with signs, on a basis of so many motions."""
+def _added(spaces: Forms, forms: Sequence[tuple[Number, Squares]], size: int) -> list[list[Number]]:
+    """The matrix of a sum of forms, each times a number, on a basis of so many motions."""
     nothing = spaces.sheet.tower.number(0)
     total = [[nothing] * size for _ in range(size)]
     for s, form in forms:
@@ -56,7 +64,7 @@ def _added(spaces: Forms, forms: Sequence[tuple[int, Squares]], size: int) -> li
             some = [(k, x) for k, x in enumerate(values) if not zero(x)]
             spaces.work.count(len(some) ** 2, d)
             for j, x in some:
-                scaled = d * x if s > 0 else -(d * x)
+                scaled = s * (d * x)
                 for k, y in some:
                     total[j][k] = total[j][k] + scaled * y
     return total

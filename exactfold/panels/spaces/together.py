@@ -12,7 +12,9 @@ from flint import fmpq
 
 from exactfold.checker.core.reading import LimitError
 from exactfold.checker.panels.modular import MOST_VARIABLES, only_zero, reduced_forms
+from exactfold.checker.panels.proposed import definite_weights
 from exactfold.checker.panels.reduction import Work
+from exactfold.exact.root_tower import to_fmpq
 from exactfold.exact.surds import common_field, sign
 from exactfold.panels.spaces.kernel import Entry, increase
 from exactfold.panels.spaces.quadratics import Squares
@@ -23,11 +25,13 @@ _NOISE: Final = 1e-9
 
 
 def narrowing_sum(forms: Mapping[int, Form], vertices: Sequence[int]) -> Form | None:
-    """A sum of forms with signs that is semidefinite, or a product of two linear forms; or None.
+    """A sum of forms that is semidefinite, or a product of two linear forms; or None.
 
     The forms vanish together, so their sums vanish, too. The second-order conditions round several
     vertices are such a sum, and so is what crossing creases leave of them. Up to `MOST_SUMMED`
     vertices are tried. Floating point only skips sums that have both signs and a rank of 3 or more.
+    After the sums with signs it proposes weights for which a sum is definite. By a theorem of
+    Finsler two forms of three parameters have such weights if they vanish together only at 0.
     """
     if not 1 < len(vertices) <= MOST_SUMMED:
         return None
@@ -43,7 +47,15 @@ def narrowing_sum(forms: Mapping[int, Form], vertices: Sequence[int]) -> Form | 
         form = _sum([(s, forms[v]) for s, v in zip(signs, vertices, strict=True) if s], names)
         if form and (len(form) == 2 or len({sign(d) for d, _ in form}) == 1):
             return form
-    return None
+    try:
+        weights = definite_weights(floats.tolist(), Work())
+    except LimitError:
+        weights = None
+    if weights is None:
+        return None
+    exact = [to_fmpq(Fraction(x)) for x in weights]
+    form = _sum([(x, forms[v]) for x, v in zip(exact, vertices, strict=True)], names)
+    return form if len({sign(d) for d, _ in form}) == 1 else None
 
 
 def vanish_only_at_zero(forms: Mapping[int, Form], vertices: Sequence[int], size: int) -> bool:
@@ -124,8 +136,8 @@ def _float_matrix(form: Form, names: Sequence[int]) -> np.ndarray:
     return total
 
 
-def _sum(forms: Sequence[tuple[int, Form]], names: Sequence[int]) -> Form:
-    """The sum of forms with signs, as a sum of squares with weights."""
+def _sum(forms: Sequence[tuple[int | fmpq, Form]], names: Sequence[int]) -> Form:
+    """The sum of forms, each times a number, as a sum of squares with weights."""
     place = {k: n for n, k in enumerate(names)}
     matrix: list[list[Entry]] = [[fmpq(0)] * len(names) for _ in names]
     for s, form in forms:

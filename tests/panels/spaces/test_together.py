@@ -2,27 +2,35 @@
 
 from __future__ import annotations
 
+import itertools
 import shutil
 from collections.abc import Mapping
 from fractions import Fraction
 from functools import cache
 
+import numpy as np
 import pytest
 from flint import fmpq
 from forge import verified
+from panel_sheets import ring
 from test_oracles import by_singular, degrees
 
 from exactfold._support.verdict import PROVED
 from exactfold.checker.core.reading import CertificateError
 from exactfold.checker.panels import certificate as checked
 from exactfold.checker.panels import spaces as checked_spaces
+from exactfold.checker.panels import together as checked_sums
+from exactfold.checker.panels.proposed import definite_weights
+from exactfold.checker.panels.reduction import Work
 from exactfold.checker.panels.spaces import Spaces
 from exactfold.panels.certificate import certificate_of_panels
 from exactfold.panels.decomposition import decompose
 from exactfold.panels.result import Decomposition
 from exactfold.panels.spaces import splitting
+from exactfold.panels.spaces.kernel import first_order
 from exactfold.panels.spaces.sparse import Form
 from exactfold.panels.spaces.together import narrowing_sum, vanish_only_at_zero
+from exactfold.panels.vertex.stars import stars
 from exactfold.pattern.panel_pattern import PanelPattern
 
 SQUARES = [
@@ -185,3 +193,61 @@ def test_forms_that_vanish_only_at_zero() -> None:
     assert vanish_only_at_zero(cones, [0, 1, 2], 3)
     assert not vanish_only_at_zero(cones, [0, 1], 3)
     assert not vanish_only_at_zero(cones, [0, 1, 2], 4)
+
+
+def test_weights_for_which_a_sum_is_definite() -> None:
+    """Two rays of weights bound those that are wanted; the forms have skew coordinates."""
+    narrow = [
+        [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1e-8]],
+        [[-0.9, 0, 0], [0, -0.9, 0], [0, 0, 1e-8]],
+    ]
+    weights = definite_weights(narrow, Work())
+    assert weights is not None
+    assert (np.tensordot(weights, np.diagonal(narrow, axis1=1, axis2=2), 1) > 0).all()
+    crossed = [[[1.0, 0, 0], [0, -1, 0], [0, 0, 0]], [[0.0, 0, 1], [0, 0, 0], [1, 0, 0]]]
+    assert definite_weights(crossed, Work()) is None
+
+
+def _without_real_zeros(pattern: PanelPattern) -> int:
+    """The choices of local modes at vertices of degree 4 that leave two forms without real zeros.
+
+    By the theorem of Finsler these are those with a definite sum of multiples of the forms.
+    """
+    moving = stars(pattern)
+    rows, _ = first_order(moving)
+    edges = list(rows)
+    space = np.array([[float(x) for x in rows[edge]] for edge in edges])
+    products, cones = [], []
+    for star in moving.values():
+        form = np.zeros((len(edges), len(edges)))
+        for k, (e, d) in enumerate(zip(star.folds, star.directions, strict=True)):
+            for f, c in zip(star.folds[:k], star.directions[:k], strict=True):
+                form[edges.index(e), edges.index(f)] = float(c[0] * d[1] - c[1] * d[0])
+        local = space.T @ (form + form.T) @ space
+        (products if len(star.folds) == 4 else cones).append(local)
+    factors = []
+    for form in products:
+        values, vectors = np.linalg.eigh(form)
+        below, above = vectors[:, 0] * np.sqrt(-values[0]), vectors[:, -1] * np.sqrt(values[-1])
+        factors.append((above - below, above + below))
+    count = 0
+    for chosen in itertools.product(*factors):
+        inner = np.linalg.svd(np.array(chosen))[2][len(chosen) :]
+        one, other = (inner @ form @ inner.T for form in cones)
+        angles = np.linspace(0, 2 * np.pi, 2_000)
+        pencil = np.cos(angles)[:, None, None] * one + np.sin(angles)[:, None, None] * other
+        count += bool((np.linalg.eigvalsh(pencil)[:, 0] > 0).any())
+    return count
+
+
+def test_forms_without_common_zeros_on_one_of_two_spaces(monkeypatch: pytest.MonkeyPatch) -> None:
+    sheet = ring(9, (4, 5, 5))
+    result = decompose(sheet)
+    assert result.second_order == {2: 1}
+    assert _without_real_zeros(sheet) == 1
+    made = certificate_of_panels(result)
+    verified(made)
+    for weights in (None, [1.0, 1.0]):  # what is proposed proves nothing
+        monkeypatch.setattr(checked_sums, "definite_weights", lambda *_, w=weights: w)
+        with pytest.raises(CertificateError, match="may be several components"):
+            checked.PANELS.check(made)
