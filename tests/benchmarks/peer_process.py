@@ -32,8 +32,13 @@ class Usage:
     code: int | None
 
 
-def run(command: Sequence[str], folder: Path, name: str, limit: float) -> Usage:
-    """Run a command in `folder` for `limit` seconds at most; output to NAME.stdout, NAME.stderr."""
+def run(
+    command: Sequence[str], folder: Path, name: str, limit: float, source: Path = _ROOT
+) -> Usage:
+    """Run a command in `folder` for `limit` seconds at most; output to NAME.stdout, NAME.stderr.
+
+    Its exactfold is the one in the folder `source`.
+    """
     start = time.perf_counter()
     reached = threading.Event()
     with (
@@ -45,7 +50,7 @@ def run(command: Sequence[str], folder: Path, name: str, limit: float) -> Usage:
             stdin=subprocess.DEVNULL,
             stdout=output,
             stderr=errors,
-            env={**os.environ, **_ONE_THREAD, "PYTHONPATH": str(_ROOT)},
+            env={**os.environ, **_ONE_THREAD, "PYTHONPATH": str(source)},
             start_new_session=True,
         ) as process,
     ):

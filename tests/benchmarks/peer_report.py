@@ -153,6 +153,24 @@ def branch_table(results: Results) -> list[list[str]]:
     return rows
 
 
+def pair_table(lines: Lines) -> list[list[str]]:
+    """A row for each command: both medians, and the ratio of the new one to the old one."""
+    commits = list(dict.fromkeys(line["commit"] for line in lines))
+    rows = [["command", *commits, "ratio", "MB"]]
+    for old, new in zip(lines[::2], lines[1::2], strict=True):
+        times = [median(line["cpu"]) for line in (old, new)]
+        other = "" if old["code"] == new["code"] else f" (exit codes {old['code']}, {new['code']})"
+        rows.append(
+            [
+                old["command"] + other,
+                *map(number, times),
+                f"{times[1] / times[0]:.2f}",
+                f"{new['memory']:.0f}",
+            ]
+        )
+    return rows
+
+
 def as_text(rows: Sequence[Sequence[str]]) -> str:
     """Columns padded."""
     widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
@@ -186,6 +204,8 @@ def report(results: Results) -> str:
     ]
     if programs(results, single=True):
         parts += ["", as_text(branch_table(results))]
+    if results.get("pairs"):
+        parts += ["", as_text(pair_table(results["pairs"]))]
     for name, found in results["profiles"].items():
         parts += ["", f"{name}, {found['size']} vertices, share of the time:"]
         parts += [f"{share:6.0%}  {place}" for share, place in found["shares"]]
@@ -236,7 +256,7 @@ complete answers, *MB* the largest memory of any run.
   (`solveSystem` with the tolerances under which it loses fewest solutions) give floating-point
   numbers and no proof.
 
-{branch}{profiles}"""
+{branch}{pairs}{profiles}"""
 
 _BRANCH = """
 ## One branch on demand
@@ -246,6 +266,15 @@ processor seconds, of the whole process and for the branch alone. *Plain splu*
 (`tests/benchmarks/plain_splu.py`) follows the popping path of the same signs by Runge and Kutta's
 method, with SciPy's general sparse factorisation, and proves nothing. Where it does not agree, its
 path stalled just before its end.
+
+{table}
+"""
+
+_PAIRS = """
+## Against an earlier commit
+
+Processor seconds of whole commands, start included, in turns with those of an earlier commit;
+medians of the rounds. `python tests/benchmarks/pairs.py COMMIT --markdown` prints this table alone.
 
 {table}
 """
@@ -283,7 +312,9 @@ def markdown(results: Results) -> str:
     first = f"{machine.pop('processor')}, {machine.pop('cores')} cores, {machine.pop('memory')}"
     versions = ", ".join(f"{name} {value.strip(',PHCv')}" for name, value in machine.items())
     missing = "".join(f" {name} was not installed." for name in results["missing"])
-    branch = profiles = ""
+    branch = pairs = profiles = ""
+    if results.get("pairs"):
+        pairs = _PAIRS.format(table=as_markdown(pair_table(results["pairs"])))
     if programs(results, single=True):
         branch = _BRANCH.format(table=as_markdown(branch_table(results)))
     if results["profiles"]:
@@ -303,5 +334,6 @@ def markdown(results: Results) -> str:
         limit=number(results["limit"]),
         missing=missing,
         branch=branch,
+        pairs=pairs,
         profiles=profiles,
     ).rstrip()

@@ -3,6 +3,7 @@
     python tests/benchmarks/peers.py [--sizes 4,6,8] [--own-sizes 10,12] [--branch-sizes 100,1000]
                                      [--seeds 1,2,3] [--timeout S] [--json | --markdown]
                                      [--profile] [--plain] [--from RESULTS.json]
+                                     [--against COMMIT]
 
 Patterns are random Delaunay squares. Every program is a process of its own, start included, with
 one thread; what counts is the processor time of the process and its children, so that a busy
@@ -11,7 +12,8 @@ not installed are skipped with a message. No answer is taken on trust: `peer_tas
 different solutions of each by the exact coefficients. A program that reaches the limit, or that
 does not apply, is not asked for larger sizes.
 
-`--json` prints everything measured, which `--from` reads again to print it otherwise.
+With `--against`, commands of exactfold are compared with those of an older commit (`pairs.py`).
+`--json` prints everything measured, with the commit; `--from` reads it again to print it otherwise.
 """
 
 from __future__ import annotations
@@ -26,6 +28,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from pairs import name_of, paired
 from peer_process import Usage, run
 from peer_programs import PEERS
 from peer_report import COMPLETE, INCOMPLETE, LIMIT, NOTHING, markdown, report
@@ -198,6 +201,8 @@ def measured(arguments: argparse.Namespace) -> dict[str, Any]:
         "command": " ".join(["python tests/benchmarks/peers.py", *arguments.given]),
         "machine": described(binaries) | known["versions"],
         "missing": {p.name: p.package for p in PEERS if binaries[p.name] is None},
+        "commit": name_of("HEAD"),
+        "pairs": paired(arguments.against, 3) if arguments.against else [],
         "limit": arguments.timeout,
         "seeds": arguments.seeds,
         "start": known["cpu"],
@@ -220,6 +225,7 @@ def parsed(given: list[str]) -> argparse.Namespace:
     parser.add_argument("--timeout", type=float, default=300.0, help="seconds for each program")
     parser.add_argument("--plain", action="store_true", help="one branch by plain SciPy as well")
     parser.add_argument("--profile", action="store_true", help="where the time goes")
+    parser.add_argument("--against", metavar="COMMIT", help="an older program, run in turns")
     parser.add_argument("--json", action="store_true", help="print everything measured")
     parser.add_argument("--markdown", action="store_true", help="print docs/benchmarks.md")
     parser.add_argument("--from", dest="source", type=Path, help="print results of --json again")

@@ -8,6 +8,7 @@ from typing import Any
 
 from rich.text import Text
 
+from exactfold._support.clock import Clock
 from exactfold._support.plurals import counted, visible
 from exactfold._support.processes import available_cores
 from exactfold._support.verdict import PROVED
@@ -32,6 +33,7 @@ class Wanted(ViewOptions):
         output = self.output or Path(f"{name}.view.html")
         apart(output, self.file)
         checked_page(output)  # before the work
+        clock = Clock(self.limit)
         with Bar("reading") as bar, interruptible():
             opened = read_any(self.file, self.reading, verbose=self.verbose, doubted=False)
             document = write_view(
@@ -42,7 +44,7 @@ class Wanted(ViewOptions):
                 frames=self.frames,
                 proving=self.proving,
                 workers=self.workers or available_cores(),
-                limit=self.limit,
+                limit=clock,
                 progress=bar,
             )
         show(Text(document["answer"]))

@@ -6,7 +6,6 @@ from typing import Annotated
 
 import typer
 
-from exactfold._support.clock import LIMIT
 from exactfold.app.options.reading import ReadingOptions
 from exactfold.app.options.ways import ONE_OF, WayOptions
 from exactfold.app.shell.parameters import (
@@ -101,10 +100,10 @@ class ViewOptions(WayOptions):
         typer.Option(
             parser=duration,
             metavar="SECONDS",
-            help="When the search for ways stops; from then on no further motion is begun, but "
-            "half of the time at least is left for motions.",
+            help="When the page is written with what is known. Half of the time is for the search "
+            "for ways, a quarter at least for their motions.",
         ),
-    ] = LIMIT
+    ] = 15.0
 
 
 @dataclass(frozen=True, eq=False, repr=False, match_args=False)

@@ -128,7 +128,7 @@ class Session:
             task.frames,
             task.proving,
             None,
-            limit=seconds,
+            Clock(seconds),
             brief=task.live,
         )
         self.known, self._finders = Known(opened, name, listed), {}

@@ -102,8 +102,8 @@ def view(
     The page opens in a browser without a network. `sheet` is anything that `read` takes. The page
     shows all ways that are known, or the one that `way`, `signs`, `up` or `letters` names, as in
     `follow`. Each way is followed in `frames` frames to its first contact; with `proving`, its
-    motion is also proved. `workers` processes share the work. The search for ways, and with it the
-    following, ends after `limit` seconds; half of them at least are spent on following.
+    motion is also proved. `workers` processes share the work. All this takes `limit`
+    seconds; a quarter of them at least is spent on following.
 
     Raises `UsageError` for signs that do not fit the sheet or a file that does not end in .html,
     and the errors of `read`.

@@ -10,7 +10,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Final, Literal, TypedDict
 
-from exactfold._support.clock import LIMIT, Clock
+from exactfold._support.clock import LIMIT, UNLIMITED, Clock
 from exactfold._support.documents import Fold, Keywords, Natural, Triangle
 from exactfold._support.progress import Progress
 from exactfold.app.viewer.listing import Drawn, Facts, Listed, file_letters, listed_ways
@@ -76,7 +76,7 @@ def view_document(
     frames: int = FRAMES,
     proving: bool = False,
     workers: int = 1,
-    limit: float = LIMIT,
+    limit: float | Clock = LIMIT,
     progress: Progress | None = None,
 ) -> ViewDocument:
     """All that the page shows of a sheet, as JSON; `view_page` puts it into one HTML file.
@@ -95,9 +95,10 @@ def view_document(
 
     With `proving`, motions along branches are proved, too (`prove`), and so are the first contacts
     of motions of panels that are proved to exist (`prove_contacts`). `workers` is the number of
-    processes that share the work. `name` names the sheet. The search for ways ends after `limit`
-    seconds. No further way is followed when they are over, but half of them at least are spent on
-    following; a way that is left says so.
+    processes that share the work. `name` names the sheet. All this takes `limit` seconds, or
+    ends with a clock that runs already: half of the time is for the search for ways, a quarter at
+    most for the letters of the file, and a quarter at least for following ways. A way that is
+    left says so.
 
     Raises the errors of `open_sheet`, `UsageError` for signs that do not fit, and
     `WorkerDiedError`. If nothing can be counted of a sheet, its document says why.
@@ -106,7 +107,7 @@ def view_document(
     >>> [(way["signs"], way["letters"], way["motion"]["end"]) for way in document["ways"]]
     [('+-', 'MVVVMVM', 'flat-fold')]
     """
-    clock = Clock(limit)
+    clock = limit if isinstance(limit, Clock) else Clock(limit)
     known = Known.of(
         sheet,
         name=name,
@@ -114,12 +115,12 @@ def view_document(
         ways=ways,
         frames=frames,
         proving=proving,
-        limit=limit,
+        clock=clock.share(3 / 4),
         progress=progress,
     )
     useful = max(1, len(known.listed) // _WORTH_A_PROCESS)
     pool = process_pool(min(workers, useful))
-    return known.document(known.followed(pool, clock.at_least(limit / 2), progress))
+    return known.document(known.followed(pool, clock.at_least((clock.limit or 0.0) / 4), progress))
 
 
 @dataclass(frozen=True)
@@ -150,7 +151,7 @@ class Known:
         ways: Sequence[int] | None = None,
         frames: int = FRAMES,
         proving: bool = False,
-        limit: float = LIMIT,
+        clock: Clock = UNLIMITED,
         progress: Progress | None = None,
     ) -> Known:
         """Compute what is known of a sheet; see `view_document`."""
@@ -162,7 +163,7 @@ class Known:
         title = name or (
             Path(sheet).stem if isinstance(sheet, str | PathLike) else "crease pattern"
         )
-        listed = listed_ways(opened, branches, ways, frames, proving, progress, limit=limit)
+        listed = listed_ways(opened, branches, ways, frames, proving, progress, clock)
         return cls(opened, title, listed)
 
     def followed(self, pool: Pool, clock: Clock, progress: Progress | None) -> list[Way]:

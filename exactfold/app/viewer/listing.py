@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple, TypedDict
 
-from exactfold._support.clock import LIMIT, Clock
+from exactfold._support.clock import Clock
 from exactfold._support.documents import Natural, ProvedOrNot
 from exactfold._support.plurals import counted
 from exactfold._support.progress import Progress
@@ -107,14 +107,14 @@ def listed_ways(
     frames: int,
     proving: bool,
     progress: Progress | None,
+    clock: Clock,
     *,
-    limit: float = LIMIT,
     brief: bool = False,
 ) -> Listed:
     """The ways of an open sheet; see `view_document` for the arguments and which ways these are.
 
-    The search for motions of panels, and that for the letters of the file, end after `limit`
-    seconds each. With `brief`, the letters of the file are not searched for, and of a convex sheet
+    When the clock has passed, no search begins. A third of its time is left for the letters of
+    the file. With `brief`, the letters of the file are not searched for, and of a convex sheet
     with more than four corners only one branch is found: the rest is known by a theorem.
     """
     pattern = opened.sheet
@@ -134,7 +134,7 @@ def listed_ways(
                 opened.doubt or has_branches(pattern) or not pattern.foldable_vertices
             ):
                 return _by_theorem(pattern, Following(frames, proving, pattern.degrees_of_freedom))
-            known = _branches(opened, pattern, branches, progress, Clock(limit))
+            known = _branches(opened, pattern, branches, progress, clock)
             if known is not None:
                 follower = Following(frames, proving, known.dimension)
                 numbered = known.count is not None and known.is_whole
@@ -144,7 +144,7 @@ def listed_ways(
                 ]
                 shown = _with_drawn_branch(opened, ways, add=branches is None and not brief)
                 return Listed(*shown, _branch_facts(known), follower)
-        return _panels(opened, only, frames, proving, progress, limit, brief)
+        return _panels(opened, only, frames, proving, progress, clock, brief)
     except (InputError, UsageError, WorkerDiedError):
         raise
     except ExactfoldError as error:
@@ -290,22 +290,23 @@ def _panels(
     frames: int,
     proving: bool,
     progress: Progress | None,
-    limit: float,
+    clock: Clock,
     brief: bool,
 ) -> Listed:
     from exactfold.app.report.panels import panels_answer
     from exactfold.motion.panels.followable import panel_modes, why_nothing_follows
     from exactfold.motion.panels.listing import left_out, panel_ways
 
-    answer = decompose_opened(opened, progress=progress, clock=Clock(limit))
+    searching = clock if brief else clock.share(2 / 3)
+    answer = decompose_opened(opened, progress=progress, clock=searching)
     ways = answer.known
     modes = panel_modes(ways)
     known = panel_ways(ways, modes)
     shown = [way for way in known if only is None or way.number in only][:MOST_WAYS]
     listed = [(panel_way(ways, way), _job(way, ways, opened)) for way in shown]
     drawn = _drawn_in(opened, listed)
-    if only is None and not brief:
-        listed, drawn = _with_drawn_motion(opened, ways, listed, min(limit, DRAWN_SECONDS))
+    if only is None and not brief and not clock.passed:
+        listed, drawn = _with_drawn_motion(opened, ways, listed, clock.at_most(DRAWN_SECONDS))
     notes = [] if ways.warning is None else [f"warning: {ways.warning}"]
     if len(known) > len(shown):
         notes.append(f"{counted(len(known) - len(shown), 'more way')} not shown here")
@@ -336,12 +337,12 @@ def _job(way: PanelWay, ways: Decomposition, opened: Opened) -> int | Representa
 
 
 def _with_drawn_motion(
-    opened: Opened, ways: Decomposition, listed: list[tuple[Way, Any]], seconds: float
+    opened: Opened, ways: Decomposition, listed: list[tuple[Way, Any]], clock: Clock
 ) -> tuple[list[tuple[Way, Any]], Drawn | None]:
     """The list, first the motion with the letters of the file unless a way in it has them."""
     drawn = _drawn_in(opened, listed)
     if drawn is None and ways.rigid is not PROVED:
-        motion = drawn_motion(opened, Clock(seconds))
+        motion = drawn_motion(opened, clock)
         if motion is not None:
             return [(family_way(ways, motion), motion), *listed], {"way": 0, "mirrored": False}
     return listed, drawn

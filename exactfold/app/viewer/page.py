@@ -14,7 +14,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from exactfold._support.clock import LIMIT
+from exactfold._support.clock import LIMIT, Clock
 from exactfold._support.progress import Progress
 from exactfold.app.pictures import crease_style
 from exactfold.app.viewer.document import FRAMES, ViewDocument, view_document
@@ -95,7 +95,7 @@ def write_view(
     frames: int = FRAMES,
     proving: bool = False,
     workers: int = 1,
-    limit: float = LIMIT,
+    limit: float | Clock = LIMIT,
     progress: Progress | None = None,
 ) -> ViewDocument:
     """Write the page of a sheet to a file, and return the document that it shows.

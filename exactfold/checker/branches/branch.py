@@ -15,7 +15,9 @@ order of the interior vertices (0 where the star is flat); `assignment` in the o
 ("U" claims nothing); `squared_distance` (0 if the heights are exact); and in version 2, of which
 the gauge is "rim", `curvature`, rationals in the order of the interior vertices. The evidence has
 `emptied`, the triangulated triangles as `corners` and `inside`, and `heights`, numerators of all
-vertices over `denominator`, null for the vertices inside.
+vertices over `denominator`, null for the vertices inside. In version 3 it also has `merged`, each
+larger triangle with its `corners` and its `others`, the vertices in it or on its sides; their
+heights are null.
 """
 
 from __future__ import annotations

@@ -26,7 +26,7 @@ Columns = list[list[tuple[int, int]]]
 """A sparse matrix: for each column the pairs (row, entry) of the entries that are not 0."""
 
 _RECIPROCAL_BITS = 96
-_ENOUGH = 1 / 64  # weights that change by less than this share are near enough
+ENOUGH = 1 / 64  # weights that change by less than this share are near enough as a rule
 _MOST_ROUNDS = 30
 
 
@@ -162,8 +162,11 @@ def less_one(matrix: list[Vector], one: int) -> list[Vector]:
     return matrix
 
 
-def weights_of(matrix: list[list[float]]) -> Vector:
-    """Positive weights over 2^WEIGHT_BITS, near the Perron vector of a matrix with entries >= 0."""
+def weights_of(matrix: list[list[float]], enough: float = 0.0) -> Vector:
+    """Positive weights over 2^WEIGHT_BITS, near the Perron vector of a matrix with entries >= 0.
+
+    The vector is improved until it changes by less than the share `enough`, but not for ever.
+    """
     vector = [1.0] * len(matrix)
     for _ in range(_MOST_ROUNDS):
         image = [sum(map(mul, row, vector)) for row in matrix]
@@ -171,7 +174,7 @@ def weights_of(matrix: list[list[float]]) -> Vector:
         after = [x + y / top for x, y in zip(vector, image, strict=True)]
         top = max(after)
         after = [x / top for x in after]
-        change = max(abs(x - y) - _ENOUGH * y for x, y in zip(vector, after, strict=True))
+        change = max(abs(x - y) - enough * y for x, y in zip(vector, after, strict=True))
         vector = after
         if change < 0:
             break

@@ -8,7 +8,17 @@ from operator import add
 from typing import NamedTuple
 
 from ..core.reading import CertificateError, require
-from .bounds import INVERSE_BITS, WEIGHT_BITS, Bounds, Rounded, Vector, bounds, dot, weights_of
+from .bounds import (
+    ENOUGH,
+    INVERSE_BITS,
+    WEIGHT_BITS,
+    Bounds,
+    Rounded,
+    Vector,
+    bounds,
+    dot,
+    weights_of,
+)
 from .equations import (
     ORDER,
     Curve,
@@ -160,10 +170,10 @@ class Tube(Piece):
             along = dot(row, x) - dot(row, centre) - (1 << width + bits + ROW_BITS)
             return equations.stacked(bars, [*ties, along << bits - ROW_BITS + 1])
 
-        def prove(curve: Curve) -> None:
+        def prove(curve: Curve, enough: float) -> None:
             rows = [here, *(equations.along(a) for a in curve[1:])]
             slopes = equations.slopes(p, rows, last, bits)
-            weights = weights_of(near(slopes, bits + equations.more))
+            weights = weights_of(near(slopes, bits + equations.more), enough)
             squares = [dot(e, e) for e in equations.weight_sums(weights)]
             most = equations.beyond([*curve, *equations.flat, *last])
             proof = bounds(
@@ -178,9 +188,9 @@ class Tube(Piece):
             Piece.__init__(self, equations, curve, weights, proof, reach)
 
         try:
-            prove(nearest(centre, equations.taylor(inverse), bits))
+            prove(nearest(centre, equations.taylor(inverse), bits), ENOUGH)
         except (ArithmeticError, ValueError, CertificateError):  # near a singular configuration
-            prove(extended(equations, centre, p, residual, bits + 1))
+            prove(extended(equations, centre, p, residual, bits + 1), 0.0)
         self.apart = self.proof.uniqueness(reach)
 
     def entered(self, ball: Ball, velocity: Ball) -> Fraction:

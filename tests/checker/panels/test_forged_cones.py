@@ -16,6 +16,7 @@ from test_forged_spaces import certified, leaves_of, spaces_of
 from exactfold.checker.core.intervals import Interval
 from exactfold.checker.core.reading import LimitError
 from exactfold.checker.panels import cones as panel_cones
+from exactfold.checker.panels import reduction as panel_reduction
 from exactfold.checker.panels.cones import Place, cone_motion
 from exactfold.checker.panels.leaves import complete
 from exactfold.checker.panels.reduction import BITS, Work, enclosed, reduced, rest_of
@@ -188,3 +189,17 @@ def test_a_zero_is_taken_at_which_the_folds_fold(monkeypatch: pytest.MonkeyPatch
     points = [(Fraction(x), Fraction(y)) for y in range(5) for x in range(5)]
     made = json.loads(json.dumps(certificate_of_panels(decompose(PanelPattern(points, TWICE)))))
     verified(made)
+
+
+@pytest.mark.parametrize("missing", [0, 1])
+def test_a_proof_modulo_a_prime_keeps_to_the_limit(
+    missing: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found, other = (spaces(ring_of_fives()) for _ in range(2))
+    assert cone_motion(found, found.first_order, [0, 1, 2]) is not None
+    monkeypatch.setattr(panel_reduction, "MOST_STEPS", found.work.steps - missing)
+    if not missing:
+        assert cone_motion(other, other.first_order, [0, 1, 2]) is not None
+        return
+    with pytest.raises(LimitError, match=f"motions, {found.work.steps}, are more than the limit"):
+        cone_motion(other, other.first_order, [0, 1, 2])
