@@ -76,7 +76,7 @@ class CreasePattern(Picture):
     @cached_property
     def boundary(self) -> tuple[int, ...]:
         """The boundary vertices in counter-clockwise order, starting with the smallest index."""
-        follow = {a: b for a in self._next for b in self._next[a] if a not in self._next[b]}
+        follow = {a: b for a, fan in self._next.items() for b in fan.keys() - fan.values()}
         cycle = [min(follow)]
         while (after := follow[cycle[-1]]) != cycle[0]:
             cycle.append(after)

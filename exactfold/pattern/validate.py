@@ -221,14 +221,14 @@ def disk(rotation: Rotation, triangles: Sequence[Triangle]) -> None:
         )
     follow: dict[int, int] = {}
     for v, fan in rotation.items():
-        ends = [a for a in fan if v not in rotation[a]]
-        if len(ends) > 1 or _steps(fan, ends[0] if ends else next(iter(fan))) < len(fan):
+        ends = fan.keys() - fan.values()  # spokes v-a that no face (v, b, a) precedes
+        if len(ends) > 1 or _steps(fan, next(iter(ends or fan))) < len(fan):
             raise NotADiskError(
                 f"the sheet hangs together by vertex {v} only: its faces form several fans",
                 vertices=[v],
             )
         if ends:
-            follow[v] = ends[0]
+            (follow[v],) = ends
     if not follow:
         raise NotADiskError("the faces form a closed surface without boundary")
     start = min(follow)

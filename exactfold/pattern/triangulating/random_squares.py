@@ -82,7 +82,8 @@ def sample_random_square(
     draw = _redrawn if redraw else _drawn
     points, triangles, attempts = draw(random.Random(seed), interior, denominator, max_attempts)
     placed = [*_corners(denominator), *points]
-    vertices = [(Fraction(x, denominator), Fraction(y, denominator)) for x, y in placed]
+    shared = {k: Fraction(k, denominator) for k in set(chain.from_iterable(placed))}
+    vertices = [(shared[x], shared[y]) for x, y in placed]
     return RandomSquare(CreasePattern(vertices, triangles), seed, denominator, attempts)
 
 
