@@ -97,8 +97,7 @@ bird bases are traditional forms. The Miura fold is Koryo Miura's; the Yoshimura
 after Yoshimaru Yoshimura, who described how thin tubes buckle. The files below "Drawn by others"
 were drawn by Amanda Ghassaei for
 [Origami Simulator](https://github.com/amandaghassaei/OrigamiSimulator), copyright 2018, with the
-MIT licence, which is installed beside them. All other files were drawn for exactfold and come with
-its licence.
+MIT licence, which is installed beside them. All other files come with the licence of exactfold.
 """
 DEGENERATES: Final = tuple(
     name for name in DEGENERATE if name not in ("flat-vertex", "hypar-straight")

@@ -225,7 +225,7 @@ def place(statement: Statement) -> str:
 def basis(statement: Statement, proof: Proof) -> str:
     """What it rests on, without what is true of all that does not hold as printed."""
     text = re.sub(r"proved for all \(\d+ steps?\)", "proved", proof.basis(statement))
-    text = re.sub(r"tested on (\d+ cases?)", r"\1", text).replace("shown by an example", "example")
+    text = re.sub(r"tested on \d+ cases?", "cases", text).replace("shown by an example", "example")
     return re.sub(r"(^|; )the printed form refuted by an example$", "", text) or "refuted"
 
 

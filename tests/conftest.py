@@ -5,13 +5,16 @@ import os
 
 import pytest
 import typer.testing
-from hypothesis import settings
+from hypothesis import HealthCheck, settings
 
 # Tests start many processes. If they may not keep what they compile, each compiles exactfold again.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
-# Each run draws other examples: some in every run find more than many in a few runs.
-settings.register_profile("some", max_examples=30)
+# Each run draws other examples: some in every run find more than many in a few runs. How long one
+# takes on a busy machine is no matter.
+settings.register_profile(
+    "some", max_examples=30, deadline=None, suppress_health_check=[HealthCheck.too_slow]
+)
 settings.load_profile("some")
 
 # Typer prepares all commands again for each command line: once is enough for those of one process.

@@ -177,6 +177,19 @@ def straight_side(*, smallest: bool) -> CreasePattern:
     return pattern
 
 
+def larger_triangle(on_side: Sequence[object] = (5, "5/2")) -> CreasePattern:
+    """Faces that form the triangle of the vertices 4, 5 and 6, with 9 inside and 8 on a side.
+
+    Vertex 7 is on a side, too, unless it is put elsewhere. From outside, each of 7 and 8 has one
+    fold. With the signs ++++-+ the branch is folded along both sides, and the triangle is flat.
+    """
+    inner = [(2, 2), (8, 3), (4, 8), on_side, (6, "11/2"), ("24/5", 4)]
+    outside = [(0, 1, 5), (0, 5, 7), (0, 7, 4), (1, 2, 5), (2, 8, 5), (2, 6, 8)]
+    outside += [(2, 3, 6), (3, 4, 6), (3, 0, 4)]
+    inside = [(4, 7, 9), (7, 5, 8), (7, 8, 9), (8, 6, 9), (6, 4, 9)]
+    return CreasePattern([(0, 0), (10, 0), (10, 10), (0, 10), *inner], [*outside, *inside])
+
+
 def dart() -> CreasePattern:
     """A non-convex quadrilateral with one interior vertex that sees the notch."""
     return wheel([(4, -4), ("1/10", 0), (4, 4), (-4, 0)])

@@ -44,6 +44,15 @@ class RootTower:
         if len(a) == 2:  # most fields have one root
             (p, q), (x, y), [[square]] = a, b, self._radicands[:1]
             return p * x + q * y * square, p * y + q * x
+        if len(a) == 4:  # written out, because Karatsuba's way takes twice as long
+            (p, q, s, t), (x, y, z, w), [[square], [c, d]] = a, b, self._radicands[:2]
+            one, root = s * z + t * w * square, s * w + t * z
+            return (
+                p * x + q * y * square + one * c + root * d * square,
+                p * y + q * x + one * d + root * c,
+                p * z + s * x + (q * w + t * y) * square,
+                p * w + t * x + q * z + s * y,
+            )
         half = len(a) // 2
         a0, a1, b0, b1 = a[:half], a[half:], b[:half], b[half:]
         if not any(a1):

@@ -30,6 +30,9 @@ from exactfold.solve.numeric.homotopy import homotopy
 _FEWEST_ROOTS: Final = 2
 _TURNS: Final = (0.1, 0.7)
 _CLOSED: Final = 1e-9
+_STARTS: Final = 12
+_STEPS: Final = 30
+_SINGULAR: Final = 1e-6
 
 
 @dataclass(frozen=True)
@@ -86,6 +89,8 @@ def isolated_ways(
         return None
     chart = tuple((-1) ** k * (1 + 3 * k % 5) for k in range(size))
     system = _system([stars[v] for v in full], rows, chart)
+    if _seems_to_have_families(system):
+        return None
 
     def on_time(done: int, total: int) -> None:
         clock.check()
@@ -103,6 +108,28 @@ def isolated_ways(
     if all(_may_be_taken(stars, leaf) for leaf in leaves):
         return ways, leaves
     return None
+
+
+def _seems_to_have_families(system: QuadraticSystem) -> bool:
+    """Whether Newton's method runs to a zero in projective space that is not simple.
+
+    Then a homotopy would follow many paths in vain. Most starts lead to the largest families.
+    """
+    tensor = system.float_tensor
+    tensor = tensor / np.abs(tensor).max(axis=(1, 2), keepdims=True)
+    rng = np.random.default_rng(1)
+    for _ in range(_STARTS):
+        w = rng.normal(size=tensor.shape[1]) + 1j * rng.normal(size=tensor.shape[1])
+        for _ in range(_STEPS):
+            w /= np.linalg.norm(w)
+            slopes = tensor @ w
+            w = w - np.linalg.lstsq(2 * slopes, slopes @ w, rcond=_SINGULAR)[0]
+        w /= np.linalg.norm(w)
+        slopes = tensor @ w
+        least = float(np.linalg.svd(slopes, compute_uv=False)[-1])
+        if np.abs(slopes @ w).max() < _CLOSED and least < _SINGULAR:
+            return True
+    return False
 
 
 def _is_first(box: IsolatingBox) -> bool:

@@ -16,8 +16,8 @@ from exactfold.checker.motion import chain as motion_chain
 from exactfold.checker.motion import contacts as motion_contacts
 from exactfold.checker.motion import nodes as motion_nodes
 from exactfold.checker.motion.branch_points import BranchPointTube
+from exactfold.checker.motion.lengths import stretches_of
 from exactfold.checker.motion.ray import Ray
-from exactfold.checker.motion.stretches import stretches_of
 from exactfold.checker.motion.tubes import Piece
 
 

@@ -11,7 +11,7 @@ from exactfold._support.verdict import PROVED
 from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.roots import EnclosedRoot
 from exactfold.certificates.entries import Document, emptied_evidence, pattern_document
-from exactfold.checker.branches.branch import BRANCH, CURVED, FLAT, CurvedClaims
+from exactfold.checker.branches.branch import BRANCH, CURVED, FLAT, MERGED, CurvedClaims
 from exactfold.errors import UsageError
 from exactfold.exact.numbers import format_integer, format_rational
 from exactfold.rigidity.equations.gauge import RIM, SADDLE
@@ -31,7 +31,7 @@ def branch_certificate(branch: Branch) -> dict[str, Any]:
     """
     pattern, root, curvature = branch.pattern, _enclosed(branch), branch.curvature
     emptied = emptied_evidence(pattern, curvature)
-    heights, denominator = heights_evidence(branch, emptied)
+    heights, denominator = _heights(root, emptied)
     claims: CurvedClaims = {
         "gauge": RIM if branch.gauge == RIM else SADDLE,
         "vertex_signs": [branch.vertex_signs[v] for v in pattern.interior],
@@ -41,16 +41,15 @@ def branch_certificate(branch: Branch) -> dict[str, Any]:
     if curvature:
         deficits = (curvature.get(v, Fraction(0)) for v in pattern.interior)
         claims["curvature"] = list(map(format_rational, deficits))
+    evidence: Document = {"emptied": emptied, "heights": heights, "denominator": denominator}
+    if root.merged:
+        evidence["merged"] = [{"corners": list(c), "others": list(v)} for c, v in root.merged]
     return {
         "format": BRANCH.format,
-        "version": CURVED if curvature else FLAT,
+        "version": CURVED if curvature else MERGED if root.merged else FLAT,
         "pattern": pattern_document(pattern),
         "claims": claims,
-        "evidence": {
-            "emptied": emptied,
-            "heights": heights,
-            "denominator": denominator,
-        },
+        "evidence": evidence,
     }
 
 
@@ -59,12 +58,23 @@ def heights_evidence(branch: Branch, emptied: Sequence[Document]) -> tuple[list[
 
     The numerator is None for a vertex inside one of the triangulated triangles `emptied`.
 
-    Raises `UsageError` unless the branch was proved by `find_branch`.
+    Raises `UsageError` unless the branch was proved by `find_branch`, on a sheet without merged
+    faces.
     """
     root = _enclosed(branch)
-    rigid = {v for entry in emptied for v in entry["inside"]}
-    heights = [None if v in rigid else h for v, h in sorted(root.centres.items())]
-    denominator = lcm(*(h.denominator for h in heights if h is not None))
+    if root.merged:
+        raise UsageError(
+            "this branch is folded along the sides of larger triangles, which only a certificate "
+            "of a single branch can say"
+        )
+    return _heights(root, emptied)
+
+
+def _heights(root: EnclosedRoot, emptied: Sequence[Document]) -> tuple[list[str | None], str]:
+    gone = {v for entry in emptied for v in entry["inside"]}
+    gone.update(v for _, others in root.merged for v in others)
+    heights = [None if v in gone else h for v, h in sorted(root.centres.items())]
+    denominator = lcm(*{h.denominator for h in heights if h is not None})
     numerators = [
         None if h is None else format_integer(h.numerator * (denominator // h.denominator))
         for h in heights

@@ -15,7 +15,9 @@ order of the interior vertices (0 where the star is flat); `assignment` in the o
 ("U" claims nothing); `squared_distance` (0 if the heights are exact); and in version 2, of which
 the gauge is "rim", `curvature`, rationals in the order of the interior vertices. The evidence has
 `emptied`, the triangulated triangles as `corners` and `inside`, and `heights`, numerators of all
-vertices over `denominator`, null for the vertices inside.
+vertices over `denominator`, null for the vertices inside. In version 3 it also has `merged`, each
+larger triangle with its `corners` and its `others`, the vertices in it or on its sides; their
+heights are null.
 """
 
 from __future__ import annotations
@@ -26,12 +28,13 @@ from typing import Any, TypedDict
 
 from ..core.kinds import DocumentKind
 from ..core.reading import items, keys, keys_of, parse_integer, parse_rational, refusing, require
-from ..sheets.reduced import check_convex, closed, emptied_sheet
-from ..sheets.sheet import Sheet, read_sheet, turn
+from ..sheets.reduced import check_convex, closed, emptied_sheet, merged_sheet
+from ..sheets.sheet import Edge, Sheet, read_sheet, turn
 from .branch_proof import Heights, Proof
 
-FLAT, CURVED = 1, 2
-"""The versions: 1 for one branch of a flat sheet, 2 for one shape of a sheet with angle deficits.
+FLAT, CURVED, MERGED = 1, 2, 3
+"""The versions: 1 for one branch of a flat sheet, 2 for one shape of a sheet with angle deficits,
+and 3 for one branch on whose sheet larger triangles are merged.
 """
 
 
@@ -70,10 +73,12 @@ def check(data: dict[str, Any]) -> VerifiedBranch:
     """
     given, digest = read_sheet(data["pattern"])
     claims, evidence = data["claims"], data["evidence"]
-    curved = data["version"] == CURVED
+    curved, merged = data["version"] == CURVED, data["version"] == MERGED
     keys(claims, keys_of(CurvedClaims if curved else BranchClaims), "claims")
-    keys(evidence, "emptied heights denominator", "evidence")
+    keys(evidence, "emptied heights denominator" + " merged" * merged, "evidence")
     place = Place(given, evidence["emptied"])
+    if merged:
+        place.merge(evidence["merged"])
     targets = place.targets(claims["curvature"]) if curved else {}
     if claims["gauge"] != "rim":
         require(not curved, 'angle deficits need the gauge "rim"')
@@ -111,6 +116,12 @@ class Place:
         self.open = self.sheet
         self.corner: int | None = None
         self.fixed = False
+        self.merged: dict[int, Edge | None] = {}
+
+    def merge(self, evidence: Any) -> None:
+        """Make the listed triangles single faces; `merged` are the vertices that are left out."""
+        self.sheet, self.merged = merged_sheet(self.sheet, evidence)
+        self.open = self.sheet
 
     def fix_boundary(self) -> None:
         """Require four corners, and heights with a positive saddle or with the reflex corner up."""
@@ -136,7 +147,8 @@ class Place:
     ) -> Proof:
         """Read heights, and work out what they prove."""
         texts = items(numerators, "heights", len(self.given.points))
-        fits = all((texts[v] is None) == (v in self.removed) for v in self.given.points)
+        gone = self.removed | self.merged.keys()
+        fits = all((texts[v] is None) == (v in gone) for v in self.given.points)
         require(fits, "heights must be null for the vertices that are removed, and for no others")
         heights = {v: parse_integer(texts[v]) for v in self.sheet.points}
         q = parse_integer(denominator)
@@ -157,7 +169,11 @@ class Place:
         signs = []
         for v in self.given.interior:
             sign = 0
-            if v not in self.removed and seen[v] != {"F"}:
+            if v in self.merged:
+                letter = self._on_side(v, proof)
+                require(letter != "U", f"vertex {v} may be flat")
+                sign = (letter == "M") - (letter == "V")
+            elif v not in self.removed and seen[v] != {"F"}:
                 bent = seen[v] & {"M", "V"} or v in proof.targets
                 require(bent, f"vertex {v} may be flat")
                 sign = proof.signs[v]
@@ -166,10 +182,26 @@ class Place:
 
     def letters(self, proof: Proof) -> list[str]:
         """The letters of the folds of the given sheet, "U" where they are not proved."""
-        return [
-            "F" if not self.removed.isdisjoint(fold) else proof.letters[fold]
-            for fold in self.given.folds
-        ]
+        return [self._letter(fold, proof) for fold in self.given.folds]
+
+    def _letter(self, fold: Edge, proof: Proof) -> str:
+        if not self.removed.isdisjoint(fold):
+            return "F"
+        if fold in proof.letters:
+            return proof.letters[fold]
+        # The fold lies in a merged triangle: along a side, or across it, where it is flat.
+        i, j = fold
+        first, second = self.merged.get(i), self.merged.get(j)
+        if first and (second == first or j in first):
+            return self._on_side(i, proof)
+        if second and i in second:
+            return self._on_side(j, proof)
+        return "F"
+
+    def _on_side(self, vertex: int, proof: Proof) -> str:
+        """The letter of the side on which a merged vertex lies, "F" if it is inside a triangle."""
+        side = self.merged[vertex]
+        return "F" if side is None else proof.letters[side]
 
 
 def _check_gauge(sheet: Sheet, heights: Heights, corner: int | None) -> None:
@@ -220,7 +252,7 @@ def summary(claims: VerifiedBranch) -> str:
 
 BRANCH = DocumentKind(
     format="exactfold branch",
-    versions=(FLAT, CURVED),
+    versions=(FLAT, CURVED, MERGED),
     names="format version pattern claims evidence",
     claims=VerifiedBranch,
     check=check,

@@ -3,13 +3,27 @@
 The pieces are the connected components of the solutions without the flat state.
 
 Why it is a proof: if the boundary is convex and has five or more vertices, the solutions are 2^n
-graphs, one for each sign vector of the n vertices that can pop (Theorem 6). Two sign vectors that
-differ only at v are joined if some solution with these signs is flat at v, and the pieces are the
-components of the sign vectors (Theorem 7). The evidence names stars that are held flat. The checker
-leaves out their folds, makes the flat closure, and finds the solutions that remain (`flat_stars`).
-Each of these joins all sign vectors that agree with its signs. If all such solutions are found for
-a vertex, nothing else is joined at this vertex; for the lower bound, all sign vectors that differ
-at any other vertex are taken to be joined. A fold from boundary to boundary joins everything.
+graphs, one for each sign vector of the n vertices that can pop (Theorem 6). Sign vectors e and e'
+that differ at v only are joined if a non-zero solution in the nappes of e is flat at v (Theorem 7).
+So the joints that are shown give the upper bound. For the lower bound let v be in `complete`, and
+let such a solution be given. It has no bend at the folds around v, nor at those of the flat
+closure: it is in the linear space of first-order motions that the checker finds (`flat_stars`), and
+in the kernels of the semidefinite forms. A part of it that is not 0 is a solution, flat at v, with
+signs that agree with e; so take the solution to be on one part. There are these cases:
+
+- Where all forms vanish, every form is isotropic and has one positive direction. So at each vertex
+  the solutions are one line, and they are one line in all, as the part is connected.
+- If multiples of the forms span all monomials of some degree modulo a prime, they do so over Q, and
+  there is no common zero.
+- 2^(m-1) zeros of m - 1 forms in disjoint boxes are all, at infinity as well, by refined Bezout. A
+  box of real and imaginary parts holds one complex zero, as these parts of the forms are quadrics
+  in them, and it is none of the real ones.
+- If the signs of all vertices at which a part may bend occur in all ways, up to reflection, one of
+  these joints agrees with e.
+
+In each case a joint that is shown joins e and e'. At vertices that are not in `complete` all sign
+vectors that differ there only are taken to be joined. A fold from boundary to boundary joins
+everything.
 
 The claims are the `vertices` that can pop, in increasing order; `at_least` and `at_most`, bounds of
 the number of pieces; `joints`, the signs of all solutions with flat stars that the evidence shows

@@ -130,8 +130,8 @@ def inverse(matrix: list[list[Any]]) -> list[list[Any]]:
             if i != k and factor:
                 work[i][k] = zero
                 work[i] = [x - factor * y for x, y in zip(work[i], row, strict=True)]
-    places = [order.index(i) for i in range(n)]
-    return [[row[k] for k in places] for row in work]
+    places = sorted(range(n), key=order.__getitem__)
+    return [[row[k] for k, _ in zip(places, row, strict=True)] for row in work]
 
 
 def _inverse_or_none(matrix: list[list[Any]]) -> list[list[Any]] | None:

@@ -1,13 +1,18 @@
 """Certificates of all rays of branches with given letters (docs/assignment.md).
 
-Why it is a proof: a branch is a line of solutions, and each of its two rays lies in the closed
-nappes of some sign vector. The tree covers all sign vectors. A sign vector that contains the signs
-of a refuted set has no solution with these letters (`refuted`). Every other sign vector is a leaf
-of the tree, and two rays are proved for it as for a single branch (`branch`, Theorem 5 of
-docs/branch.md): the ray in its nappes with a positive saddle, and the opposite of the ray in the
-opposite nappes with a positive saddle. If the sheet does not have four boundary vertices, there are
-no leaves. Every solution still lies in the closed nappes of some sign vector, so that no solution
-has the letters if all ends of the tree are refuted.
+Why it is a proof: each half of a branch is a solution that is not flat, in the closed nappes of
+some sign vector e. Follow e through the tree: at a split go to the sign of e; a forced sign is that
+of e, or else all signs of a refuted set belong to e. If a refuted set belongs to e, the half does
+not have the letters (`refuted`; docs/assignment.md, Theorem 1), or because a star that bends to one
+side only has K_v > 0 unless all its bends lie on one line. Nor does a fold inside a triangulated
+triangle bend. Otherwise the end is a leaf with the signs e. Its evidence are two halves with proved
+letters, as for a single branch (`branch`): one with these signs and a positive saddle, and the
+opposite of one with the signs -e and a positive saddle. A half with a positive saddle is, up to a
+plane, a multiple of the solution in the nappes of e with the rim of the first, the only one by
+Theorem 5 of docs/branch.md; a half with a negative saddle is the opposite of one in the nappes of
+-e. A saddle that is 0 would make the rim, and so all of the solution, plane. With a reflex corner
+the same holds for its side instead of the saddle. If the sheet does not have four boundary
+vertices, there are no leaves: no solution has the letters if all ends of the tree are refuted.
 
 The evidence has `emptied`, the triangulated triangles, as in certificates of one branch, and:
 

@@ -7,11 +7,17 @@ vertices adds 1, and a part in which all conditions are independent adds the num
 less that of its conditions. Folds from boundary to boundary add 1 each.
 
 The upper bound: choose vertices of which no two share a fold, each with at least four folds. The
-densities at such a vertex of n folds that satisfy its three conditions have dimension n - 3. If
-these are given, the densities of all other folds are given up to the kernel of the matrix of the
-first-order conditions at those folds. So no family has a larger dimension than the number of folds
+tangent cone at the flat state lies where the first-order conditions hold and the forms of the
+chosen vertices vanish (docs/panels.md, 6). At such a vertex of n folds this leaves dimension n - 3,
+as the form is not 0 where the two conditions hold. If the densities at all of them are given, those
+of all other folds are given up to the kernel of the matrix of the first-order conditions at those
+folds. So no family has a larger dimension than the number of folds that the flat closure leaves,
 less 3 for each chosen vertex and less the rank of this matrix. A rank modulo a number is a lower
 bound of the rank.
+
+The evidence has `letters`, M, V or F for each fold: a motion in which folds with the letter F are
+flat; this `motion`, as in certificates of letters (`panels`); the chosen vertices, `apart`; and a
+`modulus` with `roots`, residues whose squares are those of the radicands modulo this number.
 """
 
 from __future__ import annotations

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
-from operator import mul
+from operator import itemgetter, mul
 from typing import NamedTuple
 
 from ..core.reading import require
@@ -26,7 +26,7 @@ Columns = list[list[tuple[int, int]]]
 """A sparse matrix: for each column the pairs (row, entry) of the entries that are not 0."""
 
 _RECIPROCAL_BITS = 96
-_ENOUGH = 1 / 64  # weights that change by less than this share are near enough
+ENOUGH = 1 / 64  # weights that change by less than this share are near enough as a rule
 _MOST_ROUNDS = 30
 
 
@@ -146,8 +146,13 @@ def dot(a: Iterable[int], b: Iterable[int]) -> int:
 
 def product(p: list[Vector], columns: Columns) -> list[Vector]:
     """The product of P and a sparse matrix."""
-    places = [([e for e, _ in column], [x for _, x in column]) for column in columns]
-    return [[sum(map(mul, [row[e] for e in at], values)) for at, values in places] for row in p]
+    places = []
+    for column in columns:
+        # With further terms that are 0, `itemgetter` gives a tuple even for a single entry.
+        entries = column if len(column) > 1 else [(0, 0), (0, 0), *column]
+        at, values = zip(*entries, strict=True)
+        places.append((itemgetter(*at), values))
+    return [[sum(map(mul, at(row), values)) for at, values in places] for row in p]
 
 
 def less_one(matrix: list[Vector], one: int) -> list[Vector]:
@@ -157,8 +162,11 @@ def less_one(matrix: list[Vector], one: int) -> list[Vector]:
     return matrix
 
 
-def weights_of(matrix: list[list[float]]) -> Vector:
-    """Positive weights over 2^WEIGHT_BITS, near the Perron vector of a matrix with entries >= 0."""
+def weights_of(matrix: list[list[float]], enough: float = 0.0) -> Vector:
+    """Positive weights over 2^WEIGHT_BITS, near the Perron vector of a matrix with entries >= 0.
+
+    The vector is improved until it changes by less than the share `enough`, but not for ever.
+    """
     vector = [1.0] * len(matrix)
     for _ in range(_MOST_ROUNDS):
         image = [sum(map(mul, row, vector)) for row in matrix]
@@ -166,7 +174,7 @@ def weights_of(matrix: list[list[float]]) -> Vector:
         after = [x + y / top for x, y in zip(vector, image, strict=True)]
         top = max(after)
         after = [x / top for x in after]
-        change = max(abs(x - y) - _ENOUGH * y for x, y in zip(vector, after, strict=True))
+        change = max(abs(x - y) - enough * y for x, y in zip(vector, after, strict=True))
         vector = after
         if change < 0:
             break

@@ -22,8 +22,7 @@ from .claims import BranchClaim, read_claims, words
 from .contacts import Contacts, TouchingFaces
 from .drive import DriveClaim, DrivenFolds
 from .nodes import FlatStars, Node, Through
-from .ray import Length, NamedHalf, Ray
-from .returns import Return
+from .ray import Length, NamedHalf, Ray, Return
 
 CLAIMS: tuple[type[BranchClaim], ...] = (
     Ray,

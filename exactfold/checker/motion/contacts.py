@@ -28,8 +28,7 @@ from .chain import Chain
 from .claims import BranchClaim, Document
 from .equations import LengthEquations
 from .faces import FacePairs, Hinge
-from .lengths import GRID, Path
-from .stretches import Step, stretches_of
+from .lengths import GRID, Path, Step, stretches_of
 from .tubes import Start
 
 _KINDS = "contact", "flat-fold"

@@ -3,6 +3,15 @@
 Let g_k be half the change of the squared distance between the two vertices opposite to fold k. Then
 g_k = -8 (A B / l^2) sin(a_k / 2)^2, where A and B are the areas of its faces, l is its length and
 a_k is its angle. The angles reach given sizes on the way if they are at least as large at the end.
+
+Near the flat state the equations say what docs/motion.md, 4 asks. Proof: the six distances of the
+four vertices of two faces at a fold have one self-stress in the plane. So there are constants c_e
+with U_k . u_k + h_k^2 / 2 = sum_e c_e (U_e . u_e + h_e^2 / 2) - 2 (A B / l^2) omega_k(h)^2 for all
+u, h, with the five edges e of the two faces: the difference of the first two terms is a quadratic
+form of the heights that does not see affine functions, so a multiple of omega_k^2, and the factor
+is that of g_k. For (u', h') on which the derivatives of the lengths are 0 the equations therefore
+say that omega_k(h) omega_k(h') / |q_k| is the same for all k, that is, omega_k(h') = mu omega_k(h)
+for some mu and all k.
 """
 
 from __future__ import annotations

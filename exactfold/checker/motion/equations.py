@@ -200,7 +200,8 @@ def inverse_of(columns: Columns, bits: int) -> list[list[float]]:
 
 def rounded(matrix: list[list[float]]) -> list[Vector]:
     """An inverse over 2^INVERSE_BITS, called P; the test that uses P is valid for any P."""
-    nearly = [[round(x * 2**INVERSE_BITS) for x in row] for row in matrix]
+    scale = 2.0**INVERSE_BITS
+    nearly = [[round(x * scale) for x in row] for row in matrix]
     require(largest(nearly) >> INVERSE_BITS + SPARE == 0, "a Jacobian is nearly singular")
     return nearly
 

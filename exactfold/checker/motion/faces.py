@@ -3,6 +3,16 @@
 Two faces without a common vertex do not touch if a plane parts them. Two faces with one common
 vertex touch only there if a plane through this vertex parts them. Two faces at a fold touch only
 there unless the fold is closed.
+
+Proof of Theorem 7 there. (a), (b): all points of the faces are convex combinations of corners; in
+(b) those with n . (p - v) = 0 are v alone. (c): the faces lie in two half-planes with the common
+boundary line i j, which are equal iff the fold is closed. With the angle a between them,
+|l - r|^2 = c + 2 p q (1 - cos a), where p, q > 0 are the distances of l and r from the line and c
+is the value for a = 0, a rational number of the flat sheet; the determinant is p q |j - i| sin a up
+to its sign. (d): the projection is linear, n lies in the plane, and counter-clockwise projections
+lie on different sides of that of the fold. (e): the line p q passes all three sides on the same
+side, so it meets the inside of the face, between p and q. (f): the determinant changes its sign, so
+sin a = 0 at some time, and cos a > 0 as |l - r|^2 is below its mean of a = 0 and a = pi; so a = 0.
 """
 
 from __future__ import annotations

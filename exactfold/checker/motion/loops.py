@@ -39,8 +39,7 @@ from ..core.reading import (
 from ..sheets.reduced import emptied_sheet
 from ..sheets.sheet import read_sheet
 from .chain import Chain, check_work, equations_of
-from .ray import names
-from .returns import land
+from .ray import land, names
 from .tubes import Start
 
 Ray = tuple[tuple[int, ...], int]

@@ -25,8 +25,8 @@ from typing import TypedDict
 from ..core.reading import items, keys, natural, require
 from .chain import Chain
 from .claims import BranchClaim, Document
+from .lengths import Arc
 from .pieces import arc_of, parameter_of
-from .stretches import Arc
 
 
 class FlatStars(TypedDict):

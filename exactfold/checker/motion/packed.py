@@ -8,7 +8,6 @@ coefficient is less than 2^(width - 1) in size.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cache
 from struct import unpack
 
 from .bounds import Rounded, Vector, less_one
@@ -96,7 +95,6 @@ class Lanes:
         return [Rounded(rows, low - shift) for rows, shift in zip(read, self.shifts, strict=True)]
 
 
-@cache
 def _halves(width: int, count: int) -> int:
-    """Half of the range of each place."""
-    return ((1 << width * count) - 1) // ((1 << width) - 1) << width - 1
+    """Half of the range of each place; the width is whole bytes."""
+    return int.from_bytes((bytes(width // 8 - 1) + b"\x80") * count, "little")

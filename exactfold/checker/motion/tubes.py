@@ -4,11 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
-from operator import add, mul
+from operator import add
 from typing import NamedTuple
 
 from ..core.reading import CertificateError, require
-from .bounds import INVERSE_BITS, WEIGHT_BITS, Bounds, Rounded, Vector, bounds, dot, weights_of
+from .bounds import (
+    ENOUGH,
+    INVERSE_BITS,
+    WEIGHT_BITS,
+    Bounds,
+    Rounded,
+    Vector,
+    bounds,
+    dot,
+    weights_of,
+)
 from .equations import (
     ORDER,
     Curve,
@@ -160,10 +170,10 @@ class Tube(Piece):
             along = dot(row, x) - dot(row, centre) - (1 << width + bits + ROW_BITS)
             return equations.stacked(bars, [*ties, along << bits - ROW_BITS + 1])
 
-        def prove(curve: Curve) -> None:
+        def prove(curve: Curve, enough: float) -> None:
             rows = [here, *(equations.along(a) for a in curve[1:])]
             slopes = equations.slopes(p, rows, last, bits)
-            weights = weights_of(near(slopes, bits + equations.more))
+            weights = weights_of(near(slopes, bits + equations.more), enough)
             squares = [dot(e, e) for e in equations.weight_sums(weights)]
             most = equations.beyond([*curve, *equations.flat, *last])
             proof = bounds(
@@ -178,9 +188,9 @@ class Tube(Piece):
             Piece.__init__(self, equations, curve, weights, proof, reach)
 
         try:
-            prove(nearest(centre, equations.taylor(inverse), bits))
+            prove(nearest(centre, equations.taylor(inverse), bits), ENOUGH)
         except (ArithmeticError, ValueError, CertificateError):  # near a singular configuration
-            prove(extended(equations, centre, p, residual, bits + 1))
+            prove(extended(equations, centre, p, residual, bits + 1), 0.0)
         self.apart = self.proof.uniqueness(reach)
 
     def entered(self, ball: Ball, velocity: Ball) -> Fraction:
@@ -226,8 +236,8 @@ class Tube(Piece):
 
 def near(slopes: Sequence[Rounded], bits: int) -> list[list[float]]:
     """|P M_1| + |P M_2| / 2 + |P M_3| / 4 in floats; only the choice of weights depends on it."""
-    scales = [2.0 ** (drop - INVERSE_BITS - bits - k) for k, (_, drop) in enumerate(slopes[1:4])]
+    x, y, z = (2.0 ** (slopes[k].drop - INVERSE_BITS - bits - k) for k in (1, 2, 3))
     return [
-        [sum(map(mul, scales, map(abs, entries))) for entries in zip(*rows, strict=True)]
+        [x * abs(a) + y * abs(b) + z * abs(c) for a, b, c in zip(*rows, strict=True)]
         for rows in zip(*(slope.rows for slope in slopes[1:4]), strict=True)
     ]

@@ -64,7 +64,11 @@ def cone_motion(spaces: Spaces, space: Space, vertices: Sequence[int]) -> Place 
 
 
 def _by_signs(spaces: Spaces, ordered: Sequence[int], rooms: Sequence[Space]) -> Place | None:
-    """A common zero of the forms, if each discriminant is shown to have both signs."""
+    """A common zero of the forms, if each discriminant is shown to have both signs.
+
+    Of the zeros found it is the one at which the most folds are shown to fold. At others the
+    conditions may depend on each other.
+    """
     places: list[Place] = [{}]
     for number, (v, room) in enumerate(zip(ordered, rooms, strict=True)):
         vectors = [enclosed(motion) for motion in room]
@@ -75,7 +79,7 @@ def _by_signs(spaces: Spaces, ordered: Sequence[int], rooms: Sequence[Space]) ->
                 break
         else:
             return None
-    return places[0]
+    return max(places, key=lambda place: sum(value.sign() != 0 for value in place.values()))
 
 
 def _regular_zeros(

@@ -96,7 +96,7 @@ def only_zero(forms: Sequence[Matrix], p: int, work: Work) -> bool:
     They do if the products of the forms with monomials span all forms of some degree.
     """
     size = len(forms[0])
-    if not size <= len(forms) or size > MOST_VARIABLES:
+    if size > MOST_VARIABLES:
         return False
     for degree in range(2, size + 2):
         columns = {m: k for k, m in enumerate(combinations_with_replacement(range(size), degree))}
@@ -140,7 +140,7 @@ def one_component(forms: Sequence[Matrix], p: int, work: Work) -> bool:
         points, classes = _zeros(form, slopes, last, u, moved, p)
         if number and last and len(classes) < 2:
             return False
-        if not last and not _apart(forms[:number], form, slopes, u, generator, p, work):
+        if not last and not _apart(forms[:number], form, slopes, generator, p, work):
             return False
         room = _kernel(form, room, p, work)
     return True
@@ -184,25 +184,15 @@ def _zeros(
 
 
 def _apart(
-    earlier: Sequence[Matrix],
-    form: Matrix,
-    b: Vector,
-    u: Vector,
-    generator: random.Random,
-    p: int,
-    work: Work,
+    earlier: Sequence[Matrix], form: Matrix, b: Vector, generator: random.Random, p: int, work: Work
 ) -> bool:
     """Whether earlier forms, b and K have, without u, the common zeros of a regular sequence.
 
     They have if on some space of as many dimensions as there are forms, on which b vanishes, the
-    forms vanish together only at 0.
+    forms vanish together only at 0. Where b vanishes, no form depends on u, so that u may stay.
     """
     size, number = len(form), len(earlier) + 1
-    first = next(k for k, x in enumerate(u) if x)
-    unit = [int(k == first) for k in range(size)]
-    space = _kernel_of([b, unit], p, work)
-    if len(space) < number:
-        return False
+    space = _kernel_of([b], p, work)
     work.count_short(number**2 * size**2)
     basis = [_shifted([0] * size, space, generator, p) for _ in range(number)]
     inner = [

@@ -139,15 +139,14 @@ class Spaces(Forms):
         kernel, products, left, settled = self._forms(space, settled, every=True)
         if kernel:
             return self._within(space, kernel, settled)
-        left = self._independent({v: self.squares(v, space) for v in left if not products})
-        forms = {v: self.squares(v, space) for v in left}
+        forms = {v: self.squares(v, space) for v in left if not products}
         total = narrowing_sum(self, forms, len(space))
         if len({d.sign() for d, _ in total}) == 1:
             return self._within(space, [values for _, values in total], settled)
         if not products and not total:
             if vanish_only_at_zero(self.work, forms, len(space)):
                 return [] if _kept(space) else [Leaf([], ())]
-            return [Leaf([_on_folds(motion) for motion in space], left)]
+            return [Leaf([_on_folds(motion) for motion in space], self._independent(forms))]
         v, one, other = self.factors(products or {left[0]: total}, space, settled)
         if products:
             settled |= {v}
@@ -174,7 +173,8 @@ class Spaces(Forms):
                     for k, y in some:
                         term = d * x * y
                         terms[j, k] = terms[j, k] + term if (j, k) in terms else term
-            rest = rest_of({key: x for key, x in terms.items() if not zero(x)}, rows)
+            terms = {key: x for key, x in terms.items() if not zero(x)}
+            rest = rest_of(terms, rows, self.work)
             if rest:
                 rows.append((min(rest), rest))
                 kept.append(v)

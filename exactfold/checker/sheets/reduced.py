@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..core.reading import items, keys, natural, require
-from .sheet import Sheet, turn
+from .sheet import Edge, Sheet, turn
 
 
 def emptied_sheet(given: Sheet, points: dict[int, Any], evidence: Any) -> tuple[Sheet, set[int]]:
@@ -30,6 +30,47 @@ def emptied_sheet(given: Sheet, points: dict[int, Any], evidence: Any) -> tuple[
     # `Sheet` verifies the rest again: it is one disk of counter-clockwise faces.
     rest = {v: p for v, p in points.items() if v not in removed}
     return Sheet(rest, [*kept, *added]), removed
+
+
+def merged_sheet(sheet: Sheet, evidence: Any) -> tuple[Sheet, dict[int, Edge | None]]:
+    """The sheet in which the listed triangles are single faces, and the vertices left out.
+
+    A vertex on a side of such a triangle has this side, and a vertex inside has None. The boundary
+    stays, and every face of the sheet lies in one face of the result: heights that are linear on
+    the faces of the result are so on those of the sheet.
+    """
+    points = sheet.points
+    places: dict[int, Edge | None] = {}
+    added: list[tuple[int, ...]] = []
+    groups: dict[int, list[set[int]]] = {}
+    for entry in items(evidence, "merged"):
+        keys(entry, "corners others", "merged triangle")
+        a, b, c = (natural(v, "corner") for v in items(entry["corners"], "corners", 3))
+        others = [natural(v, "vertex") for v in items(entry["others"], "others")]
+        group = {a, b, c, *others}
+        for v in others:
+            groups.setdefault(v, []).append(group)
+            sides = {(i, j): turn(points[i], points[j], points[v]) for i, j in _ends(a, b, c)}
+            require(min(sides.values()) >= 0, f"vertex {v} is not in the triangle {(a, b, c)}")
+            on = [(min(side), max(side)) for side, off in sides.items() if off == 0]
+            if on or v not in places:
+                places[v] = on[0] if on else None
+        added.append((a, b, c))
+    faces = [sheet.face(t) for t in sheet.triangles]
+    for face in faces:
+        near = [group for v in face for group in groups.get(v, [])]
+        require(
+            not near or any(group.issuperset(face) for group in near),
+            "a face at a merged vertex lies in no merged triangle",
+        )
+    kept = [face for face in faces if places.keys().isdisjoint(face)]
+    rest = Sheet({v: p for v, p in points.items() if v not in places}, [*kept, *added])
+    require(rest.boundary == sheet.boundary, "merged triangles change the boundary")
+    return rest, places
+
+
+def _ends(a: int, b: int, c: int) -> tuple[Edge, Edge, Edge]:
+    return (a, b), (b, c), (c, a)
 
 
 def closed(sheet: Sheet) -> tuple[Sheet, int | None]:

@@ -38,6 +38,7 @@ class Sheet:
         self.points = points
         self.next: dict[int, dict[int, int]] = {v: {} for v in points}
         self._forms: dict[int, Form] = {}
+        self._signs: dict[int, dict[int, Fraction]] = {}
         self.forced_flat: dict[tuple[object, ...], list[Edge]] = {}  # kept by `flat_folds.flat_at`
         for a, b, c in triangles:
             require(len({a, b, c}) == 3 and {a, b, c} <= points.keys(), f"bad face {(a, b, c)}")
@@ -175,6 +176,11 @@ class Sheet:
 
         t is a rational cone that points up, with K_v(t) > 0.
         """
+        if vertex not in self._signs:
+            self._signs[vertex] = self._sign_of_vertex(vertex)
+        return self._signs[vertex]
+
+    def _sign_of_vertex(self, vertex: int) -> dict[int, Fraction]:
         form, (x, y) = self.curvature(vertex), self.points[vertex]
         bits = 16
         while True:

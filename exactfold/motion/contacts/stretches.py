@@ -40,7 +40,8 @@ def on_tube(tube: Tube, begin: int, end: int) -> Stretch:
     """The stretch of a tube from one parameter to another."""
     one = float(1 << tube.bits)
     rows = [np.array([x / one for x in row]) for row in tube.coefficients]
-    radii = [r / one for r in tube.lengths(tube.radius)]
+    radius = tube.radius_within(max(abs(begin), abs(end)))
+    radii = [r / one for r in tube.lengths(radius)]
     return _stretch(tube.framework, rows, radii, begin, end, PARAMETER_BITS)
 
 

@@ -15,7 +15,7 @@ from exactfold.motion.loops.proofs import ArcProof, Landing, LoopProof, named
 from exactfold.motion.loops.rays import Ray
 from exactfold.motion.tubes.branch_point_tube import BranchPointTube
 from exactfold.motion.tubes.chain import Chain, Step
-from exactfold.motion.tubes.links import ROUGH, Link
+from exactfold.motion.tubes.links import FINE, ROUGH, Link
 from exactfold.motion.tubes.tracks import ray
 from exactfold.motion.tubes.tube import Tube
 from exactfold.motion.tubes.tube_start import (
@@ -58,21 +58,24 @@ class LoopFinder:
         >>> LoopFinder(Problem.of(branch.pattern)).follow(branch).loop
         <Loop: +-, saddle + to +-, saddle -, proved>
         """
-        return self._proof(ray(branch, side, pinned, bits=bits).start, progress)
+        return self._proof(ray(branch, side, pinned, bits=bits).start, FINE, progress)
 
     def follow_from(self, branch: Branch, source: Ray) -> LoopProof:
         """The loop that leaves the flat state along `source`, one of the two rays of a branch.
 
-        Raises the errors of `ray`, and `NotProvedAtTheFlatStateError` if it is neither ray.
+        Its tubes are rough. Raises the errors of `ray`, and `NotProvedAtTheFlatStateError` if it is
+        neither ray.
         """
-        for side in (1, -1):
+        signs = tuple(branch.vertex_signs[v] for v in self.problem.foldable)
+        likely = 1 if signs == source.vertex_signs else -1
+        for side in (likely, -likely):
             start = ray(branch, side).start
             if named(start) == source:
-                return self._proof(start)
+                return self._proof(start, ROUGH)
         raise NotProvedAtTheFlatStateError(f"branch {branch.sign_text} has no ray {source}")
 
-    def _proof(self, start: StartTube, progress: Progress | None = None) -> LoopProof:
-        chain = Chain.from_flat(start, self.problem.labels, ROUGH)
+    def _proof(self, start: StartTube, share: float, progress: Progress | None = None) -> LoopProof:
+        chain = Chain.from_flat(start, self.problem.labels, share)
         steps, landing, reason = self._followed(chain, progress=progress)
         return LoopProof(self.problem, start, tuple(steps), landing, reason)
 

@@ -21,6 +21,8 @@ from exactfold.motion.tubes.singular import singular_at
 from exactfold.motion.tubes.tube import sharpened
 from exactfold.motion.tubes.tube_start import StartTube
 
+_NARROW, _NARROWER = 8, 0.75
+
 Step = Link | Passage
 """A tube, or an arc through a branch point."""
 
@@ -61,18 +63,38 @@ class Chain:
         continues along the same arc.
         """
         link = next(self.ahead)
+        replacement = None
         if isinstance(link, Link):
             self.steps.append(link)
-            return link
-        replacement = passage_ahead(self.labels, self.steps)
-        if replacement is None:
-            return singular_at(self.labels, self.steps, link)
+            if self._narrows():
+                replacement = passage_ahead(self.labels, self.steps, early=True)
+            if replacement is None:
+                return link
+        else:
+            replacement = passage_ahead(self.labels, self.steps)
+            if replacement is None:
+                return singular_at(self.labels, self.steps, link)
         kept, passage = replacement
         self.steps[kept:] = [passage]
         tube, at = passage.tube, passage.exit
         length = tube.length(0, at)
         self.ahead = _after(self.equations, tube, at, passage.left, length, self.share)
         return passage
+
+    def _narrows(self) -> bool:
+        """Whether each of the last links is clearly shorter than the one before it.
+
+        Ahead of a branch point this goes on until the tubes are too short. Every `_NARROW` links
+        are worth a look ahead.
+        """
+        run, longer = 0, 0.0
+        for step in reversed(self.steps):
+            length = float(step.left[0] - step.entered[0])
+            if isinstance(step, Passage) or length < longer:
+                break
+            longer = length / _NARROWER
+            run += 1
+        return run > 1 and not run % _NARROW
 
 
 def _after(

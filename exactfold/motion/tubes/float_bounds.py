@@ -15,7 +15,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from exactfold._support.arrays import FloatArray
 from exactfold.motion.tubes.contraction import SCALE, WEIGHT_BITS, Contraction
-from exactfold.motion.tubes.length_equations import LengthEquations, Row, weights_of
+from exactfold.motion.tubes.length_equations import ENOUGH, LengthEquations, Row, weights_of
 
 _UNIT = 2.0**-53
 _MOST = 2.0**100  # a tube has no numbers as large as this
@@ -68,7 +68,9 @@ def contraction_in_floats(
     images[:, 0] += inverse[:, -1:] * row
     images[np.arange(n), 0, np.arange(n)] -= 1.0
     images = np.abs(images)
-    weights = weights_of(images[:, 1] + images[:, 2] / 2 + images[:, 3] / 4)
+    if not images.max() < _MOST:  # this includes what is not a number
+        return None
+    weights = weights_of(images[:, 1] + images[:, 2] / 2 + images[:, 3] / 4, ENOUGH)
     w = np.array(weights) * 2.0**-WEIGHT_BITS
     sums = (np.abs(incidence) @ w).reshape(flat.shape)
     spread = size[:, :-1] @ np.einsum("kea,ea->ek", sizes, sums)
@@ -97,7 +99,7 @@ def contraction_in_floats(
     exact = np.array([x / one for x in stretch])
     still = np.abs(inverse @ exact) + roundings * (size @ np.abs(exact))
     numbers = [[(still / w).max(), *residual], slope.tolist(), [quadratic]]
-    if not max(map(max, numbers)) < _MOST:
+    if not all(x < _MOST for part in numbers for x in part):
         return None
     return Contraction(*(tuple(map(_up, part)) for part in numbers)), weights
 

@@ -14,8 +14,8 @@ from exactfold.motion.tubes.contraction import WEIGHT_BITS, Places
 
 Row = tuple[int, ...]
 _LEAST = (1 << WEIGHT_BITS) // 100
-_ENOUGH, _MOST_ROUNDS = 1 / 64, 30
-"""Weights that change by this share in one round are near enough."""
+ENOUGH, _MOST_ROUNDS = 1 / 64, 30
+"""Weights that change by this share in one round are near enough as a rule."""
 Curve = tuple[Row, ...]
 """The curve sum_k a_k s^k: row k is a_k, with an integer over a power of two for each unknown."""
 
@@ -208,18 +208,18 @@ def corrected(
     return tuple(coefficients)
 
 
-def weights_of(matrix: FloatArray) -> Row:
+def weights_of(matrix: FloatArray, enough: float = 0.0) -> Row:
     """Positive weights over 2^WEIGHT_BITS, near the Perron vector of a nonnegative matrix.
 
     No weight is below 1/100: even if the motion leaves an unknown at rest, its weight must not
-    vanish.
+    vanish. The vector is improved until it changes by at most the share `enough`, but not for ever.
     """
     vector = np.ones(len(matrix))
     for _ in range(_MOST_ROUNDS):
         image = matrix @ vector
         after = vector + image / max(float(image.max()), 1e-300)
         after /= after.max()
-        near = bool((np.abs(after - vector) <= _ENOUGH * after).all())
+        near = bool((np.abs(after - vector) <= enough * after).all())
         vector = after
         if near:
             break

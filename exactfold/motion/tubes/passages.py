@@ -128,20 +128,23 @@ def branch_point_claim(last: Passage, clear: bool) -> Claim:
 
 
 def passage_ahead(
-    labels: Sequence[int], steps: Sequence[Link | Passage]
+    labels: Sequence[int], steps: Sequence[Link | Passage], early: bool = False
 ) -> tuple[int, Passage] | None:
     """The passage of a branch point shortly ahead of the last link; None proves nothing.
 
-    The result also has the number of steps before the passage. Vertex v of the framework is vertex
-    `labels[v]` of the pattern.
+    If `early`, it is looked for from the last link alone. The result also has the number of steps
+    before the passage. Vertex v of the framework is vertex `labels[v]` of the pattern.
     """
     if steps and steps[-1].tube.framework.coupling.rows:
         return None  # the equations of a branch point cannot include driven folds
     for link in _far_enough(steps):
-        point, velocity = link.tube.enclosure(link.exit), link.tube.velocity(link.exit)
+        # The tube is too wide for what floats see of the crossing.
+        point, velocity = sharpened(link.tube, link.exit), link.tube.velocity(link.exit)
         crossing = crossing_ahead(link.tube.framework, point.floats[0], velocity.floats[0])
         if crossing is not None:
             return _passage_at(labels, steps, *crossing)
+        if early:
+            break
     return None
 
 

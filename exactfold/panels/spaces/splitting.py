@@ -141,12 +141,11 @@ class Splitting(LimitedSearch):
             v, one, other = self._chosen(space, settled, products)
             now = settled | {v}
         else:
-            left = independent(space.forms, left)
             total = narrowing_sum(space.forms, left)
             if total is None:
                 if vanish_only_at_zero(space.forms, left, len(space.parameters)):
                     return [] if any(map(is_kept, space.rows)) else [Leaf({}, 0, ())]
-                return [_leaf(space, left)]
+                return [_leaf(space, independent(space.forms, left))]
             if len({sign(d) for d, _ in total}) == 1:
                 self.sums = True
                 smaller = self._imposed(space, [row for _, row in total])

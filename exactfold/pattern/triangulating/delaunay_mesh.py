@@ -56,9 +56,11 @@ class DelaunayMesh:
         """Whether the triangles tile the convex hull of all points, edge to edge; exact.
 
         All triangles are counter-clockwise, and no directed edge occurs twice. The boundary is one
-        cycle that turns left or goes straight on at each vertex, and rises once and falls once in
-        the lexicographic order: a convex polygon. Each point off the edges is then covered as often
-        as the polygon winds around it: once inside, and never outside.
+        cycle that turns right nowhere, and rises once and falls once in the lexicographic order.
+        Each point off the edges is covered as often as the cycle winds around it. So the cycle does
+        not turn back at its first or last point either, as the triangles there would go all around
+        the point and cover what lies beyond it. The cycle is a convex polygon: it winds once around
+        each point inside, and around none outside.
         """
         a, b, c = (self.points[v] for v in self.corners.reshape(-1, 3).T)
         directed = (
@@ -81,10 +83,8 @@ class DelaunayMesh:
             return False
         p, q, r = (self.points[np.roll(cycle, -k)] for k in range(3))
         rises = _is_before(p, q)
-        straight_on = ((q - p) * (r - q)).sum(axis=1) > 0
-        turns = _turn(p, q, r)
-        left = (turns > 0) | ((turns == 0) & straight_on)
-        return bool(left.all()) and int((rises != np.roll(rises, 1)).sum()) == 2
+        left = bool((_turn(p, q, r) >= 0).all())
+        return left and int((rises != np.roll(rises, 1)).sum()) == 2
 
     def make_delaunay(self, suspects: IntArray | None = None) -> None:
         """Flip illegal edges, as `delaunay_sheets` defines them, until there are none (Lawson).

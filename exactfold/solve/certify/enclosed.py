@@ -16,7 +16,7 @@ from exactfold.solve.certify.merged import Merged, merged
 from exactfold.solve.certify.refinement import Heights, exact, refine
 from exactfold.solve.numeric.sparse_sheet import FloatSheet
 
-_LEVELS = (80, 160, 320)
+_LEVELS = (160, 320, 640)
 """Heights have excess curvatures 2^-level; levels are tried in turn until all folds are decided."""
 
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import pairwise
 
 import numpy as np
 
@@ -60,7 +61,7 @@ class Merged:
                 if inner and letter is None:
                     return None
                 chain = (side[0], *inner, side[1])
-                for part in zip(chain, chain[1:], strict=False):
+                for part in pairwise(chain):
                     known[_edge(*part)] = letter
                 if letter and any(wanted[v] != -letter for v in inner):
                     return None
@@ -147,9 +148,7 @@ def _larger_triangles(pattern: CreasePattern, proof: Enclosure) -> list[Face]:
         panels = [panel for panel in panels if any(v in straight for v in panel[1])]
 
 
-def _panels(
-    pattern: CreasePattern, folds: Iterable[Edge]
-) -> list[tuple[list[Triangle], set[int]]]:
+def _panels(pattern: CreasePattern, folds: Iterable[Edge]) -> list[tuple[list[Triangle], set[int]]]:
     """The panels into which faces grow together across folds: their faces and vertices."""
     beyond: dict[Triangle, list[Triangle]] = {}
     for i, j in folds:
@@ -186,9 +185,7 @@ def _triangle(
         b, c = c, b
     others = tuple(sorted(vertices & straight))
     ends = ((a, b), (b, c), (c, a))
-    inside = all(
-        orientation(points[i], points[j], points[v]) >= 0 for v in others for i, j in ends
-    )
+    inside = all(orientation(points[i], points[j], points[v]) >= 0 for v in others for i, j in ends)
     area = sum(orientation(*(points[v] for v in face)) for face in faces)
     return ((a, b, c), others) if inside and area == abs(turn) else None
 

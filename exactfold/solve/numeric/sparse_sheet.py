@@ -12,6 +12,7 @@ from exactfold._support.arrays import BigArray, BoolArray, FloatArray, IndexArra
 from exactfold.rigidity.equations.sheet import VertexEquations
 
 _DENSE = 150
+"""SciPy takes a while to load, so that small sheets do without."""
 
 
 class SingularError(ArithmeticError):
@@ -36,6 +37,8 @@ class FloatSheet:
     line_factor: FloatArray
     boundary_heights: FloatArray
     target: FloatArray
+    dense: int = _DENSE
+    """Up to so many unknowns, systems are solved as dense ones."""
 
     @classmethod
     def of(cls, sheet: VertexEquations) -> FloatSheet:
@@ -154,7 +157,7 @@ class FloatSheet:
         if not np.isfinite(data).all():
             raise SingularError("an entry is beyond the range of floats")
         p = self._pattern
-        if self.n <= _DENSE:
+        if self.n <= self.dense:
             matrix = np.zeros((self.n, self.n))
             matrix[p.rows, p.columns] = data
             try:
@@ -199,6 +202,7 @@ class FloatSheet:
             self.line_factor[chosen],
             self.heights(x)[names],
             self.target[chosen],
+            dense=0,  # the matrix of several patches is sparse
         )
 
     def near(self, chosen: BoolArray, rings: int) -> BoolArray:

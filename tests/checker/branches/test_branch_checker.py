@@ -362,7 +362,7 @@ def test_low_heights_over_a_long_denominator_are_accepted() -> None:
 
 def test_versions_and_keys_are_checked() -> None:
     document = certificate("dart")
-    for wrong in ({**document, "version": 3}, {**document, "more": 1}):
+    for wrong in ({**document, "version": 4}, {**document, "more": 1}):
         with pytest.raises(FormatError):
             checker.load(json.dumps(wrong))
     with pytest.raises(CertificateError, match="squared_distance curvature"):

@@ -244,7 +244,7 @@ def test_the_work_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
         pass
 
     monkeypatch.setattr(motion_contacts, "MOST_TESTS", 100)
-    stopped("corner", beyond("the tests of contacts", 102, 100, "MOST_TESTS"), nothing)
+    stopped("corner", beyond("the tests of contacts", 103, 100, "MOST_TESTS"), nothing)
 
 
 # --- false places --------------------------------------------------------------------------------

@@ -26,11 +26,10 @@ from exactfold.checker.motion import branch_points as motion_nodes
 from exactfold.checker.motion import loops as motion_loops
 from exactfold.checker.motion import patches as motion_patches
 from exactfold.checker.motion.branch_points import BranchPointTube, Stresses, independent
-from exactfold.checker.motion.chain import through
+from exactfold.checker.motion.chain import Path, through
 from exactfold.checker.motion.equations import LengthEquations, at
 from exactfold.checker.motion.loops import LoopSheet, Matching
 from exactfold.checker.motion.patches import Patch, wheel_stress
-from exactfold.checker.motion.paths import Path
 from exactfold.checker.motion.pieces import PARAMETER_BITS, tube_of, vector
 from exactfold.checker.motion.tubes import Ball
 from exactfold.checker.sheets.sheet import read_sheet

@@ -19,8 +19,8 @@ from exactfold.checker.core.reading import CertificateError, FormatError, LimitE
 from exactfold.checker.motion import bounds as motion_bounds
 from exactfold.checker.motion import certificate as motion
 from exactfold.checker.motion.bounds import Bounds
+from exactfold.checker.motion.chain import Path, chord
 from exactfold.checker.motion.equations import LengthEquations
-from exactfold.checker.motion.paths import Path, chord
 from exactfold.checker.motion.ray import check_half_branch
 from exactfold.checker.motion.tubes import Ball, Start, Tube
 from exactfold.checker.sheets.sheet import read_sheet

@@ -18,7 +18,7 @@ from exactfold.checker.core.reading import CertificateError, shown
 from exactfold.checker.motion import certificate as motion
 from exactfold.checker.motion import contacts as motion_contacts
 from exactfold.checker.motion.contacts import check_contacts
-from exactfold.checker.motion.stretches import Arc, stretches_of
+from exactfold.checker.motion.lengths import Arc, stretches_of
 from exactfold.checker.motion.tubes import Ball
 from exactfold.motion.contacts.claims import certificate_with_contact
 from exactfold.motion.contacts.contacts import first_contact

@@ -17,7 +17,7 @@ from exactfold.branches.counting.find import find_branch
 from exactfold.checker.core.reading import CertificateError
 from exactfold.checker.motion import contacts as motion_contacts
 from exactfold.checker.motion.contacts import check_contacts
-from exactfold.checker.motion.stretches import Arc, stretches_of
+from exactfold.checker.motion.lengths import Arc, stretches_of
 from exactfold.checker.motion.tubes import Ball
 from exactfold.motion.contacts.claims import certificate_with_contact
 from exactfold.motion.contacts.contacts import ContactWatch

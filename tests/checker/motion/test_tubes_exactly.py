@@ -18,10 +18,10 @@ from exactfold.checker.motion import contacts as motion_contacts
 from exactfold.checker.motion import faces as motion_faces
 from exactfold.checker.motion import tubes as motion_tubes
 from exactfold.checker.motion.bounds import Bounds
+from exactfold.checker.motion.chain import Path as Passed
 from exactfold.checker.motion.contacts import Faces
 from exactfold.checker.motion.equations import LengthEquations, at
 from exactfold.checker.motion.lengths import GRID, ONE, Path, entry
-from exactfold.checker.motion.paths import Path as Passed
 from exactfold.checker.motion.tubes import Ball, Piece, Start, Tube
 from exactfold.checker.sheets.sheet import read_sheet
 

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import json
+import random
+from fractions import Fraction
+from typing import cast
 
 import pytest
 from forge import beyond, refused, verified
@@ -13,9 +16,10 @@ from test_forged_spaces import certified, leaves_of, spaces_of
 from exactfold.checker.core.intervals import Interval
 from exactfold.checker.core.reading import LimitError
 from exactfold.checker.panels import cones as panel_cones
+from exactfold.checker.panels import reduction as panel_reduction
 from exactfold.checker.panels.cones import Place, cone_motion
 from exactfold.checker.panels.leaves import complete
-from exactfold.checker.panels.reduction import BITS, enclosed, reduced, rest_of
+from exactfold.checker.panels.reduction import BITS, Work, enclosed, reduced, rest_of
 from exactfold.checker.panels.spaces import Leaf, Spaces
 from exactfold.panels.certificate import certificate_of_panels
 from exactfold.panels.decomposition import decompose
@@ -77,6 +81,45 @@ def test_both_signs_of_the_discriminant_are_needed(monkeypatch: pytest.MonkeyPat
     verified(certified("star"))  # one form has rank 3, and needs no sign
 
 
+class Difference:
+    """The form x^2 - y^2 of two densities in place of that of a vertex."""
+
+    work = Work()
+
+    def gradient(self, _: int, motion: Place, __: int) -> Place:
+        return {fold: x if fold == (0, 1) else -x for fold, x in motion.items()}
+
+
+def test_a_discriminant_that_vanishes_is_not_negative() -> None:
+    """The discriminant along x is y^2, which is 0 at some of the places and below 0 at none."""
+    x, y = ({(0, k): Interval.of(Fraction(1), BITS)} for k in (1, 2))
+    zeros, below = panel_cones._sides(cast(Spaces, Difference()), 0, [{}], [y], x)
+    assert zeros
+    assert not below
+
+
+def test_zeros_are_real_wherever_the_search_begins(monkeypatch: pytest.MonkeyPatch) -> None:
+    found, rng = spaces(ring_of_fives()), random.Random(0)
+    size, order = len(found.first_order), [0, 1, 2]
+    starts = [[rng.uniform(-1, 1) for _ in range(size)] for _ in range(12)]
+    monkeypatch.setattr(panel_cones, "near_zeros", lambda *_: starts)
+    rooms = [found.first_order]
+    for v in order:
+        rows = [[found.form(v, b, m) for m in rooms[-1]] for b in found.first_order]
+        rooms.append(found.vanishing(rooms[-1], rows))
+    placed = [
+        (v, room, found.squares(v, found.first_order))
+        for v, room in zip(order, rooms, strict=False)
+    ]
+    places = list(panel_cones._regular_zeros(found, found.first_order, placed))
+    assert 0 < len(places) < len(starts)
+    for place in places:
+        for v in order:
+            value = total(found.gradient(v, place, BITS), place)
+            assert value.low <= 0 <= value.high
+            assert value.high - value.low < 1 << 60  # of 2^256
+
+
 def test_a_form_of_rank_two_is_no_cone() -> None:
     """It is a product of two linear forms, although it has both signs."""
     found = spaces(two_stars())
@@ -121,3 +164,42 @@ def test_too_much_work_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("exactfold.checker.panels.reduction.MOST_STEPS", found.work.steps)
     with pytest.raises(LimitError, match="the steps to the spaces of motions, "):
         cone_motion(found, first.basis, first.cones)
+
+
+TWICE = [
+    *[(0, 5), (0, 1), (5, 10), (1, 5), (10, 15), (10, 11), (6, 10), (10, 16), (15, 20), (15, 21)],
+    *[(1, 6), (1, 2), (1, 7), (6, 11), (6, 7), (11, 16), (11, 12), (16, 21), (16, 17), (20, 21)],
+    *[(2, 7), (2, 3), (7, 12), (7, 8), (12, 17), (12, 13), (17, 21), (17, 22), (17, 18), (17, 23)],
+    *[(3, 7), (3, 8), (3, 4), (3, 9), (8, 13), (8, 14), (13, 18), (13, 14), (18, 23), (21, 22)],
+    *[(22, 23), (4, 9), (9, 14), (14, 18), (14, 19), (19, 23), (19, 24), (23, 24)],
+]
+"""Creases on a grid of 5 x 5 points."""
+
+
+def test_a_zero_is_taken_at_which_the_folds_fold(monkeypatch: pytest.MonkeyPatch) -> None:
+    """At the first zero that is found of the form of vertex 7, some folds stay flat.
+
+    The sheet has families, so that no homotopy looks for isolated ways.
+    """
+
+    def fail(*_: object, **__: object) -> None:
+        raise AssertionError
+
+    monkeypatch.setattr("exactfold.panels.isolated.homotopy", fail)
+    points = [(Fraction(x), Fraction(y)) for y in range(5) for x in range(5)]
+    made = json.loads(json.dumps(certificate_of_panels(decompose(PanelPattern(points, TWICE)))))
+    verified(made)
+
+
+@pytest.mark.parametrize("missing", [0, 1])
+def test_a_proof_modulo_a_prime_keeps_to_the_limit(
+    missing: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found, other = (spaces(ring_of_fives()) for _ in range(2))
+    assert cone_motion(found, found.first_order, [0, 1, 2]) is not None
+    monkeypatch.setattr(panel_reduction, "MOST_STEPS", found.work.steps - missing)
+    if not missing:
+        assert cone_motion(other, other.first_order, [0, 1, 2]) is not None
+        return
+    with pytest.raises(LimitError, match=f"motions, {found.work.steps}, are more than the limit"):
+        cone_motion(other, other.first_order, [0, 1, 2])

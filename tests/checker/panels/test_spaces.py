@@ -17,7 +17,7 @@ from exactfold.checker.core.towers import Number, Tower
 from exactfold.checker.panels import reduction as panel_reduction
 from exactfold.checker.panels import spaces as panel_spaces
 from exactfold.checker.panels.cones import cone_motion
-from exactfold.checker.panels.leaves import _folds, _independent, _rank, _sum, extends
+from exactfold.checker.panels.leaves import _closes, _folds, _independent, _rank, _sum, extends
 from exactfold.checker.panels.reduction import BITS, Joined, enclosed, inside, reduced, rest_of
 from exactfold.checker.panels.spaces import Motion, Spaces
 from exactfold.checker.panels.together import vanish_only_at_zero
@@ -228,6 +228,9 @@ def test_conditions_of_first_order_that_depend_on_each_other() -> None:
     found = spaces(sheet(points, folds, 6))
     assert len(found.first_order) == 15 - 2 * 6 + 1
     assert not _independent(found, enclosed(found.first_order[0]))
+    turning = _sum(found, found.first_order)
+    assert len(turning) == 15
+    assert not _folds(found, [turning], [])  # five folds at the hub make no mode
     # Three folds that are no straight pair have no motions, and are not counted on.
     [star] = spaces_of(certified("star")["pattern"])
     three = Spaces(star.sheet, {6: star.near[6][::2]})
@@ -246,6 +249,14 @@ def test_a_part_with_two_parameters_is_no_mode(pattern: PanelPattern, folds: boo
         assert not _independent(found, enclosed(motion))
         assert not _folds(found, [motion, twice], [])
         assert _folds(found, [motion], []) is folds
+
+
+def test_a_motion_that_is_no_mode_does_not_close() -> None:
+    found = spaces(tiling(2, 2))
+    [motion] = next(leaf.basis for leaf in found.leaves() if len(leaf.folds) == 12)
+    fold = min(motion)
+    assert _closes(found.sheet, found.near, motion)
+    assert not _closes(found.sheet, found.near, {**motion, fold: motion[fold] + motion[fold]})
 
 
 def test_spaces_that_are_no_sums_are_one_part() -> None:

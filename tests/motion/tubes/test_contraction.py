@@ -20,17 +20,21 @@ from exactfold.motion.tubes.contraction import (
     Contraction,
     polynomial,
 )
+from exactfold.motion.tubes.float_bounds import contraction_in_floats, series_at
 from exactfold.motion.tubes.length_equations import LengthEquations, squared
 from exactfold.motion.tubes.tracks import follow_proved, ray
-from exactfold.motion.tubes.tube import _bounds, _residuals
+from exactfold.motion.tubes.tube import _bounds, _residuals, _stretch
 from exactfold.pattern.triangulating.random_squares import random_square
 
 
-def exact_bounds(equations, curve, row, weights, inverse):  # type: ignore[no-untyped-def]
-    """b_k, q_k and kappa of Theorem 1 in rationals, from dense matrices."""
+def exact_bounds(equations, curve, row, weights, inverse, whole=True):  # type: ignore[no-untyped-def]
+    """b_k, q_k and kappa of Theorem 1 in rationals, from dense matrices.
+
+    P is `inverse`, rounded if `whole`.
+    """
     framework, one = equations.framework, 1 << equations.bits
-    n = framework.size
-    p = [[Fraction(round(x * 2.0**INVERSE_BITS), 1 << INVERSE_BITS) for x in r] for r in inverse]
+    n, scale = framework.size, 1 << INVERSE_BITS
+    p = [[Fraction(round(x * scale), scale) if whole else Fraction(x) for x in r] for r in inverse]
     w = [Fraction(x, 1 << WEIGHT_BITS) for x in weights]
     place = {int(v): 3 * k for k, v in enumerate(framework.free)}
     flat = [[Fraction(x, 1 << framework.bits) for x in (*q, 0)] for q in framework.points]
@@ -134,6 +138,57 @@ def test_bounds_are_above_the_exact_values_and_close(n: int, bits: int) -> None:
                 assert Fraction(above, ONE) <= true * Fraction(101, 100) + Fraction(1, 10**6) * max(
                     residual[-1], Fraction(1, 10**4)
                 )
+
+
+@pytest.mark.parametrize("size", [0, 1 << 30, 1 << 56])
+def test_bounds_in_doubles_are_above_the_exact_values_and_close(size: int) -> None:
+    """Also for a curve that is moved, so that no coefficient of the equations is 0."""
+    rng = random.Random(size)
+    track = follow_proved(find_branch(random_square(1, seed=1), "+"), most=5)
+    equations = LengthEquations.of(track.framework)
+    for tube in (track.links[0].tube, track.links[-1].tube):
+        centre, *rows = tube.coefficients
+        centre = tuple(x + rng.randint(-size, size) for x in centre)
+        near = equations.floats(centre)
+        edges = track.framework.flat_edges + track.framework.along(near)
+        row = np.array([float(t) for t in tube.row]) / (1 << 20)
+        inverse = equations.inverse(edges, row)
+        series, parts = series_at(equations, inverse, 8)
+        assert np.abs(series - [equations.floats(a) for a in rows]).max() < 1e-6 + 2.0**-62 * size
+        if size:
+            series += np.rint(rng.random() * size * np.ones(series.shape)) * 2.0**-64
+            series = np.rint(series * 2.0**60) * 2.0**-60
+            parts = (series @ equations.incidence.T).reshape(parts.shape)
+        stretch = _stretch(equations, centre, 0)
+        found = contraction_in_floats(equations, inverse, centre, stretch, row, series, parts)
+        assert found is not None
+        proof, weights = found
+        curve = (centre, *(equations.nearest(a) for a in series))
+        residual, slope, kappa = exact_bounds(
+            equations, curve, tube.row, weights, inverse, whole=False
+        )
+        rounding = Fraction(1, 1 << 38)
+        for above, true in (
+            *zip(proof.residual, residual, strict=True),
+            *zip(proof.slope, slope, strict=True),
+            (proof.quadratic[0], kappa),
+        ):
+            assert true <= Fraction(above, ONE) <= true * (1 + rounding) + rounding
+        assert proof.residual[1] / ONE < 1e-9 + size * 2.0**-55
+
+
+def test_numbers_that_are_too_large_are_left_to_integers() -> None:
+    track = follow_proved(find_branch(random_square(1, seed=1), "+"), most=1)
+    equations, tube = LengthEquations.of(track.framework), track.links[0].tube
+    centre, size = tube.coefficients[0], track.framework.size
+    inverse, row = np.eye(size), np.ones(size)
+    for scale, bounded in ((1.0, True), (2.0**60, False), (np.inf, False), (np.nan, False)):
+        series, parts = series_at(equations, inverse, 8)
+        with np.errstate(all="ignore"):
+            found = contraction_in_floats(
+                equations, inverse * scale, centre, [0] * size, row, series, parts * scale
+            )
+        assert (found is not None) == bounded
 
 
 def test_radii_and_uniqueness_are_those_of_the_theorem() -> None:

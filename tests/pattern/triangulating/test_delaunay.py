@@ -155,6 +155,12 @@ TWICE_AROUND = [
         pytest.param(SQUARE[:4], [(0, 1, 2), (0, 1, 3)], id="an edge twice on one side"),
         pytest.param(SQUARE, [(0, 1, 2), (0, 2, 3)], id="a point in no triangle"),
         pytest.param(SQUARE, [(0, 1, 4), (1, 2, 4), (2, 3, 4)], id="a boundary with a notch"),
+        pytest.param(SQUARE, [(0, 1, 4), (1, 2, 4), (3, 0, 4)], id="a notch that rises once"),
+        pytest.param(
+            [(0, 0), (9, 0), (0, 9), (2, 2), (4, 2), (2, 4)],
+            [(0, 1, 4), (0, 4, 3), (1, 5, 4), (1, 2, 5), (2, 3, 5), (2, 0, 3), *[(3, 4, 5)] * 3],
+            id="a triangle three times",
+        ),
         pytest.param(SQUARE, [(0, 1, 4), (2, 3, 4)], id="two triangles with one common point"),
         pytest.param(
             [(0, 0), (1, 0), (0, 1), (5, 0), (6, 0), (5, 1)],

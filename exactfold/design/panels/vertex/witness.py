@@ -17,13 +17,13 @@ Motion = dict[Edge, Number]
 def vertex_witness(star: Star, letters: Mapping[Edge, str]) -> Motion | None:
     """Densities of the folds of a vertex with these letters, at which its form vanishes; or None.
 
-    The steps are those of the proof of Theorem 1 in docs/vertices.md. Three or four folds with one
-    letter lie in no closed half-plane. Let them bend alone: there the form is positive. Let a fold
-    with the other letter bend with its two neighbours among them: there the form is negative. A
-    motion to first order that has all the letters is added to both, with a weight so small that the
-    signs stay. Between the two points the form has a zero. A straight crease bends alone. None is
-    returned exactly if the vertex has no motion with these letters; if no fold has a letter, some
-    motion is returned.
+    The steps are those of the proof in `exactfold.checker.letters.vertices`. Three or four folds
+    with one letter lie in no closed half-plane. Let them bend alone: there the form is positive.
+    Let a fold with the other letter bend with its two neighbours among them: there the form is
+    negative. A motion to first order that has all the letters is added to both, with a weight so
+    small that the signs stay. Between the two points the form has a zero. A straight crease bends
+    alone. None is returned exactly if the vertex has no motion with these letters; if no fold has a
+    letter, some motion is returned.
 
     >>> directions = ((1, 0), (0, 1), (-1, 0), (0, -1), (1, -1))
     >>> star = Star(0, tuple((0, k) for k in range(1, 6)), directions)
