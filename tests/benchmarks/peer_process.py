@@ -32,6 +32,11 @@ class Usage:
     code: int | None
 
 
+def _environment() -> dict[str, str]:
+    """The environment, in which Python keeps what it compiled: users compile once, too."""
+    return {k: v for k, v in os.environ.items() if k != "PYTHONDONTWRITEBYTECODE"} | _ONE_THREAD
+
+
 def run(
     command: Sequence[str], folder: Path, name: str, limit: float, source: Path = _ROOT
 ) -> Usage:
@@ -50,7 +55,7 @@ def run(
             stdin=subprocess.DEVNULL,
             stdout=output,
             stderr=errors,
-            env={**os.environ, **_ONE_THREAD, "PYTHONPATH": str(source)},
+            env={**_environment(), "PYTHONPATH": str(source)},
             start_new_session=True,
         ) as process,
     ):
