@@ -319,7 +319,7 @@ class Part:
         """{dimension: number} of the components that are known; None if none is."""
         if self.second_order is not None:
             return self.second_order
-        return _by_dimension(self.found) or None
+        return _counted(one.dimension for one in self.found) or None
 
     @property
     def folding(self) -> Counts | None:
@@ -332,7 +332,7 @@ class Part:
             return self.second_order
         shown = zip(self.spaces, self.spaces_fold, strict=True)
         known = _counted(leaf.dimension for leaf, folds in shown if folds)
-        by_components = _by_dimension(one for one in self.found if one.folds)
+        by_components = _counted(one.dimension for one in self.found if one.folds)
         return {
             d: max(known.get(d, 0), by_components.get(d, 0)) for d in {**known, **by_components}
         } or None
@@ -377,10 +377,6 @@ def digits(
 
 def _texts(counts: Counts | None) -> ByDimension | None:
     return None if counts is None else {str(k): n for k, n in counts.items()}
-
-
-def _by_dimension(components: Iterable[FoundComponent]) -> dict[int, int]:
-    return _counted(one.dimension for one in components)
 
 
 def _counted(dimensions: Iterable[int]) -> dict[int, int]:
