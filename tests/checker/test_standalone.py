@@ -228,6 +228,7 @@ def test_formulas_of_single_branches_are_their_own() -> None:
         ("reduced", "check_convex"),
         ("reduced", "closed"),
         ("reduced", "emptied_sheet"),
+        ("reduced", "merged_sheet"),
     }
     for name in _SINGLE:
         text = (PACKAGE / f"{name}.py").read_text()
