@@ -247,7 +247,7 @@ def test_formulas_of_single_branches_are_their_own() -> None:
         (b"[]", 'no "format" that this checker knows'),
         (b'{"format": "exactfold certificate"}', "version None is not known"),
         (b'{"format": "exactfold branch", "version": 1.0}', "a certificate holds no floats"),
-        (b'{"format": "exactfold branch", "version": 3}', "version 3 is not known"),
+        (b'{"format": "exactfold branch", "version": 4}', "version 4 is not known"),
         (b'{"format": "exactfold compact certificate"}', "line 1 is cut off or was altered"),
     ],
 )

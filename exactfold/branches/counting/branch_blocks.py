@@ -176,7 +176,7 @@ class BranchBlocks:
         >>> from exactfold.pattern.triangulating.random_squares import random_square
         >>> branch_blocks = BranchBlocks.of(random_square(3, seed=0))
         >>> list(branch_blocks.with_signs(np.array([[1.0, -1.0, 1.0]])))
-        [<Branch +-+: proved, VVMVMVMVMV>]
+        [<Branch +-+: proved, MMMMVVVVMM>]
         """
         for first in range(0, len(signs), BLOCK):
             rows = signs[first : first + BLOCK]

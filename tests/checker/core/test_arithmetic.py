@@ -284,7 +284,7 @@ def test_texts_that_are_no_certificates() -> None:
     )
     branch = json.dumps(given("branch-dart"))
     unreadable(
-        branch.replace('"version": 1', '"version": 3'), "version 3 is not known to this checker"
+        branch.replace('"version": 1', '"version": 4'), "version 4 is not known to this checker"
     )
     unreadable(
         branch[:-1] + ', "provenance": 1}',
