@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TypeAlias
 
 from flint import fmpq
@@ -91,7 +91,7 @@ def other_factor(form: Form, one: Row) -> Row | None:
     return combined({0: x, 1: -y}, [first, second])
 
 
-def row_space(rows: Sequence[Row]) -> tuple[list[Row], list[Row]]:
+def row_space(rows: Iterable[Row]) -> tuple[list[Row], list[Row]]:
     """A basis of the span of the rows, chosen among the rows, and every row in that basis."""
     basis: list[Row] = []
     reduced: list[tuple[int, Row, Row]] = []  # pivot, reduced row, in terms of the basis

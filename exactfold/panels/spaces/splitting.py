@@ -145,7 +145,7 @@ class Splitting(LimitedSearch):
             if total is None:
                 if vanish_only_at_zero(space.forms, left, len(space.parameters)):
                     return [] if any(map(is_kept, space.rows)) else [Leaf({}, 0, ())]
-                return [_leaf(space, independent(space.forms, left))]
+                return [_leaf(space, independent(space.forms, left, self.clock))]
             if len({sign(d) for d, _ in total}) == 1:
                 self.sums = True
                 smaller = self._imposed(space, [row for _, row in total])

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
-from itertools import product
+from itertools import chain, product
 from typing import Final
 
 import numpy as np
 from flint import fmpq
 
+from exactfold._support.clock import UNLIMITED, Clock
 from exactfold.checker.core.reading import LimitError
 from exactfold.checker.panels.modular import MOST_VARIABLES, only_zero, reduced_forms
 from exactfold.checker.panels.proposed import definite_weights
@@ -76,10 +78,13 @@ def vanish_only_at_zero(forms: Mapping[int, Form], vertices: Sequence[int], size
         return False
 
 
-def independent(forms: Mapping[int, Form], vertices: Sequence[int]) -> list[int]:
+def independent(
+    forms: Mapping[int, Form], vertices: Sequence[int], clock: Clock = UNLIMITED
+) -> list[int]:
     """The vertices without those whose form is a sum of multiples of forms of earlier vertices.
 
-    Where the forms of the others vanish, theirs vanish, too.
+    Where the forms of the others vanish, theirs vanish, too. A form with a product of densities
+    that no other form has is in no such sum, and is set aside first.
 
     >>> one = fmpq(1)
     >>> independent({1: [(one, {0: one})], 2: [(-one, {0: one})], 3: [(one, {1: one})]}, [1, 2, 3])
@@ -87,21 +92,36 @@ def independent(forms: Mapping[int, Form], vertices: Sequence[int]) -> list[int]
     """
     names = sorted({k for v in vertices for _, row in forms[v] for k in row})
     place = {k: n for n, k in enumerate(names)}
-    rows: list[Row] = []
+    rows: dict[int, Row] = {}
     for v in vertices:
+        clock.check()
         terms: Row = {}
         for d, row in forms[v]:
             for (j, x), (k, y) in product(row.items(), repeat=2):
                 if place[j] <= place[k]:
                     increase(terms, place[j] * len(names) + place[k], d * x * y)
-        rows.append(terms)
-    _, coordinates = row_space(rows)
+        rows[v] = terms
+    kept = set[int]()
+    while True:
+        times = Counter(chain.from_iterable(rows.values()))
+        alone = {v for v, terms in rows.items() if any(times[key] == 1 for key in terms)}
+        if not alone:
+            break
+        kept |= alone
+        rows = {v: terms for v, terms in rows.items() if v not in alone}
+
+    def in_time() -> Iterator[Row]:
+        for terms in rows.values():
+            clock.check()
+            yield terms
+
+    _, coordinates = row_space(in_time())
     first = {
         min(row): v
-        for v, row in reversed(list(zip(vertices, coordinates, strict=True)))
+        for v, row in reversed(list(zip(rows, coordinates, strict=True)))
         if len(row) == 1
     }
-    return sorted(first.values())
+    return sorted({*kept, *first.values()})
 
 
 def modulo_a_prime(

@@ -15,6 +15,7 @@ from forge import verified
 from panel_sheets import ring
 from test_oracles import by_singular, degrees
 
+from exactfold._support.clock import Clock
 from exactfold._support.verdict import PROVED
 from exactfold.checker.core.reading import CertificateError
 from exactfold.checker.panels import certificate as checked
@@ -23,13 +24,14 @@ from exactfold.checker.panels import together as checked_sums
 from exactfold.checker.panels.proposed import definite_weights
 from exactfold.checker.panels.reduction import Work
 from exactfold.checker.panels.spaces import Spaces
+from exactfold.errors import TooManyModesError
 from exactfold.panels.certificate import certificate_of_panels
 from exactfold.panels.decomposition import decompose
 from exactfold.panels.result import Decomposition
 from exactfold.panels.spaces import splitting
 from exactfold.panels.spaces.kernel import first_order
 from exactfold.panels.spaces.sparse import Form
-from exactfold.panels.spaces.together import narrowing_sum, vanish_only_at_zero
+from exactfold.panels.spaces.together import independent, narrowing_sum, vanish_only_at_zero
 from exactfold.panels.vertex.stars import stars
 from exactfold.pattern.panel_pattern import PanelPattern
 
@@ -149,8 +151,13 @@ def test_a_form_that_others_determine_is_left_out(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr(Spaces, "_independent", lambda _, forms: tuple(forms))
     with pytest.raises(CertificateError, match="may be several components"):
         checked.PANELS.check(made)
-    monkeypatch.setattr(splitting, "independent", lambda _, vertices: vertices)
+    monkeypatch.setattr(splitting, "independent", lambda _, vertices, clock: vertices)
     assert decompose(counted("dependent").pattern).second_order is None
+
+
+def test_the_clock_ends_the_search_for_forms_that_others_determine() -> None:
+    with pytest.raises(TooManyModesError, match="0 seconds"):
+        independent({1: ONE}, [1], Clock(0))
 
 
 def squares(*rows: tuple[int, Mapping[int, int]]) -> Form:
