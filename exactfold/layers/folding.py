@@ -13,7 +13,7 @@ from exactfold._support.progress import Progress
 from exactfold.design.refutations.asked import by_fold
 from exactfold.errors import TooManyModesError, UsageError
 from exactfold.exact.surds import exact
-from exactfold.layers.conflicts import conflict
+from exactfold.layers.conflicts import ConflictSearch
 from exactfold.layers.constraints import Constraints
 from exactfold.layers.images import Complex, Images, images_of
 from exactfold.layers.orders import LISTED, Orders, Search
@@ -106,7 +106,7 @@ def fold_flat(
     except TooManyModesError as error:
         return found(**base, stopped=str(error))
     if orders.refuted:
-        why = conflict(constraints, orders.used, clock.at_least(5))
+        why = ConflictSearch(constraints, orders.used).find(clock.at_least(5))
         points = (Conflict(one, _unscaled(images, witness(overlaps, one))) for one in why)
         return found(**base, conflict=tuple(points))
     return found(
