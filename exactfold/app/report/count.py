@@ -12,7 +12,7 @@ from rich.text import Text
 
 from exactfold._support.plurals import agreeing, counted
 from exactfold._support.verdict import PROVED, UNDECIDED
-from exactfold.app.report.connected_components import graphs, piece_notes
+from exactfold.app.report.connected_components import families, piece_notes, which_families
 from exactfold.app.report.terminal import (
     BY_SIGN,
     COUNTED,
@@ -99,17 +99,17 @@ def answer(result: BranchCount) -> Text:
         )
     if result.connected_components is not None and result.distinct is None:
         return Text.assemble(
-            "infinitely many ways to start folding - ",
+            f"{families(result.connected_components)} - ",
             status_text(PROVED),
             took,
-            f"; {graphs(result.connected_components)}",
+            f"; {which_families(result.connected_components)}",
         )
     if result.pattern.degrees_of_freedom > 1:
         return Text.assemble(
-            "infinitely many ways to start folding - ",
+            f"1 family of ways to fold, of dimension {result.pattern.degrees_of_freedom} - ",
             status_text(PROVED),
             took,
-            f"; they form one family of dimension {result.pattern.degrees_of_freedom}",
+            "; the dimension is the number of folds that can be folded independently",
         )
     ways = result.real or 0
     return Text.assemble(

@@ -230,9 +230,9 @@ def _by_theorem(pattern: CreasePattern, follower: Following) -> Listed:
     dimension = pattern.degrees_of_freedom
     facts: Facts = {
         "kind": "branches",
-        "answer": "infinitely many ways to start folding - PROVED; for all boundary heights "
-        f"there is exactly one shape for each of {counted(2 ** len(foldable), 'choice')} of the "
-        "vertices that pop up",
+        "answer": f"{counted(2 ** (len(foldable) - 1), 'family')} of ways to fold, of dimension "
+        f"{dimension} - PROVED; for all boundary heights there is exactly one shape for each "
+        "choice of the vertices that pop up",
         "status": str(PROVED),
         "complete": False,
         "reason": "the vertex signs and the boundary heights determine the shape",

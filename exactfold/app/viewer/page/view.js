@@ -4,7 +4,7 @@ import { popped, poppedSigns, seen } from "./choose.js";
 import { decodeFrames, positionsAt } from "./frames.js";
 import { download, fileName, foldFile } from "./foldfile.js";
 import { createFamily } from "./family.js";
-import { sentence, showFacts } from "./facts.js";
+import { own, sentence, showFacts } from "./facts.js";
 import { createList } from "./list.js";
 import { createPattern, legendItems } from "./pattern.js";
 import { createScene } from "./scene.js";
@@ -115,7 +115,7 @@ export function createView(page, { server, signal, begin = {}, moves = null, cha
   function nothingMoves() {
     if (page.busy) return "Looking for ways to fold …";
     if (/\brigid\b/.test(page.answer) && page.status === "proved") return "The sheet is rigid: it lies flat, and nothing can move.";
-    return `The sheet lies flat: no way to fold is known. ${sentence(page.notes[0] ?? page.reason)}`;
+    return `The sheet lies flat: no way to fold is known. ${sentence(page.notes[0] ?? own(page))}`.trim();
   }
 
   // Positions that were chosen by hand, instead of those of the motion.
