@@ -120,8 +120,8 @@ def pictures(*colours, size=(30, 20)):
 
 
 def test_a_film_has_its_pictures_in_turn_for_so_many_seconds():
-    [answer] = answers(Film(".gif", pictures("red", "lime", "blue"), 1.5))
-    gif = Image.open(io.BytesIO(base64.b64decode(answer["data"])))
+    data = filmed(pictures("red", "lime", "blue"), ".gif", 1.5)
+    gif = Image.open(io.BytesIO(base64.b64decode(data)))
     assert (gif.format, gif.n_frames, gif.size, gif.info["loop"]) == ("GIF", 3, (30, 20), 0)
     assert gif.info["duration"] == 500
     seen = []
@@ -149,5 +149,6 @@ def test_what_is_no_film_is_refused(frames, seconds, said):
 
 def test_an_mp4_film_is_written_where_its_package_is():
     pytest.importorskip("imageio_ffmpeg")
-    data = base64.b64decode(filmed(pictures("red", "lime", "blue", "red"), ".mp4", 1.0))
+    [answer] = answers(Film(pictures("red", "lime", "blue", "red"), 1.0))
+    data = base64.b64decode(answer["data"])
     assert data[4:8] == b"ftyp"

@@ -278,7 +278,7 @@ export function createView(page, { server, signal, begin = {}, moves = null, cha
   byId("download").addEventListener("click", () => {
     const { ways, way, mirrored } = store.get();
     const name = fileName(page, ways[way], mirrored);
-    download(JSON.stringify(foldFile(page, sheet, ways[way], mirrored)), name);
+    download(new Blob([JSON.stringify(foldFile(page, sheet, ways[way], mirrored))], { type: "application/json" }), name);
     say(`Saved ${name}`);
   });
   byId("search").addEventListener("keydown", (event) => {
@@ -328,7 +328,7 @@ export function createView(page, { server, signal, begin = {}, moves = null, cha
     const out = document.createElement("canvas");
     out.width = canvases.reduce((sum, { width }) => sum + width, 0);
     out.height = canvases[0].height;
-    const pen = out.getContext("2d");
+    const pen = out.getContext("2d", { willReadFrequently: true });
     pen.fillStyle = getComputedStyle(byId("stage").closest(".pane")).backgroundColor;
     pen.fillRect(0, 0, out.width, out.height);
     let left = 0;
