@@ -15,40 +15,40 @@ if TYPE_CHECKING:
 _SHOWN: Final = 8
 
 
-def families(connected_components: ConnectedComponents) -> str:
-    """How many families there are, with mirror images together, and of which dimension.
+def families(vertices: int, dimension: int) -> str:
+    """How many families there are with so many foldable vertices, mirror images together.
 
-    >>> from exactfold.pattern.families import single_vertex
-    >>> from exactfold.branches import find_connected_components
-    >>> families(find_connected_components(single_vertex(6)))
-    '1 family of ways to fold, of dimension 3'
+    >>> families(1, 3), families(5, 5)
+    ('1 family of ways to fold, of dimension 3', '16 families of ways to fold, each of dimension 5')
     """
-    exponent = max(len(connected_components.vertices) - 1, 0)
-    many, dimension = exponent > 0, connected_components.dimension
+    exponent = max(vertices - 1, 0)
+    many = exponent > 0
     return (
         f"{_power(exponent)} {'families' if many else 'family'} of ways to fold, "
         f"{'each ' if many else ''}of dimension {dimension}"
     )
 
 
-def which_families(connected_components: ConnectedComponents) -> str:
-    """What tells the families apart, and how many connected components they form.
+CHOICES: Final = "one for each choice of the vertices that pop up, seen from one side"
+"""What tells the families apart, if there are several foldable vertices."""
+
+
+def families_answer(pieces: ConnectedComponents) -> tuple[str, str]:
+    """How many families there are; and what tells them apart, and how many components they form.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> from exactfold.branches import find_connected_components
-    >>> which_families(find_connected_components(single_vertex(6)))
-    'with its mirror image it forms 2 connected components'
+    >>> families_answer(find_connected_components(single_vertex(6)))
+    ('1 family of ways to fold, of dimension 3',
+     'with its mirror image it forms 2 connected components')
     """
-    vertices = connected_components.vertices
-    form = _range(connected_components.low, connected_components.high)
-    if not vertices:
-        return f"it forms {form}"
-    if len(vertices) == 1:
-        return f"with its mirror image it forms {form}"
-    return (
-        "one for each choice of the vertices that pop up, seen from one side; with their mirror "
-        f"images they form {form}"
-    )
+    number = len(pieces.vertices)
+    form = _range(pieces.low, pieces.high)
+    if number > 1:
+        what = f"{CHOICES}; with their mirror images they form {form}"
+    else:
+        what = f"with its mirror image it forms {form}" if number else f"it forms {form}"
+    return families(number, pieces.dimension), what
 
 
 def piece_notes(result: BranchCount) -> list[str]:

@@ -70,11 +70,11 @@ def convex(corners, inside, seed):
 
 
 @pytest.mark.parametrize("sheet", [convex(8, 4, 5), convex(5, 3, 1), convex(6, 2, 2)])
-def test_while_a_vertex_moves_a_theorem_says_how_many_graphs_there_are(sheet):
+def test_while_a_vertex_moves_a_theorem_says_how_many_families_there_are(sheet):
     _, whole, *_ = answers(Open("x", sheet, frames=2, limit=20))
     _, brief, way = answers(Open("x", sheet, frames=2, live=True))
     whole, brief = whole["document"], brief["document"]
-    assert whole["answer"].startswith(f"{brief['answer']}; these ")
+    assert whole["answer"].startswith(f"{brief['answer']}; with ")
     assert (whole["status"], whole["freedom"]) == (brief["status"], brief["freedom"])
     assert way["found"]["family"]["dimension"] == sheet.Ve - 3
     assert brief["ways"][0]["signs"] == "+" * len(sheet.interior)
