@@ -2,30 +2,30 @@
 
 **Definition** (J. Justin, Towards a mathematical theory of origami, 1997; E. Demaine and
 J. O'Rourke, Geometric folding algorithms, 2007, chapter 11). A *flat-folded state* orders, at each
-point of the plane that lies on the image of no edge, the panels that cover the point: which lies
-below which. The order of two panels changes nowhere inside their overlap. On both sides of a point
+point of the plane that lies on the image of no edge, the pieces that cover the point: which lies
+below which. The order of two pieces changes nowhere inside their overlap. On both sides of a point
 of the image of a fold, which is the image of no vertex and of no edge in another direction, the
-layers do not cross: what goes on there, a panel or the two panels of a flat fold, has the same
-order on both sides; what turns back, the two panels of a folded fold, has nothing that goes on
-between them; and of two folded folds that turn back on the same side, one has both panels or no
-panel of the other between its own. If a fold has the letter V, the panel that is turned over lies
+layers do not cross: what goes on there, a piece or the two pieces of a flat fold, has the same
+order on both sides; what turns back, the two pieces of a folded fold, has nothing that goes on
+between them; and of two folded folds that turn back on the same side, one has both pieces or no
+piece of the other between its own. If a fold has the letter V, the piece that is turned over lies
 above the other one; if it has M, below (`FoldedSheet.lettered`).
 
-Overlaps of convex panels are connected, so that a state has one order for each pair of panels that
+Overlaps of convex pieces are connected, so that a state has one order for each pair of pieces that
 overlap. These are a state if and only if
 
-1. no three panels with a common inner point lie in a circle (an order of all pairs of a finite set
+1. no three pieces with a common inner point lie in a circle (an order of all pairs of a finite set
    is an order of the set if it has no circle of three);
-2. no panel lies between the two panels of a fold that runs through its inside;
-3. of two folds along each other, both folded, with their panels on the same side, one has not
-   exactly one panel of the other between its own; both flat, their panels have the same order on
-   both sides; one folded, the other flat: the panel of the flat one that is on the side of the
-   folded one is not between the panels of that one;
+2. no piece lies between the two pieces of a fold that runs through its inside;
+3. of two folds along each other, both folded, with their pieces on the same side, one has not
+   exactly one piece of the other between its own; both flat, their pieces have the same order on
+   both sides; one folded, the other flat: the piece of the flat one that is on the side of the
+   folded one is not between the pieces of that one;
 4. the letters are respected.
 
-For what goes on at a point of a fold is a panel with this point inside, as in 2, or a flat fold
-along it, as in 3. In 2, a panel has the same order with both panels of the fold, whether it is
-folded or flat: in both cases the panel is not between them.
+For what goes on at a point of a fold is a piece with this point inside, as in 2, or a flat fold
+along it, as in 3. In 2, a piece has the same order with both pieces of the fold, whether it is
+folded or flat: in both cases the piece is not between them.
 """
 
 from __future__ import annotations
@@ -39,20 +39,20 @@ from ..sheets.panels import Edge
 from .overlaps import Overlaps, members
 
 Order = tuple[int, int]
-"""Two panels that overlap, the lower one first."""
+"""Two pieces that overlap, the lower one first."""
 
 
 class Orders:
-    """An order of each pair of panels that overlap, for one state or for many at once.
+    """An order of each pair of pieces that overlap, for one state or for many at once.
 
     Some pairs have a fixed order. The others are in groups, and each group has several choices of
     the orders of its pairs. All choices, of one for each group, are meant.
     """
 
-    def __init__(self, panels: int) -> None:
-        self.above = [0] * panels
-        """For each panel the set of those that may lie above it."""
-        self.below = [0] * panels
+    def __init__(self, pieces: int) -> None:
+        self.above = [0] * pieces
+        """For each piece the set of those that may lie above it."""
+        self.below = [0] * pieces
         self._choices: dict[Order, tuple[int, int]] = {}
         self._groups = 0
 
@@ -91,14 +91,14 @@ class Crossings:
     def __init__(self, overlaps: Overlaps, orders: Orders) -> None:
         self.overlaps, self.orders = overlaps, orders
         self.folded = overlaps.folded
-        self._sides = [self._panels_beside(fold) for fold in overlaps.folds]
+        self._sides = [self._pieces_beside(fold) for fold in overlaps.folds]
         self._tests = 0
 
-    def _panels_beside(self, fold: Edge) -> tuple[list[int], list[int]]:
-        """The panels of a fold on the left, and on the right, of the line of its image."""
+    def _pieces_beside(self, fold: Edge) -> tuple[list[int], list[int]]:
+        """The pieces of a fold on the left, and on the right, of the line of its image."""
         beside: tuple[list[int], list[int]] = [], []
-        for panel, side in zip(self.folded.panels_of(fold), (fold, fold[::-1]), strict=True):
-            beside[self.overlaps.half(panel, side)[1] < 0].append(panel)
+        for piece, side in zip(self.folded.pieces_of(fold), (fold, fold[::-1]), strict=True):
+            beside[self.overlaps.plane.half(piece, side)[1] < 0].append(piece)
         return beside
 
     def check(self) -> None:
@@ -127,26 +127,26 @@ class Crossings:
                 for c in found:
                     circle = self.orders.may_be((a, b), (b, c), (c, a))
                     crossing = circle and self.overlaps.have_common_point((a, b, c))
-                    require(not crossing, f"panels {a}, {b} and {c} lie in a circle")
+                    require(not crossing, f"pieces {a}, {b} and {c} lie in a circle")
 
     def _check_folds(self) -> None:
-        """No panel lies between the two panels of a fold that runs through its inside."""
+        """No piece lies between the two pieces of a fold that runs through its inside."""
         for fold, through in zip(self.overlaps.folds, self.overlaps.through, strict=True):
-            one, other = self.folded.panels_of(fold)
-            for panel in members(through & self._between(one, other)):
-                self._check_between(fold, panel)
+            one, other = self.folded.pieces_of(fold)
+            for piece in members(through & self._between(one, other)):
+                self._check_between(fold, piece)
 
     def _between(self, one: int, other: int) -> int:
-        """The panels that may lie between two panels, if only one pair is considered at a time."""
+        """The pieces that may lie between two pieces, if only one pair is considered at a time."""
         above, below = self.orders.above, self.orders.below
         return (above[one] & below[other]) | (above[other] & below[one])
 
-    def _check_between(self, fold: Edge, panel: int) -> None:
+    def _check_between(self, fold: Edge, piece: int) -> None:
         self._count(1)
-        one, other = self.folded.panels_of(fold)
+        one, other = self.folded.pieces_of(fold)
         for low, high in ((one, other), (other, one)):
-            crossing = self.orders.may_be((low, panel), (panel, high))
-            require(not crossing, f"panel {panel} crosses {_name(fold)}")
+            crossing = self.orders.may_be((low, piece), (piece, high))
+            require(not crossing, f"piece {piece} crosses {_name(fold)}")
 
     def _check_along(self, first: int, second: int) -> None:
         """Two folds along each other do not cross."""
@@ -167,7 +167,7 @@ class Crossings:
     def _check_nested(
         self, first: int, second: int, one: Sequence[int], other: Sequence[int]
     ) -> None:
-        """Of two folded folds on one side, one has both or no panel of the other inside."""
+        """Of two folded folds on one side, one has both or no piece of the other inside."""
         if not self._may_cross(one, other):
             return
         for (a, b), (c, d) in product(permutations(one), permutations(other)):
@@ -177,7 +177,7 @@ class Crossings:
             self._refuse_crossing(crossing, first, second)
 
     def _may_cross(self, one: Sequence[int], other: Sequence[int]) -> bool:
-        """Whether a panel of the other fold may lie between two panels, and the other one not."""
+        """Whether a piece of the other fold may lie between two pieces, and the other one not."""
         above, below = self.orders.above, self.orders.below
         a, b = one
         inside = self._between(a, b)

@@ -102,6 +102,16 @@ class Plane:
         p, q = (self.spots[self.spot_of[v]] for v in edge)
         return (q.x - p.x).sign() or (p.y - q.y).sign()
 
+    def half(self, piece: int, side: Edge) -> tuple[int, int]:
+        """The line of a side of a piece, and on which side of it the piece lies: 1 or -1."""
+        inner = self.along(side) * (1 if self.folded.up[piece] else -1)
+        return self.line(side), inner
+
+    def is_inside(self, spot: Spot, edge: Edge) -> bool:
+        """Whether a point of the line of an edge lies between the two ends of its image."""
+        p, q = (self.spots[self.spot_of[v]] for v in edge)
+        return compare(p, spot) * compare(spot, q) > 0
+
     def side(self, line: int, spot: Spot) -> int:
         """1 if a point lies on the left of a line, -1 on its right, and 0 on the line."""
         exact, ma, mb, mc, bound = self._lines[line]
@@ -125,11 +135,6 @@ class Plane:
         if line.b.sign() == 0:
             return (spot.x - line.c).sign()
         return (line.a * spot.x + spot.y - line.c).sign()
-
-    def compare(self, first: int, second: int) -> int:
-        """-1, 0 or 1 by the order of two points from left to right, or upwards on a vertical."""
-        p, q = self.spots[first], self.spots[second]
-        return (p.x - q.x).sign() or (p.y - q.y).sign()
 
     def misses(self, lines: tuple[int, int, int], inner: tuple[int, int, int]) -> bool:
         """Whether three open half planes, any two of which meet, have no point in common.
@@ -181,6 +186,11 @@ class Plane:
 def _cyclic(rows: Sequence[Row]) -> list[tuple[Row, Row, Row]]:
     p, q, r = rows
     return [(p, q, r), (q, r, p), (r, p, q)]
+
+
+def compare(p: Spot, q: Spot) -> int:
+    """-1, 0 or 1 by the order of two points from left to right, or upwards on a vertical."""
+    return (p.x - q.x).sign() or (p.y - q.y).sign()
 
 
 def rounded(number: Number, bits: int) -> int:

@@ -1,10 +1,10 @@
 """Certificates of one flat-folded state of a sheet of rigid panels (docs/flat.md).
 
-The checker finds the flat folding map, all pairs of panels that overlap, and all places where
-layers could cross (`orders`). The evidence has `cuts`, edges [i, j] that cut panels into convex
-ones, and `order`, hexadecimal digits with one bit for each pair of panels that overlap: 1 if the
-panel with the smaller number lies below. Panels are numbered as `PanelSheet` traces them, after
-cutting, by their smallest vertices. Pairs are sorted, the first bit is the highest bit of the first
+The checker finds the flat folding map, all pairs of pieces that overlap, and all places where
+layers could cross (`orders`). The evidence has `pieces`, the corners of each convex piece, counter-
+clockwise: folded folds run between them, and the first keeps its place, face up. It has the
+`order`, hexadecimal digits with one bit for each pair of pieces that overlap: 1 if the piece with
+the smaller number lies below. Pairs are sorted, the first bit is the highest bit of the first
 digit, and what is left of the last digit is 0.
 """
 
@@ -16,7 +16,7 @@ from typing import Any, TypedDict
 from ..core.kinds import DocumentKind
 from ..core.reading import counted, keys, keys_of, refusing, require, same, text_of
 from ..sheets.panels import read_panels
-from .folding import read_folded, read_letters
+from .folding import FoldedSheet, asked, read_letters, read_pieces
 from .orders import Crossings, Orders
 from .overlaps import Overlaps
 
@@ -26,7 +26,7 @@ class FlatStateClaims(TypedDict):
 
     letters: str
     assignment: str
-    panels: int
+    pieces: int
     pairs: int
 
 
@@ -42,18 +42,18 @@ def check(data: dict[str, Any]) -> VerifiedFlatState:
 
     Returns the claims and the SHA-256 of the pattern. The `letters` have one letter for each fold,
     in lexicographic order of the folds: folds with M, V or U are folded by 180 degrees, U either
-    way, and folds with F stay flat. There is a flat-folded state with these letters, whose folds
-    have the letters `assignment`. `panels` and `pairs` are numbers of the panels, after cutting,
-    and of pairs of panels that overlap.
+    way, and folds with F stay flat. There is a flat-folded state with these letters, and in it the
+    folds have the letters `assignment`. There are so many convex `pieces`, and `pairs` of pieces
+    that overlap.
     """
     claims, evidence = data["claims"], data["evidence"]
     keys(claims, keys_of(FlatStateClaims), "claims")
-    keys(evidence, "cuts order", "evidence")
+    keys(evidence, "pieces order", "evidence")
     sheet, digest = read_panels(data["pattern"])
     letters = read_letters(sheet, claims["letters"])
-    folded = read_folded(sheet, letters, evidence["cuts"])
+    folded = FoldedSheet(sheet, letters, read_pieces(sheet, evidence["pieces"]))
     overlaps = Overlaps(folded)
-    orders = Orders(len(overlaps.panels))
+    orders = Orders(len(overlaps.pieces))
     bits = read_bits(evidence["order"], len(overlaps.pairs), "the order")
     lower = {
         pair if bit == "1" else pair[::-1] for pair, bit in zip(overlaps.pairs, bits, strict=True)
@@ -63,10 +63,12 @@ def check(data: dict[str, Any]) -> VerifiedFlatState:
     Crossings(overlaps, orders).check()
     said = ""
     for fold in sheet.folds:
-        one, other = folded.panels_of(fold)
-        valley = ((one, other) in lower) == folded.up[one]
-        said += "F" if letters[fold] == "F" else "V" if valley else "M"
-    facts = {"assignment": said, "panels": len(overlaps.panels), "pairs": len(overlaps.pairs)}
+        if letters[fold] == "F":
+            said += "F"
+            continue
+        one, other = folded.pieces_of(fold)
+        said += "V" if ((one, other) in lower) == folded.up[one] else "M"
+    facts = {"assignment": said, "pieces": len(overlaps.pieces), "pairs": len(overlaps.pairs)}
     for key, fact in facts.items():
         require(same(claims[key], fact), f"claim {key} = {claims[key]!a}, but it is {fact!a}")
     proved: FlatStateClaims = claims
@@ -85,12 +87,9 @@ def read_bits(value: Any, count: int, what: str) -> str:
 
 def summary(claims: VerifiedFlatState) -> str:
     """One line that states the verified claims."""
-    text = claims["letters"]
-    asked = counted(len(text.replace("U", "")), "letter", "letters")
-    folds = counted(len(text), "fold", "folds")
     return (
-        f"VALID: the sheet folds flat with the {asked} asked for on {folds}: an order of its "
-        f"{counted(claims['panels'], 'panel', 'panels')}, of which "
+        f"VALID: the sheet folds flat {asked(claims['letters'])}: an order of its "
+        f"{counted(claims['pieces'], 'piece', 'pieces')}, of which "
         f"{counted(claims['pairs'], 'pair overlaps', 'pairs overlap')}, has no crossing; "
         f"sha256 {claims['sha256']}"
     )
