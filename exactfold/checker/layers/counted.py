@@ -69,7 +69,7 @@ def check(data: dict[str, Any]) -> VerifiedFlatCount:
     letters = read_letters(sheet, claims["letters"])
     folded = FoldedSheet(sheet, letters, read_pieces(sheet, evidence["pieces"]))
     overlaps = Overlaps(folded)
-    known = read_clauses(folded, evidence)
+    known = read_clauses(overlaps.plane, evidence)
     known.follow(evidence["steps"])
     orders = Orders(len(folded.pieces))
     open_pairs = set(overlaps.pairs)

@@ -28,7 +28,7 @@ from ..core.reading import (
     parse_rational,
     require,
 )
-from .folding import FoldedSheet, sides
+from .folding import sides
 from .orders import Order
 from .plane import Plane, Spot
 
@@ -49,8 +49,8 @@ class Strand(NamedTuple):
 class Places:
     """The places that a file names, and how pieces pass them."""
 
-    def __init__(self, folded: FoldedSheet, value: Any) -> None:
-        self.folded, self.plane = folded, Plane(folded)
+    def __init__(self, plane: Plane, value: Any) -> None:
+        self.plane, self.folded = plane, plane.folded
         self._places = [self._read(k, entry) for k, entry in enumerate(items(value, "places"))]
         self._known: dict[tuple[int, int], Strand] = {}
 

@@ -31,6 +31,7 @@ from ..core.reading import items, keys, keys_of, natural, refusing, require
 from ..sheets.panels import Edge, PanelSheet, pair, read_panels
 from .folding import FoldedSheet, asked, closes, read_letters, read_pieces
 from .places import Places
+from .plane import Plane
 from .refutation import Refutation
 
 
@@ -64,7 +65,7 @@ def check(data: dict[str, Any]) -> VerifiedFlatRefuted:
         require(vertex is None, "a reason about layers names a vertex")
         keys(evidence, "pieces places clauses steps", "evidence")
         folded = FoldedSheet(sheet, letters, read_pieces(sheet, evidence["pieces"]))
-        read_clauses(folded, evidence).contradict([], evidence["steps"])
+        read_clauses(Plane(folded), evidence).contradict([], evidence["steps"])
     else:
         known_reason = reason in ("kawasaki", "maekawa")
         require(known_reason, f'the reason {reason!a} is not "kawasaki", "maekawa" or "layers"')
@@ -88,10 +89,10 @@ def _check_excess(sheet: PanelSheet, letters: dict[Edge, str], v: int) -> None:
     require(wrong, f"the letters at vertex {v} fulfil Maekawa's condition")
 
 
-def read_clauses(folded: FoldedSheet, evidence: dict[str, Any]) -> Refutation:
+def read_clauses(plane: Plane, evidence: dict[str, Any]) -> Refutation:
     """The clauses of a file that are true by letters, or by the layers at a place."""
-    known = Refutation(len(folded.pieces), folded.lettered.values())
-    places = Places(folded, evidence["places"])
+    known = Refutation(len(plane.folded.pieces), plane.folded.lettered.values())
+    places = Places(plane, evidence["places"])
     for entry in items(evidence["clauses"], "clauses"):
         known.add(places.read_clause(entry))
     return known
