@@ -205,7 +205,7 @@ class _Writer:
         """The pieces of a fold on the left, and on the right, of the line of its image."""
         beside: tuple[list[int], list[int]] = [], []
         for piece, side in zip(self.folded.pieces_of(fold), (fold, fold[::-1]), strict=True):
-            beside[self.plane.half(piece, side)[1] < 0].append(piece)
+            beside[self.plane.half(side)[1] < 0].append(piece)
         return beside
 
     # --- evidence --------------------------------------------------------------------------------
@@ -304,16 +304,19 @@ class _Closing:
         self._above = [0] * len(overlaps.pieces)
         self._below = [0] * len(overlaps.pieces)
 
-    def more(self, literal: int) -> Iterator[Clause]:
+    def more(self, prover: Prover, literal: int) -> Iterator[Clause]:
         """The clauses by which a new order, and an old one, imply a third one."""
         low, high = self.writer.order(literal)
         self._above[low] |= 1 << high
         self._below[high] |= 1 << low
         over = self.overlaps.over
+        literal_of = self.writer.literal
         for c in members(self._above[high] & over[low] & ~self._above[low]):
-            yield from self._line(low, high, c)
+            if not prover.holds(literal_of(low, c)):
+                yield from self._line(low, high, c)
         for c in members(self._below[low] & over[high] & ~self._below[high]):
-            yield from self._line(c, low, high)
+            if not prover.holds(literal_of(c, high)):
+                yield from self._line(c, low, high)
 
     def open(self, prover: Prover) -> Iterator[Clause]:
         """The clauses of three pieces with at least two open orders."""

@@ -21,7 +21,7 @@ class Prover:
     holds, each of them, in turn, has one literal left, and the last one none. Clauses with one
     literal are used without a hint.
 
-    `grow` is called with each literal that is found to hold in any case, and returns more clauses.
+    `grow` is called with each literal that is found to hold in any case; it returns more clauses.
 
     >>> prover = Prover(2)
     >>> _ = [prover.add(clause) for clause in ((1, 2), (1, -2), (-1, 2), (-1, -2))]
@@ -34,7 +34,7 @@ class Prover:
         self,
         variables: int,
         known: Iterable[int] = (),
-        grow: Callable[[int], Iterable[Clause]] = lambda literal: (),
+        grow: Callable[[Prover, int], Iterable[Clause]] = lambda prover, literal: (),
         clock: Clock = UNLIMITED,
     ) -> None:
         self.clauses: list[Clause] = []
@@ -93,7 +93,7 @@ class Prover:
             if self._starts or self._grown == len(self._trail):
                 return None
             self._grown += 1
-            for clause in self._grow(self._trail[self._grown - 1]):
+            for clause in self._grow(self, self._trail[self._grown - 1]):
                 self.add(clause)
         return self.conflict
 

@@ -98,7 +98,7 @@ class Crossings:
         """The pieces of a fold on the left, and on the right, of the line of its image."""
         beside: tuple[list[int], list[int]] = [], []
         for piece, side in zip(self.folded.pieces_of(fold), (fold, fold[::-1]), strict=True):
-            beside[self.overlaps.plane.half(piece, side)[1] < 0].append(piece)
+            beside[self.overlaps.plane.half(side)[1] < 0].append(piece)
         return beside
 
     def check(self) -> None:

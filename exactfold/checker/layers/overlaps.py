@@ -35,8 +35,8 @@ class Overlaps:
         self.folded, self.plane = folded, Plane(folded)
         self.pieces, self.folds = folded.pieces, folded.folds
         self._halves = [
-            list(dict.fromkeys(self.plane.half(k, side) for side in sides(piece)))
-            for k, piece in enumerate(self.pieces)
+            list(dict.fromkeys(self.plane.half(side) for side in sides(piece)))
+            for piece in self.pieces
         ]
         lines = max(line for halves in self._halves for line, _ in halves) + 1
         work = len(self.plane.spots) * lines

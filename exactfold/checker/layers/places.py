@@ -88,7 +88,7 @@ class Places:
         spot, line = self._places[place]
         on, along = False, None
         for side in sides(self.folded.pieces[piece]):
-            own, inner = self.plane.half(piece, side)
+            own, inner = self.plane.half(side)
             beside = self.plane.side(own, spot) * inner
             inside = beside > 0 or (beside == 0 and own == line)
             require(inside, f"piece {piece} does not lie at place {place}")
@@ -102,7 +102,7 @@ class Places:
         for i, j in (along, along[::-1]):
             if (i, j) in self.folded.beside:
                 number = self.folded.beside[i, j]
-                layers[self.plane.half(number, (i, j))[1] < 0].append(number)
+                layers[self.plane.half((i, j))[1] < 0].append(number)
         return Strand(tuple(sorted(layers[0])), tuple(sorted(layers[1])))
 
 

@@ -68,6 +68,8 @@ class Plane:
         self._lines: list[tuple[Line, int, int, int, int]] = []
         self._known_lines: dict[tuple[Parts, Parts | None], int] = {}
         self._line_of: dict[Edge, int] = {}
+        self._halves: dict[Edge, tuple[int, int]] = {}
+        self._turns: dict[tuple[int, int], int] = {}
         self._determinants: dict[tuple[int, ...], int] = {}
 
     def spot(self, point: Vector) -> Spot:
@@ -97,15 +99,18 @@ class Plane:
             self._line_of[i, j] = number
         return self._line_of[i, j]
 
-    def along(self, edge: Edge) -> int:
-        """1 if the image of a directed edge points in the direction of its line, else -1."""
-        p, q = (self.spots[self.spot_of[v]] for v in edge)
-        return (q.x - p.x).sign() or (p.y - q.y).sign()
+    def half(self, side: Edge) -> tuple[int, int]:
+        """The line of a directed side of a piece, and the side of it where the piece lies: 1 or -1.
 
-    def half(self, piece: int, side: Edge) -> tuple[int, int]:
-        """The line of a side of a piece, and on which side of it the piece lies: 1 or -1."""
-        inner = self.along(side) * (1 if self.folded.up[piece] else -1)
-        return self.line(side), inner
+        The piece is on the left of its side, or on the right if it is turned over; the side points
+        in the direction of its line, or against it.
+        """
+        if side not in self._halves:
+            p, q = (self.spots[self.spot_of[v]] for v in side)
+            along = (q.x - p.x).sign() or (p.y - q.y).sign()
+            inner = along if self.folded.up[self.folded.beside[side]] else -along
+            self._halves[side] = self.line(side), inner
+        return self._halves[side]
 
     def is_inside(self, spot: Spot, edge: Edge) -> bool:
         """Whether a point of the line of an edge lies between the two ends of its image."""
@@ -160,12 +165,15 @@ class Plane:
 
     def _turn(self, first: int, second: int) -> int:
         """The sign of the cross product of the normals (a, b) of two lines."""
-        one, a, b, _, _ = self._lines[first]
-        other, c, d, _, _ = self._lines[second]
-        value = a * d - b * c
-        if abs(value) > 8 * (max(abs(a), abs(b), abs(c), abs(d)) + 2):
-            return 1 if value > 0 else -1
-        return (one.a * other.b - one.b * other.a).sign()
+        key = first, second
+        if key not in self._turns:
+            one, a, b, _, _ = self._lines[first]
+            other, c, d, _, _ = self._lines[second]
+            value = a * d - b * c
+            if abs(value) <= 8 * (max(abs(a), abs(b), abs(c), abs(d)) + 2):
+                value = (one.a * other.b - one.b * other.a).sign()
+            self._turns[key] = (value > 0) - (value < 0)
+        return self._turns[key]
 
     def _determinant(self, k: int, m: int, n: int) -> int:
         """The sign of the determinant of the coefficients (a, b, c) of three lines."""
