@@ -97,5 +97,5 @@ class FlatDocument(TypedDict):
     meant: MeantDocument | None
     """What was inferred if the digits of the drawing are inexact; else null."""
     as_written: WrittenDocument | None
-    """If the status is undecided because digits are in doubt: the answer for them."""
+    """If digits are in doubt: the answer for the coordinates as they were read."""
     seconds: NotNegative

@@ -144,7 +144,7 @@ class FlatStates:
     @property
     def locally_flat(self) -> Verdict:
         """Whether each vertex satisfies the conditions of Kawasaki and Maekawa."""
-        if self.doubt and not (self.near and not self.failures):
+        if self.doubt and self.meant is not None and self.meant.doubt:
             return UNDECIDED
         return REFUTED if self.failures else PROVED
 
@@ -193,7 +193,7 @@ class FlatStates:
         """Why there is no state, or why that is not known; empty if there is one."""
         if self.doubt:
             known = f"{self.as_written}{': ' if self.why else ''}{self.why}"
-            return f"{self.doubt}; the digits as written: {known}"
+            return f"{self.doubt}; the coordinates as they were read: {known}"
         return self.why
 
     @property
