@@ -52,7 +52,7 @@ class Axiom:
         return placing.through(self.folds[0], self.pieces[-1], self.orders)
 
 
-def certificate(found: FlatStates, clock: Clock = UNLIMITED) -> Document:
+def states_certificate(found: FlatStates, clock: Clock = UNLIMITED) -> Document:
     """The certificate of what is known of the flat-folded states of a sheet.
 
     It says how many states there are, if all are listed and at most 65,536 pairs of pieces overlap;
@@ -60,7 +60,7 @@ def certificate(found: FlatStates, clock: Clock = UNLIMITED) -> Document:
     decided, and the error of `clock` if the time is over.
 
     >>> from exactfold.layers.folding import fold_flat
-    >>> made = certificate(fold_flat("miura"))
+    >>> made = states_certificate(fold_flat("miura"))
     >>> made["kind"], made["claims"]["states"]
     ('flat-count', 1)
     """

@@ -7,16 +7,20 @@ from collections.abc import Mapping
 from typing import Any
 
 from exactfold.exact.surds import RATIONALS
-from exactfold.layers.certificate import certificate
+from exactfold.layers.certificate import states_certificate
 from exactfold.layers.folding import fold_flat
 from exactfold.pattern.panel_pattern import PanelPattern
 
 Document = dict[str, Any]
 
 
-def made(sheet: PanelPattern | str, letters: Mapping[tuple[int, int], str] | str, **how: Any) -> Document:
+def made(
+    sheet: PanelPattern | str, letters: Mapping[tuple[int, int], str] | str, **how: Any
+) -> Document:
     """The certificate of a sheet with letters, read as from a file."""
-    document: Document = json.loads(json.dumps(certificate(fold_flat(sheet, letters, **how))))
+    document: Document = json.loads(
+        json.dumps(states_certificate(fold_flat(sheet, letters, **how)))
+    )
     return document
 
 

@@ -64,7 +64,7 @@ class DocumentKind(Kind[Claims]):
     named: str | None = None
 
     def read(self, data: Any) -> dict[str, Any]:
-        """Return `data` if it is an object of this kind, as for every kind; raises `FormatError`."""
+        """Return `data` if it is an object of this kind; raises `FormatError` if it is not."""
         document = super().read(data)
         if document.get("kind") != self.named:
             raise FormatError(f"the kind {document.get('kind')!a} is not {self.named!a}")
