@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from exactfold.exact.surds import RATIONALS
@@ -38,3 +38,11 @@ def roofs() -> PanelPattern:
     points = [(0, 0), (2, 0), (2 * root, 3), (1, 1), (0, 2), (2, -1), (0, -1), (3, -2), (0, -2)]
     edges = [(0, 1), (1, 2), (2, 3), (3, 4), (0, 4), (1, 5), (5, 6), (0, 6), (5, 7), (7, 8), (6, 8)]
     return PanelPattern(points, edges)
+
+
+def grid(xs: Sequence[int], ys: Sequence[int]) -> PanelPattern:
+    """Rectangles between straight lines."""
+    number = {(i, j): i * len(ys) + j for i in range(len(xs)) for j in range(len(ys))}
+    edges = [(number[i, j], number[i + 1, j]) for i, j in number if (i + 1, j) in number]
+    edges += [(number[i, j], number[i, j + 1]) for i, j in number if (i, j + 1) in number]
+    return PanelPattern([(x, y) for x in xs for y in ys], edges)
