@@ -17,7 +17,7 @@ from functools import cmp_to_key, reduce
 from itertools import product
 from operator import and_
 
-from ..core.limits import FLAT_SIDES
+from ..core.limits import FLAT_PAIRS, FLAT_SIDES
 from ..core.reading import at_most
 from .folding import FoldedSheet, sides
 from .plane import Plane, compare
@@ -51,6 +51,8 @@ class Overlaps:
             sum(1 << m for m in members(near & everything) if m != k and inside[m] >> k & 1)
             for k, near in enumerate(inside)
         ]
+        pairs = sum(map(int.bit_count, self.over)) // 2
+        at_most(pairs, FLAT_PAIRS, "the pairs of pieces that overlap", "FLAT_PAIRS")
         self.through = []
         for k, fold in enumerate(self.folds, len(self.pieces)):
             left, right = apart[self.plane.line(fold)]
@@ -94,6 +96,7 @@ class Overlaps:
         lines = defaultdict(list)
         for k, fold in enumerate(self.folds):
             lines[self.plane.line(fold)].append(k)
+        count = 0
         for folds in lines.values():
             ends = {self.plane.spot_of[v] for k in folds for v in self.folds[k]}
             order = sorted(ends, key=lambda k: key(self.plane.spots[k]))
@@ -102,6 +105,8 @@ class Overlaps:
             reach = (sorted(rank[self.plane.spot_of[v]] for v in self.folds[k]) for k in folds)
             for (first, last), k in sorted(zip(reach, folds, strict=True)):
                 active = [(end, other) for end, other in active if end > first]
+                count += len(active)
+                at_most(count, FLAT_PAIRS, "the pairs of folds along each other", "FLAT_PAIRS")
                 yield from ((other, k) for _, other in active)
                 active.append((last, k))
 

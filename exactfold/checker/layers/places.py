@@ -1,15 +1,15 @@
 """Clauses that hold in every flat-folded state, because of the layers at one place.
 
-A place is a point of the plane, or a point inside the image of a fold. A clause is a set of orders
-(a, b), "piece a lies below piece b", at least one of which holds; (b, a) is the opposite of (a, b).
-The checker looks at the pieces that the clause names, and at those that are joined to them at the
-place. It tries all orders of these layers, on each side of the line of the fold, and leaves out
-those that cross there (`orders`, the definition). If each of the others fulfils the clause, so does
-every state.
+A place is a point of the plane, or a point of the line through the images of two corners. A clause
+is a set of orders (a, b), "piece a lies below piece b", at least one of which holds; (b, a) is the
+opposite of (a, b). The checker looks at the pieces that the clause names, and at those that are
+joined to them at the place. It tries all orders of these layers, on each side of the line, and
+leaves out those that cross there (`orders`, the definition). If each of the others fulfils the
+clause, so does every state.
 
-A piece has the place inside, or inside one of its sides, along the line of the fold. Then this is
-so at all points of the fold nearby, and some of them lie on the images of no vertex and of no edge
-in another direction, as the definition demands. The same holds for a point of the plane.
+A piece has the place inside, or inside one of its sides, along the line. Then this is so at all
+points of the line nearby, and some of them lie on the images of no vertex and of no edge in another
+direction, as the definition demands. The same holds for a point of the plane.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ from typing import Any, NamedTuple
 
 from ..core.limits import FLAT_LAYERS
 from ..core.reading import (
-    CertificateError,
+    Coordinates,
     at_most,
     items,
     natural,
-    parse_rational,
     require,
 )
+from ..sheets.panels import Edge
 from .folding import sides
 from .orders import Order
 from .plane import Plane, Spot
@@ -51,6 +51,7 @@ class Places:
 
     def __init__(self, plane: Plane, value: Any) -> None:
         self.plane, self.folded = plane, plane.folded
+        self._numbers = Coordinates()
         self._places = [self._read(k, entry) for k, entry in enumerate(items(value, "places"))]
         self._known: dict[tuple[int, int], Strand] = {}
 
@@ -65,15 +66,13 @@ class Places:
         return clause
 
     def _read(self, number: int, value: Any) -> tuple[Spot, int | None]:
-        """A place: [x, y], or [i, j, t] for the share t of the way from i to j on this fold."""
-        entry, tower = items(value, "a place"), self.folded.tower
+        """A place: [x, y], or [i, j, t], the share t of the way from corner i to corner j."""
+        entry, tower, read = items(value, "a place"), self.folded.tower, self._numbers
         if len(entry) == 2:
-            x, y = (tower.number(parse_rational(c)) for c in entry)
+            x, y = (tower.number(read(c)) for c in entry)
             return self.plane.spot((x, y)), None
         i, j = (natural(v, "a vertex") for v in items(entry[:2], "a fold", 2))
-        share = parse_rational(items(entry[2:], f"place {number}", 1)[0])
-        known = (i, j) in self.folded.letters and 0 < share < 1
-        require(known, f"place {number} does not lie inside a fold")
+        share = read(items(entry[2:], f"place {number}", 1)[0])
         (px, py), (qx, qy), part = (*(self.folded.points[v] for v in (i, j)), tower.number(share))
         spot = self.plane.spot((px + part * (qx - px), py + part * (qy - py)))
         return spot, self.plane.line((i, j))
@@ -86,20 +85,20 @@ class Places:
     def _passing(self, place: int, piece: int) -> Strand:
         """How a piece passes a place; raises if it does not."""
         spot, line = self._places[place]
-        on, along = False, None
+        on, along = False, list[Edge]()
         for side in sides(self.folded.pieces[piece]):
             own, inner = self.plane.half(side)
             beside = self.plane.side(own, spot) * inner
             inside = beside > 0 or (beside == 0 and own == line)
             require(inside, f"piece {piece} does not lie at place {place}")
             if beside == 0:
-                on, along = True, side if self.plane.is_inside(spot, side) else along
+                on = True
+                along += [side] if self.plane.is_inside(spot, side) else []
         if not on:
             return Strand((piece,), (piece,))
-        if along is None:
-            raise CertificateError(f"place {place} is the end of a side of piece {piece}")
+        require(along, f"place {place} is the end of a side of piece {piece}")
         layers: tuple[list[int], list[int]] = [], []
-        for i, j in (along, along[::-1]):
+        for i, j in (along[0], along[0][::-1]):
             if (i, j) in self.folded.beside:
                 number = self.folded.beside[i, j]
                 layers[self.plane.half((i, j))[1] < 0].append(number)
@@ -121,9 +120,6 @@ def holds(strands: Sequence[Strand], clause: Clause) -> bool:
     left, right = ([k for strand in strands for k in strand[side]] for side in (0, 1))
     most = max(len(left), len(right))
     at_most(most, FLAT_LAYERS, "the layers at the place of a clause", "FLAT_LAYERS")
-    for a, b in clause:
-        beside = {a, b} <= {*left} or {a, b} <= {*right}
-        require(beside, f"pieces {a} and {b} do not lie on one side of the place of a clause")
     short: dict[int, int] = {}
     for k in (*left, *right):
         short.setdefault(k, len(short))

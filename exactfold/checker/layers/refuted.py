@@ -13,7 +13,7 @@ The `reason` is one of
 In the first two cases the evidence has no keys. In the third it has
 
 - `pieces`, as in `state`;
-- `places`: [x, y] in the plane, or [i, j, t], the share t of the way from i to j on this fold;
+- `places`: [x, y] in the plane, or [i, j, t], the share t of the way from corner i to corner j;
 - `clauses`: [place, clause], a clause that is true at the place with this number (`places`). A
   clause is a list of orders [a, b], "piece a lies below piece b", one of which holds;
 - `steps`: [clause, hints], a clause that follows from those with the numbers `hints`, which begin
