@@ -275,7 +275,7 @@ Limit = Annotated[
     typer.Option(
         parser=duration,
         metavar="SECONDS",
-        help="When the search for motions of panels stops, to print what is proved so far.",
+        help="When a search stops, to print what is proved so far.",
     ),
 ]
 PrescribedAngles = Annotated[
