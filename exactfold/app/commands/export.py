@@ -177,7 +177,7 @@ def write_system(asked: Wanted) -> int:
     from exactfold.app.verbs.systems import PROGRAMS, sheet_system
 
     with Bar("reading") as bar:
-        opened = read_any(asked.file, asked.reading)
+        opened = read_any(asked.file, asked.reading, doubted=False)  # the error says it
         bar("equations")
         system = sheet_system(opened, asked.given.heights)
         text = system.text(str(asked.system))
