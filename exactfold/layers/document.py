@@ -54,6 +54,9 @@ class NearDocument(TypedDict):
     """By the size of the image."""
     vertex: Natural
     edge: FoldText
+    states: Natural | None
+    """The number of states if all that nearly meets is taken to meet, in floats; null if it is not
+    known."""
 
 
 class WrittenDocument(TypedDict):

@@ -5,12 +5,13 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 from dataclasses import replace
+from math import prod
 from typing import Final
 
 import numpy as np
 
 from exactfold._support.clock import LIMIT, Clock
-from exactfold._support.plurals import counted
+from exactfold._support.plurals import agreeing, counted
 from exactfold._support.progress import Progress
 from exactfold.design.refutations.asked import by_fold
 from exactfold.errors import InputError, TooManyModesError, UsageError
@@ -18,6 +19,7 @@ from exactfold.exact.surds import exact
 from exactfold.layers.conflicts import ConflictSearch
 from exactfold.layers.constraints import Constraints
 from exactfold.layers.images import Complex, Images, images_of
+from exactfold.layers.nearly import Blurred
 from exactfold.layers.orders import LISTED, Orders, Search
 from exactfold.layers.overlaps import Overlaps
 from exactfold.layers.pieces import pieces_of
@@ -29,12 +31,11 @@ from exactfold.pattern.loading import PatternLike, open_sheet
 from exactfold.pattern.opening import Opened, panels
 from exactfold.pattern.panel_pattern import Edge, EnclosedPattern, PanelPattern, Point
 
-_NEAR: Final = 1e-6
+_NEAR: Final = 2e-4
 """In a drawing, a corner and a line of the folded image that miss each other by less than this,
 by the size, may have been meant to meet."""
-_ROUNDING: Final = 1e-13
+_ROUNDING: Final = 1e-11
 """Moves by so much of the size are rounding errors of floats."""
-_ONLY: Final = "so that the answer holds only for these digits"
 _ENCLOSED: Final = (
     "the folds of the sheet that was meant have exact directions, but its vertices are known only "
     "nearly, so that it is not known which of them meet when it is folded"
@@ -62,7 +63,8 @@ def fold_flat(
     The answer is PROVED if there is a state. It is REFUTED if a vertex does not fold flat, exactly,
     or if the conditions on orders contradict each other. It is UNDECIDED after `limit` seconds, and
     if it is one about inexact digits of a drawing: if its reading is in doubt (`Opened.doubt`), if
-    corners and lines of the folded image nearly meet, or if reading moved coordinates and the
+    it depends on whether corners and lines of the folded image that nearly meet do, or if reading
+    moved coordinates and the
     digits as written have another number of states. The snap "exact" takes the digits as they are.
 
     Raises `UsageError` for letters that do not fit, `PackageMissingError` without python-sat, and
@@ -79,10 +81,11 @@ def fold_flat(
     pattern = panels(opened.sheet) if isinstance(opened.sheet, CreasePattern) else opened.sheet
     chosen, used = _letters(opened, pattern.folds, letters)
     found = _found(pattern, chosen, used, most, clock, progress)
-    doubt, near = "", None
+    doubt, near = "", None  # what was not read from a file is exact
     if opened.reading.snap != "exact":
-        near = found.near if opened.again is not None else None
-        doubt = opened.doubt or ("" if near is None else f"{near.text}, {_ONLY}")
+        if found.near is not None and opened.again is not None:
+            near = replace(found.near, states=_if_met(found, clock))
+        doubt = opened.doubt or ("" if near is None else _depends(near, found.count))
         doubt = doubt or _moved(opened, found, letters, clock)
     seconds = time.perf_counter() - start
     return replace(found, doubt=doubt, near=near, meant=opened.meant, seconds=seconds)
@@ -125,6 +128,42 @@ def _found(
         components=_components(orders),
         stopped=orders.stopped,
     )
+
+
+def _if_met(found: FlatStates, clock: Clock) -> int | None:
+    """The number of states if all corners and lines that nearly meet are taken to meet.
+
+    This is computed in floats, and proves nothing. None if it is not known.
+    """
+    if found.images is None:
+        return None
+    overlaps = Overlaps(found.images)
+    try:
+        blurred = Blurred(overlaps, _NEAR * _width(overlaps))
+        orders = Search(Constraints(blurred), clock.at_least(5), most=1).run()
+    except (KeyError, ValueError, TooManyModesError):
+        return None
+    if orders.refuted:
+        return 0
+    counts = [one.count for one in orders.components]
+    return None if None in counts else prod(count for count in counts if count is not None)
+
+
+def _depends(near: Near, count: int | None) -> str:
+    """Why an answer is in doubt in which corners and lines nearly meet; empty if it is not.
+
+    It is unless as many states remain if all that nearly meets is taken to meet.
+    """
+    if near.states == count is not None:
+        return ""
+    states = "it is not known how many states there are"
+    if near.states is not None:
+        states = f"there {agreeing(near.states, 'is')} {counted(near.states, 'state')}"
+    return f"{near.text}; if all that nearly meets is taken to meet, {states}"
+
+
+def _width(overlaps: Overlaps) -> float:
+    return float(max(np.ptp(overlaps.sides.x), np.ptp(overlaps.sides.y)))
 
 
 def _moved(
@@ -187,7 +226,7 @@ def _components(orders: Orders) -> tuple[Component, ...]:
 def _near(overlaps: Overlaps) -> Near | None:
     """The nearest corner and line that miss each other by less than `_NEAR`."""
     sides = overlaps.sides
-    width = max(np.ptp(sides.x), np.ptp(sides.y))
+    width = _width(overlaps)
     line, point, distance = sides.nearest
     if not distance < _NEAR * width:
         return None
