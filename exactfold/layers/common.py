@@ -89,7 +89,8 @@ class Common:
             for k in range(lines.shape[1]):
                 a, b, c = (v[lines[other, k], None] for v in (s.a, s.b, s.c))
                 value = sides[other, k, None] * (a * x + b * y - c)
-                inside &= value > _ERROR * (abs(a * x) + abs(b * y) + abs(c)) + _TINY
+                margin = _ERROR * (abs(a * x) + abs(b * y) + abs(c)) + _TINY
+                inside &= value > margin + self.overlaps.blur * np.hypot(a, b)
             found.append(inside @ (1 << np.arange(_SAMPLES)))
         return np.concatenate(found) if found else np.zeros(0, dtype=np.int64)
 
@@ -125,6 +126,10 @@ class Common:
             total += s.c[one] * (first - second)
             size += abs(s.c[one]) * (abs(first) + abs(second))
         signs = np.sign(total).astype(np.int8)
+        if self.overlaps.blur:
+            length = np.hypot(s.a, s.b)
+            small = self.overlaps.blur * length[la] * length[lb] * length[lc]
+            return np.where(abs(total) < small, 0, signs).astype(np.int8)
         for row in np.nonzero(~(abs(total) > _ERROR * size + _TINY))[0]:
             signs[row] = self._exact(int(la[row]), int(lb[row]), int(lc[row]))
         return signs

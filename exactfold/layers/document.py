@@ -54,6 +54,9 @@ class NearDocument(TypedDict):
     """By the size of the image."""
     vertex: Natural
     edge: FoldText
+    states: Natural | None
+    """The number of states if all that nearly meets is taken to meet, in floats; null if it is not
+    known."""
 
 
 class WrittenDocument(TypedDict):
@@ -97,5 +100,5 @@ class FlatDocument(TypedDict):
     meant: MeantDocument | None
     """What was inferred if the digits of the drawing are inexact; else null."""
     as_written: WrittenDocument | None
-    """If the status is undecided because digits are in doubt: the answer for them."""
+    """If digits are in doubt: the answer for the coordinates as they were read."""
     seconds: NotNegative

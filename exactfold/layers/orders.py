@@ -352,21 +352,22 @@ def models(
         yield from ([variables[0]], [-variables[0]])
         return
     with solver(clauses) as found:
-        stack: list[list[int]] = [[]]
+        stack: list[tuple[list[int], list[int] | None]] = [([], None)]
         while stack:
             clock.check()
-            decided = stack.pop()
+            decided, model = stack.pop()
+            if model is None:
+                if not found.solve(decided):
+                    continue
+                model = found.get_model()
             _, forced = found.propagate(decided)
-            if not found.solve(decided):
-                continue
-            model = found.get_model()
             known = set(forced) | set(decided)
             open_ = [v for v in variables if v not in known and -v not in known]
             if not open_:
                 yield [v if v in known else -v for v in variables]
                 continue
             value = model[open_[0] - 1] if open_[0] <= len(model) else open_[0]
-            stack += [[*decided, -value], [*decided, value]]
+            stack += [([*decided, -value], None), ([*decided, value], model)]
 
 
 def solver(clauses: Sequence[Sequence[int]]) -> Any:

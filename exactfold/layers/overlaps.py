@@ -43,6 +43,9 @@ class Overlaps:
     them separates them (docs/flat.md, Finding overlaps); the same holds for a segment and a convex
     polygon, with the line of the segment among those tried.
 
+    `points` are the different image points, and `number` has that of each vertex. `drawn` has the
+    line through two points of a side, and 1 if it leads from the first to the second. `corners` has
+    the points of each piece. `blur` is 0 unless points that nearly meet are taken to meet.
     `pairs` has the overlapping pairs of pieces (i, j), i < j, sorted.
     """
 
@@ -57,8 +60,16 @@ class Overlaps:
             for p, q in zip(some, (*some[1:], some[0]), strict=True):
                 drawn.setdefault((min(p, q), max(p, q)), len(drawn))
         self.sides = Sides(self.points, list(drawn))
-        self._drawn = drawn
+        self.drawn: dict[tuple[int, int], tuple[int, int]] = {}
+        for (p, q), k in drawn.items():
+            line, along = int(self.sides.line[k]), int(self.sides.along[k])
+            self.drawn[p, q], self.drawn[q, p] = (line, along), (line, -along)
         self.corners = corners
+        self.blur = 0.0
+        self._find()
+
+    def _find(self) -> None:
+        """Find what overlaps, once points, lines and signs are known."""
         self._extend()
         self._half_planes()
         overlapping = ~(apart := self._apart())
@@ -74,9 +85,7 @@ class Overlaps:
 
     def directed(self, p: int, q: int) -> tuple[int, int]:
         """The line through two image points that are drawn, and 1 if it leads from p to q."""
-        k = self._drawn[min(p, q), max(p, q)]
-        along = int(self.sides.along[k])
-        return int(self.sides.line[k]), along if p < q else -along
+        return self.drawn[p, q]
 
     def edge_on(self, line: int) -> Edge:
         """A side of a piece on a line, as an edge of the sheet."""
