@@ -48,10 +48,8 @@ def _with_relations(known: Opened) -> Opened:
     """The same sheet; its lines list the relations if the reading asks for them."""
     if not known.reading.relations:
         return known
-    if known.meant is not None:
-        listed = known.meant.listed
-    else:
-        listed = off_by(known.left) or (_NONE_NEAR,)
+    meant = known.meant
+    listed = meant.listed if meant is not None else off_by(known.left) or (_NONE_NEAR,)
     return replace(known, lines=known.lines + listed, seen=known.seen + listed)
 
 
