@@ -24,6 +24,7 @@ _TIMES_MISSED: Final = 10
 """No proposal is further from the drawing than so many times what the drawing misses."""
 _TIMES_NOISE: Final = 100
 """Recognising coordinates must not move one by more than this many times the largest defect."""
+_NO_LEVEL: Final = "no noise level stands out from chance (--noise EPS states one)"
 _NONE_NEAR: Final = "no relation between creases holds nearly but not exactly"
 
 
@@ -35,10 +36,10 @@ def meaning(found: Opened, written: Callable[[], Opened]) -> Opened:
     `doubt` says why. If the reading asks for relations, they are listed in the lines of the sheet.
     """
     reading = found.reading
-    if reading.snap == "exact" and reading.overrules:
+    if reading.snap not in (None, "auto") and reading.overrules:
+        takes = "takes the digits as written" if reading.snap == "exact" else "rounds all digits"
         raise UsageError(
-            "--snap exact takes the digits as written: leave out --without, --also, --noise and "
-            "--unit"
+            f"--snap {reading.snap} {takes}: leave out --without, --also, --noise and --unit"
         )
     return _with_relations(_meaning(found, written))
 
@@ -78,7 +79,13 @@ def _meaning(found: Opened, written: Callable[[], Opened]) -> Opened:
         )
     meant = inferred(sheet, reading)
     if meant.realized is None or meant.realized.sheet is None:
-        return replace(found, meant=replace(meant, left=left))
+        if meant.reason and reading.overrules and (reading.also or not left):
+            raise UsageError(
+                f"no sheet near the drawing is as asked for: {meant.reason}; state fewer relations "
+                "or less noise"
+            )
+        reason = meant.reason or (_NO_LEVEL if left else "")
+        return replace(found, meant=replace(meant, left=left, reason=reason))
     exact = meant.realized.sheet
     lines = tuple(line for line in raw.lines if not line.startswith("coordinates kept"))
     return replace(
