@@ -201,6 +201,14 @@ def test_letters_that_fit_are_not_proved_for_the_whole_sheet() -> None:
     assert found.drawn.starts is UNDECIDED
 
 
+def test_no_vertex_that_starts_is_no_proof_that_none_does() -> None:
+    found = counted(doubted(almost_straight(Fraction(1, 50)), 0.002))
+    assert found.drawn is not None
+    assert found.drawn.starts is UNDECIDED
+    (reason,) = found.drawn.reasons
+    assert reason == "of no vertex by itself is it proved that it starts to fold with its letters"
+
+
 def test_the_box_is_three_times_the_noise_that_was_not_believed() -> None:
     opened = doubted("zigzags", 2e-3)
     box = box_of(opened)
