@@ -42,6 +42,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
     pretty_exceptions_enable=False,
     cls=Group,
+    rich_markup_mode=None,  # plain help: loading Markdown takes longer than all else
 )
 
 

@@ -15,6 +15,9 @@ _ERROR: Final = 2.0**-46
 """Relative error of a float determinant of three lines, with numbers within 2^-52 each."""
 _TINY: Final = 2.0**-800
 _ROWS: Final = 1 << 16
+_SAMPLES: Final = 17
+_NEAR: Final = 0.97
+"""How far samples lie on the way from the middle of a piece to its border."""
 
 
 class Common:
@@ -33,10 +36,63 @@ class Common:
 
     def have(self, triples: Indices) -> Flags:
         """For each row of three pieces, whether they have a common open set."""
-        made = [
-            self._some(triples[start : start + _ROWS]) for start in range(0, len(triples), _ROWS)
-        ]
-        return np.concatenate(made) if made else np.zeros(0, dtype=bool)
+        have = np.zeros(len(triples), dtype=bool)
+        for start in range(0, len(triples), _ROWS):
+            rows = slice(start, start + _ROWS)
+            some = triples[rows]
+            seen = self._seen(some)
+            seen[~seen] = self._some(some[~seen])
+            have[rows] = seen
+        return have
+
+    def _seen(self, triples: Indices) -> Flags:
+        """Whether one of the sample points of three pieces lies inside all of them."""
+        seen = np.zeros(len(triples), dtype=bool)
+        for one, two, three in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+            a, b, c = triples[:, one], triples[:, two], triples[:, three]
+            seen |= (self._samples[self._place(a, b)] & self._samples[self._place(a, c)]) != 0
+        return seen
+
+    def _place(self, one: Indices, other: Indices) -> Indices:
+        """The rows of `_samples` for pairs of overlapping pieces."""
+        count = self.overlaps.count
+        return np.searchsorted(self._keys, one * count + other)
+
+    @cached_property
+    def _keys(self) -> Indices:
+        one, other = np.nonzero(self.overlaps.overlapping)
+        return one * self.overlaps.count + other
+
+    @cached_property
+    def _samples(self) -> Indices:
+        """For each ordered pair of overlapping pieces, the samples of the first in the second.
+
+        The samples of a piece are its middle, and points near its corners and the middles of its
+        sides. They are floats, and are counted only if the signs of all sides of the second piece
+        are certain.
+        """
+        s, corners = self.overlaps.sides, self.overlaps.corners
+        points = np.zeros((len(corners), _SAMPLES, 2))
+        for k, some in enumerate(corners):
+            xy = np.stack([s.x[some], s.y[some]], axis=1)
+            middle = xy.mean(axis=0)
+            near = np.concatenate([xy, (xy + np.roll(xy, 1, axis=0)) / 2])[: _SAMPLES - 1]
+            points[k] = middle
+            points[k, 1 : len(near) + 1] += _NEAR * (near - middle)
+        lines, sides = self.overlaps.sides_table
+        count = self.overlaps.count
+        found = []
+        for start in range(0, len(self._keys), _ROWS):
+            one, other = np.divmod(self._keys[start : start + _ROWS], count)
+            x, y = points[one, :, 0], points[one, :, 1]
+            inside = np.ones(x.shape, dtype=bool)
+            for k in range(lines.shape[1]):
+                a, b, c = (v[lines[other, k], None] for v in (s.a, s.b, s.c))
+                value = sides[other, k, None] * (a * x + b * y - c)
+                margin = _ERROR * (abs(a * x) + abs(b * y) + abs(c)) + _TINY
+                inside &= value > margin + self.overlaps.blur * np.hypot(a, b)
+            found.append(inside @ (1 << np.arange(_SAMPLES)))
+        return np.concatenate(found) if found else np.zeros(0, dtype=np.int64)
 
     def _some(self, triples: Indices) -> Flags:
         lines, sides = self.overlaps.sides_table
@@ -70,6 +126,10 @@ class Common:
             total += s.c[one] * (first - second)
             size += abs(s.c[one]) * (abs(first) + abs(second))
         signs = np.sign(total).astype(np.int8)
+        if self.overlaps.blur:
+            length = np.hypot(s.a, s.b)
+            small = self.overlaps.blur * length[la] * length[lb] * length[lc]
+            return np.where(abs(total) < small, 0, signs).astype(np.int8)
         for row in np.nonzero(~(abs(total) > _ERROR * size + _TINY))[0]:
             signs[row] = self._exact(int(la[row]), int(lb[row]), int(lc[row]))
         return signs

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Final, Literal, TypeAlias
@@ -16,7 +16,6 @@ from exactfold.pattern.panel_pattern import Edge
 Kind: TypeAlias = Literal[
     "letter", "taco-tortilla", "tortilla-tortilla", "taco-taco", "transitivity"
 ]
-Clause: TypeAlias = tuple[int, ...]
 
 
 @dataclass(frozen=True)
@@ -33,172 +32,137 @@ class Constraint:
     pieces: tuple[int, ...]
 
 
+_UP: Final = {"V": 1, "M": -1}
+"""1 if the piece on the other side of a crease is folded on top of one that faces up."""
+
+
 class Constraints:
     """The variables of a folded sheet, and all constraints but transitivity.
 
     There is a variable for each overlapping pair of pieces (i, j), i < j, numbered from 1: it is
-    true if j lies above i. `equal` has the pairs of literals that are equal, `same` the constraint
-    of each. `tacos` has the literals (AC, BC, AD, BD) of two creases with pieces A, B and C, D,
-    `tacos_of` the constraint of each; the number of true ones is even, and AB and CD do not
-    interleave. `given` has the literal that the letter of each crease gives.
+    true if j lies above i. A literal is the number of a variable, or its negative. `given` has the
+    literal that the letter of each crease gives. Each row of `equal` has two literals that are
+    equal. Each row of `tacos` has the literals (AC, BC, AD, BD), "C lies above A" and so on, of two
+    creases with the pieces A, B and C, D, which do not interleave. `equality` and `taco` say what a
+    row means.
     """
 
     def __init__(self, overlaps: Overlaps) -> None:
         self.overlaps = overlaps
-        count = overlaps.count
-        self._keys: Indices = overlaps.pairs[:, 0] * count + overlaps.pairs[:, 1]
-        self.given: dict[Edge, int] = {}
-        self._letters()
-        self.equal: list[tuple[int, int]] = []
-        self.same: list[Constraint] = []
-        self.tacos: list[tuple[int, int, int, int]] = []
-        self.tacos_of: list[Constraint] = []
-        self._crossings()
-        self._collinear()
+        self._keys: Indices = overlaps.pairs[:, 0] * overlaps.count + overlaps.pairs[:, 1]
+        self.given: dict[Edge, int] = self._letters()
+        inner = overlaps.inner
+        self._left = np.array([one.left for one in inner], dtype=np.int64)
+        self._right = np.array([one.right for one in inner], dtype=np.int64)
+        folded = np.array([one.folded for one in inner], dtype=bool)
+        side = np.array([one.sides[0] for one in inner], dtype=np.int64)
+        self._through = overlaps.crossings()
+        edge, piece = self._through.T
+        made = [self._both(self._left[edge], piece, self._right[edge], piece)]
+        one, other = overlaps.collinear().T
+        both = folded[one] & folded[other] & (side[one] == side[other])
+        self._tacos = np.stack([one[both], other[both]], axis=1)
+        mixed = folded[one] != folded[other]
+        taco = np.where(folded[one], one, other)[mixed]
+        flat = np.where(folded[one], other, one)[mixed]
+        beside = np.where(side[taco] == side[flat], self._left[flat], self._right[flat])
+        self._beside = np.stack([taco, flat, beside], axis=1)
+        made.append(self._both(self._left[taco], beside, self._right[taco], beside))
+        flats = ~folded[one] & ~folded[other]
+        one, other = one[flats], other[flats]
+        same = side[one] == side[other]
+        first = np.where(same, self._left[other], self._right[other])
+        second = np.where(same, self._right[other], self._left[other])
+        self._flats = np.stack([one, other, first, second], axis=1)
+        made.append(self._both(self._left[one], first, self._right[one], second))
+        self.equal: Indices = np.concatenate(made)
+        (a, b), (c, d) = (
+            (self._left[self._tacos[:, k]], self._right[self._tacos[:, k]]) for k in (0, 1)
+        )
+        pairs = ((a, c), (b, c), (a, d), (b, d))
+        self.tacos: Indices = np.stack([self.literals(x, y) for x, y in pairs], axis=1)
 
     @property
     def variables(self) -> int:
         """The number of overlapping pairs."""
         return len(self._keys)
 
-    def literal(self, lower: int, upper: int) -> int:
-        """The literal that says that a piece lies above another one."""
-        if lower < upper:
-            return self._place[lower, upper] + 1
-        return -self._place[upper, lower] - 1
-
-    @cached_property
-    def _place(self) -> dict[tuple[int, int], int]:
-        return {(i, j): k for k, (i, j) in enumerate(self.overlaps.pairs.tolist())}
-
-    @property
-    def letters(self) -> list[Constraint]:
-        """The constraints that the letters give."""
-        creases = self.overlaps.images.pieces.creases
-        return [Constraint("letter", (edge,), creases[edge]) for edge in self.given]
-
     def literals(self, lower: Indices, upper: Indices) -> Indices:
-        """The literals for arrays of pieces; raises `KeyError` for pieces that do not overlap."""
+        """The literals that say that pieces lie above others; `KeyError` if some do not overlap."""
         first, second = np.minimum(lower, upper), np.maximum(lower, upper)
         keys = first * self.overlaps.count + second
         place = np.searchsorted(self._keys, keys)
-        if len(keys) and not np.array_equal(
-            self._keys[np.minimum(place, len(self._keys) - 1)], keys
-        ):
+        if len(keys) and not np.array_equal(self._keys.take(place, mode="clip"), keys):
             raise KeyError("two pieces do not overlap")
         return np.where(lower < upper, place + 1, -place - 1)
 
-    def _letters(self) -> None:
-        pieces = self.overlaps.images.pieces
-        for edge, (left, right) in pieces.creases.items():
-            letter = pieces.letters[edge]
-            if letter not in _UP:
-                continue
-            above = _UP[letter] * (-1 if self.overlaps.images.maps[left].flipped else 1)
-            self.given[edge] = above * self.literal(left, right)
+    def triples(self, triples: Indices) -> Indices:
+        """The literals (AB, BC, CA) of triples of pieces: not all of them hold, and not none."""
+        a, b, c = triples.T
+        return np.stack([self.literals(x, y) for x, y in ((a, b), (b, c), (c, a))], axis=1)
 
-    def _crossings(self) -> None:
-        found = list(self.overlaps.crossings())
-        left, right, through = (
-            np.array(some, dtype=np.int64)
-            for some in (
-                [edge.left for edge, _ in found],
-                [edge.right for edge, _ in found],
-                [piece for _, piece in found],
-            )
-        )
-        self.equal += zip(
-            self.literals(left, through).tolist(),
-            self.literals(right, through).tolist(),
-            strict=True,
-        )
-        self.same += [
-            Constraint(
-                "taco-tortilla" if edge.folded else "tortilla-tortilla",
-                (edge.edge,),
-                (edge.left, edge.right, piece),
-            )
-            for edge, piece in found
-        ]
+    def letter(self, edge: Edge) -> Constraint:
+        """The constraint that the letter of a crease gives."""
+        return Constraint("letter", (edge,), self.overlaps.images.pieces.creases[edge])
 
-    def _collinear(self) -> None:
-        for one, other in self.overlaps.collinear():
-            if one.folded and other.folded:
-                if one.sides[0] == other.sides[0]:
-                    a, b, c, d = one.left, one.right, other.left, other.right
-                    self.tacos.append(
-                        (
-                            self.literal(a, c),
-                            self.literal(b, c),
-                            self.literal(a, d),
-                            self.literal(b, d),
-                        )
-                    )
-                    self.tacos_of.append(
-                        Constraint("taco-taco", (one.edge, other.edge), (a, b, c, d))
-                    )
-            elif one.folded or other.folded:
-                taco, flat = (one, other) if one.folded else (other, one)
-                c = flat.left if flat.sides[0] == taco.sides[0] else flat.right
-                self.equal.append((self.literal(taco.left, c), self.literal(taco.right, c)))
-                edges = (taco.edge, flat.edge)
-                self.same.append(Constraint("taco-tortilla", edges, (taco.left, taco.right, c)))
-            else:
-                a, b = one.left, one.right
-                c, d = _matched(one, other)
-                self.equal.append((self.literal(a, c), self.literal(b, d)))
-                self.same.append(
-                    Constraint("tortilla-tortilla", (one.edge, other.edge), (a, b, c, d))
-                )
+    def equality(self, row: int) -> Constraint:
+        """What a row of `equal` means."""
+        if row < len(self._through):
+            edge, piece = self._through[row].tolist()
+            kind = self._inner[edge].folded
+            pieces = (self._inner[edge].left, self._inner[edge].right, piece)
+            return Constraint(_of_edge(kind), (self._inner[edge].edge,), pieces)
+        row -= len(self._through)
+        if row < len(self._beside):
+            taco, flat, piece = self._beside[row].tolist()
+            edges = (self._inner[taco].edge, self._inner[flat].edge)
+            pieces = (self._inner[taco].left, self._inner[taco].right, piece)
+            return Constraint("taco-tortilla", edges, pieces)
+        one, other, first, second = self._flats[row - len(self._beside)].tolist()
+        edges = (self._inner[one].edge, self._inner[other].edge)
+        four = (self._inner[one].left, self._inner[one].right, first, second)
+        return Constraint("tortilla-tortilla", edges, four)
 
-    def clauses(self, constraint: Constraint) -> list[Clause]:
-        """A constraint as clauses in literals."""
-        if constraint.kind == "letter":
-            return [(self.given[constraint.edges[0]],)]
-        if constraint.kind == "transitivity":
-            a, b, c = constraint.pieces
-            x, y, z = self.literal(a, b), self.literal(b, c), self.literal(c, a)
-            return [(x, y, z), (-x, -y, -z)]
-        if constraint.kind == "taco-taco":
-            a, b, c, d = constraint.pieces
-            return taco_clauses(
-                (self.literal(a, c), self.literal(b, c), self.literal(a, d), self.literal(b, d))
-            )
-        if len(constraint.pieces) == 3:
-            a, b, c = constraint.pieces
-            x, y = self.literal(a, c), self.literal(b, c)
-        else:
-            a, b, c, d = constraint.pieces
-            x, y = self.literal(a, c), self.literal(b, d)
-        return [(x, -y), (-x, y)]
+    def taco(self, row: int) -> Constraint:
+        """What a row of `tacos` means."""
+        one, other = (self._inner[k] for k in self._tacos[row].tolist())
+        pieces = (one.left, one.right, other.left, other.right)
+        return Constraint("taco-taco", (one.edge, other.edge), pieces)
+
+    @cached_property
+    def _inner(self) -> Sequence[Inner]:
+        return self.overlaps.inner
+
+    def _letters(self) -> dict[Edge, int]:
+        images = self.overlaps.images
+        pieces = images.pieces
+        lettered = [edge for edge in pieces.creases if pieces.letters[edge] in _UP]
+        sides = np.array([pieces.creases[edge] for edge in lettered], dtype=np.int64).reshape(-1, 2)
+        literals = self.literals(sides[:, 0], sides[:, 1]).tolist()
+        return {
+            edge: _UP[pieces.letters[edge]] * (-x if images.maps[left].flipped else x)
+            for edge, x, left in zip(lettered, literals, sides[:, 0].tolist(), strict=True)
+        }
+
+    def _both(self, a: Indices, b: Indices, c: Indices, d: Indices) -> Indices:
+        return np.stack([self.literals(a, b), self.literals(c, d)], axis=1)
 
 
-_UP: Final = {"V": 1, "M": -1}
-"""1 if the piece on the other side of a crease is folded on top of one that faces up."""
+def _of_edge(folded: bool) -> Kind:
+    return "taco-tortilla" if folded else "tortilla-tortilla"
 
 
-def taco_clauses(literals: tuple[int, int, int, int]) -> list[Clause]:
-    """That two creases in one place with the pieces A, B and C, D do not cross: AB, CD do not
-    interleave. The literals say that C lies above A and above B, D above A and above B.
+def taco_clauses(tacos: Indices) -> Indices:
+    """That two creases in one place with the pieces A, B and C, D do not cross, as clauses.
 
-    Each of the eight orders that interleave, such as A < C < B < D, is excluded by the three
-    relations between neighbours; with transitivity, these are all.
+    Each row has the literals AC, BC, AD, BD: C lies above A, and so on. Each of the eight orders
+    that interleave, such as A < C < B < D, is excluded by the three relations between neighbours;
+    with transitivity these are all. The eight clauses of a row follow each other.
 
-    >>> len(taco_clauses((1, 2, 3, 4)))
-    8
+    >>> taco_clauses(np.array([[1, 2, 3, 4]])).tolist()[0]
+    [-1, 2, -4]
     """
-    ac, bc, ad, bd = literals
+    ac, bc, ad, bd = tacos.T
     up = [(-ac, bc, -bd), (-ad, bd, -bc), (-bc, ac, -ad), (-bd, ad, -ac)]
-    return [*up, *((-x, -y, -z) for x, y, z in up)]
-
-
-def _matched(one: Inner, other: Inner) -> tuple[int, int]:
-    """The pieces of the other edge on the side of the left and of the right piece of one edge."""
-    if one.sides[0] == other.sides[0]:
-        return other.left, other.right
-    return other.right, other.left
-
-
-def transitivity(pieces: Iterable[int]) -> Constraint:
-    """The constraint that three pieces with a common interior point lie in an order."""
-    return Constraint("transitivity", (), tuple(sorted(pieces)))
+    rows = [np.stack(three, axis=1) for three in up]
+    return np.stack([*rows, *(-three for three in rows)], axis=1).reshape(-1, 3)

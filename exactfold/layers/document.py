@@ -55,6 +55,9 @@ class NearDocument(TypedDict):
     """By the size of the image."""
     vertex: Natural
     edge: FoldText
+    states: Natural | None
+    """The number of states if all that nearly meets is taken to meet, in floats; null if it is not
+    known."""
 
 
 class WrittenDocument(TypedDict):
@@ -121,4 +124,5 @@ class FlatDocument(TypedDict):
     """If the status is undecided because digits are in doubt: the answer for them."""
     ways: list[WayEndDocument] | None
     """Where the ways of the sheet end; null without `--ways`."""
+    """If digits are in doubt: the answer for the coordinates as they were read."""
     seconds: NotNegative

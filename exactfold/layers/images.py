@@ -9,9 +9,9 @@ from functools import cached_property
 from typing import TypeAlias
 
 from exactfold._support.verdict import PROVED, REFUTED, Verdict
-from exactfold.exact.surds import Number, Surd, SurdField, exact
+from exactfold.exact.surds import Number, Surd, exact
 from exactfold.layers.pieces import Pieces
-from exactfold.pattern.panel_pattern import Edge, Point
+from exactfold.pattern.panel_pattern import Edge, PanelPattern, Point
 
 Complex: TypeAlias = tuple[Surd, Surd]
 """A complex number with its real and its imaginary part in the field of the sheet."""
@@ -120,7 +120,7 @@ def images_of(pieces: Pieces) -> Images:
         for edge, (left, right) in known.items():
             around[left].append((edge, right, folded))
             around[right].append((edge, left, folded))
-    directions: dict[Edge, Complex] = {}
+    directions = doubled_directions(sheet)
     maps: dict[int, Isometry] = {0: Isometry((one, zero), (zero, zero), False)}
     torn: set[Edge] = set()
     waiting = deque([0])
@@ -131,8 +131,6 @@ def images_of(pieces: Pieces) -> Images:
                 continue  # compared from the other side
             place = maps[piece]
             if folded:
-                if edge not in directions:
-                    directions[edge] = _doubled(sheet.direction(*edge), sheet.field)
                 place = place.after_reflection(directions[edge], sheet.scaled_vertices[edge[0]])
             if other not in maps:
                 maps[other] = place
@@ -150,8 +148,33 @@ def _conjugate(a: Complex) -> Complex:
     return a[0], -a[1]
 
 
-def _doubled(direction: Point, field: SurdField) -> Complex:
-    """d / conj(d) for a vector d."""
-    x, y = (field.number(c) for c in direction)
-    square = x * x + y * y
-    return (x * x - y * y) / square, 2 * x * y / square
+def doubled_directions(sheet: PanelPattern) -> dict[Edge, Complex]:
+    """For each fold d / conj(d), where d is its direction: the reflection in the fold turns by it.
+
+    >>> from exactfold.pattern.opening import panels
+    >>> from exactfold.pattern.families import single_vertex
+    >>> doubled_directions(panels(single_vertex(4)))[0, 4]
+    (1, 0)
+    """
+    number = sheet.field.number
+    found: dict[Edge, Complex] = {}
+    for fold in sheet.folds:
+        x, y = map(number, sheet.direction(*fold))
+        scale = 1 / (x * x + y * y)
+        found[fold] = (x * x - y * y) * scale, 2 * x * y * scale
+    return found
+
+
+def closes(around: Sequence[Complex]) -> bool:
+    """Whether the reflections in folds round a vertex multiply to the identity.
+
+    `around` has d / conj(d) for each fold, in cyclic order. Two reflections are a rotation by their
+    quotient; this is Kawasaki's condition (docs/flat.md, Where the paper lies).
+    """
+    if len(around) % 2:
+        return False
+    even = odd = None
+    for first, second in zip(around[0::2], around[1::2], strict=True):
+        even = first if even is None else _times(even, first)
+        odd = second if odd is None else _times(odd, second)
+    return even == odd

@@ -16,7 +16,7 @@ from exactfold._support.progress import Progress
 from exactfold.errors import TooManyModesError
 from exactfold.interop.packages import optional
 from exactfold.layers.common import Common
-from exactfold.layers.constraints import Constraint, Constraints, taco_clauses, transitivity
+from exactfold.layers.constraints import Constraints, taco_clauses
 from exactfold.layers.sides import Indices
 
 Values: TypeAlias = npt.NDArray[np.int8]
@@ -50,13 +50,13 @@ class Orders:
     """All orders of the layers: `fixed` holds in all; a state takes any one of each component.
 
     `fixed` has 1 or -1 for a pair with the same order in all states, else 0. `used` are the
-    transitivity constraints that were needed. If there is no state, `refuted` is true, and `fixed`
+    triples whose transitivity was taken in. If there is no state, `refuted` is true, and `fixed`
     and `components` say nothing.
     """
 
     fixed: Values
     components: tuple[Component, ...]
-    used: tuple[Constraint, ...]
+    used: Indices
     refuted: bool = False
     stopped: str = ""
     triples: int = field(default=0, compare=False)
@@ -81,27 +81,30 @@ class Search:
         self.overlaps = constraints.overlaps
         self.common = Common(self.overlaps)
         self.clock, self.progress, self.most = clock, progress, most
-        self.used: dict[tuple[int, ...], Constraint] = {}
-        self._tested: set[int] = set()
+        self._used: list[Indices] = []
+        self._apart: Indices = np.zeros(0, dtype=np.int64)
         self._tests = 0
+
+    @property
+    def used(self) -> Indices:
+        """The triples whose transitivity was taken in."""
+        return np.concatenate([np.zeros((0, 3), dtype=np.int64), *self._used])
 
     def run(self) -> Orders:
         """All orders; raises `PackageMissingError` without python-sat."""
         try:
             self._classes()
-            self._take(self._taco_rows())
+            self._take(self._class(taco_clauses(self.constraints.tacos)))
             self._set(self._class(np.array(list(self.constraints.given.values()), dtype=np.int64)))
             self._propagate()
-            while True:
-                self._close()
-                if not self._open():
-                    break
+            self._close()
+            self._open()
             return self._components()
         except ContradictionError:
             return Orders(
                 np.zeros(self.constraints.variables, dtype=np.int8),
                 (),
-                tuple(self.used.values()),
+                self.used,
                 refuted=True,
                 triples=self._tests,
             )
@@ -110,7 +113,7 @@ class Search:
 
     def _classes(self) -> None:
         count = self.constraints.variables
-        equal = np.array(self.constraints.equal, dtype=np.int64).reshape(-1, 2)
+        equal = self.constraints.equal
         nodes = 2 * (abs(equal) - 1) + (equal < 0)
         both = np.concatenate([nodes, nodes ^ 1])
         ones = np.ones(len(both), dtype=np.int8)
@@ -128,16 +131,6 @@ class Search:
 
     def _class(self, literals: Indices) -> Indices:
         return np.sign(literals) * self._literal[abs(literals) - 1]
-
-    def _taco_rows(self) -> Indices:
-        tacos = np.array(self.constraints.tacos, dtype=np.int64).reshape(-1, 4)
-        some = self._class(tacos)
-        return np.concatenate(
-            [
-                np.stack([np.sign(x) * some[:, abs(x) - 1] for x in clause], axis=1)
-                for clause in taco_clauses((1, 2, 3, 4))
-            ]
-        )
 
     def _take(self, rows: Indices) -> None:
         """Take in clauses of three literals, without those that always hold."""
@@ -199,29 +192,20 @@ class Search:
                 return
 
     def _step(self, above: npt.NDArray[np.bool_], lower: Indices, upper: Indices) -> bool:
-        """Test some triples of each pair; whether a relation was found."""
+        """Test what lies between the pieces of each pair; whether a relation was found."""
         found = False
         step = max(1, (1 << 24) // self.overlaps.count)
         for start in range(0, len(lower), step):
             a, c = lower[start : start + step], upper[start : start + step]
-            between = above[a] & above[:, c].T
-            row, b = np.nonzero(between)
+            row, b = np.nonzero(above[a] & above[:, c].T)
             triples = np.stack([a[row], b, c[row]], axis=1)
             keys = self._key(triples)
-            fresh = np.fromiter((k not in self._tested for k in keys.tolist()), bool, len(keys))
+            fresh = ~np.isin(keys, self._apart)
             row, triples, keys = row[fresh], triples[fresh], keys[fresh]
-            while len(row):
-                first = np.concatenate([[True], row[1:] != row[:-1]])
-                place = np.arange(len(row)) - np.maximum.accumulate(
-                    np.where(first, np.arange(len(row)), 0)
-                )
-                now = place < _AT_ONCE
-                have = self._test(triples[now], keys[now])
-                done = np.zeros(len(a), dtype=bool)
-                done[row[now][have]] = True
-                found |= bool(have.any())
-                rest = ~now & ~done[row]
-                row, triples, keys = row[rest], triples[rest], keys[rest]
+            done = self._first_of_each(row, triples)
+            found |= bool(done.any())
+            none = keys[~done[row]]
+            self._apart = np.concatenate([self._apart, none])
         if found:
             self._propagate()
         return found
@@ -231,57 +215,69 @@ class Search:
         n = self.overlaps.count
         return (some[:, 0] * n + some[:, 1]) * n + some[:, 2]
 
-    def _test(self, triples: Indices, keys: Indices) -> npt.NDArray[np.bool_]:
+    def _test(self, triples: Indices) -> npt.NDArray[np.bool_]:
         """Test triples, and take in the clauses of those with a common open set."""
         have = self.common.have(triples)
         self._tests += len(triples)
-        self._tested.update(keys.tolist())
-        some = triples[have]
-        if len(some):
-            for one in some.tolist():
-                constraint = transitivity(one)
-                self.used[constraint.pieces] = constraint
-            literals = self._class(
-                np.stack(
-                    [
-                        self.constraints.literals(some[:, i], some[:, j])
-                        for i, j in ((0, 1), (1, 2), (2, 0))
-                    ],
-                    axis=1,
-                ).ravel()
-            ).reshape(-1, 3)
-            self._take(np.concatenate([literals, -literals]))
+        if have.any():
+            self._used.append(triples[have])
+            rows = self._class(self.constraints.triples(triples[have]))
+            self._take(np.concatenate([rows, -rows]))
         return have
 
-    def _open(self) -> bool:
-        """Take in the triples with two open relations; whether these are new."""
-        known = self._known()
-        pairs = self.overlaps.pairs[known == 0]
-        n = self.overlaps.count
+    def _open(self) -> None:
+        """Take in the triples with two or three open relations.
+
+        Of those with the same clauses, tests end with the first that has a common open set. A
+        triple with two relations of one class, in opposite directions, restricts nothing.
+        """
+        overlapping, n = self.overlaps.overlapping, self.overlaps.count
+        pairs = self.overlaps.pairs[self._known() == 0]
         if not len(pairs):
-            return False
+            return
         free = np.zeros((n, n), dtype=bool)
         free[pairs[:, 0], pairs[:, 1]] = free[pairs[:, 1], pairs[:, 0]] = True
-        found, total = False, 0
+        rows: Indices = np.zeros((0, 3), dtype=np.int64)
+        triples = rows
         step = max(1, (1 << 24) // n)
         for start in range(0, len(pairs), step):
             self.clock.check()
             a, b = pairs[start : start + step].T
-            third = (
-                self.overlaps.overlapping[a] & self.overlaps.overlapping[b] & (free[a] | free[b])
-            )
-            row, c = np.nonzero(third)
-            triples = np.stack([a[row], b[row], c], axis=1)
-            keys, first = np.unique(self._key(triples), return_index=True)
-            fresh = np.fromiter((k not in self._tested for k in keys.tolist()), bool, len(keys))
-            total += int(fresh.sum())
-            if total > _TRIPLES:
+            row, c = np.nonzero(overlapping[a] & overlapping[b] & (free[a] | free[b]))
+            some = np.sort(np.stack([a[row], b[row], c], axis=1), axis=1)
+            _, first = np.unique(self._key(some), return_index=True)
+            some = some[first]
+            these = np.sort(self._class(self.constraints.triples(some)), axis=1)
+            these[(these > 0).sum(axis=1) < 2] *= -1
+            these.sort(axis=1)
+            low, middle, high = these.T
+            keep = (low != -middle) & (low != -high) & (middle != -high)
+            rows = np.concatenate([rows, these[keep]])
+            triples = np.concatenate([triples, some[keep]])
+            if len(triples) > _TRIPLES:
                 raise TooManyModesError("too many triples of pieces have an open order")
-            have = self._test(triples[first[fresh]], keys[fresh])
-            found |= bool(have.any())
-        if found:
-            self._propagate()
-        return found
+        _, group = np.unique(rows, axis=0, return_inverse=True)
+        order = np.argsort(group, kind="stable")
+        self._first_of_each(group.ravel()[order], triples[order])
+        self._propagate()
+
+    def _first_of_each(self, group: Indices, triples: Indices) -> npt.NDArray[np.bool_]:
+        """Test triples, group by group, some at once; those groups of which one is common."""
+        done = np.zeros(int(group.max(initial=-1)) + 1, dtype=bool)
+        tested = 0
+        while len(group):
+            self.clock.check()
+            if self.progress is not None:
+                self.progress("common parts", tested, 0)
+            starts = np.concatenate([[True], group[1:] != group[:-1]])
+            first = np.maximum.accumulate(np.where(starts, np.arange(len(group)), 0))
+            now = np.arange(len(group)) - first < _AT_ONCE
+            have = self._test(triples[now])
+            tested += int(now.sum())
+            done[group[now][have]] = True
+            rest = ~now & ~done[group]
+            group, triples = group[rest], triples[rest]
+        return done
 
     # --- what is left ----------------------------------------------------------------------------
 
@@ -317,7 +313,7 @@ class Search:
             )
             made.append(component)
             stopped = stopped or why
-        return Orders(known, tuple(made), tuple(self.used.values()), False, stopped, self._tests)
+        return Orders(known, tuple(made), self.used, False, stopped, self._tests)
 
     def _component(
         self, variables: Sequence[int], clauses: Sequence[Sequence[int]], pairs: Indices
@@ -356,21 +352,22 @@ def models(
         yield from ([variables[0]], [-variables[0]])
         return
     with solver(clauses) as found:
-        stack: list[list[int]] = [[]]
+        stack: list[tuple[list[int], list[int] | None]] = [([], None)]
         while stack:
             clock.check()
-            decided = stack.pop()
+            decided, model = stack.pop()
+            if model is None:
+                if not found.solve(decided):
+                    continue
+                model = found.get_model()
             _, forced = found.propagate(decided)
-            if not found.solve(decided):
-                continue
-            model = found.get_model()
             known = set(forced) | set(decided)
             open_ = [v for v in variables if v not in known and -v not in known]
             if not open_:
                 yield [v if v in known else -v for v in variables]
                 continue
             value = model[open_[0] - 1] if open_[0] <= len(model) else open_[0]
-            stack += [[*decided, -value], [*decided, value]]
+            stack += [([*decided, -value], None), ([*decided, value], model)]
 
 
 def solver(clauses: Sequence[Sequence[int]]) -> Any:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property, cmp_to_key
 from typing import Final
@@ -44,6 +43,9 @@ class Overlaps:
     them separates them (docs/flat.md, Finding overlaps); the same holds for a segment and a convex
     polygon, with the line of the segment among those tried.
 
+    `points` are the different image points, and `number` has that of each vertex. `drawn` has the
+    line through two points of a side, and 1 if it leads from the first to the second. `corners` has
+    the points of each piece. `blur` is 0 unless points that nearly meet are taken to meet.
     `pairs` has the overlapping pairs of pieces (i, j), i < j, sorted.
     """
 
@@ -58,8 +60,16 @@ class Overlaps:
             for p, q in zip(some, (*some[1:], some[0]), strict=True):
                 drawn.setdefault((min(p, q), max(p, q)), len(drawn))
         self.sides = Sides(self.points, list(drawn))
-        self._drawn = drawn
+        self.drawn: dict[tuple[int, int], tuple[int, int]] = {}
+        for (p, q), k in drawn.items():
+            line, along = int(self.sides.line[k]), int(self.sides.along[k])
+            self.drawn[p, q], self.drawn[q, p] = (line, along), (line, -along)
         self.corners = corners
+        self.blur = 0.0
+        self._find()
+
+    def _find(self) -> None:
+        """Find what overlaps, once points, lines and signs are known."""
         self._extend()
         self._half_planes()
         overlapping = ~(apart := self._apart())
@@ -75,9 +85,7 @@ class Overlaps:
 
     def directed(self, p: int, q: int) -> tuple[int, int]:
         """The line through two image points that are drawn, and 1 if it leads from p to q."""
-        k = self._drawn[min(p, q), max(p, q)]
-        along = int(self.sides.along[k])
-        return int(self.sides.line[k]), along if p < q else -along
+        return self.drawn[p, q]
 
     def edge_on(self, line: int) -> Edge:
         """A side of a piece on a line, as an edge of the sheet."""
@@ -118,45 +126,41 @@ class Overlaps:
         rank[order] = np.arange(len(order))
         return rank
 
-    def crossings(self) -> Iterator[tuple[Inner, int]]:
-        """The edges inside the paper whose image passes through the interior of another piece."""
+    def crossings(self) -> Indices:
+        """Rows (k, piece): the image of `inner[k]` passes through the interior of the piece."""
         inner = self.inner
         if not inner:
-            return
-        signs = self.sides.signs
+            return np.zeros((0, 2), dtype=np.int64)
+        signs, found = self.sides.signs, []
         lines = np.array([one.line for one in inner])
-        first, second = (np.array([one.ends[k] for one in inner]) for k in (0, 1))
-        step = max(1, _CELLS // max(1, self.count))
+        ends = np.array([one.ends for one in inner])
+        step = max(1, _CELLS // self.count)
         for start in range(0, len(inner), step):
             rows = slice(start, start + step)
-            straddled = (self._high[lines[rows]] > 0) & (self._low[lines[rows]] < 0)
-            edge, piece = np.nonzero(straddled)
+            edge, piece = np.nonzero((self._high[lines[rows]] > 0) & (self._low[lines[rows]] < 0))
             edge += start
-            clear = np.zeros(len(edge), dtype=bool)
             for k in range(self._sides_of.shape[1]):
                 line, side = self._sides_of[piece, k], self._side_of[piece, k]
-                outside = side * signs[line, first[edge]] <= 0
-                outside &= side * signs[line, second[edge]] <= 0
-                clear |= outside
-            for e, c in zip(edge[~clear].tolist(), piece[~clear].tolist(), strict=True):
-                yield inner[e], c
+                first, second = (side * signs[line, ends[edge, end]] for end in (0, 1))
+                crossed = (first > 0) | (second > 0)
+                edge, piece = edge[crossed], piece[crossed]
+            found.append(np.stack([edge, piece], axis=1))
+        return np.concatenate(found)
 
-    def collinear(self) -> Iterator[tuple[Inner, Inner]]:
-        """The pairs of edges inside the paper whose images have a segment in common."""
-        by_line: dict[int, list[Inner]] = defaultdict(list)
-        for one in self.inner:
-            by_line[one.line].append(one)
+    def collinear(self) -> Indices:
+        """Rows (k, m): the images of `inner[k]` and `inner[m]` have a segment in common."""
+        by_line: dict[int, list[int]] = defaultdict(list)
+        for k, one in enumerate(self.inner):
+            by_line[one.line].append(k)
+        found: list[tuple[int, int]] = []
         for some in by_line.values():
-            spans = sorted(
-                (int(self.rank[e.ends[0]]), int(self.rank[e.ends[1]]), k)
-                for k, e in enumerate(some)
-            )
+            spans = sorted((*self.rank[list(self.inner[k].ends)].tolist(), k) for k in some)
             active: list[tuple[int, int]] = []
             for start, end, k in spans:
                 active = [(last, other) for last, other in active if last > start]
-                for _, other in active:
-                    yield some[other], some[k]
+                found += [(other, k) for _, other in active]
                 active.append((end, k))
+        return np.array(found, dtype=np.int64).reshape(-1, 2)
 
     def _compare(self, p: int, q: int) -> int:
         for axis, floats in ((0, self.sides.x), (1, self.sides.y)):

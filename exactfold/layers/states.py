@@ -52,11 +52,16 @@ class Conflict:
 
 @dataclass(frozen=True)
 class Near:
-    """A corner and a line of the folded image that nearly meet: their distance by the size."""
+    """A corner and a line of the folded image that nearly meet: their distance by the size.
+
+    `states` is the number of states if everything that is as near is taken to meet, computed in
+    floats; None if it is not known.
+    """
 
     distance: float
     vertex: int
     edge: Edge
+    states: int | None = None
 
     @property
     def text(self) -> str:
@@ -144,7 +149,7 @@ class FlatStates:
     @property
     def locally_flat(self) -> Verdict:
         """Whether each vertex satisfies the conditions of Kawasaki and Maekawa."""
-        if self.doubt and not (self.near and not self.failures):
+        if self.doubt and self.meant is not None and self.meant.doubt:
             return UNDECIDED
         return REFUTED if self.failures else PROVED
 
@@ -193,7 +198,7 @@ class FlatStates:
         """Why there is no state, or why that is not known; empty if there is one."""
         if self.doubt:
             known = f"{self.as_written}{': ' if self.why else ''}{self.why}"
-            return f"{self.doubt}; the digits as written: {known}"
+            return f"{self.doubt}; the coordinates as they were read: {known}"
         return self.why
 
     @property
@@ -262,7 +267,12 @@ def _document(found: FlatStates, name: str | None) -> FlatDocument:
         "reason": found.reason,
         "near": None
         if near is None
-        else {"distance": near.distance, "vertex": near.vertex, "edge": _name(near.edge)},
+        else {
+            "distance": near.distance,
+            "vertex": near.vertex,
+            "edge": _name(near.edge),
+            "states": near.states,
+        },
         "meant": None if found.meant is None else found.meant.to_dict(),
         "as_written": {
             "status": str(found.as_written),

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 from exactfold.design.panels.vertex.facts import kawasaki
+from exactfold.layers.images import closes, doubled_directions
 from exactfold.panels.vertex.stars import star_at
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
@@ -70,12 +71,12 @@ def failures(sheet: PanelPattern, letters: Mapping[Edge, str]) -> tuple[Failure,
     ()
     """
     found = []
+    doubled = doubled_directions(sheet)
     for v in sheet.interior:
         star = star_at(sheet, v)
         star = star.only(fold for fold in star.folds if letters.get(fold, "U") != "F")
-        holds, off = kawasaki(star)
-        if not holds:
-            found.append(Failure(v, "kawasaki", off))
+        if not closes([doubled[fold] for fold in star.folds]):
+            found.append(Failure(v, "kawasaki", kawasaki(star)[1]))
             continue
         given = [letters.get(fold, "U") for fold in star.folds]
         excess = given.count("M") - given.count("V")

@@ -91,7 +91,7 @@ def flat_answer(found: FlatStates) -> Text:
         return Text.assemble(
             f"whether the sheet folds flat {letters} is ",
             status_text(UNDECIDED),
-            f"{took}: {found.doubt}\nThe digits as written (--snap exact): "
+            f"{took}: {found.doubt}\nThe coordinates as they were read: "
             f"{_answer(found, letters)} - ",
             status_text(found.as_written),
         )
