@@ -1,13 +1,13 @@
 from exactfold.layers.certificate import states_certificate as states_certificate
 from exactfold.layers.constraints import Constraint as Constraint
+from exactfold.layers.ends import Reached as Reached
+from exactfold.layers.ends import WayEnd as WayEnd
+from exactfold.layers.ends import reached as reached
+from exactfold.layers.ends import way_ends as way_ends
 from exactfold.layers.folding import fold_flat as fold_flat
 from exactfold.layers.images import Images as Images
 from exactfold.layers.images import Isometry as Isometry
 from exactfold.layers.pieces import Pieces as Pieces
-from exactfold.layers.reached import Reached as Reached
-from exactfold.layers.reached import WayEnd as WayEnd
-from exactfold.layers.reached import reached as reached
-from exactfold.layers.reached import way_ends as way_ends
 from exactfold.layers.states import Component as Component
 from exactfold.layers.states import Conflict as Conflict
 from exactfold.layers.states import FlatStates as FlatStates

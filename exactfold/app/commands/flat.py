@@ -19,7 +19,7 @@ from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.opening import Opened, has_branches
 
 if TYPE_CHECKING:
-    from exactfold.layers.reached import WayEnd
+    from exactfold.layers.ends import WayEnd
 
 
 class Asked(FlatOptions):
@@ -50,7 +50,7 @@ class Asked(FlatOptions):
 
     def _ends(self, opened: Opened, found: FlatStates, bar: Bar) -> tuple[WayEnd, ...]:
         from exactfold.branches.counting.ways import decompose_opened
-        from exactfold.layers.reached import way_ends
+        from exactfold.layers.ends import way_ends
 
         if isinstance(opened.sheet, CreasePattern) and has_branches(opened.sheet):
             raise UsageError(

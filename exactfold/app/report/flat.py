@@ -14,7 +14,7 @@ from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED
 from exactfold.app.report.terminal import MOST, cut, more_text, status_text
 
 if TYPE_CHECKING:
-    from exactfold.layers.reached import WayEnd
+    from exactfold.layers.ends import WayEnd
     from exactfold.layers.states import Conflict, FlatStates
 
 FIRST: Final = 10

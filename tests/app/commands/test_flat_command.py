@@ -101,7 +101,7 @@ def test_where_ways_end():
 def test_ways_in_words():
     text = run("flat", "zigzags", "--ways", "--limit", "600").stdout
     assert "Where the ways of the sheet end\nway 1: not all folds that move are known" in text
-    assert "run into each other by 120.01 degrees of the\ndriving folds - REFUTED" in text
+    assert "run into each other by 120.01 degrees of\nthe driving folds - REFUTED" in text
     other = run("flat", "single-vertex-4", "--ways")
     assert other.exit_code == USAGE
     assert "its ways are branches" in other.stderr

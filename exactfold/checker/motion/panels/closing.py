@@ -52,6 +52,7 @@ class Closed(PanelClaim):
     """
 
     names = ("closed",)
+    always = True
 
     def check(self, folding: Folding) -> None:
         """Refuse a motion unless all folds close together and planes part its panels until then."""

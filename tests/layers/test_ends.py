@@ -144,7 +144,7 @@ def test_two_flaps_on_one_panel():
     apart = reached(follow_panels(strip([2, 4, 2]), until="180deg", frames=2))
     assert apart.status is PROVED
     assert set(apart.state.orders) == {(0, 1), (1, 2)}
-    over = follow_panels(strip([3, 4, 3]), amounts={(1, 5): 1.0, (2, 6): -1.0}, until="180deg")
+    over = follow_panels(strip([3, 4, 3]), amounts={(2, 3): 1.0, (4, 5): -1.0}, until="180deg")
     assert reached(over).status is PROVED
 
 

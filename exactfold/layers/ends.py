@@ -11,7 +11,6 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import pairwise
 from math import ceil, degrees, pi
-from types import MappingProxyType
 from typing import Final, TypeAlias
 
 import numpy as np
@@ -137,7 +136,7 @@ class WayEnd:
     """
 
     way: int
-    letters: Mapping[Edge, str]
+    letters: Mapping[Edge, str] = field(repr=False, hash=False)
     status: Verdict
     reason: str
     state: int | None = None
@@ -189,13 +188,13 @@ def way_ends(
 
 def _end_of(answer: Decomposition, way: PanelWay, states: FlatStates, clock: Clock) -> WayEnd:
     folds = answer.known.pattern.folds
-    letters = MappingProxyType({fold: way.letters.get(fold, "F") for fold in folds})
+    letters = {fold: way.letters.get(fold, "F") for fold in folds}
     if states.doubt:
         return WayEnd(way.number, letters, UNDECIDED, states.doubt)
     try:
         clock.check()
         motion = follow_panels(answer, way=way.number, until="180deg", frames=2)
-        letters = MappingProxyType(dict(motion.assignment))
+        letters = dict(motion.assignment)
         end = reached(motion)
     except (NotApplicableError, NotFollowedError, TooManyModesError) as error:
         return WayEnd(way.number, letters, UNDECIDED, str(error))
