@@ -1,3 +1,4 @@
+from exactfold.layers.certificate import states_certificate as states_certificate
 from exactfold.layers.constraints import Constraint as Constraint
 from exactfold.layers.folding import fold_flat as fold_flat
 from exactfold.layers.images import Images as Images

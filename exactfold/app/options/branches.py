@@ -123,8 +123,13 @@ class FlatOptions(ReadingOptions):
     everything: Annotated[
         bool, flag("--all", text="List every vertex that fails, and every condition.")
     ] = False
+    certificate: Annotated[
+        Path | None,
+        written("Write a certificate of the answer, if it is proved.", "OUT.json"),
+    ] = None
 
     def __post_init__(self) -> None:
+        apart(self.certificate, self.file)
         if self.free and self.letters is not None:
             raise UsageError("--any folds every crease either way: leave out --letters")
 

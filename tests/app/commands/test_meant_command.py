@@ -15,7 +15,7 @@ from running import INVALID, PROVED, UNDECIDED, USAGE, run
 
 import exactfold
 from exactfold.errors import NotApplicableError, UsageError
-from exactfold.pattern.drawing.meant import positions
+from exactfold.pattern.drawing.meant import inference, positions
 
 
 def written(tmp_path: Path, document: dict[str, Any], name: str = "noisy") -> Path:
@@ -205,6 +205,16 @@ def test_what_is_stated_of_an_exact_drawing_has_no_noise(thin: Path) -> None:
     sectors = exactfold.read(thin, also=["sectors@4:0-1,1-2", "sectors@4:1-2,2-3"]).meant
     assert sectors is not None
     assert {"sectors@4:0-1,1-2", "sectors@4:1-2,2-3"} <= {r.name for r in sectors.relations}
+
+
+def test_a_doubt_without_a_noise_level_says_so(
+    miura: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(inference, "noise_level", lambda *_: None)
+    result = run("count", miura)
+    assert result.exit_code == UNDECIDED
+    said = " ".join(result.stdout.split())
+    assert "is not known, because no noise level stands out from chance (--noise EPS states" in said
 
 
 def test_a_denominator_takes_no_relations(thin: Path) -> None:
