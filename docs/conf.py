@@ -38,7 +38,7 @@ myst_heading_anchors = 4
 nb_execution_mode = "off"
 myst_links_external_new_tab = False
 nitpicky = True
-smartquotes_action = "qe"  # "--signs" keeps both hyphens
+smartquotes = False  # hyphens and quotes of options can be copied
 
 html_theme = "furo"
 html_title = "exactfold"

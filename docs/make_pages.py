@@ -53,6 +53,7 @@ TOPICS: Final[Mapping[str, tuple[str, str, tuple[str, ...]]]] = {
         "Sheets of triangles and of panels, families of them, and drawings in files.",
         ("pattern", "pattern.families", "pattern.data"),
     ),
+    "layers": ("layers", "Flat-folded states: where the paper lies, and its layers.", ("layers",)),
     "panels": ("panels", "All ways in which a sheet of rigid panels folds.", ("panels",)),
     "motion": (
         "motion",

@@ -6,6 +6,7 @@
     decompose  the ways of a sheet whose panels stay rigid
     match      which ways have given mountains and valleys, or why none has
     vertices   which vertices fold with their letters, and what to change at the others
+    flat       the flat-folded states of a sheet, with their layers, or why there is none
     actuate    torques that drive a sheet along one way and no other
     follow     the motion along a way, in space
     prove      a motion proved, with its first contact

@@ -6,6 +6,7 @@ from exactfold import design as design
 from exactfold import errors as errors
 from exactfold import exact as exact
 from exactfold import interop as interop
+from exactfold import layers as layers
 from exactfold import motion as motion
 from exactfold import panels as panels
 from exactfold import pattern as pattern
@@ -27,6 +28,7 @@ from exactfold.app.verbs.counting import read as read
 from exactfold.app.verbs.designing import actuate as actuate
 from exactfold.app.verbs.designing import match as match
 from exactfold.app.verbs.designing import vertices as vertices
+from exactfold.app.verbs.layering import flat as flat
 from exactfold.app.verbs.moving import follow as follow
 from exactfold.app.verbs.moving import loops as loops
 from exactfold.app.verbs.moving import prove as prove
@@ -38,6 +40,7 @@ from exactfold.design import Actuation as Actuation
 from exactfold.design import Match as Match
 from exactfold.errors import ExactfoldError as ExactfoldError
 from exactfold.errors import InputError as InputError
+from exactfold.layers import FlatStates as FlatStates
 from exactfold.motion import Loops as Loops
 from exactfold.motion import Motion as Motion
 from exactfold.motion import PanelMotion as PanelMotion

@@ -19,6 +19,7 @@ VERBS = {
     "count",
     "decompose",
     "draw",
+    "flat",
     "follow",
     "loops",
     "match",

@@ -42,6 +42,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
     pretty_exceptions_enable=False,
     cls=Group,
+    rich_markup_mode=None,  # plain help: loading Markdown takes longer than all else
 )
 
 
@@ -187,6 +188,21 @@ def vertices(**options: Any) -> int:
     vertices with something to change are listed.
     """
     from exactfold.app.commands.vertices import Asked
+
+    return Asked(**options).answer()
+
+
+@app.command(cls=Command, rich_help_panel="Ask")
+@taking("branches.FlatOptions")
+def flat(**options: Any) -> int:
+    """Find the flat-folded states of a sheet, its orders of layers, with proof.
+
+    Every crease is folded by 180 degrees, with the mountains and valleys of the
+    file if it has some. First each vertex is tried by itself, then the layers: no
+    panel may pass through another one or through a crease. If there is no state,
+    the answer names the vertex, or the panels that cross whatever the order.
+    """
+    from exactfold.app.commands.flat import Asked
 
     return Asked(**options).answer()
 

@@ -53,6 +53,7 @@ DOCUMENTS: Final = {
     "match": ("exactfold match --json", "design.assignments.result:MatchDocument"),
     "starting": ("exactfold match --json of rigid panels", "design.panels.match:StartingDocument"),
     "vertices": ("exactfold vertices --json", "design.panels.vertex.vertices:VerticesDocument"),
+    "flat": ("exactfold flat --json", "layers.document:FlatDocument"),
     "certify": ("exactfold certify --json", "app.commands.certify:CertifyDocument"),
     "export": ("exactfold export --json", "app.commands.export:ExportDocument"),
     "motion": (

@@ -30,6 +30,9 @@ from .core.reading import (
     plain,
     read_json,
 )
+from .layers.counted import FLAT_COUNT
+from .layers.refuted import FLAT_REFUTED
+from .layers.state import FLAT_STATE
 from .letters.assignments import ASSIGNMENTS
 from .letters.letters import LETTERS
 from .letters.panels import PANEL_LETTERS
@@ -56,6 +59,9 @@ DOCUMENTS: tuple[DocumentKind[Any], ...] = (
     MOTION,
     PANEL_MOTION,
     MEANT,
+    FLAT_STATE,
+    FLAT_REFUTED,
+    FLAT_COUNT,
 )
 """The kinds with one JSON object in each file."""
 

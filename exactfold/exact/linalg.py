@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from itertools import pairwise
-from typing import TypeAlias
-
-from flint import fmpq, fmpq_mat, nmod_mat
+from typing import TYPE_CHECKING, TypeAlias
 
 from exactfold.exact.numbers import over_common_denominator
+
+if TYPE_CHECKING:  # FLINT is loaded where it is used, as small counts do without
+    from flint import fmpq, fmpq_mat
 
 Matrix: TypeAlias = Sequence[Sequence[Fraction | int]]
 Inertia: TypeAlias = tuple[int, int, int]
@@ -17,6 +18,8 @@ Inertia: TypeAlias = tuple[int, int, int]
 
 def to_flint(matrix: Matrix) -> fmpq_mat:
     """The matrix as a FLINT matrix of rational numbers."""
+    from flint import fmpq, fmpq_mat
+
     columns = len(matrix[0]) if matrix else 0
     entries = [fmpq(x.numerator, x.denominator) for row in matrix for x in row]
     return fmpq_mat(len(matrix), columns, entries)
@@ -45,6 +48,8 @@ def rank_modulo(rows: Sequence[Mapping[int, int]], columns: int, prime: int) -> 
     >>> rank_modulo([{0: 1, 1: 2}, {0: 2, 1: 1}], 2, 7), rank_modulo([{0: 1, 1: 2}, {0: 2}], 2, 2)
     (2, 1)
     """
+    from flint import nmod_mat
+
     matrix = nmod_mat(len(rows), columns, prime)
     for i, row in enumerate(rows):
         for j, value in row.items():

@@ -24,6 +24,7 @@ _TIMES_MISSED: Final = 10
 """No proposal is further from the drawing than so many times what the drawing misses."""
 _TIMES_NOISE: Final = 100
 """Recognising coordinates must not move one by more than this many times the largest defect."""
+_NO_LEVEL: Final = "no noise level stands out from chance (--noise EPS states one)"
 _NONE_NEAR: Final = "no relation between creases holds nearly but not exactly"
 
 
@@ -35,10 +36,10 @@ def meaning(found: Opened, written: Callable[[], Opened]) -> Opened:
     `doubt` says why. If the reading asks for relations, they are listed in the lines of the sheet.
     """
     reading = found.reading
-    if reading.snap == "exact" and reading.overrules:
+    if reading.snap not in (None, "auto") and reading.overrules:
+        takes = "takes the digits as written" if reading.snap == "exact" else "rounds all digits"
         raise UsageError(
-            "--snap exact takes the digits as written: leave out --without, --also, --noise and "
-            "--unit"
+            f"--snap {reading.snap} {takes}: leave out --without, --also, --noise and --unit"
         )
     return _with_relations(_meaning(found, written))
 
@@ -47,10 +48,8 @@ def _with_relations(known: Opened) -> Opened:
     """The same sheet; its lines list the relations if the reading asks for them."""
     if not known.reading.relations:
         return known
-    if known.meant is not None:
-        listed = known.meant.listed
-    else:
-        listed = off_by(left_relations(known.sheet)) or (_NONE_NEAR,)
+    meant = known.meant
+    listed = meant.listed if meant is not None else off_by(known.left) or (_NONE_NEAR,)
     return replace(known, lines=known.lines + listed, seen=known.seen + listed)
 
 
@@ -59,7 +58,7 @@ def _meaning(found: Opened, written: Callable[[], Opened]) -> Opened:
     reading = found.reading
     if reading.snap == "exact":
         return found
-    left = left_relations(found.sheet)
+    left = found.left
     if not left and not reading.overrules:
         return found
     from exactfold.pattern.meant import Meant, inferred
@@ -78,7 +77,13 @@ def _meaning(found: Opened, written: Callable[[], Opened]) -> Opened:
         )
     meant = inferred(sheet, reading)
     if meant.realized is None or meant.realized.sheet is None:
-        return replace(found, meant=replace(meant, left=left))
+        if meant.reason and reading.overrules and (reading.also or not left):
+            raise UsageError(
+                f"no sheet near the drawing is as asked for: {meant.reason}; state fewer relations "
+                "or less noise"
+            )
+        reason = meant.reason or (_NO_LEVEL if left else "")
+        return replace(found, meant=replace(meant, left=left, reason=reason))
     exact = meant.realized.sheet
     lines = tuple(line for line in raw.lines if not line.startswith("coordinates kept"))
     return replace(
@@ -104,7 +109,7 @@ def recognised(found: Opened) -> Opened | None:
     reading = found.reading
     if reading.snap is not None or reading.overrules:
         return None
-    left = left_relations(found.sheet)
+    left = found.left
     if not left:
         return None
     from exactfold.pattern.drawing.coordinates import exact_coordinates

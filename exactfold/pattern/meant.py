@@ -277,8 +277,9 @@ def _found(written: PanelPattern, reading: Reading, dropped: Sequence[Kind]) -> 
         written.boundary_edges,
         noise=reading.noise,
         unit=reading.unit,
-        without=(*reading.without, *dropped),
+        without=reading.without,
         also=reading.also,
+        kinds_left_out=dropped,
     )
 
 
@@ -289,9 +290,9 @@ def _realized(
 ) -> Meant:
     """What is known of the sheet that was meant, once `make` looked for it."""
     known = Meant(
-        noise=found.noise or None,
+        noise=found.noise if found.near else None,
         clear=found.clear,
-        gap=found.gap if found.noise else None,
+        gap=found.gap if found.near else None,
         chance=found.chance,
         relations=found.relations,
         independent=found.independent,

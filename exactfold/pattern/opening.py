@@ -6,7 +6,7 @@ from dataclasses import replace
 from functools import partial
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from exactfold._support.plurals import counted
 from exactfold.errors import (
@@ -259,10 +259,20 @@ def triangles(opened: Opened, needs: str) -> CreasePattern:
     large = sum(len(face) > 3 for face in sheet.faces)
     raise NotCountedError(
         f"{needs} takes triangulated sheets, and this one has {counted(large, 'panel')} with "
-        "more than three sides: `exactfold count` (`count` in Python) says how its panels "
-        "fold while they stay rigid, and `exactfold convert --triangulate` cuts them into "
-        "triangles that may bend"
+        f"more than three sides: {_INSTEAD.get(needs, _COUNTED)}, and `exactfold convert "
+        "--triangulate` cuts them into triangles that may bend"
     )
+
+
+_COUNTED: Final = (
+    "`exactfold count` (`count` in Python) says how its panels fold while they stay rigid"
+)
+_INSTEAD: Final = {
+    "export": "`exactfold fold --way N -o FILE` writes one of its ways as .fold, .obj, .stl or "
+    ".csv, with its motion",
+    "certify": "`exactfold count` (`count` in Python) proves all solutions of its equations",
+}
+"""What else there is for rigid panels, by the caller that needs triangles."""
 
 
 def has_branches(pattern: CreasePattern) -> bool:

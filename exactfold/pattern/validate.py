@@ -224,7 +224,8 @@ def disk(rotation: Rotation, triangles: Sequence[Triangle]) -> None:
         ends = fan.keys() - fan.values()  # spokes v-a that no face (v, b, a) precedes
         if len(ends) > 1 or _steps(fan, next(iter(ends or fan))) < len(fan):
             raise NotADiskError(
-                f"the sheet hangs together by vertex {v} only: its faces form several fans",
+                f"the sheet hangs together by vertex {v} only: its faces form several fans; draw "
+                "the parts apart, as sheets of their own",
                 vertices=[v],
             )
         if ends:

@@ -37,7 +37,7 @@ class PatternFactsDocument(TypedDict):
     """The facts of a triangulated sheet."""
 
     format: Literal["exactfold info result"]
-    version: Literal[1]
+    version: Literal[2]
     pattern: PatternDocument
     triangles: Natural
     edges: Natural
@@ -85,7 +85,7 @@ class PatternFacts:
         pattern = self.pattern
         return {
             "format": "exactfold info result",
-            "version": 1,
+            "version": 2,
             "pattern": described(pattern, name),
             "triangles": len(pattern.triangles),
             "edges": len(pattern.edges),

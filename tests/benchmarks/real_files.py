@@ -46,8 +46,12 @@ REASONS = {
     "MalformedPatternError": "creases that end inside panels",
     "MalformedDrawingError": "creases that vanish, or no folds",
 }
-REMEDIES = {"curves": ["--chords", "4"], "several sheets": ["--sheet", "all"]}
-"""What the message to a refused file names and nobody has to choose, as options of `count`."""
+REMEDIES = {
+    "`--chords ": ["--chords", "4"],
+    "`exactfold count FILE --sheet all`": ["--sheet", "all"],
+    "`--box`": ["--box"],
+}
+"""What the message to a refused file names and nobody has to choose, with options of `count`."""
 
 Line = dict[str, Any]
 
@@ -106,6 +110,14 @@ def refused_for(line: Line) -> str:
     if "creases must be straight" in error["message"]:
         return "curves"
     return REASONS.get(error["class"], str(error["class"]))
+
+
+def remedy_of(line: Line) -> list[str]:
+    """The options of `count` that the message to a refused file names; empty if there are none."""
+    if line["code"] != 3 or line["result"] is None:
+        return []
+    message = line["result"]["error"]["message"]
+    return next((options for named, options in REMEDIES.items() if named in message), [])
 
 
 def kind_of(line: Line) -> tuple[str, str]:
@@ -179,7 +191,7 @@ def answers(paths: list[Path], folder: Path, commit: str | None, keep: Path) -> 
             if name in kept:
                 continue
             line = {"file": name, **answered(path, source)}
-            if line["code"] == 3 and (options := REMEDIES.get(refused_for(line))):
+            if options := remedy_of(line):
                 line["remedy"] = answered(path, source, *options)
             out.write(json.dumps(line) + "\n")
             out.flush()
@@ -227,7 +239,7 @@ def write_files(programs: dict[str, dict[str, Line]], path: Path) -> None:
             for lines in programs.values():
                 kind, said = kind_of(lines[name])
                 star = "*" if lines is not now and withdrawn(first[name], now[name]) else ""
-                remedy = lines[name].get("remedy") and " ".join(REMEDIES[said])
+                remedy = lines[name].get("remedy") and " ".join(remedy_of(lines[name]))
                 then = f"; with `{remedy}` {helped(lines[name])}" if remedy else ""
                 cells.append((f"{kind}: {said}" if said else kind) + then + star)
             table.writerow([path_shown, *cells])

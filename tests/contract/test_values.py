@@ -119,9 +119,24 @@ STUDIES = {
         {"status": "undecided"},
     ),
 }
+FLAT_TWIST = exactfold.flat("square-twist")
+FLAT_MAP = exactfold.flat("map-fold", "any")
+LAYERS = {
+    "flat-folded states": FLAT_MAP,
+    "no flat-folded state": FLAT_TWIST,
+    "state": FLAT_MAP.state(3),
+    "part of states": FLAT_MAP.components[0],
+    "images": FLAT_MAP.images,
+    "isometry": FLAT_MAP.images.maps[1],
+    "convex pieces": FLAT_MAP.images.pieces,
+    "conflict": FLAT_TWIST.conflict[0],
+    "constraint": FLAT_TWIST.conflict[0].constraint,
+    "failure of a vertex": exactfold.flat("zigzags").failures[0],
+}
 VALUES = {
     **PROVING,
     **STUDIES,
+    **LAYERS,
     "pattern": PATTERN,
     "pattern with long coordinates": exactfold.CreasePattern(
         [(0, 0), (10**5000, 0), (0, "1/7"), (1, "1/50")], [(0, 1, 3), (1, 2, 3), (2, 0, 3)]

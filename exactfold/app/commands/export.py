@@ -177,7 +177,7 @@ def write_system(asked: Wanted) -> int:
     from exactfold.app.verbs.systems import PROGRAMS, sheet_system
 
     with Bar("reading") as bar:
-        opened = read_any(asked.file, asked.reading)
+        opened = read_any(asked.file, asked.reading, doubted=False)  # the error says it
         bar("equations")
         system = sheet_system(opened, asked.given.heights)
         text = system.text(str(asked.system))
@@ -222,7 +222,7 @@ class ExportDocument(TypedDict):
     """A branch that was written as a FOLD file."""
 
     format: Literal["exactfold export result"]
-    version: Literal[1]
+    version: Literal[2]
     pattern: PatternDocument
     status: VerdictText
     vertex_signs: VertexSigns
@@ -245,7 +245,7 @@ def _summary(
     """The object that --json prints: `schema("export")`."""
     return {
         "format": "exactfold export result",
-        "version": 1,
+        "version": 2,
         "pattern": described(branch.pattern, name),
         "output": str(output),
         "status": str(export.status),

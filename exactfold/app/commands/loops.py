@@ -14,7 +14,7 @@ from exactfold.app.shell.resuming import require_file, resumable
 from exactfold.app.shell.shell import EXIT, Bar, apart, interruptible, name_of
 from exactfold.branches.counting.on_dask import LOCAL
 from exactfold.branches.counting.pools import dask_pool
-from exactfold.errors import UsageError
+from exactfold.errors import NotCountedError, UsageError
 from exactfold.motion.loops.matching import find_loops
 
 _FEW = 4
@@ -52,6 +52,12 @@ class Wanted(MotionsOptions):
         with Bar("reading") as bar:
             read_sheet = read(self.file, self.reading, "motions", verbose=self.verbose)
             pattern = read_sheet.pattern
+            if len(pattern.boundary) > 4:
+                raise NotCountedError(
+                    "motions takes sheets with four boundary vertices, and this one has "
+                    f"{len(pattern.boundary)}: its ways to fold form families, and "
+                    "`exactfold fold` follows one of them"
+                )
             with ExitStack() as stack:
                 if self.certificate is not None:
                     require_file(self.certificate, self.resume)

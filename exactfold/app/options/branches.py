@@ -109,6 +109,32 @@ class VerticesOptions(ReadingOptions):
 
 
 @dataclass(frozen=True, eq=False, repr=False, match_args=False)
+class FlatOptions(ReadingOptions):
+    """The options of `exactfold flat`; `UsageError` if they do not go together."""
+
+    file: Pattern
+    letters: Letters = None
+    free: Annotated[
+        bool,
+        flag("--any", text="Fold every crease either way, but for creases that the file has as F."),
+    ] = False
+    limit: Limit = LIMIT
+    as_json: Json = False
+    everything: Annotated[
+        bool, flag("--all", text="List every vertex that fails, and every condition.")
+    ] = False
+    certificate: Annotated[
+        Path | None,
+        written("Write a certificate of the answer, if it is proved.", "OUT.json"),
+    ] = None
+
+    def __post_init__(self) -> None:
+        apart(self.certificate, self.file)
+        if self.free and self.letters is not None:
+            raise UsageError("--any folds every crease either way: leave out --letters")
+
+
+@dataclass(frozen=True, eq=False, repr=False, match_args=False)
 class AssignmentsOptions(ReadingOptions):
     """The options of `exactfold assignments`."""
 

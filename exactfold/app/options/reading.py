@@ -13,8 +13,8 @@ from exactfold.app.shell.parameters import (
     Force,
     Sheet,
     Snap,
-    distance,
     flag,
+    noise_level,
     number,
 )
 from exactfold.errors import UsageError
@@ -65,7 +65,7 @@ class ReadingOptions:
     noise: Annotated[
         Fraction | None,
         typer.Option(
-            parser=distance,
+            parser=noise_level,
             metavar="EPS",
             help="How inexact the drawing is, as a share of its size. Default: measured.",
         ),

@@ -18,6 +18,7 @@ from exactfold.app.report.branch import shapes_report as shapes_report
 from exactfold.app.report.count import count_report as count_report
 from exactfold.app.report.digits import digits_line as digits_line
 from exactfold.app.report.digits import proposal_lines as proposal_lines
+from exactfold.app.report.flat import flat_report as flat_report
 from exactfold.app.report.info import examples_report as examples_report
 from exactfold.app.report.info import expectation as expectation
 from exactfold.app.report.info import info_report as info_report

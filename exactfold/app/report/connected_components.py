@@ -15,25 +15,40 @@ if TYPE_CHECKING:
 _SHOWN: Final = 8
 
 
-def graphs(connected_components: ConnectedComponents) -> str:
-    """The graphs and their connected components, in one sentence.
+def families(vertices: int, dimension: int) -> str:
+    """How many families there are with so many foldable vertices, mirror images together.
+
+    >>> families(1, 3), families(5, 5)
+    ('1 family of ways to fold, of dimension 3', '16 families of ways to fold, each of dimension 5')
+    """
+    exponent = max(vertices - 1, 0)
+    many = exponent > 0
+    return (
+        f"{_power(exponent)} {'families' if many else 'family'} of ways to fold, "
+        f"{'each ' if many else ''}of dimension {dimension}"
+    )
+
+
+CHOICES: Final = "one for each choice of the vertices that pop up, seen from one side"
+"""What tells the families apart, if there are several foldable vertices."""
+
+
+def families_answer(pieces: ConnectedComponents) -> tuple[str, str]:
+    """How many families there are; and what tells them apart, and how many components they form.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> from exactfold.branches import find_connected_components
-    >>> graphs(find_connected_components(single_vertex(6)))
-    'for all boundary heights there is exactly one shape for each of 2 choices of the vertices
-    that pop up; these 2 graphs of dimension 3 form 2 connected components'
+    >>> families_answer(find_connected_components(single_vertex(6)))
+    ('1 family of ways to fold, of dimension 3',
+     'with its mirror image it forms 2 connected components')
     """
-    number = _power(len(connected_components.vertices))
-    one = len(connected_components.vertices) == 0
-    choices = "1 choice" if one else f"{number} choices"
-    kinds = "this graph" if one else f"these {number} graphs"
-    return (
-        f"for all boundary heights there is exactly one shape for each of {choices} of the "
-        f"vertices that pop up; {kinds} of dimension {connected_components.dimension} "
-        f"{'forms' if one else 'form'} "
-        f"{_range(connected_components.low, connected_components.high)}"
-    )
+    number = len(pieces.vertices)
+    form = _range(pieces.low, pieces.high)
+    if number > 1:
+        what = f"{CHOICES}; with their mirror images they form {form}"
+    else:
+        what = f"with its mirror image it forms {form}" if number else f"it forms {form}"
+    return families(number, pieces.dimension), what
 
 
 def piece_notes(result: BranchCount) -> list[str]:
@@ -44,7 +59,7 @@ def piece_notes(result: BranchCount) -> list[str]:
     notes = [_numbered(connected_components)]
     if connected_components.chord is not None:
         i, j = connected_components.chord
-        notes.append(f"the fold {i}-{j} from boundary to boundary joins all graphs")
+        notes.append(f"the fold {i}-{j} from boundary to boundary joins all families")
     if connected_components.joints and len(connected_components.vertices) > MOST:
         notes.append(_many_joints(connected_components))
     elif connected_components.joints:
@@ -54,8 +69,9 @@ def piece_notes(result: BranchCount) -> list[str]:
         rest = f" and {more} more (--json)" if more > 0 else ""
         dots = ", ..." if len(connected_components.vertices) > _SHOWN else ""
         notes.append(
-            "graphs meet at solutions on which some stars are flat; these have the following signs "
-            f"of the vertices {order}{dots}, 0 where flat, or the opposite signs: {shown}{rest}"
+            "families meet at solutions on which some stars are flat; these have the following "
+            f"signs of the vertices {order}{dots}, 0 where flat, or the opposite signs: "
+            f"{shown}{rest}"
         )
     if connected_components.never_flat:
         names = ", ".join(map(str, list(connected_components.never_flat)[:_SHOWN]))
@@ -64,31 +80,33 @@ def piece_notes(result: BranchCount) -> list[str]:
         are = agreeing(len(connected_components.never_flat), "is")
         notes.append(f"{which} {are} never flat when the sheet starts to fold: {names}")
     true = _range(connected_components.low, connected_components.true_high)
-    notes.append(f"the true motions near the flat state form as many graphs, with {true}")
+    notes.append(f"the true motions near the flat state form as many families, with {true}")
     families = result.families
     if families is not None and families.status is PROVED and families.second_order is not None:
         kinds = ", ".join(f"{n} of dimension {d}" for d, n in families.second_order.items())
-        notes.append(f"irreducible components: {kinds}")
+        notes.append(f"irreducible components that the families lie in: {kinds}")
     if result.warning is not None:
         notes.append(f"warning: {result.warning}")
     return notes
 
 
 def _numbered(connected_components: ConnectedComponents) -> str:
-    """How the graphs are numbered: by the signs of the vertices, the first of them up."""
+    """How the families are numbered: by the signs of the vertices, the first of them up."""
     vertices = connected_components.vertices
+    each = "for all boundary heights it has exactly one shape"
     if not vertices:
-        return "way 1 is this graph: one family over all boundary heights"
-    number, rest = _power(len(vertices) - 1), len(vertices) - 1
+        return f"way 1 is this family: {each}"
+    rest = len(vertices) - 1
     if not rest:
-        return f"the graphs are mirror images: one family, way 1, with vertex {vertices[0]} up"
+        return f"way 1 is this family, with vertex {vertices[0]} up: {each}"
     order = ""
     if len(vertices) <= _SHOWN:
         names = ", ".join(map(str, vertices))
-        order = f"; the vertices {names} are {'+' * len(vertices)}, {'+' * rest}-, and so on"
+        signs = f"{'+' * len(vertices)}, {'+' * rest}-, ..."
+        order = f"; in ways 1, 2 and so on the vertices {names} are {signs}"
     return (
-        f"each graph has another as its mirror image: so they are {number} families, ways 1 to "
-        f"{number}, each over all boundary heights, with vertex {vertices[0]} up{order}"
+        f"ways 1 to {_power(rest)} are the families, each with vertex {vertices[0]} up: for all "
+        f"boundary heights each has exactly one shape{order}"
     )
 
 
@@ -100,7 +118,7 @@ def _many_joints(connected_components: ConnectedComponents) -> str:
     )
     some = f"{flat[0]}" if flat[0] == flat[-1] else f"{flat[0]} to {flat[-1]}"
     return (
-        f"graphs meet at {counted(number, 'solution')} on which {some} of the {stars} stars are "
+        f"families meet at {counted(number, 'solution')} on which {some} of the {stars} stars are "
         "flat; --json has their signs"
     )
 

@@ -12,7 +12,7 @@ from rich.text import Text
 
 from exactfold._support.plurals import agreeing, counted
 from exactfold._support.verdict import PROVED, UNDECIDED
-from exactfold.app.report.connected_components import graphs, piece_notes
+from exactfold.app.report.connected_components import families_answer, piece_notes
 from exactfold.app.report.terminal import (
     BY_SIGN,
     COUNTED,
@@ -98,18 +98,14 @@ def answer(result: BranchCount) -> Text:
             "0 ways to start folding - ", status_text(PROVED), took, "; the sheet is rigid"
         )
     if result.connected_components is not None and result.distinct is None:
-        return Text.assemble(
-            "infinitely many ways to start folding - ",
-            status_text(PROVED),
-            took,
-            f"; {graphs(result.connected_components)}",
-        )
+        number, what = families_answer(result.connected_components)
+        return Text.assemble(f"{number} - ", status_text(PROVED), took, f"; {what}")
     if result.pattern.degrees_of_freedom > 1:
         return Text.assemble(
-            "infinitely many ways to start folding - ",
+            f"1 family of ways to fold, of dimension {result.pattern.degrees_of_freedom} - ",
             status_text(PROVED),
             took,
-            f"; they form one family of dimension {result.pattern.degrees_of_freedom}",
+            "; the dimension is the number of folds that can be folded independently",
         )
     ways = result.real or 0
     return Text.assemble(

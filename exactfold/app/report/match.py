@@ -27,7 +27,8 @@ _NEAR = 8
 RIGIDLY = (
     "This is about rigid panels that all move together, from the flat sheet. A model that is "
     "folded step by step, or whose paper bends, can be right all the same: `exactfold vertices` "
-    "says at which vertices Maekawa's and Kawasaki's conditions for folding flat hold."
+    "says at which vertices Maekawa's and Kawasaki's conditions for folding flat hold, and "
+    "`exactfold flat` whether the whole sheet folds flat."
 )
 """What a refutation does not mean."""
 _LETTERS = {"M": "mountain", "V": "valley", "F": "flat fold", "U": "free fold"}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import pi
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -124,7 +125,9 @@ def _proof_of_panels(proof: PanelProof) -> RenderableType:
     """What is proved of a motion of panels."""
     touching = "no two panels touch on it"
     if proof.contacts is not None and proof.contacts.event is not None:
-        touching = _enclosed(proof.contacts.event, passed=proof.passed)
+        touching = "no two panels touch before its folds close, at time pi"
+        if proof.contacts.clear < pi:
+            touching = _enclosed(proof.contacts.event, passed=proof.passed)
     return Text.assemble(status_text(PROVED), f": {proof.motion.reason}; {touching}")
 
 

@@ -11,7 +11,7 @@ from exactfold.app.pictures.crease_drawing import pattern_picture
 from exactfold.app.pictures.drawn_ways import DrawnWay, branch_way, ways_of
 from exactfold.app.pictures.stills import motion_stills
 from exactfold.app.pictures.svg import escape
-from exactfold.app.report.connected_components import graphs
+from exactfold.app.report.connected_components import families_answer
 from exactfold.app.report.panels import panels_answer
 from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.result import BranchCount
@@ -68,7 +68,7 @@ def _count(result: BranchCount) -> str:
     ]
     count = "" if result.distinct is None else f"{counted(result.distinct, 'branch')}, "
     if result.connected_components is not None and result.distinct is None:
-        count = f"{escape(graphs(result.connected_components))}, "
+        count = f"{escape('; '.join(families_answer(result.connected_components)))}, "
     head = f"{count}<b>{result.status}</b> ({escape(result.reason)})"
     return _page(head, heads, rows, len(result.branches), result.warning)
 

@@ -24,7 +24,7 @@ from math import isfinite
 from typing import Any, Final
 from urllib.parse import urlsplit
 
-from exactfold.app.pictures.film import ENDINGS, MOST_PICTURES
+from exactfold.app.pictures.film import MOST_PICTURES
 from exactfold.app.serving.tasks import FREE, Answer, Film, Follow, Move, Open, Task
 from exactfold.app.serving.worker import Worker
 from exactfold.app.viewer.document import FRAMES, MOST_FRAMES
@@ -322,10 +322,7 @@ def _task(path: str, request: dict[str, Any], server: ViewServer) -> Task:
         pictures = request["pictures"]
         if not isinstance(pictures, list) or len(pictures) > MOST_PICTURES:
             raise UsageError(f"an animation has at most {MOST_PICTURES} pictures")
-        ending = _text(request["ending"])
-        if ending not in ENDINGS:
-            raise UsageError(f"an animation ends in {' or '.join(ENDINGS)}")
-        return Film(ending, tuple(map(_decoded, pictures)), _number(request["seconds"]))
+        return Film(tuple(map(_decoded, pictures)), _number(request["seconds"]))
     raise _RefusedError(HTTPStatus.NOT_FOUND, "there is nothing at this address")
 
 

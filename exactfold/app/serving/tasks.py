@@ -76,9 +76,8 @@ class Follow:
 
 @dataclass(frozen=True)
 class Film:
-    """Make a moving picture of pictures, each a PNG file, shown so many seconds in all."""
+    """Make an MP4 file of pictures, each a PNG file, shown so many seconds in all."""
 
-    ending: str
     pictures: tuple[bytes, ...]
     seconds: float
 
@@ -101,7 +100,7 @@ class Session:
             elif isinstance(task, Follow):
                 yield self._followed(task)
             else:
-                yield {"kind": "film", "data": filmed(task.pictures, task.ending, task.seconds)}
+                yield {"kind": "film", "data": filmed(task.pictures, ".mp4", task.seconds)}
         except ExactfoldError as error:
             yield {"kind": "error", "error": str(error)}
         except RecursionError:

@@ -146,6 +146,16 @@ def distance(text: object) -> Fraction:
     return value
 
 
+def noise_level(text: object) -> Fraction:
+    """A noise level, which is positive; 0 is what --snap exact asks for."""
+    try:
+        return distance(text)
+    except typer.BadParameter as error:
+        if error.message.endswith("is not positive"):
+            error.message += "; --snap exact takes the digits as written, without noise"
+        raise
+
+
 def method_name(text: object) -> str:
     """The name of a method; names from earlier versions are accepted, too."""
     name = str(text)
@@ -265,7 +275,7 @@ Limit = Annotated[
     typer.Option(
         parser=duration,
         metavar="SECONDS",
-        help="When the search for motions of panels stops, to print what is proved so far.",
+        help="When a search stops, to print what is proved so far.",
     ),
 ]
 PrescribedAngles = Annotated[

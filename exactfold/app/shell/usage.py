@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import wraps
 from importlib import import_module
 from inspect import Parameter, Signature, signature
-from typing import Annotated, Any, get_args
+from typing import Annotated, Any, TypeAlias, get_args
 
 import typer
 import typer.main
@@ -107,6 +107,10 @@ class Command(TyperCommand):
     def params(self, parameters: Any) -> None:
         self._params = parameters
 
+    def format_options(self, ctx: Any, formatter: Any) -> None:
+        """Write the arguments and options, panel by panel."""
+        _write(formatter, _by_panel(self.get_params(ctx), ctx))
+
     def get_help_option(self, ctx: Any) -> Any:
         """The option --help, or None if the command has none."""
         return _bare(super().get_help_option(ctx))
@@ -124,6 +128,9 @@ class Command(TyperCommand):
         return [re.sub("[{}]", "", piece) for piece in super().collect_usage_pieces(ctx)]
 
 
+_FIRST_COLUMN = 22
+"""The help of options that are longer begins on a line of its own."""
+
 PANELS = ("Ask", "See", "Fold", "Prove", "Files", "Studies")
 """The groups of commands in the help, in their order."""
 
@@ -137,6 +144,14 @@ class Group(TyperGroup):
 
     def _panel(self, name: str) -> str:
         return str(getattr(self.commands[name], "rich_help_panel", PANELS[0]))
+
+    def format_options(self, ctx: Any, formatter: Any) -> None:
+        """Write the options and the commands, each with the first sentence of its help."""
+        panels = _by_panel(self.get_params(ctx), ctx)
+        for name in self.list_commands(ctx):
+            text = self.commands[name].get_short_help_str(limit=10_000)
+            panels.setdefault(self._panel(name), []).append((name, text))
+        _write(formatter, panels)
 
     def get_help_option(self, ctx: Any) -> Any:
         """The option --help, or None if the program has none."""
@@ -194,6 +209,27 @@ _RENAMED = {
     "--serve": "`exactfold serve PATTERN`",
 }
 """Options of earlier versions, and what does the same now."""
+
+
+_Rows: TypeAlias = list[tuple[str, str]]
+
+
+def _by_panel(parameters: Sequence[Any], ctx: Any) -> dict[str, _Rows]:
+    """The lines of the help by panel: parameters as they are typed, and what they mean."""
+    panels: dict[str, _Rows] = {}
+    for parameter in parameters:
+        if record := parameter.get_help_record(ctx):
+            usual = f"{parameter.param_type_name.capitalize()}s"
+            panels.setdefault(parameter.rich_help_panel or usual, []).append(record)
+    return panels
+
+
+def _write(formatter: Any, panels: dict[str, _Rows]) -> None:
+    """Write panels whose second columns begin at one place."""
+    width = min(_FIRST_COLUMN, max(len(first) for rows in panels.values() for first, _ in rows))
+    for panel, rows in panels.items():
+        with formatter.section(panel):
+            formatter.write_dl([(first.ljust(width), text) for first, text in rows], width)
 
 
 class _Reader:

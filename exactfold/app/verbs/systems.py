@@ -101,15 +101,15 @@ def sheet_system(
       (docs/panels.md). Square roots of the coordinates are unknowns r1, r2, ... with their
       equations; of the zeros, those with r1, r2, ... > 0 belong to the sheet.
 
-    Raises `NotCountedError` for a sheet that has no unknowns, `NotApplicableError` for a drawing
-    whose exact sheet is not known, and the errors of `Problem.of`.
+    Raises `NotCountedError` for a sheet that has no unknowns and for a drawing whose exact sheet is
+    not known, and the errors of `Problem.of`.
 
     >>> sheet_system("two-vertex"), sheet_system("miura").kind
     (<SheetSystem: saddle, 2 equations in 2 unknowns>, 'panels')
     """
     opened = open_sheet(sheet)
     if opened.doubt:
-        raise NotApplicableError(f"{opened.doubt}; --snap exact takes the digits as written")
+        raise NotCountedError(f"{opened.doubt}; --snap exact takes the digits as written")
     sheet = opened.sheet
     if isinstance(sheet, PanelPattern):
         if boundary_heights is not None:

@@ -225,14 +225,15 @@ def _by_theorem(pattern: CreasePattern, follower: Following) -> Listed:
 
     For all boundary heights exactly one shape has given vertex signs (docs/any_border.md).
     """
+    from exactfold.app.report.connected_components import CHOICES, families
+
     finder, foldable = branch_finder(pattern), pattern.foldable_vertices
     branch = finder.find(finder.signs(None, foldable))
     dimension = pattern.degrees_of_freedom
+    number = f"{families(len(foldable), dimension)} - PROVED"
     facts: Facts = {
         "kind": "branches",
-        "answer": "infinitely many ways to start folding - PROVED; for all boundary heights "
-        f"there is exactly one shape for each of {counted(2 ** len(foldable), 'choice')} of the "
-        "vertices that pop up",
+        "answer": "; ".join([number, CHOICES] if len(foldable) > 1 else [number]),
         "status": str(PROVED),
         "complete": False,
         "reason": "the vertex signs and the boundary heights determine the shape",

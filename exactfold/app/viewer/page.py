@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 _ENDINGS: Final = (".html", ".htm")
 _ROOM: Final = Path(__file__).parent
 _PAGE: Final = _ROOM / "page"
-_LIBRARY: Final = _ROOM / "vendor" / "three.bundle.min.js"
+_LIBRARIES: Final = ("three.bundle.min.js", "gifenc.bundle.min.js")
 _IMPORT: Final = re.compile(r'^import \{[^}]*\} from "\./(\w+\.js)";\n', re.MULTILINE)
 _EXPORT: Final = re.compile(r"^export (?=async function|function|class|const|let)", re.MULTILINE)
 _SELF, _NOBODY = "'self'", "'none'"
@@ -63,7 +63,7 @@ def page_policy(*, served: bool, framed: bool = False) -> str:
     With `served`, the page may ask the server that it came from. With `framed`, the policy also
     says that no page may show this one in a frame, which only a header can say.
     """
-    policy = _policy([_LIBRARY.read_text(encoding="utf-8"), _script()], _style(), served)
+    policy = _policy([_library(), _script()], _style(), served)
     return f"{policy}; frame-ancestors 'none'" if framed else policy
 
 
@@ -73,11 +73,17 @@ def _page(title: str, data: Mapping[str, Any], served: bool) -> str:
         "policy": page_policy(served=served),
         "style": _style(),
         "data": script_json(data),
-        "library": _LIBRARY.read_text(encoding="utf-8"),
+        "library": _library(),
         "script": _script(),
     }
     page = (_PAGE / "index.html").read_text(encoding="utf-8")
     return _PLACE.sub(lambda match: parts[match[1]], page)
+
+
+@cache
+def _library() -> str:
+    """The libraries of other people that the page uses, as one script."""
+    return "\n".join((_ROOM / "vendor" / one).read_text(encoding="utf-8") for one in _LIBRARIES)
 
 
 @cache

@@ -14,7 +14,6 @@ from exactfold.branches.values.letters import LETTERS
 from exactfold.branches.values.roots import BoxRoot
 from exactfold.rigidity.equations.problem import Problem
 from exactfold.solve.certify.box import IsolatingBox
-from exactfold.solve.certify.exact_krawczyk import krawczyk, krawczyk_at
 from exactfold.solve.numeric.dense_newton import NappeSystem
 from exactfold.solve.numeric.refined_newton import refined_end
 
@@ -43,6 +42,8 @@ class ExactProver:
         signs, the nappe equations for these signs are solved in rising precision, and the test is
         run at their solution.
         """
+        from exactfold.solve.certify.exact_krawczyk import krawczyk, krawczyk_at  # loads FLINT
+
         if self._flat_before:
             flat = self.system.flat_at_end(signs)
             if flat in self._flat_before:

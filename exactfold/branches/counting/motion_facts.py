@@ -37,7 +37,7 @@ class PanelFactsDocument(PanelKeys):
     """The facts of a sheet of rigid panels; keys for triangulated sheets are null."""
 
     format: Literal["exactfold info result"]
-    version: Literal[1]
+    version: Literal[2]
     pattern: PanelsDocument
     edges: Natural
     degrees: dict[VertexText, Natural]
@@ -119,7 +119,7 @@ class PanelFacts:
         """
         return {
             "format": "exactfold info result",
-            "version": 1,
+            "version": 2,
             "pattern": described_panels(self.pattern, name),
             "edges": len(self.pattern.edges),
             "degrees": {str(v): n for v, n in self.degrees.items()},

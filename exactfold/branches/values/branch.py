@@ -58,7 +58,7 @@ class BranchDocument(TypedDict):
     """A branch that was asked for by its signs."""
 
     format: Literal["exactfold branch result"]
-    version: Literal[1]
+    version: Literal[2]
     pattern: PatternDocument
     status: VerdictText
     reason: str
@@ -312,7 +312,7 @@ class Branch(Picture, Certified):
         radius, squared = self.radius, self.squared_distance
         return {
             "format": "exactfold branch result",
-            "version": 1,
+            "version": 2,
             "pattern": described(self.pattern, name),
             "status": str(self.status),
             "reason": self.reason,

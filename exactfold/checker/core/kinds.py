@@ -63,6 +63,13 @@ class DocumentKind(Kind[Claims]):
     check: Callable[[dict[str, Any]], Claims]
     named: str | None = None
 
+    def read(self, data: Any) -> dict[str, Any]:
+        """Return `data` if it is an object of this kind; raises `FormatError` if it is not."""
+        document = super().read(data)
+        if document.get("kind") != self.named:
+            raise FormatError(f"the kind {document.get('kind')!a} is not {self.named!a}")
+        return document
+
 
 @dataclass(frozen=True, kw_only=True)
 class LineKind(Kind[Claims]):

@@ -82,3 +82,11 @@ MOST_LISTED = 1 << 12  # modes of one support that are checked one by one
 MOST_SUPPORTS = 1 << 15  # supports of a sheet
 TREE_JOINTS = 10  # folds to other vertices at one vertex of a tree
 TREE_CASES = 1 << 16  # cases of one vertex of a tree
+
+# --- flat-folded states --------------------------------------------------------------------------
+IMAGE_BITS = 1 << 15  # bits of the numbers by which panels are turned
+FLAT_SIDES = 1 << 27  # points times lines of a folded sheet
+FLAT_PAIRS = 1 << 22  # pairs of pieces that overlap, or of folds along each other
+FLAT_TESTS = 1 << 24  # groups of panels and folds whose orders are compared one by one
+FLAT_LAYERS = 4  # layers on one side of the place at which a clause is true
+FLAT_STEPS = 1 << 26  # literals that are read in the proofs of one file

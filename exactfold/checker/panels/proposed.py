@@ -8,7 +8,7 @@ from __future__ import annotations
 import random
 from collections.abc import Iterator, Sequence
 from itertools import combinations, product
-from math import atan2, cos, sin
+from math import atan2, cos, isfinite, sin
 from operator import mul
 
 from .reduction import Work
@@ -66,7 +66,7 @@ def definite_weights(forms: Sequence[Matrix], work: Work) -> list[float] | None:
     wanted weights lie on the other side: the sum of their products with the values of the forms at
     x is positive. Such cuts shrink an ellipsoid about t (Grotschel, Lovasz and Schrijver, Geometric
     Algorithms and Combinatorial Optimization, 1993, 3.2). There are no such weights if the forms
-    have a common zero.
+    have a common zero. None, too, if numbers overflow.
     """
     if next(_zeros(forms, FEW_STARTS, work), None) is not None:
         return None
@@ -80,7 +80,8 @@ def definite_weights(forms: Sequence[Matrix], work: Work) -> list[float] | None:
         work.count_short(len(scaled[0]) ** 2 * (count + len(scaled[0])))
         x = _not_positive(scaled, t)
         if x is None:
-            return [a / _largest(form) for a, form in zip(t, forms, strict=True)]
+            weights = [a / _largest(form) for a, form in zip(t, forms, strict=True)]
+            return weights if all(map(isfinite, weights)) else None  # comparisons with nan fail
         cut = _unit([_dot(x, [_dot(row, x) for row in form]) for form in scaled])
         ahead = [_dot(row, cut) for row in shape]
         length = max(_dot(cut, ahead), 0.0) ** 0.5

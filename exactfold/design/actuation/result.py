@@ -76,7 +76,7 @@ class ActuationDocument(TypedDict):
     """Torques for one branch, and what is proved of them."""
 
     format: Literal["exactfold actuate result"]
-    version: Literal[1]
+    version: Literal[2]
     pattern: PatternDocument
     status: VerdictText
     reason: str
@@ -226,7 +226,7 @@ class Actuation:
         orthogonal = self.orthogonal
         return {
             "format": "exactfold actuate result",
-            "version": 1,
+            "version": 2,
             "pattern": described(self.pattern, name),
             "status": str(self.status),
             "reason": self.reason,

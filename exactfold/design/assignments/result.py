@@ -86,7 +86,7 @@ class MatchDocument(TypedDict):
     """The branches with given letters."""
 
     format: Literal["exactfold match result"]
-    version: Literal[1]
+    version: Literal[2]
     pattern: PatternDocument
     status: ProvedOrNot
     """Proved: `matches` are all."""
@@ -248,7 +248,7 @@ class Match(Page, Ways[MatchedRay], Certified):
         """
         return {
             "format": "exactfold match result",
-            "version": 1,
+            "version": 2,
             "pattern": described(self.pattern, name),
             "status": str(self.status),
             "letters": {fold_text(fold): x for fold, x in sorted(self.letters.items())},

@@ -46,7 +46,7 @@ class LoopsDocument(TypedDict):
     """The loops through the flat state of a sheet."""
 
     format: Literal["exactfold motions result"]
-    version: Literal[1]
+    version: Literal[2]
     pattern: PatternDocument
     status: ProvedOrNot
     """Proved: all rays are matched."""
@@ -112,7 +112,7 @@ class Loops(Ways[Loop]):
         """The object printed by `exactfold motions --json`: `schema("motions")`."""
         return {
             "format": "exactfold motions result",
-            "version": 1,
+            "version": 2,
             "pattern": described(self.pattern, name),
             "status": str(self.status),
             "reason": self.reason,

@@ -1,4 +1,4 @@
-"""The certificate of a motion of panels and of its first contact (docs/motion.md, 21)."""
+"""The certificate of a motion of panels and of its first contact (docs/motion.md, 22)."""
 
 from __future__ import annotations
 
@@ -115,7 +115,7 @@ def clear_claim(
 ) -> tuple[Fraction, Claim]:
     """A time before which no two panels touch, and the claim that states it."""
     last = max(_at_most(timing.parameter(contacts.clear)) - _SLACK, Fraction(0))
-    if contacts.clear >= motion.duration:
+    if contacts.clear >= motion.duration and contacts.event is None:
         last = _at_least(timing.parameter(motion.duration))
         clear = min(Fraction(motion.duration), timing.clock.time(last)[0])
     else:

@@ -19,6 +19,7 @@ from exactfold.motion.contacts.separation import Swept, clear_until, through
 from exactfold.motion.curves.events import CONTACT, FLAT_FOLD, Event
 from exactfold.motion.panels.contacts import PanelContacts
 from exactfold.motion.panels.curves import LinearCurve
+from exactfold.motion.panels.last_stretch import LastStretch
 from exactfold.motion.panels.motion import PanelMotion
 from exactfold.motion.panels.pieces import PanelPieces
 from exactfold.panels.vertex.stars import dot
@@ -61,7 +62,7 @@ class PanelClearance:
 
 
 def prove_contacts(motion: PanelMotion) -> PanelClearance:
-    """The first contact of a motion of panels, proved (docs/motion.md, 20).
+    """The first contact of a motion of panels, proved (docs/motion.md, 20 and 21).
 
     The positions of all vertices are enclosed over intervals of time, computed from the exact
     motion. Planes are found that separate all panels (docs/motion.md, Theorem 7). Panels touch
@@ -87,8 +88,11 @@ def prove_contacts(motion: PanelMotion) -> PanelClearance:
     pieces = PanelPieces(motion)
     pairs = PanelPairs(contacts, pieces.unit)
     clear, left = 0.0, Open.all_of(pairs)
-    for piece in pieces.between(0.0, motion.duration):
-        last = min(piece.half, nextafter(motion.duration - piece.middle, inf))
+    stretch = LastStretch(motion)
+    end, _ = stretch.clear_from(pairs) if stretch.applies else (inf, left)
+    until = min(end, motion.duration)
+    for piece in pieces.between(0.0, until):
+        last = min(piece.half, nextafter(until - piece.middle, inf))
         at, left = clear_until(
             pairs, piece.coefficients, piece.radius, -piece.half, last, finest=_FINEST
         )
@@ -96,6 +100,8 @@ def prove_contacts(motion: PanelMotion) -> PanelClearance:
         if left:
             break
     else:
+        if clear >= nextafter(end, 0.0):
+            return PanelClearance(PROVED, motion.duration, _closing(motion, pi), (), "")
         if clear >= nextafter(motion.duration, 0.0):
             return PanelClearance(PROVED, motion.duration, None, (), "")
     event = _crossing(motion, contacts, pieces, clear) or _closing(motion, clear)

@@ -153,13 +153,15 @@ class _Space:
 def _spaces(result: Decomposition, modes: Sequence[PanelMode]) -> list[_Space]:
     """The components of dimension 1 or more that contain none of the modes."""
     lines = [mode.folds for mode in modes]
+    moving = stars(result.pattern, result.held)
     spaces = []
     for part in result.parts:
         shown = {id(leaf): folds for leaf, folds in zip(part.spaces, part.spaces_fold, strict=True)}
         found = [(leaf, shown[id(leaf)]) for leaf in part.spaces]
         found += [(one.leaf, one.folds) for one in part.found if one.leaf not in part.spaces]
         for leaf, folds in found:
-            is_mode = leaf.size == 1 and not leaf.vertices and leaf.folds in lines
+            is_line = leaf.size == 1 and not leaf.vertices and leaf.folds in lines
+            is_mode = is_line and line_mode(result, leaf, moving).is_linear
             if leaf.dimension > 0 and not is_mode:
                 spaces.append(_Space(leaf, part, PROVED if folds else UNDECIDED))
     return spaces

@@ -165,14 +165,14 @@ class PanelPieces:
         return self._about(low + width / 2, width / 2)
 
     def _about(self, middle: float, half: float) -> PanelPiece | None:
-        with _capped(), ctx.workprec(_BITS):
+        with capped(), ctx.workprec(_BITS):
             try:
                 here = self._turns(arb(middle))
                 rests = self._rests(middle, half)
             except ValueError:  # python-flint: a divisor may be 0; or a fold is closed
                 return None
             turns = {
-                fold: [_polynomial(*both, half) for both in zip(series, rests[fold], strict=True)]
+                fold: [polynomial(*both, half) for both in zip(series, rests[fold], strict=True)]
                 for fold, series in here.items()
             }
         with np.errstate(invalid="ignore", over="ignore"):
@@ -257,7 +257,7 @@ _CAPPING = RLock()
 
 
 @contextmanager
-def _capped() -> Iterator[None]:
+def capped() -> Iterator[None]:
     """Set the number of terms of series that is needed here.
 
     FLINT has a single number of terms for all threads, and replaces later terms by 0. Therefore
@@ -271,7 +271,7 @@ def _capped() -> Iterator[None]:
             ctx.cap = before
 
 
-def _polynomial(series: arb_series, rest: arb, half: float) -> Turned:
+def polynomial(series: arb_series, rest: arb, half: float) -> Turned:
     """A function of m + half y for |y| <= 1, from its series at m and a bound of the next term."""
     reach, row, error = arb(half), np.zeros((1, ORDER + 1)), arb(0)
     for k in range(ORDER + 1):

@@ -96,7 +96,7 @@ class PanelProof:
 
 
 def prove_panels(motion: PanelMotion) -> PanelProof:
-    """Prove a motion of panels as far as it was followed (docs/motion.md, 20 and 21).
+    """Prove a motion of panels as far as it was followed (docs/motion.md, 20 to 22).
 
     It is proved that the panels fold in this way, and for how long no two of them touch. If the
     motion meets a contact, that is proved, too, with bounds of its time. UNDECIDED does not mean

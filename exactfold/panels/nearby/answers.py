@@ -55,4 +55,6 @@ def drawn_nearby(
         start = "starts to fold with its" if sure == 1 else "start to fold with their"
         said = f"{sure} of {counted(len(fans), 'vertex')} {start} letters"
     reason = f"by itself, {said} - PROVED"
+    if not sure:
+        reason = "of no vertex by itself is it proved that it starts to fold with its letters"
     return Drawn(UNDECIDED, UNDECIDED, (reason,), within=within)

@@ -15,7 +15,7 @@ from exactfold.panels.nearby.rank import UNIT, keeps_full_rank
 from exactfold.panels.partial import Freedom
 from exactfold.pattern.panel_pattern import Edge
 
-_MOST_ROWS: Final = 400
+_MOST_ROWS: Final = 1_000
 _SHORT: Final = 4
 """Folds that are less than this many times longer than a vertex may move are left out."""
 _CLEAR: Final = 0.1

@@ -247,7 +247,8 @@ def _cuts(part: _Part, places: FloatArray) -> list[Line]:
         raise FoldError(
             f"{counted(len(wrong), 'boundary line')} {agreeing(len(wrong), 'is')} between two "
             f"panels ({named}{more}): give {'it' if len(wrong) == 1 else 'them'} the letter U for "
-            "a crease, C for a cut, or F for nothing (for an SVG file: `--colours black=U`, C or F)"
+            "a crease, C for a cut, or F for nothing (for an SVG file: `--colours black=U`, or "
+            "black=C; all lines of this colour get the letter)"
         )
     return inside
 

@@ -11,8 +11,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-
-from flint import fmpq_mat
+from typing import TYPE_CHECKING
 
 from exactfold.errors import UsageError
 from exactfold.exact.linalg import from_fmpq, nullspace, to_flint
@@ -20,6 +19,9 @@ from exactfold.pattern.crease_pattern import Edge
 from exactfold.rigidity.equations.branch_system import Chart
 from exactfold.rigidity.equations.quadratic import QuadraticSystem
 from exactfold.rigidity.functionals import fold_functional
+
+if TYPE_CHECKING:
+    from flint import fmpq_mat
 
 Row = tuple[Fraction, ...]
 
@@ -58,6 +60,8 @@ class FlatSheets:
     @cached_property
     def quadrics(self) -> tuple[fmpq_mat, ...]:
         """A basis of the span of the curvature forms on these sheets, as matrices over (y, 1)."""
+        from flint import fmpq_mat  # here, as few sheets have flat vertices
+
         size = len(self.free) + 1
         last = [Fraction(int(k == size - 1)) for k in range(size)]
         lift = to_flint([*self.rows, last])

@@ -85,8 +85,8 @@ def test_verbose_also_says_how(two_vertex):
         ),
         (
             FAMILIES["waterbomb"](),
-            r"infinitely many ways to start folding - PROVED \(.*\); they form one family of "
-            "dimension 3",
+            r"1 family of ways to fold, of dimension 3 - PROVED \(.*\); the dimension is the "
+            "number of folds that can be folded independently",
         ),
         (
             FAMILIES["flat-vertex"](),

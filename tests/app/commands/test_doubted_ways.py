@@ -58,6 +58,15 @@ def test_an_answer_about_digits_says_so_first(
         assert "; the digits as written: proved, " in data["reason"]
 
 
+def test_equations_of_digits_in_doubt_are_not_written(drawing: Path) -> None:
+    result = run("export", str(drawing), "--system", "m2")
+    assert (result.exit_code, result.stdout) == (UNDECIDED, "")
+    assert result.stderr.count("relations nearly hold") == 1
+    assert "--snap exact takes the digits as written" in result.stderr
+    result = run("export", str(drawing), "--system", "m2", "--snap", "exact")
+    assert (result.exit_code, result.stdout[:5]) == (PROVED, "-- he")
+
+
 def test_so_do_the_values_of_python(drawing: Path) -> None:
     exact = exactfold.read(drawing, snap="exact")
     for find in (exactfold.branch, exactfold.actuate):

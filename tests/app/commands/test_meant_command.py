@@ -15,7 +15,7 @@ from running import INVALID, PROVED, UNDECIDED, USAGE, run
 
 import exactfold
 from exactfold.errors import NotApplicableError, UsageError
-from exactfold.pattern.drawing.meant import positions
+from exactfold.pattern.drawing.meant import inference, positions
 
 
 def written(tmp_path: Path, document: dict[str, Any], name: str = "noisy") -> Path:
@@ -152,7 +152,7 @@ def test_what_was_inferred_can_be_overruled(miura: Path) -> None:
 @pytest.mark.parametrize(
     ("options", "code", "said"),
     [
-        (("--noise", "0"), USAGE, "0 is not positive"),
+        (("--noise", "0"), USAGE, "0 is not positive; --snap exact takes the digits as written"),
         (("--noise", "2"), USAGE, "between 0 and 1, not 2"),
         (("--unit", "0"), USAGE, "0 is less than 1"),
         (("--without", "straight@99999"), USAGE, "there is no relation 'straight@99999'"),
@@ -172,6 +172,55 @@ def test_bad_overruling_is_an_error_of_its_own(
 def test_a_relation_that_the_drawing_misses_by_far_is_refused(miura: Path) -> None:
     with pytest.raises(UsageError, match="the drawing misses 'parallel 0-9,0-10' by"):
         exactfold.read(miura, also=["parallel 0-9,0-10"])
+
+
+@pytest.fixture
+def thin(tmp_path: Path) -> Path:
+    """A square with five folds at a vertex, two of which are 4 degrees apart; it is exact."""
+    path = tmp_path / "thin.fold"
+    points = [(0, 0), (1, 0), (1, 1), (0, 1), (0.51, 0.47), (0.05, 0)]
+    border = [(0, 5), (5, 1), (1, 2), (2, 3), (3, 0)]
+    folds = [(v, 4) for v in (0, 5, 1, 2, 3)]
+    data = {"vertices_coords": points, "edges_vertices": border + folds}
+    path.write_text(json.dumps({**data, "edges_assignment": list("BBBBBMVMVM")}))
+    return path
+
+
+@pytest.mark.parametrize("options", [("--also", "parallel 0-4,4-5"), ("--noise", "0.05")])
+def test_a_sheet_that_would_lose_a_panel_is_refused_with_the_place(
+    thin: Path, options: tuple[str, ...]
+) -> None:
+    """The panel 0-5-4 collapses if its sides at 4 are parallel."""
+    result = run("count", thin, *options)
+    assert (result.exit_code, result.stdout) == (USAGE, "")
+    assert "no sheet near the drawing is as asked for" in result.stderr
+    assert "vertices 0 and 5 are at the same point" in result.stderr
+
+
+def test_what_is_stated_of_an_exact_drawing_has_no_noise(thin: Path) -> None:
+    meant = json.loads(run("count", thin, "--also", "straight@4:0-2", "--json").stdout)["meant"]
+    assert "straight@4:0-2" in [relation["name"] for relation in meant["relations"]]
+    assert (meant["eps"], meant["gap"], meant["existence"]) == (None, None, "exact")
+    assert meant["distance"] > 0.02
+    sectors = exactfold.read(thin, also=["sectors@4:0-1,1-2", "sectors@4:1-2,2-3"]).meant
+    assert sectors is not None
+    assert {"sectors@4:0-1,1-2", "sectors@4:1-2,2-3"} <= {r.name for r in sectors.relations}
+
+
+def test_a_doubt_without_a_noise_level_says_so(
+    miura: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(inference, "noise_level", lambda *_: None)
+    result = run("count", miura)
+    assert result.exit_code == UNDECIDED
+    said = " ".join(result.stdout.split())
+    assert "is not known, because no noise level stands out from chance (--noise EPS states" in said
+
+
+def test_a_denominator_takes_no_relations(thin: Path) -> None:
+    result = run("count", thin, "--snap", 100, "--noise", "1e-3")
+    assert result.exit_code == USAGE
+    assert "--snap 100 rounds all digits: leave out" in result.stderr
 
 
 def test_nothing_is_inferred_from_a_drawing_by_hand(by_hand: Path) -> None:

@@ -48,6 +48,8 @@ def test_sheets_of_another_kind_are_refused(tmp_path):
     result = run("motions", str(path), "--json")
     assert result.exit_code == UNDECIDED
     assert error_class(result) == "NotCountedError"
+    said = json.loads(result.stdout)["error"]["message"]
+    assert said.startswith("motions takes sheets with four boundary vertices, and this one has 6")
     result = run("motions", str(tmp_path / "missing.fold"))
     assert result.exit_code == BAD_INPUT
     result = run("motions", "two-vertex", "--workers", "2", "--dask", "tcp://127.0.0.1:1")

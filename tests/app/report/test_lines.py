@@ -35,7 +35,7 @@ def test_signs_of_joints_are_listed_on_small_sheets_only() -> None:
         return piece_notes(replace(result, connected_components=known))[1]
 
     assert said(17) == (
-        "graphs meet at 2 solutions on which 14 to 16 of the 17 stars are flat; --json has their "
+        "families meet at 2 solutions on which 14 to 16 of the 17 stars are flat; --json has their "
         "signs"
     )
     assert said(5).endswith("0 where flat, or the opposite signs: +0000, +++00")

@@ -65,7 +65,7 @@ def test_a_drawing_that_is_dropped_is_read_counted_and_listed(page):
     page.until("exactfold.store.get().ways[0].motion !== null")
     assert page.run("exactfold.store.get().time") == 0.55
     assert "4 lines cut there" in page.text(".facts details[open]")
-    page.until(READY)
+    page.until(READY, 120)  # 17 motions, for at most 48 seconds
     assert page.run("exactfold.store.get().ways.every((way) => way.motion || way.why)")
     assert page.complaints() == []
 

@@ -70,11 +70,11 @@ def convex(corners, inside, seed):
 
 
 @pytest.mark.parametrize("sheet", [convex(8, 4, 5), convex(5, 3, 1), convex(6, 2, 2)])
-def test_while_a_vertex_moves_a_theorem_says_how_many_graphs_there_are(sheet):
+def test_while_a_vertex_moves_a_theorem_says_how_many_families_there_are(sheet):
     _, whole, *_ = answers(Open("x", sheet, frames=2, limit=20))
     _, brief, way = answers(Open("x", sheet, frames=2, live=True))
     whole, brief = whole["document"], brief["document"]
-    assert whole["answer"].startswith(f"{brief['answer']}; these ")
+    assert whole["answer"].startswith(f"{brief['answer']}; with ")
     assert (whole["status"], whole["freedom"]) == (brief["status"], brief["freedom"])
     assert way["found"]["family"]["dimension"] == sheet.Ve - 3
     assert brief["ways"][0]["signs"] == "+" * len(sheet.interior)
@@ -120,8 +120,8 @@ def pictures(*colours, size=(30, 20)):
 
 
 def test_a_film_has_its_pictures_in_turn_for_so_many_seconds():
-    [answer] = answers(Film(".gif", pictures("red", "lime", "blue"), 1.5))
-    gif = Image.open(io.BytesIO(base64.b64decode(answer["data"])))
+    data = filmed(pictures("red", "lime", "blue"), ".gif", 1.5)
+    gif = Image.open(io.BytesIO(base64.b64decode(data)))
     assert (gif.format, gif.n_frames, gif.size, gif.info["loop"]) == ("GIF", 3, (30, 20), 0)
     assert gif.info["duration"] == 500
     seen = []
@@ -149,5 +149,6 @@ def test_what_is_no_film_is_refused(frames, seconds, said):
 
 def test_an_mp4_film_is_written_where_its_package_is():
     pytest.importorskip("imageio_ffmpeg")
-    data = base64.b64decode(filmed(pictures("red", "lime", "blue", "red"), ".mp4", 1.0))
+    [answer] = answers(Film(pictures("red", "lime", "blue", "red"), 1.0))
+    data = base64.b64decode(answer["data"])
     assert data[4:8] == b"ftyp"

@@ -116,12 +116,20 @@ class Browser:
         chain.send_keys(key).key_up("\ue009").perform()
 
     def click(self, selector):
-        """A click of the mouse on the middle of an element."""
+        """A click of the mouse on the middle of an element, also if it is drawn anew meanwhile."""
+        from selenium.common.exceptions import StaleElementReferenceException
         from selenium.webdriver.common.action_chains import ActionChains
         from selenium.webdriver.common.by import By
 
-        node = self.driver.find_element(By.CSS_SELECTOR, selector)
-        ActionChains(self.driver).move_to_element(node).click().perform()
+        def move():
+            node = self.driver.find_element(By.CSS_SELECTOR, selector)
+            ActionChains(self.driver).move_to_element(node).perform()
+
+        try:
+            move()
+        except StaleElementReferenceException:
+            move()
+        ActionChains(self.driver).click().perform()
 
     def slide(self, value):
         """The slider, from 0 to 1000, as if it were moved."""

@@ -34,7 +34,7 @@ def test_it_opens_without_a_complaint_and_asks_nothing_of_a_network(browser, pag
         assert [one for one in asked if not one.startswith("data:")] == []
     browser.open(pages["waterbomb"])
     assert browser.run("document.title") == "waterbomb - exactfold"
-    assert "one family of dimension 3" in browser.text("#answer")
+    assert "1 family of ways to fold, of dimension 3" in browser.text("#answer")
 
 
 def test_sliders_choose_another_way_of_a_family_and_play_goes_on(browser, pages):
@@ -439,7 +439,34 @@ def test_the_picture_that_is_shown_is_saved(browser, pages, folder):
     colours = {colour for _, colour in picture.getcolors(1 << 20)}
     assert (255, 255, 255) in colours  # the ground of the page, not black
     assert len(colours) > 20
-    assert browser.run("document.getElementById('gif').hidden")  # it needs the server
+    assert browser.run("document.getElementById('mp4').hidden")  # it needs the server
+
+
+def test_an_animation_is_saved_without_a_server(browser, pages, folder):
+    image = pytest.importorskip("PIL.Image")
+    browser.open(pages["h1-4"])
+    shown = browser.run("exactfold.positions()")
+    browser.click("#gif")
+    [path] = _saved(folder, ".gif")
+    gif = image.open(path)
+    assert gif.n_frames == 90
+    assert gif.n_frames * gif.info["duration"] / 1000 == pytest.approx(6.4, rel=0.02)
+    assert gif.size == tuple(
+        browser.run("[exactfold.view.picture().width, exactfold.view.picture().height]")
+    )
+    seen = []
+    for k in (0, 45):
+        gif.seek(k)
+        seen.append(gif.convert("RGB").copy())
+    assert (255, 255, 255) in {colour for _, colour in seen[0].getcolors(1 << 20)}
+    assert image_difference(*seen) > 1000  # flat, and folded
+    assert browser.run("exactfold.positions()") == shown  # the page shows what it showed
+
+
+def image_difference(one, other):
+    """How many pixels of two pictures differ."""
+    chops = pytest.importorskip("PIL.ImageChops")
+    return sum(chops.difference(one, other).convert("L").histogram()[40:])
 
 
 def _saved(folder, ending):

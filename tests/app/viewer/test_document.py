@@ -197,7 +197,7 @@ def test_it_says_what_is_proved_of_a_motion_of_panels():
 
 def test_graphs_over_the_boundary_heights_are_families_with_a_motion_each():
     document = view_document(CORNER_AND_CENTRE, frames=3)
-    assert "these 2 graphs of dimension 4" in document["answer"]
+    assert "1 family of ways to fold, of dimension 4" in document["answer"]
     assert document["complete"]
     [way] = document["ways"]  # the other graph is its mirror image
     branch = find_branch(CORNER_AND_CENTRE, "+")
@@ -335,7 +335,7 @@ def test_ways_have_the_same_numbers_in_the_page_in_fold_and_in_count():
     for way in document["ways"]:
         assert exactfold.follow(sheet, way["number"], frames=2).branch.sign_text == way["signs"]
     said = " ".join(str(line) for line in piece_notes(count_ways(sheet)))
-    assert f"ways 1 to {len(numbers)}, each over all boundary heights" in said
+    assert f"ways 1 to {len(numbers)} are the families" in said
     for name in ("two-vertex", "zigzags"):
         listed = document_of(name)["ways"]
         assert [way["number"] for way in listed] == [*range(1, len(listed) + 1)]

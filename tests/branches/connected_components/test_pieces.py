@@ -333,11 +333,13 @@ def test_the_answer_in_plain_words(tmp_path):
     assert result.exit_code == 0
     text = " ".join(result.stdout.split())
     for words in (
-        "there is exactly one shape for each of 4 choices of the vertices that pop up",
-        "these 4 graphs of dimension 2 form 2 connected components",
+        "2 families of ways to fold, each of dimension 2 - PROVED",
+        "one for each choice of the vertices that pop up, seen from one side; with their mirror "
+        "images they form 2 connected components",
+        "ways 1 to 2 are the families",
         "1 vertex is never flat when the sheet starts to fold: 6",
-        "the true motions near the flat state form as many graphs, with 2 connected components",
-        "irreducible components: 2 of dimension 2",
+        "the true motions near the flat state form as many families, with 2 connected components",
+        "irreducible components that the families lie in: 2 of dimension 2",
     ):
         assert words in text
     assert "irreducible components has a certificate of its own" in result.stderr

@@ -4,7 +4,7 @@ from threading import Event, Thread
 
 from flint import arb_series, ctx
 
-from exactfold.motion.panels.pieces import ORDER, _capped
+from exactfold.motion.panels.pieces import ORDER, capped
 
 
 def test_series_have_all_their_terms_in_every_thread() -> None:
@@ -14,13 +14,13 @@ def test_series_have_all_their_terms_in_every_thread() -> None:
     found = []
 
     def other() -> None:
-        with _capped():
+        with capped():
             inside.set()
             go_on.wait(60)
             found.append(float(arb_series([0, 1]).exp()[ORDER + 1].mid()) > 0)
 
     thread = Thread(target=other)
-    with _capped():
+    with capped():
         thread.start()
         inside.wait(0.2)  # the other has to wait outside
     go_on.set()

@@ -105,6 +105,18 @@ def test_sheets_in_the_box_have_what_is_proved_of_them(name: str, within: str) -
     assert seen
 
 
+def test_a_large_sheet_has_bounds_too() -> None:
+    side = 16
+    points = [(x, y) for y in range(side + 1) for x in range(side + 1)]
+    across = [(k, k + 1) for k in range(len(points)) if k % (side + 1) < side]
+    along = [(k, k + side + 1) for k in range(len(points) - side - 1)]
+    sheet = PanelPattern(points, [*across, *along])
+    bounds = nearby_freedom(Box(sheet, Fraction(1, 10**5)), ())
+    assert bounds is not None
+    assert bounds.first_order == first_order(stars(sheet))[1] == 2 * (side - 1)
+    assert bounds.most < bounds.first_order
+
+
 @pytest.mark.parametrize("seed", range(50))
 def test_a_turn_is_open_as_soon_as_a_line_meets_all_three_discs(seed: int) -> None:
     """Three discs of radius r about the corners of a triangle meet a line if its least height is
@@ -187,6 +199,14 @@ def test_letters_that_fit_are_not_proved_for_the_whole_sheet() -> None:
     found = counted(doubted("bird-base", 1e-4))
     assert found.drawn is not None
     assert found.drawn.starts is UNDECIDED
+
+
+def test_no_vertex_that_starts_is_no_proof_that_none_does() -> None:
+    found = counted(doubted(almost_straight(Fraction(1, 50)), 0.002))
+    assert found.drawn is not None
+    assert found.drawn.starts is UNDECIDED
+    (reason,) = found.drawn.reasons
+    assert reason == "of no vertex by itself is it proved that it starts to fold with its letters"
 
 
 def test_the_box_is_three_times_the_noise_that_was_not_believed() -> None:

@@ -215,6 +215,15 @@ def test_weights_for_which_a_sum_is_definite() -> None:
     assert definite_weights(crossed, Work()) is None
 
 
+def test_weights_are_numbers() -> None:
+    """Forms of a real drawing, two of them equal, for which floats end in nan."""
+    forms = np.zeros((3, 5, 5))
+    forms[::2, 1, 1] = forms[1, 0, 0] = forms[1, 3, 3] = -4
+    forms[::2, [0, 4], [4, 0]] = 2
+    forms[1, [0, 2], [2, 0]], forms[1, [0, 3], [3, 0]] = 12, 4
+    assert definite_weights(forms.tolist(), Work()) is None
+
+
 def _without_real_zeros(pattern: PanelPattern) -> int:
     """The choices of local modes at vertices of degree 4 that leave two forms without real zeros.
 

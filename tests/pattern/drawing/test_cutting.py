@@ -180,7 +180,7 @@ def test_borders_between_panels_are_listed_with_what_to_do():
     assert str(refusal.value) == (
         "2 boundary lines are between two panels (from (2, 0) to (2, -1), from (2, -1) to (2, "
         "-4)): give them the letter U for a crease, C for a cut, or F for nothing (for an SVG "
-        "file: `--colours black=U`, C or F)"
+        "file: `--colours black=U`, or black=C; all lines of this colour get the letter)"
     )
 
 

@@ -49,6 +49,26 @@ def test_the_colours_of_origami_simulator(colour, letter):
     assert drawing.remarks == ()
 
 
+@pytest.mark.parametrize("size", ['width="40" height="20"', 'width="9" viewBox="0 0,40 20"'])
+def test_percent_are_shares_of_the_size_of_the_picture(size):
+    line = '<line x1="12.5%" x2="5" y2="100%" stroke="red"/>'
+    drawing = read_svg(f'<svg xmlns="http://www.w3.org/2000/svg" {size}><g>{line}</g></svg>')
+    assert drawing.points == ((5, 0), (5, -20))
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        '<svg><line x2="100%" y2="1" stroke="red"/></svg>',
+        '<svg width="wide"><line x2="100%" y2="1" stroke="red"/></svg>',
+        '<svg width="40"><svg><line x2="100%" y2="1" stroke="red"/></svg></svg>',
+    ],
+)
+def test_percent_of_an_unknown_size_are_refused(content):
+    with pytest.raises(MalformedDrawingError, match="line 1: x2 is '100%', not a length"):
+        read_svg(content)
+
+
 @pytest.mark.parametrize(
     ("colour", "letter"), [("#ed1c24", "M"), ("#2e3192", "V"), ("#231f20", "B"), ("#fff200", "F")]
 )

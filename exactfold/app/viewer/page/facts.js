@@ -24,11 +24,11 @@ function countFact(page) {
   if (page.complete) return ["good", "All are listed: proved", own(page)];
   if (page.status !== "proved") return ["open", "The count is undecided", own(page)];
   if (page.kind === "branches") return ["note", "Not all are listed", own(page)];
-  return ["note", "Listed: ways that can be followed", own(page)];
+  return ["note", "All known ways are listed", own(page)];
 }
 
 // The reason, unless the heading of the page says it.
-function own(page) {
+export function own(page) {
   return page.answer.includes(page.reason) ? "" : page.reason;
 }
 

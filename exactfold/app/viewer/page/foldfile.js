@@ -69,9 +69,9 @@ export function fileName(page, way, mirrored) {
   return `${base}_${which.slice(0, 80)}.fold`;
 }
 
-export function download(text, name) {
+export function download(data, name) {
   const link = document.createElement("a");
-  link.href = URL.createObjectURL(new Blob([text], { type: "application/json" }));
+  link.href = URL.createObjectURL(data);
   link.download = name;
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 10000);

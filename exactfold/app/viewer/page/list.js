@@ -28,7 +28,7 @@ export function createList(page, store, { onAsk }) {
     box.replaceChildren(...found.map(({ way, mirrored }) => row(ways[way], way, mirrored, page.drawn)));
     box.setAttribute("role", found.length ? "listbox" : "group");  // a listbox has options
     search.hidden = !ways.length;
-    if (!found.length) box.append(paragraph(page.busy && !ways.length ? "Looking for ways to fold …" : ways.length ? nothing() : `No way to list: ${page.answer.split(" - ")[0]}.`));
+    if (!found.length) box.append(paragraph(page.busy && !ways.length ? "Looking for ways to fold …" : ways.length ? nothing() : page.status === "proved" ? `No way to list: ${page.answer.split(" - ")[0]}.` : "No way to list: none is known."));
     settle();
     mark();
   }

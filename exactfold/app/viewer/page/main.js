@@ -34,10 +34,11 @@ function show(page, begin) {
 async function openSheet(request, begin = {}) {
   const state = { name: request.name ?? data.name };
   showAnswer(state.name || "exactfold", "reading …");
-  let whole = false;
+  let read = false, whole = false;
   try {
     await server.lines("open", request, (line) => {
       if (line.kind === "read") {
+        read = true;
         show({ ...unknown(line), busy: true }, { time: 0 });
         if (line.brief) say(`Read: ${line.brief}`);
       }
@@ -51,8 +52,13 @@ async function openSheet(request, begin = {}) {
   } catch (error) {
     if (error.name === "AbortError") return;
     say(error.message, true);
-    if (!whole) showAnswer(view?.page.name ?? "exactfold", view && !view.page.busy ? view.page.answer : `not read: ${error.message}`);
-    if (view && !whole) Object.assign(view.page, { answer: error.message, reason: error.message });
+    if (!view) showAnswer("exactfold", `not read: ${error.message}`);
+    else if (!whole) {
+      const looking = view.page.busy && !view.page.ways.length;
+      const why = read ? error.message : "not counted, because another drawing was opened meanwhile";
+      if (looking) Object.assign(view.page, { answer: why, reason: why });
+      showAnswer(view.page.name, view.page.answer);
+    }
   }
   if (!view) return;
   view.page.busy = false;

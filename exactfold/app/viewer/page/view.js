@@ -4,7 +4,7 @@ import { popped, poppedSigns, seen } from "./choose.js";
 import { decodeFrames, positionsAt } from "./frames.js";
 import { download, fileName, foldFile } from "./foldfile.js";
 import { createFamily } from "./family.js";
-import { sentence, showFacts } from "./facts.js";
+import { own, sentence, showFacts } from "./facts.js";
 import { createList } from "./list.js";
 import { createPattern, legendItems } from "./pattern.js";
 import { createScene } from "./scene.js";
@@ -115,7 +115,7 @@ export function createView(page, { server, signal, begin = {}, moves = null, cha
   function nothingMoves() {
     if (page.busy) return "Looking for ways to fold …";
     if (/\brigid\b/.test(page.answer) && page.status === "proved") return "The sheet is rigid: it lies flat, and nothing can move.";
-    return `The sheet lies flat: no way to fold is known. ${sentence(page.notes[0] ?? page.reason)}`;
+    return `The sheet lies flat: no way to fold is known. ${sentence(page.notes[0] ?? own(page))}`.trim();
   }
 
   // Positions that were chosen by hand, instead of those of the motion.
@@ -278,7 +278,7 @@ export function createView(page, { server, signal, begin = {}, moves = null, cha
   byId("download").addEventListener("click", () => {
     const { ways, way, mirrored } = store.get();
     const name = fileName(page, ways[way], mirrored);
-    download(JSON.stringify(foldFile(page, sheet, ways[way], mirrored)), name);
+    download(new Blob([JSON.stringify(foldFile(page, sheet, ways[way], mirrored))], { type: "application/json" }), name);
     say(`Saved ${name}`);
   });
   byId("search").addEventListener("keydown", (event) => {
@@ -328,7 +328,7 @@ export function createView(page, { server, signal, begin = {}, moves = null, cha
     const out = document.createElement("canvas");
     out.width = canvases.reduce((sum, { width }) => sum + width, 0);
     out.height = canvases[0].height;
-    const pen = out.getContext("2d");
+    const pen = out.getContext("2d", { willReadFrequently: true });
     pen.fillStyle = getComputedStyle(byId("stage").closest(".pane")).backgroundColor;
     pen.fillRect(0, 0, out.width, out.height);
     let left = 0;

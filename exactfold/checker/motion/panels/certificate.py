@@ -2,7 +2,7 @@
 
 All positions are analytic functions of a parameter x, which determines the time (`times`). The
 evidence proves that the panels fold (`folding`). `CLAIMS` lists the claims that a file may make
-about this motion, one class for each (docs/motion.md, 20 and 21).
+about this motion, one class for each (docs/motion.md, 20 to 22).
 
 The claims are `assignment`, with a letter for each fold in lexicographic order; the `drivers`, a
 fold of each mode that moves and each free fold that does, which at time t have the angle t; in
@@ -75,4 +75,4 @@ PANEL_MOTION = DocumentKind(
     check=check,
     summary=summary,
 )
-"""A motion of rigid panels, and which panels touch first (docs/motion.md, 21)."""
+"""A motion of rigid panels, and which panels touch first (docs/motion.md, 22)."""

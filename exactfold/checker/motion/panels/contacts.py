@@ -1,7 +1,7 @@
 """The first contact of a motion of panels: until when none touch, and by when some do.
 
 Up to some parameter planes part all panels. At a later parameter an edge of one panel runs through
-another panel, or folds are closed (docs/motion.md, 21).
+another panel, or folds are closed (docs/motion.md, 22).
 """
 
 from __future__ import annotations

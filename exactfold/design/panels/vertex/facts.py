@@ -141,7 +141,7 @@ def _facts(
         if verdict is not UNDECIDED and not _holds_nearby(nearby, given, verdict, possible):
             verdict, reason = UNDECIDED, _nearby_text(box, starts and able, reason)
     flat = star.only(f for f, x in zip(star.folds, given, strict=True) if x != "F")
-    kawasaki, off = _alternating(flat)
+    holds, off = kawasaki(flat)
     kept = given.replace("F", "")
     return VertexFacts(
         star.vertex,
@@ -152,10 +152,10 @@ def _facts(
         reason,
         _flips(star, given, fan) if verdict is REFUTED else (),
         _forced(star, given, fan) if verdict is PROVED else {},
-        kawasaki,
+        holds,
         off,
         None if "U" in kept else abs(kept.count("M") - kept.count("V")) == 2 or not kept,
-        None if kawasaki or off is None else _turn(sheet, flat, off),
+        None if holds or off is None else _turn(sheet, flat, off),
     )
 
 
@@ -229,12 +229,16 @@ def _bend(a: Point, b: Point) -> float:
     return abs(_angle(across, -dot(a, b))) if dot(a, b) < 0 else pi
 
 
-def _alternating(star: Star) -> tuple[bool, float | None]:
+def kawasaki(star: Star) -> tuple[bool, float | None]:
     """Whether every second sector adds up to pi exactly, and by how many degrees the sum is off.
 
+    The folds of the star are the folded creases at a vertex; None stands for an odd number of them.
     The alternating sum of all sectors is the argument of a product of numbers d' / d, or of their
     inverses, where d and d' are neighbouring directions as complex numbers. It lies between -2 pi
     and 2 pi, so that it is 0 if and only if the product is positive.
+
+    >>> kawasaki(Star(0, ((0, 1), (0, 2), (0, 3), (0, 4)), ((1, 0), (0, 1), (-1, 0), (0, -1))))
+    (True, 0.0)
     """
     d, count = star.directions, len(star.directions)
     if count == 0:

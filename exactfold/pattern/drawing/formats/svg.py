@@ -6,6 +6,7 @@ import io
 import re
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from decimal import Decimal, Inexact, localcontext
 from fractions import Fraction
 from typing import Any, Final
 from xml.etree import ElementTree
@@ -38,7 +39,10 @@ _UNITS: Final = {
 }
 _POINTS: Final = re.compile(rf"[\s,]*({NUMERAL})")
 _NAMED: Final = 5
+_DIGITS: Final = 100
 _VIEW: Final = ("width", "height", "viewBox", "x", "y")
+_SHARES: Final = (("x", "x1", "x2", "width"), ("y", "y1", "y2", "height"))
+"""Attributes that may be shares of the width of the picture, and of its height."""
 _FAULTS: Final = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
 
 
@@ -51,8 +55,8 @@ def read_svg(text: str, reading: SvgReading | None = None) -> Drawing:
     of a drawing without these colours, and how the maps of `reading` change letters. Styles come
     from attributes, `style` and CSS classes. Groups and transforms apply. The elements `line`,
     `polyline`, `polygon`, `rect` and `path` are read. The size of the picture (`width`, `height`,
-    `viewBox`) is not applied. Numbers are read from their text; only transforms are products of
-    floats.
+    `viewBox`) is not applied, but lengths in percent are shares of it. Numbers are read from their
+    text; only transforms are products of floats.
 
     `reading.chords` says as how many straight lines a curve is read.
 
@@ -165,6 +169,7 @@ def _shapes(text: str) -> tuple[Iterator[Any], list[Mapping[str, str]], int]:
         raise MalformedDrawingError(
             f"the outermost XML element is {shown(root.tag)}, not svg in {NAMESPACE}"
         )
+    _resolve_percent(root)
     for key in _VIEW:
         root.attrib.pop(key, None)
     words = sum(element.tag in ("text", f"{{{NAMESPACE}}}text") for element in root.iter())
@@ -174,6 +179,39 @@ def _shapes(text: str) -> tuple[Iterator[Any], list[Mapping[str, str]], int]:
     except _FAULTS as error:
         raise MalformedDrawingError(f"the SVG cannot be read: {error}") from None
     return (element for element in picture.elements() if isinstance(element, Shape)), given, words
+
+
+def _resolve_percent(root: ElementTree.Element) -> None:
+    """Write lengths in percent in units of the file, where the size of the picture is known.
+
+    Inside a nested picture they are shares of that, and are left as they are.
+    """
+    box = root.get("viewBox", "").replace(",", " ").split()
+    sizes = box[2:] if len(box) == 4 else [root.get("width", ""), root.get("height", "")]
+    waiting = list(root)
+    while waiting:
+        element = waiting.pop()
+        if element.tag in ("svg", f"{{{NAMESPACE}}}svg"):
+            continue
+        waiting += element
+        for keys, size in zip(_SHARES, sizes, strict=True):
+            for key in keys:
+                text = element.get(key, "").strip()
+                if text.endswith("%") and (share := _share(text[:-1], size)):
+                    element.set(key, share)
+
+
+def _share(percent: str, size: str) -> str:
+    """A share of a length, in its unit; empty text if one of the two is no decimal number."""
+    part, whole = _LENGTH.match(percent), _LENGTH.match(size.strip().lower())
+    if part is None or part[2] or whole is None:
+        return ""
+    with localcontext(prec=_DIGITS) as exact:
+        exact.traps[Inexact] = True
+        try:
+            return f"{Decimal(part[1]) * Decimal(whole[1]) / 100:f}{whole[2]}"
+        except ArithmeticError:
+            return ""
 
 
 def _lines(tag: str, own: Mapping[str, str], name: str, chords: int) -> PathLines | None:

@@ -16,7 +16,7 @@ from exactfold.pattern.drawing.meant.local import equal_sectors, local_relations
 from exactfold.pattern.drawing.meant.naming import named, stated
 from exactfold.pattern.drawing.meant.noise import FINEST, last_digit, noise_level, stated_level
 from exactfold.pattern.drawing.meant.system import System
-from exactfold.pattern.drawing.meant.values import Angles, Edge, Relation
+from exactfold.pattern.drawing.meant.values import Angles, Edge, Kind, Relation
 
 _NAMED: Final = 3
 """So many relations are named that contradict another one."""
@@ -62,13 +62,15 @@ def infer(
     unit: int | None = None,
     without: Collection[str] = (),
     also: Collection[str] = (),
+    kinds_left_out: Collection[Kind] = (),
 ) -> Inference:
     """The relations of the sheet that was meant by a drawing.
 
     `points` are the coordinates as written, `edges` all edges (i, j) of the sheet, and `border`
     those on its boundary. A `noise` level, over the size of the drawing, overrules the one that is
     found, and all that makes it doubtful. `unit` forces a grid of 180 / `unit` degrees. `without`
-    names relations that do not hold, and `also` relations that hold, even if nothing is near.
+    names relations that do not hold, and `also` relations that hold, even if nothing is near. Of
+    `kinds_left_out` only those relations are taken that `also` states.
 
     Raises `UsageError` for a noise level or a unit that is not positive, for names of relations
     that do not exist, and for stated relations that contradict others.
@@ -112,8 +114,9 @@ def infer(
     )
     found_all = [*accepted.relations, *accepted.contradicting]
     deleted = named(found_all, without)
-    if deleted or also:
-        gone = {relation.name for relation in deleted}
+    gone = {relation.name for relation in deleted}
+    gone |= {relation.name for relation in found_all if relation.kind in kinds_left_out}
+    if gone or also:
         accepted = Accepted(drawn, level.tolerance, floor)
         accepted.add(relation for relation in found_all if relation.name not in gone)
     if not accepted.contradicting:

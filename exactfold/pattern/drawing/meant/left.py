@@ -7,13 +7,15 @@ of a proof.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import combinations
-from math import atan2, cos, exp, hypot, lcm, log, pi, sin
+from dataclasses import dataclass
+from itertools import repeat
+from math import exp, lcm, log, pi
 from typing import TYPE_CHECKING, Final, Protocol
 
 from exactfold.pattern.drawing.meant.values import Edge, Kind, Relation
 
 if TYPE_CHECKING:
+    from exactfold._support.arrays import FloatArray, IndexArray
     from exactfold.exact.surds import Number
 
 NEAREST: Final = 3e-3
@@ -62,26 +64,31 @@ def left_relations(sheet: Sheet) -> tuple[Relation, ...]:
     """
     if _is_on_a_grid(sheet):
         return ()
-    places = _places(sheet.vertices)
-    size = max(max(column) - min(column) for column in zip(*places, strict=True))
-    tests = list(_tests(sheet, places))
-    shortest = [min(_length(places, edge) for edge, _ in terms) for _, _, terms, _ in tests]
-    if not all(shortest):
+    import numpy as np  # here, as sheets on a grid do without
+
+    places = np.array(_places(sheet.vertices))
+    size = float(np.ptp(places, axis=0).max())
+    tests = [test for test in _tests(sheet, places) if len(test.hubs)]
+    if not all(test.shortest.all() for test in tests):
         return ()  # floats cannot tell the points of this sheet apart
-    expected = sum(2 * size / (pi * length) for length in shortest)  # below a defect of 1
-    near = []
-    for (kind, name, terms, off), length in zip(tests, shortest, strict=True):
-        if off * length / size >= NEAREST:
-            continue
-        if off < _TRUST:
-            off = _exact(sheet, terms)
-        if off:
-            near.append(Relation(kind, name, terms, 1, off * length / size))
-    near.sort(key=lambda relation: relation.defect)
+    # So many are expected below a defect of 1.
+    expected = sum(float((2 * size / (pi * test.shortest)).sum()) for test in tests)
+    near: list[tuple[float, int, int, int]] = []
+    for k, test in enumerate(tests):
+        defects = test.off * test.shortest / size
+        chosen = np.flatnonzero(defects < NEAREST)
+        for row in chosen[test.off[chosen] < _TRUST].tolist():
+            defects[row] = _exact(sheet, test.terms(row)) * test.shortest[row] / size
+        chosen = chosen[defects[chosen] > 0]
+        places_in_order = test.order[chosen].tolist()
+        near += zip(defects[chosen].tolist(), places_in_order, repeat(k), chosen.tolist())
+    near.sort()
     # Two relations at a vertex may follow from each other, so k relations are k / 2 events.
-    chances = [_chance(expected * one.defect, (k + 2) // 2) for k, one in enumerate(near)]
+    chances = (_chance(expected * one[0], (k + 2) // 2) for k, one in enumerate(near))
     believed = [k for k, chance in enumerate(chances, 1) if chance < _CHANCE]
-    return tuple(near[: max(believed, default=0)])
+    return tuple(
+        tests[k].relation(row, defect) for defect, _, k, row in near[: max(believed, default=0)]
+    )
 
 
 def _places(vertices: Sequence[tuple[Number, Number]]) -> list[tuple[float, float]]:
@@ -120,7 +127,58 @@ def off_by(relations: tuple[Relation, ...]) -> tuple[str, ...]:
 
 
 _Terms = tuple[tuple[Edge, int], ...]
-_Places = Sequence[tuple[float, float]]
+
+
+@dataclass(frozen=True)
+class _Tests:
+    """Relations of one kind that are looked for, at vertices of one degree, row by row.
+
+    `ends` are the other ends of the edges at `hubs`; the angles of the first, third, ... of them
+    count as positive. `off` is the angle by which a relation misses, in radians, `shortest` its
+    shortest edge, and `order` its place among all.
+    """
+
+    kind: Kind
+    hubs: IndexArray
+    ends: IndexArray
+    order: IndexArray
+    off: FloatArray
+    shortest: FloatArray
+
+    @classmethod
+    def of(
+        cls,
+        kind: Kind,
+        places: FloatArray,
+        hubs: IndexArray,
+        ends: IndexArray,
+        order: IndexArray,
+    ) -> _Tests:
+        """The tests of these edges."""
+        import numpy as np
+
+        x, y = np.moveaxis(places[ends] - places[hubs, None], -1, 0)
+        angles = np.arctan2(y, x)
+        if kind == "kawasaki":
+            turned = np.argsort(angles, axis=1, kind="stable")
+            angles, ends = (np.take_along_axis(a, turned, axis=1) for a in (angles, ends))
+        total = angles[:, ::2].sum(axis=1) - angles[:, 1::2].sum(axis=1)
+        off = abs(np.arctan2(np.sin(total), abs(np.cos(total))))
+        if kind != "kawasaki":
+            off[np.cos(total) > 0] = pi / 2  # two edges on the same side form no path
+        return cls(kind, hubs, ends, order, off, np.hypot(x, y).min(axis=1))
+
+    def terms(self, row: int) -> _Terms:
+        """The edges of a relation, and the signs of their angles."""
+        v = int(self.hubs[row])
+        return tuple((_edge(v, w), (-1) ** k) for k, w in enumerate(self.ends[row].tolist()))
+
+    def relation(self, row: int, defect: float) -> Relation:
+        """The relation in a row."""
+        name = f"{self.kind}@{self.hubs[row]}"
+        if self.kind == "straight":
+            name += ":{}-{}".format(*self.ends[row])
+        return Relation(self.kind, name, self.terms(row), 1, defect)
 
 
 def _is_on_a_grid(sheet: Sheet) -> bool:
@@ -132,35 +190,35 @@ def _is_on_a_grid(sheet: Sheet) -> bool:
     return all(common * (max(column) - min(column)) <= _STEPS for column in columns)
 
 
-def _tests(sheet: Sheet, places: _Places) -> Iterator[tuple[Kind, str, _Terms, float]]:
-    """Every relation that is looked for: kind, name, terms, and by how many radians it misses."""
+def _tests(sheet: Sheet, places: FloatArray) -> Iterator[_Tests]:
+    """Every relation that is looked for: straight borders, straight paths, and Kawasaki's sums."""
+    import numpy as np
+
     boundary = set(sheet.boundary_edges)
     border: dict[int, list[int]] = {}
     around: dict[int, list[int]] = {}
     for edge in sheet.edges:
         for v, w in (edge, edge[::-1]):
             (border if edge in boundary else around).setdefault(v, []).append(w)
-    for v, (i, j) in ((v, sorted(near)) for v, near in border.items() if len(near) == 2):
-        yield _test("border", f"border@{v}", places, v, ((i, 1), (j, -1)))
+    straight = [v for v, near in border.items() if len(near) == 2]
+    ends = np.array([sorted(border[v]) for v in straight], dtype=np.intp).reshape(-1, 2)
+    count = len(straight)
+    yield _Tests.of("border", places, np.array(straight, dtype=np.intp), ends, np.arange(count))
+    of_degree: dict[int, list[tuple[int, int]]] = {}
     for v, near in around.items():
         if v in border:
             continue  # nothing has to close at a vertex of the boundary
-        for i, j in combinations(sorted(near), 2):
-            yield _test("straight", f"straight@{v}:{i}-{j}", places, v, ((i, 1), (j, -1)))
-        if len(near) == 4:
-            turned = sorted(near, key=lambda w: _angle(places, v, w))
-            signs = [(w, (-1) ** k) for k, w in enumerate(turned)]
-            yield _test("kawasaki", f"kawasaki@{v}", places, v, signs)
-
-
-def _test(
-    kind: Kind, name: str, places: _Places, v: int, signs: Sequence[tuple[int, int]]
-) -> tuple[Kind, str, _Terms, float]:
-    total = sum(sign * _angle(places, v, w) for w, sign in signs)
-    off = abs(atan2(sin(total), abs(cos(total))))
-    if kind != "kawasaki" and cos(total) > 0:
-        off = pi / 2  # two edges on the same side of the vertex form no path
-    return kind, name, tuple((_edge(v, w), sign) for w, sign in signs), off
+        of_degree.setdefault(len(near), []).append((v, count))
+        count += len(near) * (len(near) - 1) // 2 + 1
+    for degree, found in of_degree.items():
+        hubs, first = np.array(found, dtype=np.intp).T
+        ends = np.array([sorted(around[v]) for v in hubs.tolist()], dtype=np.intp)
+        i, j = np.triu_indices(degree, 1)
+        pairs = np.stack([ends[:, i], ends[:, j]], axis=-1).reshape(-1, 2)
+        order = (first[:, None] + np.arange(len(i))).ravel()
+        yield _Tests.of("straight", places, np.repeat(hubs, len(i)), pairs, order)
+        if degree == 4:
+            yield _Tests.of("kawasaki", places, hubs, ends, first + len(i))
 
 
 def _exact(sheet: Sheet, terms: _Terms) -> float:
@@ -178,15 +236,6 @@ def _exact(sheet: Sheet, terms: _Terms) -> float:
         w = w * sign
         x, y = x * u - y * w, x * w + y * u
     return abs(float(y / x)) if x else pi / 2
-
-
-def _angle(places: _Places, v: int, w: int) -> float:
-    return atan2(places[w][1] - places[v][1], places[w][0] - places[v][0])
-
-
-def _length(places: _Places, edge: Edge) -> float:
-    (ax, ay), (bx, by) = places[edge[0]], places[edge[1]]
-    return hypot(bx - ax, by - ay)
 
 
 def _edge(v: int, w: int) -> Edge:

@@ -1,0 +1,1 @@
+"""Certificates about flat-folded states of rigid panels: orders of their layers."""

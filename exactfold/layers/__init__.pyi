@@ -1,0 +1,11 @@
+from exactfold.layers.certificate import states_certificate as states_certificate
+from exactfold.layers.constraints import Constraint as Constraint
+from exactfold.layers.folding import fold_flat as fold_flat
+from exactfold.layers.images import Images as Images
+from exactfold.layers.images import Isometry as Isometry
+from exactfold.layers.pieces import Pieces as Pieces
+from exactfold.layers.states import Component as Component
+from exactfold.layers.states import Conflict as Conflict
+from exactfold.layers.states import FlatStates as FlatStates
+from exactfold.layers.states import State as State
+from exactfold.layers.vertices import Failure as Failure

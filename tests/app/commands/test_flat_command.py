@@ -1,0 +1,86 @@
+"""The command `flat`: what it prints, its JSON and its exit codes."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from jsonschema import Draft202012Validator
+from running import BAD_INPUT, INVALID, PROVED, UNDECIDED, USAGE, run
+
+import exactfold
+
+VALIDATOR = Draft202012Validator(exactfold.schema("flat"))
+
+
+def printed(*arguments):
+    done = run("flat", *arguments, "--json")
+    data = json.loads(done.stdout)
+    VALIDATOR.validate(data)
+    return done.exit_code, data
+
+
+def test_a_sheet_that_folds_flat():
+    code, data = printed("map-fold")
+    assert (code, data["status"], data["locally_flat"]) == (PROVED, "proved", "proved")
+    assert (data["states"], data["components"], data["letters_used"]) == (1, [], "drawn")
+    assert (data["pieces"], data["overlaps"], data["reason"]) == (8, 28, "")
+
+
+def test_any_letters_and_the_parts_whose_product_is_the_number():
+    code, data = printed("square-twist", "--any")
+    assert (code, data["states"], data["components"]) == (PROVED, 4, [2, 2])
+    assert (data["letters_used"], set(data["letters"].values())) == ("any", {"U"})
+
+
+def test_given_letters():
+    code, data = printed("single-vertex-4", "--letters", "MMMV")
+    assert (code, data["states"], data["letters_used"]) == (PROVED, 1, "given")
+    code, data = printed("single-vertex-4", "--letters", "MMVV")
+    assert (code, data["states"], data["locally_flat"]) == (INVALID, 0, "refuted")
+    assert data["vertices"] == [{"vertex": 4, "condition": "maekawa", "off": None, "excess": 0}]
+    assert data["reason"] == (
+        "at vertex 4 there are as many mountains as valleys, and it has to be 2 (Maekawa)"
+    )
+
+
+def test_a_vertex_that_does_not_fold_flat():
+    code, data = printed("zigzags")
+    assert (code, data["states"], data["pieces"]) == (INVALID, 0, 0)
+    assert [one["vertex"] for one in data["vertices"]] == [9, 10, 13, 14]
+    assert {one["condition"] for one in data["vertices"]} == {"kawasaki"}
+    text = run("flat", "zigzags").stdout
+    assert text.startswith("not flat-foldable with the drawn mountains and valleys: 4 vertices")
+    odd = run("flat", "flat-octahedron", "--all").stdout
+    assert "- at vertex 4 the number of folded creases is odd (Kawasaki)" in odd
+    assert odd.count("(Kawasaki)") == 6
+
+
+def test_panels_that_cross_whatever_the_order():
+    code, data = printed("square-twist")
+    assert (code, data["status"], data["locally_flat"]) == (INVALID, "refuted", "proved")
+    kinds = [one["kind"] for one in data["conflict"]]
+    assert kinds == ["letter", "letter", "taco-tortilla", "taco-tortilla"]
+    assert data["reason"] == (
+        "panels 5, 6 and 7 cross whatever the order of layers: 4 conditions contradict each other"
+    )
+
+
+def test_the_limit_ends_the_search():
+    code, data = printed("map-fold", "--any", "--limit", "1e-9")
+    assert (code, data["status"], data["states"]) == (UNDECIDED, "undecided", None)
+    text = run("flat", "map-fold", "--limit", "1e-9").stdout
+    assert "whether the sheet folds flat with the drawn mountains and valleys is open" in text
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code"),
+    [
+        (("map-fold", "--any", "--letters", "drawn"), USAGE),
+        (("waterbomb", "--letters", "drawn"), USAGE),
+        (("map-fold", "--letters", "MMM"), USAGE),
+        (("no-such-sheet",), BAD_INPUT),
+    ],
+)
+def test_wrong_usage_and_bad_input(arguments, code):
+    assert run("flat", *arguments).exit_code == code

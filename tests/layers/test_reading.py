@@ -1,0 +1,141 @@
+"""No answer about the digits of a drawing is called one about the sheet."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from running import UNDECIDED as EXIT_UNDECIDED
+from running import run
+
+import exactfold
+from exactfold import PROVED, REFUTED, UNDECIDED, flat, read
+
+
+def letter_fold(more, *, cut=False):
+    """Panels 100, 100 and 100 + more with two valleys; `cut` into triangles, read as they stand."""
+    xs = [0, 100, 200, 300 + more]
+    edges = [[k, k + 1] for k in (0, 1, 2, 4, 5, 6)] + [[k, k + 4] for k in range(4)]
+    letters = [*"BBBBBB", "B", "V", "V", "B"]
+    document = {
+        "vertices_coords": [[x, y] for y in (0, 50) for x in xs],
+        "edges_vertices": edges,
+        "edges_assignment": letters,
+    }
+    if cut:
+        document["edges_vertices"] = edges + [[k, k + 5] for k in range(3)]
+        document["edges_assignment"] = [*letters, "F", "F", "F"]
+        document["faces_vertices"] = [
+            face for k in range(3) for face in ([k, k + 1, k + 5], [k, k + 5, k + 4])
+        ]
+    return document
+
+
+LONGER = [0.1, 1e-3, 1e-5, 1e-7, 1e-8]
+
+
+@pytest.mark.parametrize("more", [*LONGER, 1e-9])
+def test_a_longer_last_panel_leaves_one_state_for_the_digits_as_written(more):
+    found = flat(read(letter_fold(more), snap="exact"))
+    assert (found.status, found.count) == (PROVED, 1)
+    shorter = flat(read(letter_fold(-more), snap="exact"))
+    assert (shorter.status, shorter.count) == (PROVED, 2)
+
+
+@pytest.mark.parametrize("snap", [None, "auto", "exact", 1, 1000])
+def test_equal_panels_have_two_states_however_they_are_read(snap):
+    found = flat(read(letter_fold(0), snap=snap))
+    assert (found.status, found.count) == (PROVED, 2)
+
+
+@pytest.mark.parametrize("more", LONGER)
+def test_where_reading_moves_coordinates_to_another_answer_nothing_is_proved(more):
+    found = flat(read(letter_fold(more)))
+    assert (found.status, found.as_written) == (UNDECIDED, PROVED)
+    assert "the digits as written have 1 state" in found.reason
+    assert "--snap exact" in found.reason
+    assert found.to_dict()["states"] is None
+    assert found.to_dict()["as_written"]["states"] == found.count == 2
+
+
+@pytest.mark.parametrize("more", LONGER)
+def test_a_grid_that_was_asked_for_is_no_doubt(more):
+    found = flat(read(letter_fold(more), snap=1))
+    assert (found.status, found.count) == (PROVED, 2)
+
+
+@pytest.mark.parametrize("more", [1e-9, 1e-12])
+def test_rounding_errors_of_floats_are_no_doubt(more):
+    found = flat(read(letter_fold(more)))
+    assert (found.status, found.count) == (PROVED, 2)
+
+
+@pytest.mark.parametrize("more", [*LONGER[1:], 1e-9])
+def test_corners_that_nearly_meet_a_crease_leave_the_answer_open(more):
+    found = flat(read(letter_fold(more, cut=True)))
+    assert (found.status, found.as_written, found.count) == (UNDECIDED, PROVED, 1)
+    assert found.near.states == 2
+    assert "if all that nearly meets is taken to meet, there are 2 states" in found.reason
+    assert found.near.distance == pytest.approx(more / 100, rel=0.01)
+    exactly = flat(read(letter_fold(more, cut=True), snap="exact"))
+    assert (exactly.status, exactly.near) == (PROVED, None)
+
+
+@pytest.mark.parametrize("more", [-1e-5, 1e-5])
+def test_a_near_miss_on_which_nothing_depends_is_no_doubt(more):
+    """A zigzag of panels has one state, however long the last panel is."""
+    sheet = letter_fold(more, cut=True)
+    sheet["edges_assignment"][7:9] = "VM"
+    found = flat(read(sheet))
+    assert found.near is not None
+    assert (found.status, found.count) == (PROVED, 1)
+
+
+def test_a_clear_difference_is_no_near_miss():
+    found = flat(read(letter_fold(1, cut=True)))
+    assert (found.status, found.near, found.count) == (PROVED, None, 1)
+
+
+def diagonals():
+    """Two diagonals and a ring round their crossing, whose corners are off by 2e-6 to 6e-4."""
+    corners = [[0, 0], [4, 0], [4, 4], [0, 4], [2.00001, 1.99997], [1.0003, 0.99992]]
+    corners += [[3.000007, 0.999998], [2.99988, 3.00005], [1.002, 2.9991]]
+    edges = [(0, 1), (1, 2), (2, 3), (0, 3), (4, 5), (4, 6), (4, 7), (4, 8)]
+    edges += [(5, 6), (6, 7), (7, 8), (5, 8), (0, 5), (1, 6), (2, 7), (3, 8)]
+    edges += [(0, 6), (1, 7), (2, 8), (3, 5)]
+    return {
+        "vertices_coords": corners,
+        "edges_vertices": edges,
+        "edges_assignment": ["B"] * 4 + ["U"] * 16,
+    }
+
+
+def test_a_doubted_drawing_is_undecided_and_says_what_its_digits_are():
+    found = flat(read(diagonals()))
+    assert (found.status, found.as_written) == (UNDECIDED, REFUTED)
+    assert found.locally_flat is UNDECIDED
+    assert "relations nearly hold" in found.reason
+    assert "the coordinates as they were read: refuted" in found.reason
+    assert flat(read(diagonals(), snap="exact")).status is REFUTED
+
+
+def test_the_command_says_that_it_is_undecided(tmp_path):
+    path = tmp_path / "letter.fold"
+    path.write_text(json.dumps(letter_fold(1e-5)))
+    done = run("flat", path)
+    assert done.exit_code == EXIT_UNDECIDED
+    assert done.stdout.startswith("whether the sheet folds flat with the drawn")
+    assert "The coordinates as they were read: 2 flat-folded states" in done.stdout
+    data = json.loads(run("flat", path, "--json").stdout)
+    assert (data["status"], data["states"], data["components"]) == ("undecided", None, [])
+    assert run("flat", path, "--snap", "exact").exit_code == 0
+    assert run("flat", path, "--snap", "10").exit_code == 0
+
+
+def test_the_sheet_that_was_meant_is_named():
+    sides = {"vertices_coords": [[0, 0], [1, 1e-9], [1, 1], [0, 1], [0.5, 0.5]]}
+    edges = [[0, 1], [1, 2], [2, 3], [3, 0], [0, 4], [1, 4], [2, 4], [3, 4]]
+    sheet = {**sides, "edges_vertices": edges, "edges_assignment": [*"BBBB", *"VVVM"]}
+    found = exactfold.flat(sheet)
+    assert found.status is PROVED
+    assert found.locally_flat is PROVED
