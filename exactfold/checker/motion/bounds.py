@@ -31,11 +31,10 @@ _MOST_ROUNDS = 30
 
 
 class Rounded(NamedTuple):
-    """Sizes of the entries of a matrix: x 2^`drop`, x in `rows`, off by at most `off` 2^`drop`."""
+    """A matrix with the entries x 2^`drop`, x in `rows`; each is off by less than 2^`drop`."""
 
     rows: Sequence[Sequence[int]]
     drop: int
-    off: int
 
 
 class Bounds:
@@ -97,49 +96,38 @@ def derivative(coefficients: Sequence[int]) -> Vector:
 
 def bounds(
     p: list[Vector],
-    images: Sequence[Rounded],
+    images: Sequence[Vector],
     residual_bits: int,
     slopes: Sequence[Rounded],
     matrix_bits: int,
     squares: list[Vector],
     weights: Vector,
-    tail: Sequence[Vector] = (),
-    tail_bits: int = 0,
 ) -> Bounds:
     """The bounds for P = p / 2^INVERSE_BITS.
 
-    The lists have one entry for each power s^k. `images[k]` is the coefficient of P H(p(s), s), as
-    a matrix with one column, over 2^(INVERSE_BITS + residual_bits). `slopes[k]` is that of
-    P DH(p(s), s) - 1, over 2^(INVERSE_BITS + matrix_bits). `squares[k]` bounds that of |D2H(y, z)|
-    for |y|, |z| <= 1, over 2^(2 WEIGHT_BITS); the equations after those in `squares` are linear.
-    After the last of `slopes`, `tail` has bounds of |DH y| for |y| <= 1, over 2^`tail_bits`.
+    The lists have one entry for each power s^k. `images[k]` is the coefficient of P H(p(s), s),
+    over 2^(INVERSE_BITS + residual_bits). `slopes[k]` is that of P DH(p(s), s) - 1, over
+    2^(INVERSE_BITS + matrix_bits). `squares[k]` bounds that of |D2H(y, z)| for |y|, |z| <= 1, over
+    2^(2 WEIGHT_BITS); the equations after those in `squares` are linear.
     """
     reciprocals = [-((-1 << _RECIPROCAL_BITS + WEIGHT_BITS) // w) for w in weights]
 
     def norm_of(rows: Iterable[int], bits: int) -> int:
         """The maximum norm of a vector with entries >= 0 over 2^bits."""
         most = max(map(mul, rows, reciprocals))
-        return up(most << ROUND + max(-bits, 0), max(bits, 0) + _RECIPROCAL_BITS)
+        return up(most << ROUND, bits + _RECIPROCAL_BITS)
 
-    b = [
-        norm_of([x + off for (x,) in rows], INVERSE_BITS + residual_bits - drop)
-        for rows, drop, off in images
-    ]
+    b = [norm_of(map(abs, image), INVERSE_BITS + residual_bits) for image in images]
     q, spread = [], sum(weights)
-    for rows, drop, off in slopes:
-        sizes = [dot(row, weights) + off * spread for row in rows]
+    for rows, drop in slopes:
+        sizes = [dot(map(abs, row), weights) + spread for row in rows]
         q.append(norm_of(sizes, INVERSE_BITS + matrix_bits + WEIGHT_BITS - drop))
-    sizes_of_p = [list(map(abs, row)) for row in p]
-
-    def through_p(vectors: Iterable[Vector], bits: int) -> Vector:
-        """The maximum norms of |P| v for vectors v over 2^bits."""
-        return [
-            norm_of([dot(row, vector) for row in sizes_of_p], INVERSE_BITS + bits)
-            for vector in vectors
-        ]
-
-    q += through_p(tail, tail_bits)
-    return Bounds(b, q, through_p(squares, 2 * WEIGHT_BITS))
+    sizes_of_p = [[abs(x) for x in row] for row in p]
+    kappa = [
+        norm_of([dot(row, square) for row in sizes_of_p], INVERSE_BITS + 2 * WEIGHT_BITS)
+        for square in squares
+    ]
+    return Bounds(b, q, kappa)
 
 
 def norm(rows: Sequence[int], weights: Vector, bits: int) -> int:
@@ -183,7 +171,7 @@ def weights_of(matrix: list[list[float]], enough: float = 0.0) -> Vector:
     for _ in range(_MOST_ROUNDS):
         image = [sum(map(mul, row, vector)) for row in matrix]
         top = max(max(image), 1e-300)
-        after = [x + 4.0 * y / top for x, y in zip(vector, image, strict=True)]
+        after = [x + y / top for x, y in zip(vector, image, strict=True)]
         top = max(after)
         after = [x / top for x in after]
         change = max(abs(x - y) - enough * y for x, y in zip(vector, after, strict=True))

@@ -25,10 +25,11 @@ from .bounds import (
     bounds,
     dot,
     norm,
+    product,
     weights_of,
 )
 from .equations import ORDER, LengthEquations, extended, images, inverse_of, largest, rounded
-from .packed import Coarse, near_one
+from .packed import Lanes
 from .patches import Patch, wheel_stress
 from .tubes import ROW_BITS, Ball, Piece, near
 
@@ -97,7 +98,7 @@ class BranchPointTube(Piece):
         def derivative(rows: Rows, terms: Rows, last: Sequence[Sequence[int]]) -> Columns:
             """DH over 2^(bits + more), for the rows of the kept edges and of the stresses.
 
-            `last` are the rows after these.
+            `last` are the rows after these. The entries may be packed polynomials.
             """
             scaled = [[a * m << more for a in e] for m, e in zip(kept, rows, strict=True)]
             columns = equations.columns(scaled, last)
@@ -126,14 +127,14 @@ class BranchPointTube(Piece):
         p = rounded(inverse_of(derivative(x, equations.along(centre), last), bits + more))
         curve = extended(equations, centre, p, residual, bits + more + 1)
         parts = [equations.along(a) for a in curve]
+        rows: list[Rows] = [x, *parts]
         wheel = max(sum(map(abs, stress.values())) for stress in stresses.rows)
-        size = max(largest(x) << more, largest(last), wheel * largest(parts[0]))
-        coarse, none = Coarse(p), [(0, 0, 0) for _ in x]
-        one = 1 << INVERSE_BITS + bits + more
-        slopes = [near_one(p, derivative(x, parts[0], last), size, one)]
-        for k, part in enumerate(parts, 1):
-            stressed_part = parts[k] if k < len(parts) else none
-            slopes.append(coarse.sizes(derivative(part, stressed_part, [])))
+        sizes = [max(largest(x) << more, largest(last)), *(largest(y) << more for y in parts)]
+        stressed_sizes = [*(wheel * largest(y) for y in parts), 0]
+        sizes = list(map(max, sizes, stressed_sizes))
+        lanes = Lanes(p, sizes)
+        columns = derivative(lanes.table(rows), lanes.table(parts), lanes.table([last]))
+        slopes = lanes.read(product(p, columns), 1 << INVERSE_BITS + bits + more)
         weights = weights_of(near(slopes, bits + more))
         sums = equations.weight_sums(weights)
         square = [dot(e, e) for e in sums]
@@ -143,7 +144,7 @@ class BranchPointTube(Piece):
         room = equations.beyond([*curve, *x, *last], more)
         proof = bounds(
             p,
-            images(curve, coarse, residual, room, 2 * ORDER + 1),
+            images(equations, curve, p, residual, room, 2 * ORDER + 1),
             2 * bits + more + 1,
             slopes,
             bits + more,

@@ -6,19 +6,19 @@ from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
 from itertools import chain
 from math import lcm
-from operator import add, itemgetter, mul, sub
-from typing import TypeVar
+from operator import add, mul, sub
+from typing import Any, TypeVar
 
 from ..core.krawczyk import inverse
 from ..core.reading import require
 from ..sheets.sheet import Sheet
-from .bounds import INVERSE_BITS, Columns, Rounded, Vector, dot
-from .packed import Coarse, coefficient, near_one, packed, unpacked, wide_enough
+from .bounds import INVERSE_BITS, Columns, Rounded, Vector, dot, product
+from .packed import Lanes, coefficient, packed, unpacked, wide_enough
 from .restriction import Restriction, Tie
 
 Number = TypeVar("Number", int, float)
 
-ORDER = 8  # the degree of the polynomial of a piece that is no tube
+ORDER = 8  # the degree of the polynomial of a piece
 SPARE = 60  # bits before the binary point
 Curve = list[Vector]
 """A polynomial in s with vector coefficients; row k is the coefficient of s^k."""
@@ -70,28 +70,7 @@ class LengthEquations:
             for i, j in self.bars
         ]
         self.ties = [self._tie(tie, bits - added.tie_bits) for tie in added.ties]
-        at = {v: (k, k + 1, k + 2) for v, k in self.place.items()}
-        held = (-1, -1, -1)
-        self._places = [
-            itemgetter(*chain.from_iterable(at.get(v, held) for v in column))
-            for column in zip(*self.bars, strict=True)
-        ]
-        self.ends = [
-            (e, self.place[v], n, sign * c)
-            for e, bar in enumerate(self.bars)
-            for v, sign in zip(bar, (1, -1), strict=True)
-            if v in self.place
-            for n, c in self._factors(e)
-        ]
         self.factor = max([1 << self.more, *(sum(map(abs, row)) for row in self.mixed)])
-
-    def _factors(self, bar: int) -> list[tuple[int, int]]:
-        """The equations, times 2^more, that contain a bar, each with the factor of the bar."""
-        edges = len(self.edges)
-        if bar < edges:
-            return [(bar, 1 << self.more)]
-        rows = enumerate(self.mixed, edges)
-        return [(n, row[bar - edges]) for n, row in rows if row[bar - edges]]
 
     def _tie(self, tie: Tie, up: int) -> Vector:
         row = [0] * self.size
@@ -135,24 +114,23 @@ class LengthEquations:
 
     def along(self, row: Sequence[Number]) -> list[tuple[Number, ...]]:
         """The differences a_e of a vector a, for all bars e."""
-        differences = iter(self.differences(row))
-        return list(zip(differences, differences, differences, strict=True))
-
-    def differences(self, row: Sequence[Number]) -> list[Number]:
-        """The differences a_e of a vector a, for all bars e, one coordinate after the other."""
-        begins, ends = self._places
-        padded = *row, 0  # 0 is where the vertices held are
-        return list(map(sub, begins(padded), ends(padded)))
+        at: dict[int, tuple[Any, ...]] = dict.fromkeys(self.pinned, (0, 0, 0))
+        at |= {v: tuple(row[k : k + 3]) for v, k in self.place.items()}
+        return [tuple(map(sub, at[i], at[j])) for i, j in self.bars]
 
     def columns(self, rows: Sequence[Sequence[int]], last: Sequence[Sequence[int]] = ()) -> Columns:
         """The matrix of d -> rows_e . d_e, with the rows `last` added, times 2^more."""
         columns: Columns = [[] for _ in range(self.size)]
-        for e, place, n, c in self.ends:
-            for k, x in enumerate(rows[e], place):
-                if x:
-                    columns[k].append((n, c * x))
-        one = 1 << self.more
-        for n, line in enumerate(last, len(self.edges) + len(self.mixed)):
+        edges, one = len(self.edges), 1 << self.more
+        for e, ((i, j), row) in enumerate(zip(self.bars, rows, strict=True)):
+            factors = [(e, one)] if e < edges else self._factors(e - edges)
+            for v, sign in ((i, 1), (j, -1)):
+                if v in self.place:
+                    for a in range(3):
+                        if row[a]:
+                            entries = [(n, sign * c * row[a]) for n, c in factors]
+                            columns[self.place[v] + a] += entries
+        for n, line in enumerate(last, edges + len(self.mixed)):
             for k, x in enumerate(line):
                 if x:
                     columns[k].append((n, x * one))
@@ -160,7 +138,7 @@ class LengthEquations:
 
     def slopes(
         self,
-        p: Coarse,
+        p: list[Vector],
         rows: Sequence[Sequence[Sequence[int]]],
         last: Sequence[Sequence[int]],
         bits: int,
@@ -170,10 +148,16 @@ class LengthEquations:
         `rows[k]` are the vectors of the bars in the coefficient of s^k of DH, and `last` the rows
         after these, for s = 0. All are over 2^bits.
         """
-        size = max(self.factor * largest(rows[0]), largest(last) << self.more)
-        one = 1 << INVERSE_BITS + bits + self.more
-        constant = near_one(p.p, self.columns(rows[0], last), size, one)
-        return [constant, *(p.sizes(self.columns(row)) for row in rows[1:])]
+        sizes = [self.factor * largest(row) for row in rows]
+        sizes[0] = max(sizes[0], largest(last) << self.more)
+        lanes = Lanes(p, sizes)
+        columns = self.columns(lanes.table(rows), lanes.table([last]))
+        return lanes.read(product(p, columns), 1 << INVERSE_BITS + bits + self.more)
+
+    def _factors(self, k: int) -> list[tuple[int, int]]:
+        """The equations that contain diagonal k, each with the factor of the diagonal."""
+        rows = enumerate(self.mixed, len(self.edges))
+        return [(n, row[k]) for n, row in rows if row[k]]
 
     def weight_sums(self, weights: Sequence[int]) -> list[tuple[int, ...]]:
         """The sums w_i + w_j in the three coordinates, for every bar (i, j)."""
@@ -185,20 +169,19 @@ class LengthEquations:
         """Nearly the inverse of a matrix over 2^(bits + more), in floats."""
         return inverse_of(columns, bits + self.more)
 
-    def taylor(self, inverse: list[list[float]], order: int) -> list[list[float]]:
+    def taylor(self, inverse: list[list[float]]) -> list[list[float]]:
         """The coefficients of s, s^2, ... of the curve with T(x - c) = s, in floats.
 
         `inverse` is that of DH at c. The tests that use the result are valid for any curve.
         """
         rows = [[line[-1] for line in inverse]]
-        parts: list[list[float]] = []
-        for k in range(1, order):
-            parts.append(self.differences(rows[-1]))
-            # The coefficient of |a|^2 / 2: two equal halves, and the square in the middle.
-            half = [0.5 * x * x for x in parts[k // 2]] if k % 2 else [0.0] * len(parts[0])
-            for a, b in zip(parts[: k // 2], reversed(parts), strict=False):
-                half = list(map(add, half, map(mul, a, b)))
-            bars = [-sum(xyz) for xyz in zip(half[::3], half[1::3], half[2::3], strict=True)]
+        parts: list[list[float]] = [[] for _ in range(3 * len(self.bars))]
+        for _ in range(1, ORDER):
+            flat = chain.from_iterable(self.along(rows[-1]))
+            for part, x in zip(parts, flat, strict=True):
+                part.append(x)
+            squares = [sum(map(mul, part, reversed(part))) for part in parts]
+            bars = [-sum(squares[e : e + 3]) / 2 for e in range(0, len(squares), 3)]
             right, diagonals = bars[: len(self.edges)], bars[len(self.edges) :]
             right += [sum(map(mul, row, diagonals)) / (1 << self.more) for row in self.mixed]
             rows.append([sum(map(mul, line, right)) for line in inverse])
@@ -218,7 +201,7 @@ def inverse_of(columns: Columns, bits: int) -> list[list[float]]:
 def rounded(matrix: list[list[float]]) -> list[Vector]:
     """An inverse over 2^INVERSE_BITS, called P; the test that uses P is valid for any P."""
     scale = 2.0**INVERSE_BITS
-    nearly = [list(map(int, map(scale.__mul__, row))) for row in matrix]
+    nearly = [[round(x * scale) for x in row] for row in matrix]
     require(largest(nearly) >> INVERSE_BITS + SPARE == 0, "a Jacobian is nearly singular")
     return nearly
 
@@ -229,7 +212,6 @@ def extended(
     p: list[Vector],
     residual: Residual,
     extra: int,
-    order: int = ORDER,
 ) -> Curve:
     """Compute a curve from its centre, coefficient by coefficient, by Newton's method with P.
 
@@ -239,7 +221,7 @@ def extended(
     down = INVERSE_BITS + extra + equations.more
     width = (equations.bits + extra + equations.more + SPARE + 23) // 8 * 8
     curve, x = [centre], centre
-    for k in range(1, order + 1):
+    for k in range(1, ORDER + 1):
         row = [0] * len(centre)
         for _ in range(2):
             g = [coefficient(value, width, k) for value in residual(x, width)]
@@ -250,15 +232,22 @@ def extended(
     return curve
 
 
-def images(curve: Curve, p: Coarse, residual: Residual, most: int, degree: int) -> list[Rounded]:
+def images(
+    equations: LengthEquations,
+    curve: Curve,
+    p: list[Vector],
+    residual: Residual,
+    most: int,
+    degree: int,
+) -> list[Vector]:
     """The coefficients of P H(p(s), s), for the values H of `residual`, a polynomial in s.
 
     Its coefficients are at most `most` in size.
     """
-    width = wide_enough(most)
+    width = wide_enough(p, most)
     values = residual([packed(column, width) for column in zip(*curve, strict=True)], width)
-    rows = [unpacked(value, width, degree + 1) for value in values]
-    return [p.sizes([list(enumerate(column))]) for column in zip(*rows, strict=True)]
+    rows = [unpacked(dot(line, values), width, degree + 1) for line in p]
+    return [list(column) for column in zip(*rows, strict=True)]
 
 
 def nearest(centre: Vector, series: list[list[float]], bits: int) -> Curve:
@@ -268,7 +257,7 @@ def nearest(centre: Vector, series: list[list[float]], bits: int) -> Curve:
 
 def largest(rows: Iterable[Sequence[int]]) -> int:
     """The largest size of an entry."""
-    return max(map(abs, chain.from_iterable(rows)))
+    return max(max(max(row), -min(row)) for row in rows)
 
 
 def at(curve: Curve, s: Fraction) -> Vector:

@@ -8,13 +8,11 @@ coefficient is less than 2^(width - 1) in size.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import chain
 from struct import unpack
 
-from .bounds import Columns, Rounded, Vector
+from .bounds import Rounded, Vector, less_one
 
-_WORD, _HALF = 64, 32
-_FEW, _REST = 28, 34  # binary digits of the rounded P, and what they leave of 62 for other numbers
+_WORD = 64
 
 
 def packed(coefficients: Sequence[int], width: int) -> int:
@@ -44,72 +42,57 @@ def coefficient(value: int, width: int, k: int) -> int:
     return ((value + _halves(width, k + 1) >> width * k) & (1 << width) - 1) - half
 
 
-def wide_enough(size: int) -> int:
-    """A width for polynomials whose coefficients are at most `size` in size."""
-    return (size.bit_length() + 2 + 7) // 8 * 8
+def wide_enough(p: Sequence[Vector], size: int) -> int:
+    """A width for scalar products of rows of a matrix with polynomials.
 
-
-def near_one(p: Sequence[Vector], matrix: Columns, size: int, one: int) -> Rounded:
-    """The entries of P M - 1, where 1 is `one`, for a matrix M with entries of at most `size`.
-
-    Each column of P is one integer with a place for each row, so that a column of P M is a sum of
-    few products. The products are exact. Of each number the highest word of its place is kept.
+    The coefficients of these polynomials are at most `size` in size.
     """
-    digits = (max(sum(map(abs, row)) for row in p) * size + one).bit_length()
-    width = -(-(digits + 2) // _WORD) * _WORD
-    shift = width - 2 - digits  # so the highest words hold as many digits as possible
-    places = [packed(column, width) for column in zip(*p, strict=True)]
-    sums = [
-        sum([places[e] * x for e, x in column]) - (one << width * i) << shift
-        for i, column in enumerate(matrix)
-    ]
-    rows = _highest(sums, len(p), width // 32, "q", width // _WORD)
-    return Rounded(rows, width - _WORD - shift, 1)
+    most = max(sum(map(abs, row)) for row in p) * size
+    return (most.bit_length() + 2 + 7) // 8 * 8
 
 
-class Coarse:
-    """P in few digits, for bounds of P M: its columns, each as one integer with 64-bit places.
+class Lanes:
+    """A place for each coefficient of the entries of P M(s), where M(s) is a matrix.
 
-    P is (Q + E) 2^c with integers |Q| <= 2^28 and 0 <= E < 1. Let v be (V + D) 2^d with integers
-    |V| <= 2^b and 0 <= D < 1, and let at most m of its entries not be 0, where m 2^b <= 2^34. Then
-    P v differs from Q V 2^(c + d) by less than (sum |P| / 2^c + 2^34) 2^(c + d), and Q V is at most
-    2^62. Of Q V the highest 32 binary digits of its place are kept.
+    `sizes[k]` bounds the entries of the coefficient of s^k of M(s). The coefficients of M(s) are
+    shifted to the left so far that those of P M(s) may fill their places. Then the highest word of
+    each place holds about 62 binary digits of the largest possible coefficient.
     """
 
-    def __init__(self, p: list[Vector]) -> None:
-        self.p = p
-        self.drop = max(0, max(map(abs, chain.from_iterable(p))).bit_length() - _FEW)
-        rows = [[x >> self.drop for x in row] for row in p]
-        self.places = [packed(column, _WORD) for column in zip(*rows, strict=True)]
-        most = (max(sum(map(abs, row)) for row in p) >> self.drop) + 1
-        self.off = 2 + (most + (1 << _REST) >> _HALF) + 1
+    def __init__(self, p: Sequence[Vector], sizes: Sequence[int]) -> None:
+        most = max(sum(map(abs, row)) for row in p)
+        digits = [(most * size).bit_length() for size in sizes]
+        self.width = -(-(max(digits) + 2) // _WORD) * _WORD
+        self.shifts = [self.width - 2 - n for n in digits]
 
-    def sizes(self, matrix: Columns) -> Rounded:
-        """The sizes of the entries of P M."""
-        entries, count = max(map(len, matrix)), len(self.p)
-        top = max([abs(x) for column in matrix for _, x in column], default=0).bit_length()
-        down, places = top - (_REST - entries.bit_length()), self.places
-        if down < 0:
-            sums = [sum([places[e] * x for e, x in column]) << -down for column in matrix]
-        else:
-            sums = [sum([places[e] * (x >> down) for e, x in column]) for column in matrix]
-        rows = _highest(sums, count, 2, "i", 2)
-        return Rounded(rows, self.drop + down + _HALF, self.off)
+    def pack(self, coefficients: Sequence[int]) -> int:
+        """The integer of an entry of M(s); missing coefficients at its end are 0."""
+        total = 0
+        for k, c in enumerate(coefficients):
+            total += c << self.width * k + self.shifts[k]
+        return total
 
+    def table(self, tables: Sequence[Sequence[Sequence[int]]]) -> list[Vector]:
+        """The integers of the entries of a table, given the table for each power of s."""
+        return [
+            [self.pack(entry) for entry in zip(*lines, strict=True)]
+            for lines in zip(*tables, strict=True)
+        ]
 
-def _highest(
-    columns: Sequence[int], count: int, step: int, form: str, words: int
-) -> list[list[int]]:
-    """The sizes of the highest words of all places, row by row.
-
-    A column has `count` places of 32 `step` bits, which are `words` numbers of the given form.
-    """
-    halves, size = _halves(32 * step, count), 4 * step * count
-    # x + halves has a positive number in each place; ^ turns it into two's complement.
-    data = b"".join([((x + halves) ^ halves).to_bytes(size, "little") for x in columns])
-    numbers = unpack(f"<{count * words * len(columns)}{form}", data)
-    tops = range(words - 1, count * words, words)
-    return [list(map(abs, numbers[top :: count * words])) for top in tops]
+    def read(self, product: list[Vector], one: int) -> list[Rounded]:
+        """The coefficients of P M(s) - 1 from the packed entries of P M(s); 1 is `one` there."""
+        count, words = len(self.shifts), self.width // _WORD
+        halves, size = _halves(self.width, count), self.width // 8 * count
+        form = f"<{len(product) * count * words}q"
+        read: list[list[Sequence[int]]] = [[] for _ in self.shifts]
+        for row in less_one(product, one << self.shifts[0]):
+            # x + halves has a positive number in each place; ^ turns it into two's complement.
+            data = b"".join([((x + halves) ^ halves).to_bytes(size, "little") for x in row])
+            numbers = unpack(form, data)
+            for k, rows in enumerate(read):
+                rows.append(numbers[(k + 1) * words - 1 :: count * words])
+        low = self.width - _WORD
+        return [Rounded(rows, low - shift) for rows, shift in zip(read, self.shifts, strict=True)]
 
 
 def _halves(width: int, count: int) -> int:

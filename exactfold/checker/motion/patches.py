@@ -98,9 +98,9 @@ class Patch:
         slope = less_one(product(p, columns), 1 << INVERSE_BITS + bits + k)
         proof = bounds(
             p,
-            [Rounded([[abs(dot(row, residual))] for row in p], 0, 0)],
+            [[dot(row, residual) for row in p]],
             2 * bits + k + 1,
-            [Rounded([list(map(abs, line)) for line in slope], 0, 0)],
+            [Rounded(slope, 0)],
             bits + k,
             [squares],
             [1 << WEIGHT_BITS] * size,

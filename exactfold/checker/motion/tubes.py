@@ -30,14 +30,8 @@ from .equations import (
     powers_of,
     rounded,
 )
-from .packed import Coarse
 
 ROW_BITS = 20
-TUBE_ORDER = 12  # the degree of the polynomial of a tube, as a rule
-NEAR = 4
-"""So many coefficients of the derivative of the equations of a tube are multiplied by P as a rule;
-of later ones, only sizes are.
-"""
 
 
 class Ball(NamedTuple):
@@ -98,7 +92,6 @@ class Start(Piece):
         held_row = [int(k == held) << scale for k in range(equations.size)]
         last = equations.last_rows(held_row, 2 * halvings)
         p = rounded(equations.inverse(equations.columns(tilted, last), scale))
-        coarse = Coarse(p)
 
         def residual(x: Vector, width: int) -> Vector:
             """The equations, over 2^(2 bits + 2 halvings + more + 1)."""
@@ -118,14 +111,14 @@ class Start(Piece):
             [(a, b, c) for (a, b), c in zip(*both, strict=True)]
             for both in zip(plane, heights, strict=True)
         ]
-        slopes = equations.slopes(coarse, rows, last, scale)
+        slopes = equations.slopes(p, rows, last, scale)
         weights = weights_of(near(slopes, scale + equations.more))
         sums = equations.weight_sums(weights)
         squares = [[z * z for _, _, z in sums], [(x * x + y * y) // up + 1 for x, y, _ in sums]]
         most = equations.beyond([*curve, *equations.flat, *equations.ties], 2 * halvings)
         proof = bounds(
             p,
-            images(curve, coarse, residual, most, 2 * ORDER + 1),
+            images(equations, curve, p, residual, most, 2 * ORDER + 1),
             bits + scale + equations.more + 1,
             slopes,
             scale + equations.more,
@@ -166,7 +159,6 @@ class Tube(Piece):
         last = equations.last_rows([t << bits - ROW_BITS for t in row])
         inverse = equations.inverse(equations.columns(here, last), bits)
         p = rounded(inverse)
-        coarse = Coarse(p)
 
         def residual(x: Vector, width: int) -> Vector:
             """The equations, over 2^(2 bits + more + 1)."""
@@ -178,34 +170,27 @@ class Tube(Piece):
             along = dot(row, x) - dot(row, centre) - (1 << width + bits + ROW_BITS)
             return equations.stacked(bars, [*ties, along << bits - ROW_BITS + 1])
 
-        def prove(curve: Curve, many: int, enough: float) -> None:
+        def prove(curve: Curve, enough: float) -> None:
             rows = [here, *(equations.along(a) for a in curve[1:])]
-            slopes = equations.slopes(coarse, rows[:many], last, bits)
+            slopes = equations.slopes(p, rows, last, bits)
             weights = weights_of(near(slopes, bits + equations.more), enough)
-            sums = equations.weight_sums(weights)
-            tail = [
-                equations.largest([dot(map(abs, a), w) for a, w in zip(row, sums, strict=True)])
-                for row in rows[many:]
-            ]
+            squares = [dot(e, e) for e in equations.weight_sums(weights)]
             most = equations.beyond([*curve, *equations.flat, *last])
             proof = bounds(
                 p,
-                images(curve, coarse, residual, most, 2 * len(curve) - 2),
+                images(equations, curve, p, residual, most, 2 * ORDER),
                 2 * bits + equations.more + 1,
                 slopes,
                 bits + equations.more,
-                [equations.largest([dot(e, e) for e in sums])],
+                [equations.largest(squares)],
                 weights,
-                tail,
-                bits + WEIGHT_BITS,
             )
             Piece.__init__(self, equations, curve, weights, proof, reach)
 
         try:
-            prove(nearest(centre, equations.taylor(inverse, TUBE_ORDER), bits), NEAR, ENOUGH)
+            prove(nearest(centre, equations.taylor(inverse), bits), ENOUGH)
         except (ArithmeticError, ValueError, CertificateError):  # near a singular configuration
-            curve = extended(equations, centre, p, residual, bits + 1, TUBE_ORDER)
-            prove(curve, len(curve), 0.0)
+            prove(extended(equations, centre, p, residual, bits + 1), 0.0)
         self.apart = self.proof.uniqueness(reach)
 
     def entered(self, ball: Ball, velocity: Ball) -> Fraction:
@@ -253,6 +238,6 @@ def near(slopes: Sequence[Rounded], bits: int) -> list[list[float]]:
     """|P M_1| + |P M_2| / 2 + |P M_3| / 4 in floats; only the choice of weights depends on it."""
     x, y, z = (2.0 ** (slopes[k].drop - INVERSE_BITS - bits - k) for k in (1, 2, 3))
     return [
-        [x * a + y * b + z * c for a, b, c in zip(*rows, strict=True)]
+        [x * abs(a) + y * abs(b) + z * abs(c) for a, b, c in zip(*rows, strict=True)]
         for rows in zip(*(slope.rows for slope in slopes[1:4]), strict=True)
     ]

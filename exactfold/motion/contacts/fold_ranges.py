@@ -42,7 +42,7 @@ from exactfold.pattern.crease_pattern import Edge
 _ROUND, _RELATIVE = 1e-11, 1e-12
 _WIDEST = 1.0
 """The angle may differ from the middle angle of a part by less than this many radians."""
-SLACK = 2.0**-14
+SLACK = 2.0**-16
 """How far, in its parameter, a stretch may extend beyond what it has in common with the next."""
 _CLOSE = 1e-3
 """Extreme angles are bounded to within this many radians."""

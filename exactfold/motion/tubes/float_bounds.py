@@ -18,7 +18,6 @@ from exactfold.motion.tubes.contraction import SCALE, WEIGHT_BITS, Contraction
 from exactfold.motion.tubes.length_equations import ENOUGH, LengthEquations, Row, weights_of
 
 _UNIT = 2.0**-53
-_NEAR = 4  # as `NEAR` in checker/motion/tubes.py: the sizes of later coefficients are enough
 _MOST = 2.0**100  # a tube has no numbers as large as this
 
 
@@ -65,8 +64,8 @@ def contraction_in_floats(
     rows = np.concatenate([[flat + (incidence @ at).reshape(flat.shape)], parts])
     sizes = np.abs(rows)
     sizes[0] = np.abs(flat) + (np.abs(incidence) @ np.abs(at)).reshape(flat.shape)
-    dense = np.einsum("ean,kea->ekn", incidence.reshape(*flat.shape, n), rows[:_NEAR])
-    images = (inside @ dense.reshape(n - 1, -1)).reshape(n, _NEAR, n)
+    dense = np.einsum("ean,kea->ekn", incidence.reshape(*flat.shape, n), rows)
+    images = (inside @ dense.reshape(n - 1, -1)).reshape(n, order + 1, n)
     images[:, 0] += inverse[:, -1:] * row
     images[np.arange(n), 0, np.arange(n)] -= 1.0
     images = np.abs(images)
@@ -78,9 +77,7 @@ def contraction_in_floats(
     spread = size[:, :-1] @ np.einsum("kea,ea->ek", sizes, sums)
     spread[:, 0] += size[:, -1] * (np.abs(row) @ w) + w
     roundings = 8 * (n + 3 * order) * _UNIT  # twice as many as there are
-    near = images @ w + roundings * spread[:, :_NEAR]
-    far = (1 + roundings) * spread[:, _NEAR:]
-    slope = (np.hstack([near, far]) / w[:, None]).max(axis=0)
+    slope = ((images @ w + roundings * spread) / w[:, None]).max(axis=0)
     quadratic = (size[:, :-1] @ (sums**2).sum(axis=1) / w).max()
 
     # 2 H: the coefficients of s, s^2, ..., s^(2 order) of the bars, then those of T(p(s) - c) - s.

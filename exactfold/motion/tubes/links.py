@@ -14,9 +14,8 @@ from exactfold.motion.tubes.piece import Ball, evaluated
 from exactfold.motion.tubes.tube import Tube, prove_tube
 
 _LEAST = 1e-7  # the shortest step, in the unit of the framework
-_EXIT = 7, 8  # the motion enters the next tube at this fraction of the reach
-_AHEAD = 0.65  # the next tube has its centre at this share of the reach beyond the exit
-_TRIES = 2  # so many places ahead are tried
+_EXIT = 3, 4  # the motion enters the next tube at this fraction of the reach
+_AHEAD = 0.6  # the next tube has its centre about this share of the reach beyond the exit
 _GROWTH = 0.5, 1.2  # the expected growth of the reach from tube to tube lies between these
 FINE, ROUGH = 1e-7, 1e-5
 """The largest radius of a tube as a share of its length. It limits the error with which the ends of
@@ -67,9 +66,9 @@ def onwards(
     The first tube is about `step` long. The radius of a tube is at most `share` of its length,
     which is `FINE` or `ROUGH`. If there is no next link, the last value is the reason.
     """
-    last: _Ahead | None = None
+    place: _Place | None = None
     while True:
-        tube, entry = _next(equations, ball, velocity, step, share, last)
+        tube, entry = _next(equations, ball, velocity, step, share, place)
         if tube is None or entry is None:
             yield (
                 "no tube longer than 1e-7 of the sheet was proved here: the configuration is "
@@ -83,13 +82,9 @@ def onwards(
         ball, velocity, time = tube.enclosure(at), tube.velocity(at), left
         reach = float(shortest + longest) / 2 * tube.longest / (at - entry[1])
         growth, step = min(max(reach / step, _GROWTH[0]), _GROWTH[1]), reach
-        last = tube, at, growth * tube.longest
+        place = _place(equations, tube, at + int(_AHEAD * growth * tube.longest))
 
 
-_Ahead = tuple[Tube, int, float]
-"""A tube, the parameter at which it is left, and the reach that is expected of the next one, in the
-parameter of this tube.
-"""
 _Place = tuple[FloatArray, FloatArray]
 """The centre of a tube that is to be proved next, and the direction of the motion there,
 in floats.
@@ -120,26 +115,18 @@ def _next(
     velocity: Ball,
     step: float,
     share: float,
-    last: _Ahead | None,
+    place: _Place | None,
 ) -> tuple[Tube | None, tuple[int, int] | None]:
     """A tube that contains the configuration in a box and that the motion passes forwards.
 
-    First a tube about a place ahead is tried. If it does not reach back to the box, a place is
-    tried that is as near as its reach suggests, and then the centre of the box.
+    First a tube about a place ahead is tried. If it does not reach back to the box, the tube is
+    about the centre of the box.
     """
-    if last is not None and step > _LEAST:
-        before, at, reach = last
-        for _ in range(_TRIES):
-            place = _place(equations, before, at + int(_AHEAD * reach))
-            if place is None:
-                break
-            tube = prove_tube(equations, *place, step, thickness=_thickness(step, share))
-            if tube is None:
-                break
-            entry = _entered(tube, ball, velocity)
-            if entry is not None:
-                return tube, entry
-            reach = min(reach / 2, tube.longest * before.along / tube.along)
+    if place is not None and step > _LEAST:
+        tube = prove_tube(equations, *place, step, thickness=_thickness(step, share))
+        entry = None if tube is None else _entered(tube, ball, velocity)
+        if entry is not None:
+            return tube, entry
     centre, along = ball.finer(equations.bits).centre, velocity.floats[0]
     while step > _LEAST:
         tube = prove_tube(equations, centre, along, step, thickness=_thickness(step, share))

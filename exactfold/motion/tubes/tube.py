@@ -6,18 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from math import hypot, isqrt
-from operator import mul
+from math import isqrt
 
 import numpy as np
 
 from exactfold._support.arrays import FloatArray, IndexArray
 from exactfold.motion.curves.framework import Framework
-from exactfold.motion.tubes.arclength import (
-    Interval,
-    length_between,
-    parameter_after,
-)
+from exactfold.motion.tubes.arclength import Interval, length_between, parameter_after
 from exactfold.motion.tubes.contraction import (
     SCALE,
     WEIGHT_BITS,
@@ -58,11 +53,6 @@ class Tube(Piece):
     """
 
     row: Row
-
-    @cached_property
-    def along(self) -> float:
-        """The length of the row T, nearly: by how much the parameter grows in a unit of length."""
-        return hypot(*self.row) / (1 << ROW_BITS)
 
     def located(self, ball: Ball) -> tuple[int, int] | None:
         """The parameters of the configuration in a box, if it is proved to lie on this tube.
@@ -156,12 +146,18 @@ class Tube(Piece):
     @cached_property
     def _speeds(self) -> Row:
         """Upper bounds of |p_i'(s)| on the whole tube, over 2^bits."""
-        reach, top = self.reach, len(self.coefficients) - 1
-        powers = [m * reach ** (m - 1) << REACH_BITS * (top - m) for m in range(1, top + 1)]
-        columns = zip(*self.coefficients[1:], strict=True)
+        reach, k = self.reach, len(self.coefficients) - 1
         return tuple(
-            1 + up(sum(map(mul, map(abs, column), powers)), REACH_BITS * (top - 1))
-            for column in columns
+            1
+            + up(
+                sum(
+                    m * abs(row[i]) * reach ** (m - 1) << REACH_BITS * (k - m)
+                    for m, row in enumerate(self.coefficients)
+                    if m
+                ),
+                REACH_BITS * (k - 1),
+            )
+            for i in range(len(self.row))
         )
 
 
@@ -216,7 +212,7 @@ def prove_tube(
     towards: FloatArray,
     step: float,
     *,
-    order: int = 12,
+    order: int = 8,
     thickness: float = 1e-8,
 ) -> Tube | None:
     """A tube round the curve at its point nearest to `near`; None if none is proved.

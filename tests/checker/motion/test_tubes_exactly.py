@@ -58,7 +58,7 @@ def made(kind: Any, *given: Any) -> Made:
         return [first, *([x + rng.randint(-(1 << 40), 1 << 40) for x in row] for row in rest)]
 
     def seen(*values: Any) -> Bounds:
-        kept.extend((values[0], values[6]))
+        kept.extend((values[0], values[-1]))
         return bounds(*values)
 
     bounds = motion_tubes.bounds
@@ -80,20 +80,13 @@ def norm(rows: Sequence[Fraction], weights: Row) -> Fraction:
     return max(x / w for x, w in zip(rows, weights, strict=True))
 
 
-def assert_bounds(found: list[int], exact: list[Fraction], rooms: Sequence[Fraction]) -> None:
-    """The bounds are those, with so much room at most, and no other coefficient is left."""
+def assert_bounds(found: list[int], exact: list[Fraction], room: int = 100) -> None:
+    """The bounds are those, rounded up by 2^-room at most, and no other coefficient is left."""
     assert len(found) <= len(exact)
     assert not any(exact[len(found) :])
-    for over, y, room in zip(found, exact, rooms, strict=False):
+    for over, y in zip(found, exact, strict=False):
         x = Fraction(over, 1 << 128)
-        assert 0 <= x - y <= y / (1 << 50) + room
-
-
-def coarsely(this: Made, matrices: list[Matrix]) -> list[Fraction]:
-    """The room that products of P have in which about 28 digits of the numbers are kept."""
-    rows = max(sum(map(abs, row)) for row in this.p) * sum(this.weights) / min(this.weights)
-    tiny = Fraction(1, 1 << 100)
-    return [tiny + rows * max(abs(x) for row in m for x in row) / (1 << 24) for m in matrices]
+        assert 0 <= x - y <= y / (1 << 50) + Fraction(1, 1 << room)
 
 
 def edge_vectors(sheet: LengthEquations, row: Sequence[Fraction]) -> list[Row]:
@@ -147,21 +140,16 @@ def gradient(sheet: LengthEquations, rows: list[Row], last: Row) -> Matrix:
     return [*found, last]
 
 
-def assert_slopes(proof: Bounds, this: Made, slopes: list[Matrix], near: int) -> None:
-    """|P M_k|, less 1 for k = 0, and |P| |M_k| from k = `near` on."""
+def assert_slopes(proof: Bounds, this: Made, slopes: list[Matrix]) -> None:
+    """|P M_k|, less 1 for k = 0."""
     exact = []
     for k, slope in enumerate(slopes):
-        if k < near:
-            image = product(this.p, slope)
-            for i, row in enumerate(image):
-                row[i] -= int(k == 0)
-        else:
-            image = product(*([[abs(x) for x in row] for row in m] for m in (this.p, slope)))
+        image = product(this.p, slope)
+        for i, row in enumerate(image):
+            row[i] -= int(k == 0)
         sums = [sum((abs(x) * w for x, w in zip(r, this.weights, strict=True))) for r in image]
         exact.append(norm([Fraction(x) for x in sums], this.weights))
-    rooms = coarsely(this, slopes)
-    rooms[0] = Fraction(1, 1 << 36)  # of each entry about 62 digits of the largest are read
-    assert_bounds(proof.q, exact, rooms)
+    assert_bounds(proof.q, exact, 36)  # of each entry about 62 digits of the largest are read
 
 
 def assert_bends(proof: Bounds, this: Made, squares: list[Row]) -> None:
@@ -175,8 +163,7 @@ def assert_bends(proof: Bounds, this: Made, squares: list[Row]) -> None:
         )
         for square in squares
     ]
-    rooms = [Fraction(1, 1 << 20)] * len(exact)  # one square is rounded up by 2^-32
-    assert_bounds(proof.kappa, exact, rooms)
+    assert_bounds(proof.kappa, exact, 20)  # one square is rounded up by 2^-32
 
 
 def assert_residuals(proof: Bounds, this: Made, residuals: Matrix) -> None:
@@ -184,7 +171,7 @@ def assert_residuals(proof: Bounds, this: Made, residuals: Matrix) -> None:
         norm([abs(sum(map(Fraction.__mul__, r, g), Fraction(0))) for r in this.p], this.weights)
         for g in residuals
     ]
-    assert_bounds(proof.b, exact, coarsely(this, [[g] for g in residuals]))
+    assert_bounds(proof.b, exact)
 
 
 def coefficients(piece: Any) -> Matrix:
@@ -226,8 +213,7 @@ def test_the_bounds_of_a_tube() -> None:
     here = [[a + b for a, b in zip(u, e, strict=True)] for u, e in zip(rest, parts[0], strict=True)]
     none = [Fraction(0)] * sheet.size
     slopes = [gradient(sheet, here, row)] + [gradient(sheet, part, none) for part in parts[1:]]
-    assert len(curve) == motion_tubes.TUBE_ORDER + 1
-    assert_slopes(tube.piece.proof, tube, slopes, motion_tubes.NEAR)
+    assert_slopes(tube.piece.proof, tube, slopes)
     bends = [sum((a * a for a in w), Fraction(0)) for w in widths(sheet, tube.weights)]
     assert_bends(tube.piece.proof, tube, [bends])
     assert tube.piece.apart == tube.piece.proof.uniqueness(Fraction(1, 2))
@@ -266,7 +252,7 @@ def test_the_bounds_of_the_first_piece(halvings: int) -> None:
             rows.append([x, y, parts[k][e][2] if k < len(curve) else zero])
         last = [Fraction(int(i == held)) for i in range(sheet.size)] if k == 0 else none
         slopes.append(gradient(sheet, rows, last))
-    assert_slopes(start.piece.proof, start, slopes, len(slopes))
+    assert_slopes(start.piece.proof, start, slopes)
     wide = widths(sheet, start.weights)
     bends = [[w[2] ** 2 for w in wide], [(w[0] ** 2 + w[1] ** 2) * small for w in wide]]
     assert_bends(start.piece.proof, start, bends)

@@ -333,7 +333,7 @@ def test_at_the_flat_state_a_track_is_undecided() -> None:
 
 
 def test_most_tubes_hold_the_curve_on_both_sides_of_their_centres() -> None:
-    track = track_of(random_square(5, seed=2), "+-++-", until=2.5)
+    track = track_of(random_square(5, seed=2), "+-++-", until=1.5)
     begins = [link.entry[0] / link.tube.longest for link in track.links[1:]]
     assert len(begins) > 5
     assert sum(begin < -0.4 for begin in begins) > 0.8 * len(begins)
