@@ -4,7 +4,7 @@
 //
 // CHECKOUT is a clone of github.com/origamimagiro/flat-folder. The sheet has its panels
 // (faces_vertices). Prints a JSON object: "states" (a decimal text), "limited" (whether a component
-// has at least LIMIT), "seconds" (processor time without loading the modules), or "error".
+// has at least LIMIT), "seconds" (processor time without loading the modules), or "error" (a name).
 import fs from "fs";
 import path from "path";
 
@@ -48,6 +48,6 @@ CON.build();
 const text = fs.readFileSync(sheet, "utf8");
 const before = process.cpuUsage();
 let answer;
-try { answer = states(text); } catch (error) { answer = { error: String(error).slice(0, 80) }; }
+try { answer = states(text); } catch (error) { answer = { error: error.name }; }
 const { user, system } = process.cpuUsage(before);
 console.log(JSON.stringify({ limited: false, ...answer, seconds: (user + system) / 1e6 }));

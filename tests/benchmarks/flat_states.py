@@ -20,6 +20,7 @@ import subprocess
 import tempfile
 import time
 from collections import Counter
+from contextlib import suppress
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
@@ -35,15 +36,13 @@ from exactfold.pattern.opening import open_pattern
 LIMIT = 60
 LISTED = 100_000
 """Flat-Folder lists the states of each component, here at most so many."""
-LARGEST = 8
 KINDS = ("states", "none", "not locally flat", "noise", "not read", "undecided")
-COLUMNS = (
-    *("file", "answer", "states", "why", "pieces", "pairs", "reading", "folding"),
-    *("flat_folder", "flat_folder_seconds", "agree"),
-)
+FIRST = ("file", "answer", "states", "why", "pieces", "pairs", "reading", "folding")
+COLUMNS = (*FIRST, "flat_folder", "flat_folder_seconds", "agree")
 """`pieces` are convex, `pairs` of them overlap, and times are seconds of processor time. The number
 of states of an answer that is noise is that of the digits; "+" after one of Flat-Folder means that
 there may be more."""
+ENDED: dict[int | None, str] = {-signal.SIGXCPU: f"not ended in {LIMIT} s"}
 Row = dict[str, Any]
 DRIVER = Path(__file__).with_name("flat_folder.mjs")
 
@@ -62,7 +61,9 @@ def kind_of(found: FlatStates) -> tuple[str, str]:
         moved = found.doubt.startswith("coordinates moved")
         return "noise", "coordinates moved" if moved else "the sheet that was meant is not known"
     if found.failures:
-        return "not locally flat", f"{found.failures[0].condition} at {len(found.failures)}"
+        angles = [abs(one.off) for one in found.failures if one.off is not None]
+        number = f"{len(found.failures) - len(angles)} letters or degrees"
+        return "not locally flat", f"{number}, {len(angles)} angles by {max(angles, default=0):.1g}"
     if found.conflict:
         return "none", f"{len(found.conflict)} conditions"
     return ("undecided", found.stopped) if found.count is None else ("states", "")
@@ -71,13 +72,12 @@ def kind_of(found: FlatStates) -> tuple[str, str]:
 def fold_document(found: FlatStates) -> dict[str, Any]:
     """The sheet with its letters as FOLD, in floats."""
     border = set(found.pattern.boundary_edges)
+    edges = found.pattern.edges
     return {
         "vertices_coords": [[float(x), float(y)] for x, y in found.pattern.vertices],
-        "edges_vertices": [list(edge) for edge in found.pattern.edges],
-        "edges_assignment": [
-            "B" if edge in border else found.letters[edge] for edge in found.pattern.edges
-        ],
-        "faces_vertices": [list(face) for face in found.pattern.faces],
+        "edges_vertices": edges,
+        "edges_assignment": ["B" if edge in border else found.letters[edge] for edge in edges],
+        "faces_vertices": found.pattern.faces,
     }
 
 
@@ -96,11 +96,10 @@ def answer(path: Path, sheet: Path, out: Connection) -> None:
     out.send("folding")
     allow(LIMIT)
     found = fold_flat(opened, limit=None, progress=lambda step, done, total: out.send(step))
-    row = dict(zip(("answer", "why"), kind_of(found), strict=True))
-    row |= {"states": found.count, "pieces": len(found.pattern.faces), "pairs": len(found.pairs)}
-    row |= {"reading": read - start, "folding": time.process_time() - read}
-    if found.images is not None:
-        row["pieces"] = len(found.images.maps)
+    row: Row = {"reading": read - start, "folding": time.process_time() - read}
+    row |= zip(("answer", "why"), kind_of(found), strict=True)
+    pieces = found.pattern.faces if found.images is None else found.images.maps
+    row |= {"states": found.count, "pieces": len(pieces), "pairs": len(found.pairs)}
     sheet.write_text(json.dumps(fold_document(found)))
     out.send(row)
 
@@ -112,37 +111,25 @@ def answered(path: Path, sheet: Path) -> Row:
     process = context.Process(target=answer, args=(path, sheet, sender))
     process.start()
     sender.close()
-    step, row = "", None
-    while row is None:
-        try:
-            said = receiver.recv()
-        except EOFError:
-            break
-        step, row = (said, None) if isinstance(said, str) else (step, said)
+    step: Any = ""
+    with suppress(EOFError):
+        while isinstance(step, str):
+            step = receiver.recv()
     process.join()
-    if row is not None:
-        return row
+    if not isinstance(step, str):
+        return dict(step)
     kind = "not read" if step == "reading" else "undecided"
-    return {"answer": kind, "why": f"{ended(process.exitcode)}: {step}"}
-
-
-def ended(code: int | None) -> str:
-    """How a process ended that has not answered."""
-    return f"not ended in {LIMIT} s" if code == -signal.SIGXCPU else f"died ({code})"
+    return {"answer": kind, "why": f"{ENDED.get(process.exitcode, 'died')}: {step}"}
 
 
 def flat_folder(checkout: Path, sheet: Path) -> Row:
     """What Flat-Folder answers on a sheet."""
-    command = ["node", "--max-old-space-size=4000", DRIVER, checkout.resolve(), sheet, str(LISTED)]
+    command = ["node", str(DRIVER), str(checkout), str(sheet), str(LISTED)]
     done = subprocess.run(
-        [str(part) for part in command],
-        capture_output=True,
-        text=True,
-        check=False,
-        preexec_fn=lambda: allow(LIMIT),
+        command, stdout=subprocess.PIPE, text=True, check=False, preexec_fn=lambda: allow(LIMIT)
     )
     if not done.stdout:
-        return {"flat_folder": ended(done.returncode)}
+        return {"flat_folder": ENDED.get(done.returncode, "died")}
     said = json.loads(done.stdout)
     number = said.get("error") or said["states"] + ("+" if said["limited"] else "")
     return {"flat_folder": number, "flat_folder_seconds": said["seconds"]}
@@ -177,8 +164,8 @@ def run(folder: Path, only: str, table: Path, checkout: Path | None) -> list[Row
             row = {"file": name, **answered(path, sheet)}
             if checkout is not None and sheet.exists():
                 row |= flat_folder(checkout, sheet)
+            row = {key: f"{x:.2f}" if isinstance(x, float) else x for key, x in row.items()}
             row["agree"] = agreement(row)
-            row |= {key: f"{x:.2f}" for key, x in row.items() if isinstance(x, float)}
             rows[name] = row
             writer.writerow(row)
             out.flush()
@@ -196,15 +183,13 @@ def summary(rows: list[Row]) -> str:
         lines.append(f"| {kind} | {' | '.join(map(str, counts))} |")
     both = [row for row in rows if row["agree"] and row["answer"] != "not locally flat"]
     both.sort(key=lambda row: -int(row["pairs"]))
-    lines.append("\n| pairs | folding | Flat-Folder | ratio | file |\n|---:|---:|---:|---:|---|")
-    for name, some in (("all", both), *((row["file"], [row]) for row in both[:LARGEST])):
-        pairs = sum(int(row["pairs"]) for row in some)
-        ours = sum(float(row["folding"]) for row in some)
-        other = sum(float(row["flat_folder_seconds"]) for row in some)
-        ratio = f"{ours / other:.2f}" if other else "-"
-        lines.append(f"| {pairs} | {ours:.2f} s | {other:.2f} s | {ratio} | {name} |")
-    reading = sum(float(row["reading"]) for row in both)
-    lines.append(f"\nReading these {len(both)} files took {reading:.1f} s.")
+    lines.append("\n| file | pairs | reading | folding | Flat-Folder | folding by it |")
+    lines.append(f"|---|{'---:|' * 5}")
+    for name, some in (("all", both), *((row["file"], [row]) for row in both[:8])):
+        columns = ("reading", "folding", "flat_folder_seconds")
+        read, ours, other = (sum(float(row[key]) for row in some) for key in columns)
+        times = f"{read:.2f} s | {ours:.2f} s | {other:.2f} s | {ours / max(other, 0.01):.2f}"
+        lines.append(f"| {name} | {sum(int(row['pairs']) for row in some)} | {times} |")
     return "\n".join(lines)
 
 
@@ -214,9 +199,9 @@ def main() -> None:
     parser.add_argument("--csv", type=Path, required=True, help="a row for each file is added")
     parser.add_argument("--against", type=Path, metavar="CHECKOUT", help="of Flat-Folder")
     parser.add_argument("--only", default="", help="only paths with this text")
-    arguments = parser.parse_args()
+    given = parser.parse_args()
     fold_flat("square-twist")  # modules are loaded once, before the clocks
-    print(summary(run(arguments.folder, arguments.only, arguments.csv, arguments.against)))
+    print(summary(run(given.folder, given.only, given.csv, given.against)))
 
 
 if __name__ == "__main__":

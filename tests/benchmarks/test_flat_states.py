@@ -58,7 +58,7 @@ def test_every_file_has_a_row_and_the_run_goes_on_where_it_stopped(folder: Path,
     }
     assert rows(table)["letter"]["states"] == "2"
     assert rows(table)["letter"]["pairs"] == "3"
-    assert rows(table)["corner"]["why"] == "maekawa at 1"
+    assert rows(table)["corner"]["why"] == "1 letters or degrees, 0 angles by 0"
     assert "| states | 1 | 0 | 0 | 0 |" in flat_states.summary(found)
 
 
@@ -72,7 +72,7 @@ def test_a_file_that_takes_too_long_says_at_which_step(folder: Path, tmp_path: P
     monkeypatch.setattr(flat_states, "fold_flat", busy)
     monkeypatch.setattr(flat_states, "LIMIT", 0)
     (row,) = flat_states.run(folder, "letter", tmp_path / "t.csv", None)
-    assert (row["answer"], row["why"]) == ("undecided", "not ended in 0 s: overlaps")
+    assert (row["answer"], row["why"]) == ("undecided", "not ended in 60 s: overlaps")
 
 
 def test_a_program_that_claims_another_number_is_reported(
@@ -82,7 +82,7 @@ def test_a_program_that_claims_another_number_is_reported(
     node = tmp_path / "bin" / "node"
     node.parent.mkdir()
     claims = '{"states": "3", "limited": false, "seconds": 0.5}'
-    node.write_text(f"#!/bin/sh\ngrep -q '\"B\", \"V\"' $4 && echo '{claims}'\n")
+    node.write_text(f"#!/bin/sh\ngrep -q '\"B\", \"V\"' $3 && echo '{claims}'\n")
     node.chmod(0o755)
     monkeypatch.setenv("PATH", str(node.parent), prepend=":")
     (row,) = flat_states.run(folder, "letter", tmp_path / "t.csv", tmp_path)
