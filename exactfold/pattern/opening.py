@@ -268,8 +268,7 @@ _COUNTED: Final = (
     "`exactfold count` (`count` in Python) says how its panels fold while they stay rigid"
 )
 _INSTEAD: Final = {
-    "export": "`exactfold fold --way N -o FILE` writes one of its ways as .fold, .obj, .stl or "
-    ".csv, with its motion",
+    "export": "`exactfold export --way N` or `--letters` writes one of the ways of rigid panels",
     "certify": "`exactfold count` (`count` in Python) proves all solutions of its equations",
 }
 """What else there is for rigid panels, by the caller that needs triangles."""
