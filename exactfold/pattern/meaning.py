@@ -48,10 +48,8 @@ def _with_relations(known: Opened) -> Opened:
     """The same sheet; its lines list the relations if the reading asks for them."""
     if not known.reading.relations:
         return known
-    if known.meant is not None:
-        listed = known.meant.listed
-    else:
-        listed = off_by(left_relations(known.sheet)) or (_NONE_NEAR,)
+    meant = known.meant
+    listed = meant.listed if meant is not None else off_by(known.left) or (_NONE_NEAR,)
     return replace(known, lines=known.lines + listed, seen=known.seen + listed)
 
 
@@ -60,7 +58,7 @@ def _meaning(found: Opened, written: Callable[[], Opened]) -> Opened:
     reading = found.reading
     if reading.snap == "exact":
         return found
-    left = left_relations(found.sheet)
+    left = found.left
     if not left and not reading.overrules:
         return found
     from exactfold.pattern.meant import Meant, inferred
@@ -111,7 +109,7 @@ def recognised(found: Opened) -> Opened | None:
     reading = found.reading
     if reading.snap is not None or reading.overrules:
         return None
-    left = left_relations(found.sheet)
+    left = found.left
     if not left:
         return None
     from exactfold.pattern.drawing.coordinates import exact_coordinates

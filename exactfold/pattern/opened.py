@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import cached_property
 from typing import TYPE_CHECKING, TypedDict
 
 from exactfold._support.documents import FieldName, NotNegative, Several
@@ -12,6 +13,8 @@ from exactfold._support.notebook import Picture
 from exactfold.errors import MalformedPatternError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.drawing.bounds import check_common_denominator
+from exactfold.pattern.drawing.meant.left import left_relations
+from exactfold.pattern.drawing.meant.values import Relation
 from exactfold.pattern.reading import PLAIN, Reading
 
 # Drawings need libraries that take long to load; triangulated sheets are read without them.
@@ -67,6 +70,11 @@ class Opened(Picture):
     def doubt(self) -> str:
         """Why answers about the sheet hold for these digits only; empty if they do not."""
         return "" if self.meant is None else self.meant.doubt
+
+    @cached_property
+    def left(self) -> tuple[Relation, ...]:
+        """The relations that the sheet nearly has but does not have (`left_relations`)."""
+        return left_relations(self.sheet)
 
     @property
     def letters(self) -> dict[Edge, str]:

@@ -84,3 +84,25 @@ def test_the_limit_ends_the_search():
 )
 def test_wrong_usage_and_bad_input(arguments, code):
     assert run("flat", *arguments).exit_code == code
+
+
+def test_certificates(tmp_path):
+    """What is proved is written, and verified; what is not is said."""
+    for number, (name, *options, said) in enumerate(
+        (
+            (
+                "square-twist",
+                "--any",
+                "the sheet has exactly 4 flat-folded states with any letters",
+            ),
+            ("square-twist", "every order of layers has a crossing"),
+            ("zigzags", "the folds do not close at vertex 9"),
+        )
+    ):
+        path = tmp_path / f"{number}.json"
+        run("flat", name, *options, "--certificate", str(path))
+        assert said in run("check", str(path)).stdout
+    path = tmp_path / "none.json"
+    done = run("flat", "bird-base", "--any", "--limit", "0.001", "--certificate", str(path))
+    assert "no certificate was written: nothing is decided" in done.stderr
+    assert not path.exists()
