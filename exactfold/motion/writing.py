@@ -150,8 +150,8 @@ def exported_way(motion: SheetInMotion, *, title: str | None = None) -> BranchEx
 
     >>> import exactfold
     >>> end = exported_way(exactfold.follow("miura", 2, until="30deg", frames=2), title="miura")
-    >>> end.document["file_title"], round(end.angles[3, 17], 6), end.letters[3, 17]
-    ('miura, way 2', -30.0, 'M')
+    >>> end.document["file_title"], round(max(end.angles.values()), 6), end.letters[3, 17]
+    ('miura, way 2', 30.0, 'M')
     """
     pattern, degrees = motion.pattern, np.degrees(motion.angles[-1]).tolist()
     angles = {

@@ -268,7 +268,8 @@ _COUNTED: Final = (
     "`exactfold count` (`count` in Python) says how its panels fold while they stay rigid"
 )
 _INSTEAD: Final = {
-    "export": "`exactfold export --way N` or `--letters` writes one of the ways of rigid panels",
+    "export": "`exactfold count` lists the ways of its rigid panels, and `exactfold export` writes "
+    "one, with `--way N` or `--letters`",
     "certify": "`exactfold count` (`count` in Python) proves all solutions of its equations",
 }
 """What else there is for rigid panels, by the caller that needs triangles."""

@@ -253,8 +253,13 @@ def in_space(path):
             axis = (points[j] - points[i]) / np.linalg.norm(points[j] - points[i])
             left, right = sides[i, j], sides[j, i]
             sine, cosine = np.dot(np.cross(right, left), axis), np.dot(left, right)
-            found[i, j] = -np.degrees(np.arctan2(sine, cosine))
+            found[i, j] = np.degrees(np.arctan2(sine, cosine))
     return document, found
+
+
+def letters_in(path):
+    letters = json.loads(path.read_text())["edges_assignment"]
+    return "".join(letter for letter in letters if letter != "B")
 
 
 @pytest.mark.parametrize(("name", "way"), [("miura", 1), ("miura", 8), ("zigzags", 2)])
@@ -262,11 +267,10 @@ def test_a_way_of_rigid_panels_has_its_letters_and_true_angles(out, name, way):
     result = run(name, "--way", way, "--amount", "40", "-o", out)
     assert result.exit_code == OK
     assert "status           PROVED" in result.stdout
-    opened = open_pattern(out)
-    assert opened.sheet == open_pattern(example_path(name)).sheet
-    letters = panel_ways(exactfold.count(name))[way - 1].letters
-    every = dict.fromkeys(opened.sheet.folds, "F") | dict(letters)
-    assert {fold: opened.assignment[fold] for fold in every} == every
+    assert letters_in(out) == "".join(
+        panel_ways(exactfold.count(name))[way - 1].letters.get(fold, "F")
+        for fold in open_pattern(example_path(name)).sheet.folds
+    )
     document, angles = in_space(out)
     edges = [tuple(edge) for edge in document["edges_vertices"]]
     written = dict(zip(edges, document["edges_foldAngle"], strict=True))
@@ -277,8 +281,7 @@ def test_a_way_of_rigid_panels_has_its_letters_and_true_angles(out, name, way):
 
 def test_letters_name_a_way_of_rigid_panels(tmp_path, out):
     assert run("miura", "--way", 2, "-o", out).exit_code == OK
-    opened = open_pattern(out)
-    letters = "".join(opened.assignment[fold] for fold in opened.sheet.folds)
+    letters = letters_in(out)
     other = tmp_path / "other.fold"
     assert run("miura", "--letters", letters, "-o", other).exit_code == OK
     assert out.read_bytes() == other.read_bytes()
@@ -314,7 +317,8 @@ def test_the_other_formats_of_a_way_of_rigid_panels(tmp_path):
     rows = (tmp_path / "a.csv").read_text().splitlines()
     assert rows[0] == "fold,letter,degrees"
     assert len(rows) == 13
-    assert "14-15,M,-30.0" in rows[1:]
+    [(letter, degrees)] = [row.split(",")[1:] for row in rows if row.startswith("14-15,")]
+    assert (letter, float(degrees)) == ("M", pytest.approx(-30))
 
 
 def test_contact_and_the_end_of_a_motion_are_said(out):
@@ -331,8 +335,11 @@ def test_contact_and_the_end_of_a_motion_are_said(out):
         (["--way", "9"], USAGE, "there is no way 9: `count` lists 1 to 8"),
         (["--way", "1", "--amount", "181"], USAGE, "largest fold angle cannot be 181.0 degrees"),
         (["--letters", "M" * 24], UNDECIDED, "no known way has these letters"),
-        (["--signs", "+"], UNDECIDED, "`exactfold export --way N` or `--letters` writes one"),
-        (["--way", "1", "--coq"], UNDECIDED, "--coq takes triangulated sheets"),
+        (
+            ["--signs", "+"],
+            UNDECIDED,
+            "`exactfold export` writes one, with `--way N` or `--letters`",
+        ),
     ],
 )
 def test_what_rigid_panels_do_not_have(out, options, code, words):
