@@ -22,12 +22,8 @@ touch. Over a point inside the common set both panels have a levelled height nea
 small S. If the difference has both signs, it is 0 on the way from one point to the other. If the
 panels never touch, it is never 0 over an inner point, and keeps its sign.
 
-(c) Over a generic point the heights order all panels that lie there: this is transitive. In a
-vertical plane across the image of a fold, its two panels are a path with both ends on one side. A
-third panel that reaches beyond the fold, between the two ends, would have to cross the path; and so
-would the path of another fold on the same line, if exactly one of its ends lies between them. Two
-pairs of panels that are joined by flat folds on one line lie in one plane each, and cannot change
-their order there. These are all conditions of a state.
+(c) The positions for s -> 0 are injective maps that converge uniformly to the image, and "above" is
+the order of the heights.
 """
 
 from __future__ import annotations
