@@ -98,7 +98,7 @@ def reached(motion: PanelMotion, contacts: PanelClearance | None = None) -> Reac
     >>> import exactfold
     >>> end = reached(exactfold.follow("square-twist", 1, until="180deg", frames=2))
     >>> end.status, len(end.state.orders)
-    (<Verdict.PROVED: 'proved'>, 16)
+    (<Verdict.PROVED: 'proved'>, 36)
     """
     stretch = LastStretch(motion)
     if not stretch.applies:
@@ -174,7 +174,7 @@ def way_ends(
     >>> import exactfold
     >>> ends = way_ends(exactfold.decompose("square-twist"), exactfold.flat("square-twist", "any"))
     >>> [end.state for end in ends if end.status is PROVED]
-    [3, 0]
+    [1, 3]
     """
     clock = Clock(limit)
     ways = [way for way in panel_ways(answer.known) if way.verdict is PROVED and not way.spaces]
