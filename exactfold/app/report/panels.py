@@ -234,7 +234,8 @@ def _notes(result: Decomposition, everything: bool) -> list[str]:
             "with python-sat (pip install 'exactfold[sat]') a search by clauses may find more ways"
         )
     if result.second_order is None and result.modes:
-        notes.append("each way listed below truly folds, and there may be others")
+        more = "there may be others" if result.graphs is None else "lies in one of the families"
+        notes.append(f"each way listed below truly folds, and {more}")
     asked = result.drawn or result.doubt or result.graphs is not None
     if result.second_order is None and result.rigid is not PROVED and not asked:
         notes.append(
