@@ -33,7 +33,7 @@ def state_document(state: State, title: str = "", number: int = 0) -> dict[str, 
     >>> from exactfold.layers.folding import fold_flat
     >>> document = state_document(fold_flat("single-vertex-4", "MMMV").state())
     >>> document["file_frames"][0]["faceOrders"]
-    [[0, 1, -1], [0, 2, 1], [0, 3, -1], [1, 2, 1], [1, 3, -1], [2, 3, -1]]
+    [[0, 1, -1], [0, 2, -1], [0, 3, 1], [1, 2, -1], [1, 3, 1], [2, 3, -1]]
     """
     sheet = state.images.pieces.sheet
     flat = converted(Opened(sheet, state.letters)).document(title or None)

@@ -47,7 +47,7 @@ def bottom_to_top(state: State) -> list[Layer]:
 
     >>> from exactfold.layers.folding import fold_flat
     >>> [layer.piece for layer in bottom_to_top(fold_flat("single-vertex-4", "MMMV").state())]
-    [3, 2, 1, 0]
+    [2, 3, 1, 0]
     """
     pieces = corners_of(state)
     graph = nx.DiGraph()
