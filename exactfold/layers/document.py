@@ -11,6 +11,7 @@ from exactfold._support.documents import (
     Natural,
     NotNegative,
     Pair,
+    Positive,
     VerdictText,
 )
 from exactfold.pattern.described import PanelsDocument
@@ -67,6 +68,26 @@ class WrittenDocument(TypedDict):
     reason: str
 
 
+class WayEndDocument(TypedDict):
+    """Where one way of a sheet of rigid panels ends."""
+
+    way: Positive
+    """The number of the way in the list of `exactfold count`."""
+    letters: Assignment
+    """The letters of its folds; F for folds that stay flat."""
+    status: VerdictText
+    """Whether it folds rigidly from the flat sheet to a flat-folded state, without contact."""
+    reason: str
+    """Why not, or why that is not known."""
+    state: Natural | None
+    """The number of this state, from 0; null if it is not one of those that were asked for."""
+    mirrored: Natural | None
+    """The number of the state that the way reaches to the other side of the sheet."""
+    clear: NotNegative | None
+    """The angle of the driving folds, in radians, before which no panels touch, as far as proved;
+    null if nothing is known."""
+
+
 class FlatDocument(TypedDict):
     """The flat-folded states of a sheet."""
 
@@ -100,5 +121,8 @@ class FlatDocument(TypedDict):
     meant: MeantDocument | None
     """What was inferred if the digits of the drawing are inexact; else null."""
     as_written: WrittenDocument | None
+    """If the status is undecided because digits are in doubt: the answer for them."""
+    ways: list[WayEndDocument] | None
+    """Where the ways of the sheet end; null without `--ways`."""
     """If digits are in doubt: the answer for the coordinates as they were read."""
     seconds: NotNegative

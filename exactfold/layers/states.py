@@ -290,6 +290,7 @@ def _document(found: FlatStates, name: str | None) -> FlatDocument:
         }
         if doubted
         else None,
+        "ways": None,
         "seconds": round(found.seconds, 3),
     }
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from exactfold._support.clock import Clock
 from exactfold._support.verdict import PROVED, REFUTED
@@ -16,13 +16,16 @@ from exactfold.app.pictures.picture_files import ENDINGS, write_picture
 from exactfold.app.shell.patterns import read_any
 from exactfold.app.shell.shell import EXIT, Bar, name_of, say, wrote
 from exactfold.app.verbs.chosen import DRAWN
-from exactfold.errors import NotApplicableError, TooManyModesError
+from exactfold.errors import NotApplicableError, TooManyModesError, UsageError
 from exactfold.layers.fold_frames import state_document
 from exactfold.layers.folding import fold_flat
 from exactfold.layers.states import FlatStates
-from exactfold.pattern.crease_pattern import Edge
-from exactfold.pattern.opening import Opened
+from exactfold.pattern.crease_pattern import CreasePattern, Edge
+from exactfold.pattern.opening import Opened, has_branches
 from exactfold.pattern.writing.fold_writing import checked_target, document_text, write_text
+
+if TYPE_CHECKING:
+    from exactfold.layers.ends import WayEnd
 
 FOLD: Final = ".fold"
 
@@ -44,15 +47,19 @@ class Asked(FlatOptions):
             if self.output is not None:
                 bar("drawing", 0, 0)
                 text, what = self._drawn(found)
+            ends = self._ends(opened, found, bar) if self.ways else None
             if self.certificate is not None:
                 bar("certificate", 0, 0)
                 self._write(found, self.certificate)
         if self.as_json:
-            print(json.dumps(found.to_dict(name_of(self.file))))
+            document = found.to_dict(name_of(self.file))
+            if ends is not None:
+                document["ways"] = [end.to_dict() for end in ends]
+            print(json.dumps(document))
         else:
             from exactfold.app import report
 
-            report.show(report.flat_report(found, everything=self.everything))
+            report.show(report.flat_report(found, ends, everything=self.everything))
         if self.output is not None and text:
             if self._is_fold:
                 write_text(self.output, text)
@@ -61,6 +68,18 @@ class Asked(FlatOptions):
             if not self.as_json:
                 wrote(self.output, what)
         return EXIT[found.status]
+
+    def _ends(self, opened: Opened, found: FlatStates, bar: Bar) -> tuple[WayEnd, ...]:
+        from exactfold.branches.counting.ways import decompose_opened
+        from exactfold.layers.ends import way_ends
+
+        if isinstance(opened.sheet, CreasePattern) and has_branches(opened.sheet):
+            raise UsageError(
+                "--ways is for sheets of rigid panels: this one is triangulated, and its ways are "
+                "branches, which `exactfold fold` and `exactfold motions` follow"
+            )
+        answer = decompose_opened(opened, clock=Clock(self.limit), progress=bar)
+        return way_ends(answer, found, limit=self.limit, progress=bar)
 
     def _write(self, found: FlatStates, path: Path) -> None:
         """Write the certificate, or say why there is none."""

@@ -118,6 +118,14 @@ class FlatOptions(ReadingOptions):
         bool,
         flag("--any", text="Fold every crease either way, but for creases that the file has as F."),
     ] = False
+    ways: Annotated[
+        bool,
+        flag(
+            "--ways",
+            text="Say where the ways of `count` end: in which of these states, and whether without "
+            "contact.",
+        ),
+    ] = False
     limit: Limit = LIMIT
     as_json: Json = False
     everything: Annotated[

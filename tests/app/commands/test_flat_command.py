@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from math import pi
 
 import pytest
 from jsonschema import Draft202012Validator
@@ -84,6 +85,27 @@ def test_the_limit_ends_the_search():
 )
 def test_wrong_usage_and_bad_input(arguments, code):
     assert run("flat", *arguments).exit_code == code
+
+
+def test_where_ways_end():
+    code, data = printed("fish-base", "--ways", "--letters", "FVVMVVMVV", "--limit", "600")
+    assert code == PROVED
+    ends = data["ways"]
+    assert [end["status"] for end in ends] == ["proved"] * 4
+    assert [end["clear"] for end in ends] == [pi] * 4
+    assert [(end["state"], end["mirrored"]) for end in ends].count((0, None)) == 1
+    assert ends[0]["letters"]["0-2"] == "F"
+    assert printed("fish-base")[1]["ways"] is None
+
+
+def test_ways_in_words():
+    text = run("flat", "zigzags", "--ways", "--limit", "600").stdout
+    assert "Where the ways of the sheet end\nway 1: not all folds that move are known" in text
+    assert "run into each other by 120.01 degrees of\nthe driving folds - REFUTED" in text
+    other = run("flat", "single-vertex-4", "--ways")
+    assert other.exit_code == USAGE
+    assert "its ways are branches" in other.stderr
+    assert "no way is known along which" in run("flat", "bird-base", "--ways").stdout
 
 
 def test_certificates(tmp_path):
