@@ -34,17 +34,13 @@ from exactfold.pattern.drawing.formats.read import READERS
 from exactfold.pattern.opening import open_pattern
 
 LIMIT = 60
-LISTED = 100_000
-"""Flat-Folder lists the states of each component, here at most so many."""
+LISTED = 100_000  # states of each component, at most, in Flat-Folder
 KINDS = ("states", "none", "not locally flat", "noise", "not read", "undecided")
-FIRST = ("file", "answer", "states", "why", "pieces", "pairs", "reading", "folding")
-COLUMNS = (*FIRST, "flat_folder", "flat_folder_seconds", "agree")
-"""`pieces` are convex, `pairs` of them overlap, and times are seconds of processor time. The number
-of states of an answer that is noise is that of the digits; "+" after one of Flat-Folder means that
-there may be more."""
+TIMES = ("reading", "folding", "flat_folder_seconds")
+COLUMNS = ("file", "answer", "states", "why", "pieces", "pairs", *TIMES, "flat_folder", "agree")
+"""Pieces, overlapping pairs, seconds of processor time; for noise, the states of the digits."""
 ENDED: dict[int | None, str] = {-signal.SIGXCPU: f"not ended in {LIMIT} s"}
 Row = dict[str, Any]
-DRIVER = Path(__file__).with_name("flat_folder.mjs")
 
 
 def allow(seconds: float) -> None:
@@ -89,9 +85,8 @@ def answer(path: Path, sheet: Path, out: Connection) -> None:
     try:
         opened = open_pattern(path)
     except ExactfoldError as error:
-        name = type(error).__name__
-        out.send({"answer": "not read", "why": REASONS.get(name, name)})
-        return
+        why = REASONS.get(type(error).__name__, type(error).__name__)
+        return out.send({"answer": "not read", "why": why})
     read = time.process_time()
     out.send("folding")
     allow(LIMIT)
@@ -106,9 +101,9 @@ def answer(path: Path, sheet: Path, out: Connection) -> None:
 
 def answered(path: Path, sheet: Path) -> Row:
     """The row of a file, from a process of its own."""
-    context = multiprocessing.get_context("fork")
-    receiver, sender = context.Pipe(duplex=False)
-    process = context.Process(target=answer, args=(path, sheet, sender))
+    fork = multiprocessing.get_context("fork")
+    receiver, sender = fork.Pipe(duplex=False)
+    process = fork.Process(target=answer, args=(path, sheet, sender))
     process.start()
     sender.close()
     step: Any = ""
@@ -118,13 +113,14 @@ def answered(path: Path, sheet: Path) -> Row:
     process.join()
     if not isinstance(step, str):
         return dict(step)
-    kind = "not read" if step == "reading" else "undecided"
-    return {"answer": kind, "why": f"{ENDED.get(process.exitcode, 'died')}: {step}"}
+    why = f"{ENDED.get(process.exitcode, 'died')}: {step}"
+    return {"answer": "not read" if step == "reading" else "undecided", "why": why}
 
 
 def flat_folder(checkout: Path, sheet: Path) -> Row:
     """What Flat-Folder answers on a sheet."""
-    command = ["node", str(DRIVER), str(checkout), str(sheet), str(LISTED)]
+    driver = Path(__file__).with_name("flat_folder.mjs")
+    command = ["node", str(driver), str(checkout), str(sheet), str(LISTED)]
     done = subprocess.run(
         command, stdout=subprocess.PIPE, text=True, check=False, preexec_fn=lambda: allow(LIMIT)
     )
@@ -148,18 +144,17 @@ def run(folder: Path, only: str, table: Path, checkout: Path | None) -> list[Row
     """Append the rows of all files that the table does not have; all rows."""
     every = [p for p in folder.rglob("*") if p.suffix.lower().removeprefix(".") in READERS]
     names = short(str(path.relative_to(folder)) for path in every if path.is_file())
-    paths = sorted((folder / name for name in names), key=lambda path: path.stat().st_size)
+    paths = sorted(names, key=lambda name: (folder / name).stat().st_size)
     known = [*csv.DictReader(table.open())] if table.exists() else []
     rows = {row["file"]: row for row in known}
     with table.open("a", newline="") as out, tempfile.TemporaryDirectory() as scratch:
         writer = csv.DictWriter(out, COLUMNS, lineterminator="\n")
         if not known:
             writer.writeheader()
-        for path in paths:
-            name = names[str(path.relative_to(folder))]
+        sheet = Path(scratch) / "sheet.fold"
+        for path, name in ((folder / path, names[path]) for path in paths):
             if name in rows or only not in name:
                 continue
-            sheet = Path(scratch) / "sheet.fold"
             sheet.unlink(missing_ok=True)
             row = {"file": name, **answered(path, sheet)}
             if checkout is not None and sheet.exists():
@@ -181,13 +176,12 @@ def summary(rows: list[Row]) -> str:
         agree = Counter(row["agree"] for row in these if row.get("flat_folder"))
         counts = (len(these), agree["yes"], agree["no"], agree[""])
         lines.append(f"| {kind} | {' | '.join(map(str, counts))} |")
-    both = [row for row in rows if row["agree"] and row["answer"] != "not locally flat"]
+    both = [row for row in rows if row["agree"] and int(row["pairs"])]
     both.sort(key=lambda row: -int(row["pairs"]))
     lines.append("\n| file | pairs | reading | folding | Flat-Folder | folding by it |")
     lines.append(f"|---|{'---:|' * 5}")
     for name, some in (("all", both), *((row["file"], [row]) for row in both[:8])):
-        columns = ("reading", "folding", "flat_folder_seconds")
-        read, ours, other = (sum(float(row[key]) for row in some) for key in columns)
+        read, ours, other = (sum(float(row[key]) for row in some) for key in TIMES)
         times = f"{read:.2f} s | {ours:.2f} s | {other:.2f} s | {ours / max(other, 0.01):.2f}"
         lines.append(f"| {name} | {sum(int(row['pairs']) for row in some)} | {times} |")
     return "\n".join(lines)
