@@ -83,6 +83,8 @@ def _meaning(found: Opened, written: Callable[[], Opened]) -> Opened:
                 "or less noise"
             )
         reason = meant.reason or (_NO_LEVEL if left else "")
+        said = () if left else (_without_effect(reading),)
+        found = replace(found, lines=found.lines + said, seen=found.seen + said)
         return replace(found, meant=replace(meant, left=left, reason=reason))
     exact = meant.realized.sheet
     lines = tuple(line for line in raw.lines if not line.startswith("coordinates kept"))
@@ -98,6 +100,15 @@ def _meaning(found: Opened, written: Callable[[], Opened]) -> Opened:
         reading=reading,
         again=found.again,
     )
+
+
+def _without_effect(reading: Reading) -> str:
+    """What is said of options for an inexact drawing if the drawing is exact."""
+    given = {"--without": reading.without, "--also": reading.also}
+    numbers = {"--noise": reading.noise, "--unit": reading.unit}
+    names = [name for name, value in given.items() if value]
+    names += [name for name, value in numbers.items() if value is not None]
+    return f"{_NONE_NEAR}: {', '.join(names)} changed nothing"
 
 
 def recognised(found: Opened) -> Opened | None:
