@@ -14,8 +14,9 @@ from exactfold.pattern.drawing.drawing import Drawing, Line
 from exactfold.pattern.drawing.meant.left import left_relations, off_by
 from exactfold.pattern.opened import Opened, panels, triangulated
 
-if TYPE_CHECKING:  # sheets with exact digits do without it
+if TYPE_CHECKING:  # sheets with exact digits do without them
     from exactfold.pattern.panel_pattern import PanelPattern
+    from exactfold.pattern.reading import Reading
 
 
 _MOST_EDGES: Final = 1200
@@ -125,6 +126,7 @@ def recognised(found: Opened) -> Opened | None:
         return None
     from exactfold.pattern.drawing.coordinates import exact_coordinates
     from exactfold.pattern.panel_pattern import PanelPattern
+    from exactfold.pattern.reading import Reading
 
     if not isinstance(found.sheet, CreasePattern):
         return None

@@ -22,7 +22,6 @@ from exactfold.pattern.panel_pattern import Edge, PanelPattern, Point
 
 NEAR: Final = 1e-3
 """Two folds are nearly straight if they miss a straight line by less than this angle."""
-_BITS: Final = 64
 _CLOSE: Final = 0.1
 """Kawasaki's condition nearly holds if it is off by less than so many degrees."""
 _MEANT: Final = 1e-3
