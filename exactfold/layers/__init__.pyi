@@ -1,5 +1,9 @@
 from exactfold.layers.certificate import states_certificate as states_certificate
 from exactfold.layers.constraints import Constraint as Constraint
+from exactfold.layers.ends import Reached as Reached
+from exactfold.layers.ends import WayEnd as WayEnd
+from exactfold.layers.ends import reached as reached
+from exactfold.layers.ends import way_ends as way_ends
 from exactfold.layers.folding import fold_flat as fold_flat
 from exactfold.layers.images import Images as Images
 from exactfold.layers.images import Isometry as Isometry

@@ -65,7 +65,7 @@ def states_certificate(found: FlatStates, clock: Clock = UNLIMITED) -> Document:
     ('flat-count', 1)
     """
     if found.status is UNDECIDED:
-        raise NotApplicableError(f"no certificate, as nothing is decided: {found.reason}")
+        raise NotApplicableError(f"nothing is decided: {found.reason}")
     letters = "".join(found.letters[fold] for fold in found.pattern.folds)
     head = {"pattern": panels_document(found.pattern)}
     if found.images is None:

@@ -11,6 +11,7 @@ from exactfold._support.documents import (
     Natural,
     NotNegative,
     Pair,
+    Positive,
     VerdictText,
 )
 from exactfold.pattern.described import PanelsDocument
@@ -54,6 +55,7 @@ class NearDocument(TypedDict):
     """By the size of the image."""
     vertex: Natural
     edge: FoldText
+    """The edge whose image is the line."""
     states: Natural | None
     """The number of states if all that nearly meets is taken to meet, in floats; null if it is not
     known."""
@@ -64,7 +66,28 @@ class WrittenDocument(TypedDict):
 
     status: VerdictText
     states: Natural | None
+    """The number of states; null if it is not known."""
     reason: str
+
+
+class WayEndDocument(TypedDict):
+    """Where one way of a sheet of rigid panels ends."""
+
+    way: Positive
+    """The number of the way in the list of `exactfold count`."""
+    letters: Assignment
+    """The letters of its folds; F for folds that stay flat."""
+    status: VerdictText
+    """Whether it folds rigidly from the flat sheet to a flat-folded state, without contact."""
+    reason: str
+    """Why not, or why that is not known."""
+    state: Natural | None
+    """The number of this state, from 0; null if it is not one of those that were asked for."""
+    mirrored: Natural | None
+    """The number of the state that the way reaches to the other side of the sheet."""
+    clear: NotNegative | None
+    """The angle of the driving folds, in radians, before which no panels touch, as far as proved;
+    null if nothing is known."""
 
 
 class FlatDocument(TypedDict):
@@ -100,5 +123,8 @@ class FlatDocument(TypedDict):
     meant: MeantDocument | None
     """What was inferred if the digits of the drawing are inexact; else null."""
     as_written: WrittenDocument | None
+    """If the status is undecided because digits are in doubt: the answer for them."""
+    ways: list[WayEndDocument] | None
+    """Where the ways of the sheet end; null without `--ways`."""
     """If digits are in doubt: the answer for the coordinates as they were read."""
     seconds: NotNegative

@@ -13,6 +13,7 @@ import numpy as np
 from exactfold._support.clock import LIMIT, Clock
 from exactfold._support.plurals import agreeing, counted
 from exactfold._support.progress import Progress
+from exactfold._support.verdict import UNDECIDED
 from exactfold.design.refutations.asked import by_fold
 from exactfold.errors import InputError, TooManyModesError, UsageError
 from exactfold.exact.surds import exact
@@ -83,10 +84,12 @@ def fold_flat(
     found = _found(pattern, chosen, used, most, clock, progress)
     doubt, near = "", None  # what was not read from a file is exact
     if opened.reading.snap != "exact":
-        if found.near is not None and opened.again is not None:
-            near = replace(found.near, states=_if_met(found, clock))
-        doubt = opened.doubt or ("" if near is None else _depends(near, found.count))
-        doubt = doubt or _moved(opened, found, letters, clock)
+        doubt = opened.doubt
+        if found.as_written is not UNDECIDED:
+            if found.near is not None and opened.again is not None:
+                near = replace(found.near, states=_if_met(found, clock))
+                doubt = doubt or _depends(near, found.count)
+            doubt = doubt or _moved(opened, found, letters, clock)
     seconds = time.perf_counter() - start
     return replace(found, doubt=doubt, near=near, meant=opened.meant, seconds=seconds)
 

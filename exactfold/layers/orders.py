@@ -25,6 +25,7 @@ LISTED: Final = 1000
 """At most so many states of a component are kept; all are counted."""
 _AT_ONCE: Final = 4
 _TRIPLES: Final = 3_000_000
+_CLASSES: Final = 1_000_000
 
 
 class ContradictionError(Exception):
@@ -94,8 +95,8 @@ class Search:
         """All orders; raises `PackageMissingError` without python-sat."""
         try:
             self._classes()
-            self._take(self._class(taco_clauses(self.constraints.tacos)))
             self._set(self._class(np.array(list(self.constraints.given.values()), dtype=np.int64)))
+            self._take(self._class(taco_clauses(self.constraints.tacos)))
             self._propagate()
             self._close()
             self._open()
@@ -123,6 +124,8 @@ class Search:
         if (plus == minus).any():
             raise ContradictionError
         names, place = np.unique(np.minimum(plus, minus), return_inverse=True)
+        if len(names) > _CLASSES:
+            raise TooManyModesError(f"more than {_CLASSES} orders of layers are open")
         self._literal: Indices = np.where(plus < minus, place + 1, -place - 1)
         self.size = len(names)
         self._value = np.zeros(2 * self.size + 1, dtype=np.int8)
@@ -133,10 +136,24 @@ class Search:
         return np.sign(literals) * self._literal[abs(literals) - 1]
 
     def _take(self, rows: Indices) -> None:
-        """Take in clauses of three literals, without those that always hold."""
+        """Take in clauses of three literals, without those that hold in any case."""
         a, b, c = rows.T
-        rows = rows[(a != -b) & (a != -c) & (b != -c)]
-        self._rows = np.unique(np.concatenate([self._rows, np.sort(rows, axis=1)]), axis=0)
+        holds = (a == -b) | (a == -c) | (b == -c)
+        for column in (a, b, c):
+            holds |= self._value[column + self.size] == 1
+        rows = np.concatenate([self._rows, np.sort(rows[~holds], axis=1)])
+        _, first = np.unique(self._code(rows), return_index=True)
+        self._rows = rows[first]
+
+    def _code(self, rows: Indices) -> Indices:
+        """A number for each row of three literals, different for different rows.
+
+        It has 64 bits, which suffices for a million classes.
+        """
+        a, b, c = rows.T + self.size
+        width = 2 * self.size + 1
+        code: Indices = (a * width + b) * width + c
+        return code
 
     # --- what is forced --------------------------------------------------------------------------
 
@@ -256,7 +273,7 @@ class Search:
             triples = np.concatenate([triples, some[keep]])
             if len(triples) > _TRIPLES:
                 raise TooManyModesError("too many triples of pieces have an open order")
-        _, group = np.unique(rows, axis=0, return_inverse=True)
+        _, group = np.unique(self._code(rows), return_inverse=True)
         order = np.argsort(group, kind="stable")
         self._first_of_each(group.ravel()[order], triples[order])
         self._propagate()

@@ -113,9 +113,7 @@ class Placing:
                         self._known[key] = len(self.entries)
                         self.entries.append(entry)
                         return self._known[key]
-            raise NotApplicableError(
-                f"no certificate: no place in few digits was found where layers meet, {key}"
-            )
+            raise NotApplicableError(f"no place in few digits was found where layers meet, {key}")
         return self._known[key]
 
     def _is_place(self, entry: list[Any], clause: Sequence[Order]) -> bool:

@@ -25,6 +25,15 @@ _Theory: TypeAlias = Annotated[str, Keywords(enum=["modes", "subspaces"])]
 ByDimension: TypeAlias = dict[VertexText, Positive]
 
 
+class GraphsDocument(TypedDict):
+    """The solutions of a triangulated sheet as 2^n graphs over its boundary heights."""
+
+    vertices: Positive
+    """The number n of vertices that pop up or down."""
+    dimension: Positive
+    """Of each graph."""
+
+
 class ComponentsDocument(TypedDict):
     """How many components of motions there are, by dimension."""
 
@@ -36,6 +45,8 @@ class ComponentsDocument(TypedDict):
     """At least so many to second order, where not all are known."""
     found_true: ByDimension | None
     """At least so many that truly fold, where not all are known."""
+    graphs: GraphsDocument | None
+    """Where these are counted, of a sheet with irrational coordinates; else `pieces` has them."""
 
 
 class ModeDocument(TypedDict):
@@ -187,11 +198,11 @@ class PanelCountKeys(CountKeys):
 
 
 class ProvedPanels(PanelCountKeys):
-    """Motions of rigid panels, all of which are known to second order."""
+    """Motions of rigid panels, all of which are known to second order, or the graphs of them."""
 
     status: Literal["proved"]
-    by: Literal["enumeration"]
-    """How what is stated was proved."""
+    by: Literal["enumeration", "theorem"]
+    """How what is stated was proved; "theorem" if only the graphs are known."""
 
 
 class UndecidedPanels(PanelCountKeys):

@@ -89,6 +89,11 @@ class Decomposition(Page, Ways[Mode], Certified):
     sheet only, the status is UNDECIDED, and `as_written` has that answer. `nearby` then has bounds
     of the degrees of freedom that hold for every sheet near the drawing, and `proposal` is a sheet
     that may have been meant.
+
+    If `graphs` is a number n, the sheet is triangulated, and its solutions and its true
+    configurations near the flat state are 2^n graphs over the boundary heights, each of dimension
+    `pattern.D` (docs/any_border.md, Theorems 6 and 8). Then the status is PROVED although
+    `second_order`, the number of irreducible components, may be None.
     """
 
     pattern: PanelPattern
@@ -115,6 +120,7 @@ class Decomposition(Page, Ways[Mode], Certified):
     drawn: Drawn | None = None
     nearby: Freedom | None = None
     proposal: Proposal | None = None
+    graphs: int | None = None
     seconds: float = field(default=0.0, compare=False)
 
     WRITER: ClassVar = "exactfold.panels.certificate:certificate_of_panels"
@@ -144,7 +150,9 @@ class Decomposition(Page, Ways[Mode], Certified):
             "with_multiplicity": None,
             "real": None if isolated is None else len(isolated.real),
             "nonreal": None if isolated is None else 2 * len(isolated.nonreal),
-            "true_branches": str(UNDECIDED if self.true is None else PROVED),
+            "true_branches": str(
+                UNDECIDED if self.true is None and self.graphs is None else PROVED
+            ),
             "true_bounds": None,
             "dimension": None,
             "degree": None,
@@ -165,7 +173,10 @@ class Decomposition(Page, Ways[Mode], Certified):
             **self.keys(),
         }
         if self.status is PROVED:
-            return {**keys, "status": "proved", "by": "enumeration"}
+            by: Literal["enumeration", "theorem"] = (
+                "enumeration" if self.second_order is not None else "theorem"
+            )
+            return {**keys, "status": "proved", "by": by}
         return {**keys, "status": "undecided", "by": None}
 
     def of_digits(self) -> AsWrittenDocument:
@@ -185,6 +196,9 @@ class Decomposition(Page, Ways[Mode], Certified):
             "true": _texts(self.true),
             "found": _texts(self.found),
             "found_true": _texts(self.found_true),
+            "graphs": None
+            if self.graphs is None
+            else {"vertices": self.graphs, "dimension": self.pattern.D},
         }
 
     def keys(self) -> MotionKeys:

@@ -164,6 +164,9 @@ def kind_of(line: Line) -> tuple[str, str]:
             short = f"2^{power}" if number == 1 << power and power > 20 else number
             graphs = counted(short, "graph")
             return KINDS[0], f"{graphs} of dimension {result['dimension']}"
+        if components.get("graphs"):
+            known = components["graphs"]
+            return KINDS[0], f"2^{known['vertices']} graphs of dimension {known['dimension']}"
         spaces = components["true"] or components["second_order"]
         said = ", ".join(f"{number} of dimension {k}" for k, number in spaces.items())
         return KINDS[0], said + ("" if components["true"] else ", to second order")

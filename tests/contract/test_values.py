@@ -121,7 +121,12 @@ STUDIES = {
 }
 FLAT_TWIST = exactfold.flat("square-twist")
 FLAT_MAP = exactfold.flat("map-fold", "any")
+FISH_END = exactfold.layers.reached(exactfold.follow("fish-base", 3, until="180deg", frames=2))
 LAYERS = {
+    "state that a motion reaches": FISH_END,
+    "end of a way": exactfold.layers.WayEnd(
+        3, dict(FISH_END.motion.assignment), FISH_END.status, "", 0, None, FISH_END
+    ),
     "flat-folded states": FLAT_MAP,
     "no flat-folded state": FLAT_TWIST,
     "state": FLAT_MAP.state(3),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import prod
 from typing import TYPE_CHECKING, Any, Final
 
@@ -10,9 +11,10 @@ from rich.text import Text
 
 from exactfold._support.plurals import counted
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED
-from exactfold.app.report.terminal import more_text, status_text
+from exactfold.app.report.terminal import MOST, cut, more_text, status_text
 
 if TYPE_CHECKING:
+    from exactfold.layers.ends import WayEnd
     from exactfold.layers.states import Conflict, FlatStates
 
 FIRST: Final = 10
@@ -24,22 +26,61 @@ _LETTERS: Final = {
 }
 
 
-def flat_report(found: FlatStates, *, everything: bool = False) -> Group:
-    """The answer, its parts, and why there is no state."""
+def flat_report(
+    found: FlatStates, ends: Sequence[WayEnd] | None = None, *, everything: bool = False
+) -> Group:
+    """The answer, its parts, and why there is no state; and where ways end, if asked for."""
     parts: list[Any] = [flat_answer(found)]
     if found.as_written is PROVED and found.components:
         parts += ["", Text(_parts(found))]
-    reasons = [one.text for one in found.failures] or [
-        condition_text(found, one) for one in found.conflict
-    ]
-    limit = len(reasons) if everything else FIRST
-    if reasons:
+    known = reasons(found, everything=everything)
+    if known:
         title = "Vertices that do not fold flat by themselves"
         if found.conflict:
             title = "Conditions that no order of layers satisfies together"
-        parts += ["", Text(title, style="bold"), *(Text(f"- {one}") for one in reasons[:limit])]
-        parts += more_text(len(reasons) - limit)
+        parts += ["", Text(title, style="bold")]
+        parts += [Text(f"{k}. {one}") for k, one in enumerate(known, 1)]
+        parts += more_text(len(found.failures or found.conflict) - len(known))
+    if ends is not None:
+        parts += [
+            "",
+            Text("Where the ways of the sheet end", style="bold"),
+            *_ends(ends, everything),
+        ]
     return Group(*parts)
+
+
+def _ends(ends: Sequence[WayEnd], everything: bool) -> list[Any]:
+    """A line for each way."""
+    if not ends:
+        return [Text("no way is known along which modes of its panels fold")]
+    limit = len(ends) if everything else MOST
+    lines = []
+    for end in ends[:limit]:
+        what = end.reason
+        if end.status is PROVED:
+            letters = cut("".join(end.letters.values()))
+            what = f"a flat-folded state with the letters {letters}"
+            if end.state is not None:
+                what = f"flat-folded state {end.state}"
+                if end.mirrored is not None:
+                    what += f", and {end.mirrored} to the other side"
+            elif end.mirrored is not None:
+                what = f"flat-folded state {end.mirrored} to the other side"
+            what += ", without contact"
+        lines.append(Text.assemble(f"way {end.way}: {what} - ", status_text(end.status)))
+    return [*lines, *more_text(len(ends) - limit)]
+
+
+def reasons(found: FlatStates, *, everything: bool = False) -> list[str]:
+    """The vertices that fail, or else the conditions that contradict each other, in words.
+
+    Unless all are asked for, these are the first `FIRST`.
+    """
+    limit = None if everything else FIRST
+    if found.failures:
+        return [one.text for one in found.failures[:limit]]
+    return [condition_text(found, one) for one in found.conflict[:limit]]
 
 
 def flat_answer(found: FlatStates) -> Text:

@@ -44,6 +44,10 @@ class Interval:
         one = 1 << 2 * self.bits
         return self * Interval(one // other.high, -(-one // other.low), self.bits)
 
+    def joined(self, other: Interval) -> Interval:
+        """The smallest interval that holds both."""
+        return Interval(min(self.low, other.low), max(self.high, other.high), self.bits)
+
     def root(self) -> Interval:
         """An interval that holds the square roots; the negative part is clipped."""
         low, high = max(self.low, 0) << self.bits, max(self.high, 0) << self.bits

@@ -150,11 +150,9 @@ def _beside(
     winding number of the boundary: 1 inside of the sheet, and 0 outside. Each folded fold is a side
     of two pieces, so that it does not run through a piece.
     """
-    beside: dict[Edge, int] = {}
-    for k, piece in enumerate(pieces):
-        for i, j in sides(piece):
-            require((i, j) not in beside, f"two pieces lie on the left of {i}-{j}")
-            beside[i, j] = k
+    owned = [(side, k) for k, piece in enumerate(pieces) for side in sides(piece)]
+    beside = dict(owned)
+    require(len(beside) == len(owned), "two pieces lie on one side of an edge")
     rim = {(i, j) for i, j in beside if (j, i) not in beside}
     around = {side for panel in sheet.panels for side in sides(panel)}
     boundary = {(i, j) for i, j in around if (j, i) not in around}

@@ -15,7 +15,6 @@ direction, as the definition demands. The same holds for a point of the plane.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from functools import cache
 from itertools import permutations, product
 from typing import Any, NamedTuple
 
@@ -54,6 +53,7 @@ class Places:
         self._numbers = Coordinates()
         self._places = [self._read(k, entry) for k, entry in enumerate(items(value, "places"))]
         self._known: dict[tuple[int, int], Strand] = {}
+        self._answers: dict[tuple[tuple[Strand, ...], Clause], bool] = {}
 
     def read_clause(self, value: Any) -> Clause:
         """Read [place, clause]; raises unless the clause is true at the place."""
@@ -62,7 +62,10 @@ class Places:
         require(place < len(self._places), f"there is no place {place}")
         clause = read_orders(orders, len(self.folded.pieces))
         strands = {self._strand(place, piece) for order in clause for piece in order}
-        require(holds(sorted(strands), clause), f"{told(clause)} does not hold at place {place}")
+        question = _renamed(sorted(strands), clause)
+        if question not in self._answers:
+            self._answers[question] = holds(*question)
+        require(self._answers[question], f"{told(clause)} does not hold at place {place}")
         return clause
 
     def _read(self, number: int, value: Any) -> tuple[Spot, int | None]:
@@ -117,27 +120,22 @@ def read_orders(value: Any, count: int) -> Clause:
 
 def holds(strands: Sequence[Strand], clause: Clause) -> bool:
     """Whether all orders of the layers of some strands that do not cross fulfil a clause."""
-    left, right = ([k for strand in strands for k in strand[side]] for side in (0, 1))
-    most = max(len(left), len(right))
+    most = max(sum(len(strand[side]) for strand in strands) for side in (0, 1))
     at_most(most, FLAT_LAYERS, "the layers at the place of a clause", "FLAT_LAYERS")
-    short: dict[int, int] = {}
-    for k in (*left, *right):
-        short.setdefault(k, len(short))
-    return _holds(
-        tuple(
-            Strand(*(tuple(short[k] for k in layers) for layers in strand)) for strand in strands
-        ),
-        tuple((short[a], short[b]) for a, b in clause),
-    )
-
-
-@cache
-def _holds(strands: tuple[Strand, ...], clause: Clause) -> bool:
-    """The same, for pieces with numbers from 0: few questions are asked very often."""
     return all(
         any(_is_below(a, b, left) or _is_below(a, b, right) for a, b in clause)
         for left, right in uncrossed(strands)
     )
+
+
+def _renamed(strands: Sequence[Strand], clause: Clause) -> tuple[tuple[Strand, ...], Clause]:
+    """The same question about pieces with numbers from 0: few questions are asked very often."""
+    name: dict[int, int] = {}
+    for strand in strands:
+        for k in (*strand.left, *strand.right):
+            name.setdefault(k, len(name))
+    renamed = (Strand(*(tuple(name[k] for k in side) for side in strand)) for strand in strands)
+    return tuple(renamed), tuple((name[a], name[b]) for a, b in clause)
 
 
 def _is_below(a: int, b: int, layers: tuple[int, ...]) -> bool:

@@ -123,6 +123,14 @@ class FacePairs:
                     stack += [(middle, b), (a, middle)]
         return ""
 
+    def not_parted(self, boxes: Boxes) -> tuple[list[tuple[int, int]], list[tuple[int, int]]]:
+        """The rows of `apart` and of `corner` whose faces no plane is found to part."""
+        self.spend(len(self.apart) + len(self.corner))
+        return (
+            [(i, j) for i, j in self.apart if not self._apart(boxes, i, j, False)],
+            [(i, j) for i, j in self.corner if not self._at_corner(boxes, i, j, False)],
+        )
+
     def _apart(self, boxes: Boxes, i: int, j: int, planar: bool) -> bool:
         """Whether a plane parts two faces. The direction that parted them last is tried first."""
         one, two = self.faces[i], self.faces[j]

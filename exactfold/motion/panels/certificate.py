@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from math import ceil, cos, floor, sin
+from math import ceil, cos, floor, pi, sin, tan
 
 from exactfold.certificates.entries import Document
-from exactfold.checker.motion.panels.certificate import PANEL_MOTION, PLAIN, RATED
+from exactfold.checker.motion.panels.certificate import CLOSING, PANEL_MOTION, PLAIN, RATED
 from exactfold.checker.motion.panels.times import Clock, OneRate, Rates, time_of
 from exactfold.errors import NotApplicableError
 from exactfold.exact.numbers import format_rational
@@ -34,8 +34,9 @@ def certificate_of_panel_motion(motion: PanelMotion, contacts: PanelClearance) -
     """The certificate of a motion and its contacts, as a JSON object for `exactfold.checker`.
 
     It claims that the panels fold in this way, and a time before which no two of them touch. If a
-    contact is proved, it also claims a time by which some panels touch. The times are those of
-    `contacts`, made slightly weaker.
+    contact is proved, it also claims a time by which some panels touch; or if it is proved that
+    none touch before all folds close together, it claims this. The times are those of `contacts`,
+    made slightly weaker.
 
     Raises `NotApplicableError` if a vertex needs more than one square root besides those of the
     coordinates.
@@ -53,13 +54,18 @@ def certificate_of_panel_motion(motion: PanelMotion, contacts: PanelClearance) -
     claims = [driven_claim(motion)]
     if timing.rates is not None:
         claims.append(Claim({"rates": timing.rates}))
-    clear, clear_claimed = clear_claim(motion, contacts, timing)
-    claims.append(clear_claimed)
-    if contacts.event is not None:
-        claims.append(contact_claim(contacts.event, clear, timing))
+    version = PLAIN if timing.rates is None else RATED
+    if contacts.closes_from is not None:
+        version = CLOSING
+        claims.append(closed_claim(motion, contacts.closes_from, timing))
+    else:
+        clear, clear_claimed = clear_claim(motion, contacts, timing)
+        claims.append(clear_claimed)
+        if contacts.event is not None:
+            claims.append(contact_claim(contacts.event, clear, timing))
     return {
         "format": PANEL_MOTION.format,
-        "version": PLAIN if timing.rates is None else RATED,
+        "version": version,
         "pattern": panels_document(motion.pattern),
         **joined(claims),
     }
@@ -121,6 +127,22 @@ def clear_claim(
     else:
         clear = _rounded(timing.clock.time(last)[0], -1)
     return clear, Claim({"clear": format_rational(clear)}, {"clear": _in_places(last)})
+
+
+def closed_claim(motion: PanelMotion, closes_from: float, timing: Timing) -> Claim:
+    """That no two panels touch before all folds that move close together, at the time pi.
+
+    The time `clear`, which divides the motion in two parts that the checker verifies in different
+    ways, is later than `closes_from`, because the checker has coarser bounds.
+    """
+    last = _at_least(1 / (1 + tan((pi - closes_from) / 2) / 2))
+    clear = _rounded(timing.clock.time(last)[0], -1)
+    moving = [fold for curve in motion.curves for fold in curve.folds]
+    closed = sorted([*moving, *motion.free_rates])
+    return Claim(
+        {"clear": format_rational(clear), "closed": [list(fold) for fold in closed]},
+        {"clear": _in_places(last)},
+    )
 
 
 def contact_claim(event: Event, clear: Fraction, timing: Timing) -> Claim:

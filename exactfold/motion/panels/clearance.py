@@ -46,6 +46,9 @@ class PanelClearance:
     panels meet in it; other panels may touch shortly before. `open_panels` are pairs that are not
     proved to stay apart right after `clear`.
 
+    `closes_from` is a time from which on planes part the panels until all folds close together at
+    time pi (docs/motion.md, 21); None if this is not proved.
+
     `status` is PROVED if the whole motion is clear, or if the time of its first contact is known to
     within a thousandth of a radian. Otherwise `reason` says what is missing.
     """
@@ -55,6 +58,7 @@ class PanelClearance:
     event: Event | None
     open_panels: tuple[tuple[Panel, Panel], ...]
     reason: str
+    closes_from: float | None = None
 
     def __repr__(self) -> str:
         what = "" if self.event is None else f", {self.event.kind} by {self.event.time[1]:.6g}"
@@ -101,7 +105,7 @@ def prove_contacts(motion: PanelMotion) -> PanelClearance:
             break
     else:
         if clear >= nextafter(end, 0.0):
-            return PanelClearance(PROVED, motion.duration, _closing(motion, pi), (), "")
+            return PanelClearance(PROVED, motion.duration, _closing(motion, pi), (), "", end)
         if clear >= nextafter(motion.duration, 0.0):
             return PanelClearance(PROVED, motion.duration, None, (), "")
     event = _crossing(motion, contacts, pieces, clear) or _closing(motion, clear)

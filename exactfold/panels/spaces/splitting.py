@@ -169,8 +169,8 @@ class Splitting(LimitedSearch):
 
         A factor that is a multiple of a kept row vanishes nowhere that is wanted: then the other
         one does, and nothing is split. Otherwise the vertex has the most neighbours that are
-        settled, so that loops close early. If roots are avoided, vertices come before it whose
-        forms need no new root.
+        settled, so that loops close early; of several such vertices, one is taken whose form needs
+        no new root. If roots are avoided, all vertices come first whose forms need no new root.
         """
         kept = [row for key, row in space.rows.items() if is_kept(key)]
         for v in products:
@@ -181,13 +181,16 @@ class Splitting(LimitedSearch):
 
         field = self._field_of(space)
 
-        def rank(v: int) -> tuple[bool, int, int, int]:
+        def rank(v: int) -> tuple[int, int, int]:
             folds = [edge for edge in self.stars[v].folds if edge in space.rows]
-            near = sum(u in settled for edge in folds for u in edge)
-            new = self._avoids_roots and factors_of(space.forms[v], field, 0) is None
-            return new, -near, len(folds), v
+            return -sum(u in settled for edge in folds for u in edge), len(folds), v
 
-        v = min(products, key=rank)
+        ranks = sorted(map(rank, products))
+        if not self._avoids_roots:
+            ranks = [one for one in ranks if one[0] == ranks[0][0]]
+        among = [v for *_, v in ranks]
+        plain_roots = (v for v in among if factors_of(space.forms[v], field, 0) is not None)
+        v = next(plain_roots, among[0])
         return v, *self._factors(space.forms[v], field)
 
     def _field_of(self, space: _Space) -> SurdField:

@@ -200,7 +200,7 @@ def test_undecided_exits_4(tmp_path):
     assert "the certificate proves bounds of the degrees of freedom only" in result.stderr
     assert data["theory"] == "subspaces"
     found = {"found": {"3": 2}, "found_true": {"3": 2}}
-    assert data["components"] == {"second_order": None, "true": None, **found}
+    assert data["components"] == {"second_order": None, "true": None, **found, "graphs": None}
     assert data["reason"].startswith("the part of 4 vertices with vertex 6: ")
     assert "and a reflex corner, vertex 3: for such a sheet" in data["reason"]
 

@@ -80,6 +80,32 @@ def test_the_second_order_is_tried_where_the_first_takes_too_much_work(
         Splitting(moving, 10**7, Clock(0)).leaves(rows, size)
 
 
+def test_of_equally_near_vertices_one_without_a_new_root_is_split_first() -> None:
+    moving = stars(tiling(2, 2))
+    search = Splitting(moving, 10**7)
+    rows = splitting._on_folds(*first_order(moving))
+    forms = {v: search._form(v, rows) for v in moving}
+
+    def chosen(plain: set[int], settled: frozenset[int]) -> int:
+        """The choice if the forms of these vertices need no root, and all others sqrt 2."""
+        given = {
+            v: [(fmpq(1), one), (fmpq(-1 if v in plain else -2), other)]
+            for v, ((_, one), (_, other)) in forms.items()
+        }
+        waiting = [v for v in forms if v not in settled]
+        return search._chosen(splitting._Space(rows, given), settled, waiting)[0]
+
+    for v, star in moving.items():
+        around = {u for edge in star.folds for u in edge}
+        far = forms.keys() - around
+        assert far
+        search._avoids_roots = False
+        assert chosen({v}, frozenset()) == v
+        assert chosen(far, frozenset({v})) in around
+        search._avoids_roots = True
+        assert chosen(far, frozenset({v})) in far
+
+
 @pytest.mark.parametrize("name", sorted(SHEETS))
 def test_the_forms_on_random_subspaces_are_those_of_dense_rows(name: str) -> None:
     """Both sums of squares have the same values at random points of random subspaces."""

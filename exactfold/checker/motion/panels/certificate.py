@@ -6,7 +6,8 @@ about this motion, one class for each (docs/motion.md, 20 to 22).
 
 The claims are `assignment`, with a letter for each fold in lexicographic order; the `drivers`, a
 fold of each mode that moves and each free fold that does, which at time t have the angle t; in
-version 2 their different `rates`, the largest 1; and `clear` and `contact` as for branches. The
+version 2 their different `rates`, the largest 1; `clear` and `contact` as for branches; and in
+version 3 the folds that are `closed` at time pi, all that move, with no contact before. The
 evidence has the `densities` of the active folds at each interior vertex, numbers of the field of
 the sheet or with the square root of one `radicand` more, and the parameters x until which panels
 are parted, and at which an edge runs through a panel.
@@ -21,15 +22,17 @@ from ...core.reading import refusing
 from ...sheets.panels import read_panels
 from ..claims import read_claims, words
 from ..contacts import TouchingFaces
+from .closing import Closed
 from .contacts import Clear, Contact
 from .folding import Driven, Folding, OwnRates, PanelClaim
 
-CLAIMS: tuple[type[PanelClaim], ...] = (Driven, OwnRates, Clear, Contact)
+CLAIMS: tuple[type[PanelClaim], ...] = (Driven, OwnRates, Clear, Closed, Contact)
 """All claims, in the order in which a summary states them."""
 
 
 class _Optional(TypedDict, total=False):
     rates: list[str]
+    closed: list[list[int]]
     contact: TouchingFaces
 
 
@@ -42,8 +45,10 @@ class VerifiedPanelMotion(_Optional):
     sha256: str
 
 
-PLAIN, RATED = 1, 2
-"""The versions: in 1 all drivers move at the same rate, in 2 each driver has a rate of its own."""
+PLAIN, RATED, CLOSING = 1, 2, 3
+"""The versions: in 2 each driver has a rate of its own, in 1 and 3 all move at the same rate. In 3
+no panels touch until all folds that move close.
+"""
 
 
 @refusing()
@@ -53,8 +58,9 @@ def check(data: dict[str, Any]) -> VerifiedPanelMotion:
     The classes in `CLAIMS` say what is claimed. Returns the claims and the SHA-256 of the pattern.
     """
     sheet, digest = read_panels(data["pattern"])
-    rated = data["version"] == RATED
-    kinds = [kind for kind in CLAIMS if rated or kind is not OwnRates]
+    version = data["version"]
+    only = {OwnRates: RATED, Closed: CLOSING}
+    kinds = [kind for kind in CLAIMS if only.get(kind, version) == version]
     claims = read_claims(kinds, data["claims"], data["evidence"])
     folding = Folding(sheet, data["claims"], data["evidence"])
     for claim in claims:
@@ -69,7 +75,7 @@ def summary(claims: VerifiedPanelMotion) -> str:
 
 PANEL_MOTION = DocumentKind(
     format="exactfold panel motion",
-    versions=(PLAIN, RATED),
+    versions=(PLAIN, RATED, CLOSING),
     names="format version pattern claims evidence",
     claims=VerifiedPanelMotion,
     check=check,

@@ -70,7 +70,8 @@ class Places:
     """The positions of the vertices of a shrunk sheet; a panel in its middle is held.
 
     So errors grow over half of the sheet only, and panels that fold onto the held panel are not
-    turned along with it.
+    turned along with it. `steps` has the other panels in the order in which they are placed, and
+    `owner` the first panel of each vertex.
     """
 
     def __init__(self, drive: DrivenModes, clock: Clock) -> None:
@@ -79,13 +80,13 @@ class Places:
         self._flat = [[(c.low + c.high) >> 1 for c in point] for point in ends]
         self._blur = 1 + max(c.high - c.low for point in ends for c in point)
         self.held = _middle(sheet)
-        self._steps = list(_order(sheet, self.held))
-        self._owner: dict[int, int] = {}
-        for panel in (self.held, *(after for after, *_ in self._steps)):
+        self.steps = list(_order(sheet, self.held))
+        self.owner: dict[int, int] = {}
+        for panel in (self.held, *(after for after, *_ in self.steps)):
             for v in sheet.panels[panel]:
-                self._owner.setdefault(v, panel)
+                self.owner.setdefault(v, panel)
         self._axes: dict[Edge, tuple[int, int, int]] = {}
-        for _, _, i, j in self._steps:
+        for _, _, i, j in self.steps:
             if pair(i, j) in drive.active:
                 size = length(sheet, i, j)
                 x, y = (thin(c) / size for c in sheet.vector(i, j))
@@ -95,7 +96,7 @@ class Places:
     @property
     def work(self) -> int:
         """The work of computing one piece, in tests of two faces."""
-        return 64 * len(self._steps)
+        return 64 * len(self.steps)
 
     @property
     def bodies(self) -> list[int]:
@@ -171,7 +172,7 @@ class Places:
         placed: dict[int, tuple[list[Row], int, list[Polynomial], int]] = {
             self.held: (rows, 0, [_STILL] * 3, 0)
         }
-        for panel, before, i, j in self._steps:
+        for panel, before, i, j in self.steps:
             if (i, j) not in self._axes:
                 placed[panel] = placed[before]
                 continue
@@ -193,7 +194,7 @@ class Places:
             return [], 1 << 2 * BITS
         columns, most = [], 0
         for v, (x, y) in enumerate(self._flat):
-            rows, off, shift, missed = placed[self._owner[v]]
+            rows, off, shift, missed = placed[self.owner[v]]
             most = max(most, missed + 2 * off + 2 * self._blur + 6 * _ROUNDED)
             for row, s in zip(rows, shift, strict=True):
                 terms = zip(s, scaled(row[0], x), scaled(row[1], y), strict=True)
