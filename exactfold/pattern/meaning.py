@@ -126,7 +126,6 @@ def recognised(found: Opened) -> Opened | None:
         return None
     from exactfold.pattern.drawing.coordinates import exact_coordinates
     from exactfold.pattern.panel_pattern import PanelPattern
-    from exactfold.pattern.reading import Reading
 
     if not isinstance(found.sheet, CreasePattern):
         return None
