@@ -1,4 +1,58 @@
-"""Which stars can be flat on exceptional sheets: docs/generic.md, Theorem 12."""
+"""Which stars can be flat on exceptional sheets: docs/generic.md, Theorem 12.
+
+Proof of Theorem 12, in its notation:
+
+Proof of (a). The stars of vertices of F that are joined by edges in F lie in one plane. At a vertex
+u that is not in F their faces fill one or more angles, whose sides are edges that do not end in F;
+by (1) of docs/theorem.md what the faces of an angle add to K_u depends on the gradient and on its
+sides only.
+
+Proof of (b). Take the inside of C away and draw a diagonal e that lies in C. It is not an edge
+already. Let n' interior vertices be left. A 3-cycle around e would have had the vertices inside C
+in it; so Theorem 11 says that e is bent unless P_e = 0, also for complex positions (step 1). Now
+let M be the set of all positions and solutions (U, h) near the given one. It is the zero set of n'
+equations in 3 n' unknowns, with finitely many points over each U (Theorem 2 (a)). So all its
+components have dimension 2n', and where omega_e = 0 as well the dimension is at least 2n' - 1. It
+is not 2n', as P_e would vanish on an open set. By (a) the positions inside C are free.
+
+Proof of (c). If the branch is flat inside C, w has three folds that may be bent: those to a, to c
+and to the outer neighbour. There is no fold wb, also none outside of C, as these are opposite.
+Three folds with the directions d_1, d_2, d_3 have stresses in balance that are proportional to
+[d_2, d_3], [d_3, d_1], [d_1, d_2], where [d, d'] = d x d', and with these K_w = 1/2 [d_1, d_2]
+[d_2, d_3] [d_3, d_1] [machine]. So if K_w = 0 and the star is not flat, two of them are opposite
+and the third is flat. The fold to the outer neighbour is not opposite to wa or wc, as it is in a
+face with each; so wa and wc are opposite. Conversely, if w lies on ac, it lies between a and c.
+Replace the inside of C by the diagonal wb. Now w has four folds, two of them on a line, and K_w is
+a product of two linear forms, one of which vanishes where wb and the fold to the outer neighbour
+are flat [machine]. This linear equation and the other n' - 1 quadratic ones have a common zero in
+P^n'. It is a solution, so it is real by Theorem 2, and C lies in a plane on it.
+
+Proof of (d). Let h be the branch at the realization U_0. By the proof of Theorem 3 the equations
+K_u = 0, u != v, have independent linear parts at h; their solutions near h, for U near U_0, form
+curves that depend analytically on U. Let w be tangent to the curve of U_0 at h. By (L), K_u(w) <= 0
+for u != v, so that K_v(w) > 0 by the key lemma. Write K_v = x_0^2 - x_1^2 - ... - x_(d-3)^2 with
+linear forms in the heights that depend analytically on U, such that x_1, ..., x_(d-3) vanish on w
+at U_0. Then x_0 does not, and is a parameter s of the curves. The branches near h are the solutions
+s of
+
+    s^2 = x_1(s, U)^2 + ... + x_(d-3)(s, U)^2,
+
+and the star of v is flat where all x_i and s are 0, that is, x_1(0, U) = ... = x_(d-3)(0, U) = 0.
+
+For d = 4 the two branches are s = x_1(s, U) and s = -x_1(s, U): both are analytic in U, and where
+x_1 changes its sign they pass through each other, and on each v pops from one side to the other.
+For d >= 5 they meet like the two halves of a cone.
+
+Proof of (e). Follow what is flat from star to star. A star with one fold that is not known to be
+flat is flat. One with two is flat, or they form a line. One with three is flat, or two of them form
+a line and the third is flat, by the formula in (c). Two sides of a face do not form a line, and the
+four corners do not lie in a plane. There are 1, 1, 2 and 6 such triangulations with 1, 2, 3 and 4
+interior vertices, up to symmetry. In each, for each vertex whose star is flat, this leads to
+finitely many cases. In all of them [machine] all stars inside an inner 4-cycle are flat, or two or
+more vertices lie on lines through two of their neighbours. Each such line is one irreducible
+condition on the positions, and different lines are different conditions, so that two have
+codimension two.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,40 @@
-"""The theorems of docs/generic.md: projective invariance, and almost every sheet."""
+"""The theorems of docs/generic.md: projective invariance, and almost every sheet.
+
+The proof of Theorem 11 for a rim with an angle of pi, in the notation of its section 3:
+
+Let b = 4, and let x lie on the side pq of the triangle pqs. Theorem 2 covers this
+rim. Two things change.
+
+Realizations of T'. They exist unless p and q are joined by an edge (Floater; the face or the
+vertices between pq and x would have no room). T, which has a realization, has no such edge. A
+contraction into x or s makes none. A contraction of u into p makes one if u is joined to q as well.
+(Here p and q are the corners, not the neighbours a_0 and a_k of step 4.) Consider the 4-cycle u p x
+q. The other paths do not meet u, p and q except for the one to q; so the path to x is inside the
+4-cycle, or is x itself, and the path to s is outside. No face has a vertex inside and one outside,
+and all faces at x are inside. So the first vertices of these two paths are y and z, and e has a
+face inside and one outside: it is up or uq. As p is not the first vertex of its path, e = uq, and
+the path to p is u, p. If the path to x or to s has more than one vertex, contract its last edge
+instead. Otherwise the faces of e are uqx and uqs; as upx and ups are 3-cycles, hence faces, u is
+the only interior vertex. There E holds: heights with uq flat have folds up, ux and us only and
+form, modulo planes, a line, on which K_u vanishes only at 0 unless two of the three folds are
+collinear. For almost all positions they are not, and a flat star is against the rim. The same holds
+with p and q exchanged.
+
+The limit. If x has a neighbour in T other than u, p and q, then alpha < pi as before. Otherwise p
+and q are the neighbours of x on the rim and alpha = pi. Let xi be perpendicular to pq, let lambda
+be the height of the line pq at x, lambda != h_x, and kappa = 1/|xp| + 1/|xq|. The thin faces
+contribute to K_u [machine: the limit of eps times this]
+
+    -(kappa / eps) (h_u - h_x) (lambda - (h_u + h_x) / 2) + O(max |h|^2).
+
+So |h_u - h_x| |2 lambda - h_x - h_u| <= C eps max |h|^2. The vertices of the thin faces other than
+u lie on the rim, so the other equations do not contain these faces. Divided by their maxima,
+unbounded solutions would have a rim and an h_u that tend to 0, and a limit would contradict the key
+lemma. So the solutions are bounded, and the limit of a sequence of them is a solution of T' at U',
+with the rim r or with the rim in which h_x is replaced by its mirror image 2 lambda - h_x, which
+changes the sign of the saddle. Up to planes that rim is -r, and minus the solution has the rim r
+and the same flat folds. So both cases contradict P_e'(U') != 0.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,44 @@
-"""The inertia of the Jacobian: as many positive eigenvalues as vertices popped up (Theorem 4)."""
+"""The inertia of the Jacobian: as many positive eigenvalues as vertices popped up (Theorem 4).
+
+Write K_v(a, b) for the polar form and V_0 for the heights that vanish on the
+boundary (docs/theorem.md).
+
+Proof. Let C_v be the open up nappe of K_v, a convex cone, and M* the convex set of all n x n
+matrices whose row v is w -> K_v(z_v, w) on V_0 with some z_v in C_v. Let E be a diagonal matrix of
+signs e_v.
+
+1. For M, A in M* and real y the matrix E M - i y A is nonsingular. Let the complex vector w be in
+its kernel. Scale z, a in row v such that K = K_v is 1 at both: K(z, w) = i b K(a, w) with a real b.
+For s = z + a and d = z - a this gives |K(s, w)| = |K(d, w)|, K(s, d) = 0 and K(s) + K(d) = 4; and
+K(s) > 0, as s is in C_v. On the complement of s, which contains d and w' = w - (K(s, w)/K(s)) s,
+the form is <= 0 by (L), and Cauchy and Schwarz give |K(d, w)|^2 = |K(d, w')|^2 <= K(d) K(w',
+conj(w')). So K(w, conj(w)) = |K(s, w)|^2 / K(s) + K(w', conj(w')) <= (K(d)/K(s) + 1) K(w',
+conj(w')) = 4 K(w', conj(w'))/K(s) <= 0. As K_v(w, conj(w)) = K_v(Re w) + K_v(Im w), the key lemma
+for both parts gives w = 0.
+
+2. A^-1 E M has as many eigenvalues with positive real part as E has signs +, and no imaginary ones.
+By 1, none crosses the imaginary axis on the way (1 - s) M + s A in M*; at s = 1 the matrix is
+similar to E.
+
+3. Some A in M* has a positive definite A + A^T. A face with angle alpha and spokes of lengths l,
+l', whose ends are p, p' above v, adds -1/2 tan(alpha/2) (p/l + p'/l') to the row K_v(t_v, .) of the
+round cone. So in the matrix L of these rows the entry at v is positive, those at its neighbours are
+negative, and with the boundary they add up to 0. By the maximum principle L is invertible and L^-1
+>= 0. So x = L^-1 1 and y = L^-T 1 are positive. Put D = diag(y_v/x_v) and A = D L, with z_v a
+multiple of t_v. No entry of A + A^T off the diagonal is positive, and (A + A^T) x = y/x + 1 > 0. A
+symmetric matrix with these properties is positive definite.
+
+4. If all K_v(h) > 0, let e be the vertex signs. Then J(h) = E M with z_v = e_v h. On the way A_r =
+(1 - r) A + r I no eigenvalue of A_r^-1 J is imaginary: J w = i y A_r w, multiplied by conj(w)^T, is
+real on the left, and on the right i y times a number with positive real part. So y = 0, and w = 0
+by 1. So J has as many positive eigenvalues as A^-1 J has with positive real part: the number p(e)
+of signs +.
+
+5. If some K_v(h) = 0, let F be the set of flat vertices of h, and let h' have all K_v(h') > 0 and
+vertex signs e that agree with those of h outside F (Theorem 2 (d)). So has h + eps h' for eps > 0.
+The rank of J(h) is n - |F| by the proof of Theorem 3, and its number of positive eigenvalues is at
+most p(e) and at least p(e) - |F|. Take e = - on F, then e = + on F.
+"""
 
 from __future__ import annotations
 

@@ -210,11 +210,12 @@ def flat(**options: Any) -> int:
 @app.command(cls=Command, rich_help_panel="Files")
 @taking("branches.ExportOptions")
 def export(**options: Any) -> int:
-    """Write one branch as a FOLD file, a sheet for Coq, or equations for other programs.
+    """Write one way to fold as a FOLD file, a sheet for Coq, or equations for other programs.
 
-    The fold angles in the file are proportional to those of the branch, so that a
-    simulator that they drive stays on the branch. A second frame shows the sheet
-    in space, to second order. With --coq the file is for Coq instead: it applies
+    The fold angles in the file lead a simulator along the way: those of a branch
+    are proportional to its first-order angles, and those of rigid panels are the
+    true ones where the largest is --amount. A second frame shows the sheet in
+    space, of a branch to second order. With --coq the file is for Coq instead: it applies
     what is proved of every sheet to this sheet and to the named branches. With
     --system it holds the equations of the sheet, of any kind.
     """

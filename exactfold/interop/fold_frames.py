@@ -19,7 +19,7 @@ TIME_KEY: Final = "frame_exactfold:time"
 TIME_BOUNDS_KEY: Final = "frame_exactfold:timeBounds"
 RADIUS_KEY: Final = "frame_exactfold:radius"
 HEIGHTS_KEY: Final = "vertices_exactfold:heights"
-_NOISE: Final = 1e-7
+NOISE: Final = 1e-7
 """Angles below this size, in degrees, count as flat."""
 
 
@@ -164,7 +164,7 @@ def _headed(flat: dict[str, Any], frame_title: str, facts: Mapping[str, Any]) ->
 def _frame(frame: MotionFrame, letters: Mapping[Edge, str], title: str) -> dict[str, Any]:
     angles = dict.fromkeys(letters, 0.0)
     for fold, angle in frame.angles.items():
-        angles[fold] = 0.0 if abs(turned := _principal(angle)) <= _NOISE else turned
+        angles[fold] = 0.0 if abs(turned := _principal(angle)) <= NOISE else turned
     own = {edge: _letter(letter, angles[edge]) for edge, letter in letters.items()}
     return {
         "frame_title": title,
@@ -180,7 +180,7 @@ def _frame(frame: MotionFrame, letters: Mapping[Edge, str], title: str) -> dict[
 
 def _principal(angle: float) -> float:
     """The angle between -180 and 180 degrees; a closed fold keeps the sign of its side."""
-    if abs(angle) > 180 + _NOISE:
+    if abs(angle) > 180 + NOISE:
         angle -= 360 * round(angle / 360)
     return max(-180.0, min(180.0, angle))
 

@@ -55,6 +55,7 @@ class NearDocument(TypedDict):
     """By the size of the image."""
     vertex: Natural
     edge: FoldText
+    """The edge whose image is the line."""
     states: Natural | None
     """The number of states if all that nearly meets is taken to meet, in floats; null if it is not
     known."""
@@ -65,6 +66,7 @@ class WrittenDocument(TypedDict):
 
     status: VerdictText
     states: Natural | None
+    """The number of states; null if it is not known."""
     reason: str
 
 

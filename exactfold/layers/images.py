@@ -84,6 +84,19 @@ class Images:
                     points[v] = place(vertices[v])
         return points
 
+    @cached_property
+    def places(self) -> tuple[tuple[float, float], ...]:
+        """The image of each vertex of the sheet, in its coordinates, rounded to floats."""
+        sheet, scale = self.pieces.sheet, exact(self.scale)
+        found = dict(self.points)
+        for panel, face in enumerate(sheet.faces):
+            place = self.maps[self.pieces.of_panel[panel][0]]
+            for v in face:
+                if v not in found:
+                    found[v] = place(sheet.scaled_vertices[v])
+        ordered = (found[v] for v in range(len(sheet.vertices)))
+        return tuple((float(x / scale), float(y / scale)) for x, y in ordered)
+
     @property
     def scale(self) -> Number:
         """By how much the coordinates of `maps` are larger than those of the sheet."""

@@ -55,7 +55,7 @@ def pieces_of(sheet: PanelPattern, letters: Mapping[Edge, str]) -> Pieces:
     points = sheet.scaled_vertices
     parts: list[tuple[tuple[int, ...], frozenset[int]]] = []
     for number, face in enumerate(sheet.faces):
-        parts += [(part, frozenset((number,))) for part in _convex(points, face)]
+        parts += [(part, frozenset((number,))) for part in convex_parts(points, face)]
     given = {fold: letters.get(fold, "U") for fold in sheet.folds}
     folded = {fold for fold, letter in given.items() if letter != "F"}
     parts = _merged(points, parts, folded)
@@ -86,7 +86,9 @@ def _turn(points: Sequence[Sequence[object]], a: int, b: int, c: int) -> int:
     return sign(orientation(points[a], points[b], points[c]))
 
 
-def _convex(points: Sequence[Sequence[object]], face: tuple[int, ...]) -> list[tuple[int, ...]]:
+def convex_parts(
+    points: Sequence[Sequence[object]], face: tuple[int, ...]
+) -> list[tuple[int, ...]]:
     """A face, or its triangles if it is not convex: ears are cut off one after another."""
     count = len(face)
     if all(_turn(points, face[k - 1], face[k], face[(k + 1) % count]) >= 0 for k in range(count)):

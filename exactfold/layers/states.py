@@ -89,6 +89,15 @@ class State:
             return self.orders[other, piece] > 0
         return self.orders[piece, other] < 0
 
+    @cached_property
+    def letters(self) -> Mapping[Edge, str]:
+        """The letter of each fold in this state: M or V if it is folded, else F."""
+        known = dict.fromkeys(self.images.pieces.sheet.folds, "F")
+        for crease, (left, right) in self.images.pieces.creases.items():
+            on_top = self.above(right, left) != self.images.maps[left].flipped
+            known[crease] = "V" if on_top else "M"
+        return known
+
     def stack(self, point: Sequence[Number]) -> tuple[int, ...]:
         """The pieces at a point of the folded image, from top to bottom.
 

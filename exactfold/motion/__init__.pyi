@@ -36,4 +36,5 @@ from exactfold.motion.tubes.tracks import follow_proved as follow_proved
 from exactfold.motion.tubes.tracks import ray as ray
 from exactfold.motion.tubes.tube import Tube as Tube
 from exactfold.motion.tubes.tube_start import StartTube as StartTube
+from exactfold.motion.writing import exported_way as exported_way
 from exactfold.motion.writing import write_motion as write_motion

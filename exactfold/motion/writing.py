@@ -1,4 +1,4 @@
-"""`write_motion`: writes a motion as FOLD with frames, animated glTF, meshes, or a table."""
+"""Writes a motion as FOLD with frames, glTF, meshes or a table; or the sheet at its end alone."""
 
 from __future__ import annotations
 
@@ -10,9 +10,10 @@ from typing import Any
 
 import numpy as np
 
+from exactfold.branches.values.export import BranchExport
 from exactfold.errors import UsageError
 from exactfold.exact.numbers import shown
-from exactfold.interop.fold_frames import MotionFrame, motion_document
+from exactfold.interop.fold_frames import NOISE, MotionFrame, motion_document
 from exactfold.interop.meshes import animated_gltf, gltf_bytes, obj_text, stl_bytes
 from exactfold.motion.curves.events import RETURN
 from exactfold.motion.curves.in_motion import SheetInMotion
@@ -138,3 +139,37 @@ def fold_motion(motion: SheetInMotion, *, title: str | None = None) -> dict[str,
         facts=motion.facts,
         angles_are=motion.leading_angles_are,
     )
+
+
+def exported_way(motion: SheetInMotion, *, title: str | None = None) -> BranchExport:
+    """The last frame of a motion alone, as a FOLD object with the crease pattern.
+
+    `edges_foldAngle` has its fold angles in degrees, and frame 1 is the sheet in space. The letters
+    are those with which the motion begins; a fold that is flat then, but bent in this frame, has
+    the letter that it has here. `title` names the pattern. `write` of the result writes the file.
+
+    >>> import exactfold
+    >>> end = exported_way(exactfold.follow("miura", 2, until="30deg", frames=2), title="miura")
+    >>> end.document["file_title"], round(max(end.angles.values()), 6), end.letters[3, 17]
+    ('miura, way 2', 30.0, 'M')
+    """
+    pattern, degrees = motion.pattern, np.degrees(motion.angles[-1]).tolist()
+    angles = {
+        fold: 0.0 if abs(angle) <= NOISE else angle
+        for fold, angle in zip(pattern.folds, degrees, strict=True)
+    }
+    letters = dict(motion.assignment)
+    for fold, angle in angles.items():
+        if angle and letters[fold] == "F":
+            letters[fold] = "V" if angle > 0 else "M"
+    document = motion_document(
+        pattern,
+        letters,
+        angles,
+        [MotionFrame(float(motion.times[-1]), motion.coords[-1].tolist(), angles)],
+        name=motion.name,
+        title=title,
+        facts=motion.facts,
+        angles_are="the fold angles",
+    )
+    return BranchExport(pattern, letters, document, angles, motion.length_error, motion.status)

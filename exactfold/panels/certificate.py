@@ -43,6 +43,10 @@ def certificate_of_panels(result: Decomposition) -> Document:
     >>> certificate_of_panels(decompose(square))["claims"]["second_order"]
     {'1': 1}
     """
+    if result.graphs is not None:
+        raise NotApplicableError(
+            "the number of families rests on Theorem 6 (docs/any_border.md) and needs none"
+        )
     if result.status is not PROVED or result.second_order is None:
         raise NotApplicableError(
             f"only a proved decomposition has a certificate; this one is {result.status} "

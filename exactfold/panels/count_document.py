@@ -25,6 +25,15 @@ _Theory: TypeAlias = Annotated[str, Keywords(enum=["modes", "subspaces"])]
 ByDimension: TypeAlias = dict[VertexText, Positive]
 
 
+class GraphsDocument(TypedDict):
+    """The solutions of a triangulated sheet as 2^n graphs over its boundary heights."""
+
+    vertices: Positive
+    """The number n of vertices that pop up or down."""
+    dimension: Positive
+    """Of each graph."""
+
+
 class ComponentsDocument(TypedDict):
     """How many components of motions there are, by dimension."""
 
@@ -36,6 +45,8 @@ class ComponentsDocument(TypedDict):
     """At least so many to second order, where not all are known."""
     found_true: ByDimension | None
     """At least so many that truly fold, where not all are known."""
+    graphs: GraphsDocument | None
+    """Where these are counted, of a sheet with irrational coordinates; else `pieces` has them."""
 
 
 class ModeDocument(TypedDict):
@@ -49,6 +60,24 @@ class ModeDocument(TypedDict):
     """Whether the mode truly folds."""
     by: str
     """What decided whether it extends."""
+
+
+class WayDocument(TypedDict):
+    """One way to fold: a motion, or a family of motions."""
+
+    number: Positive
+    """What `--way` takes."""
+    dimension: Natural
+    """The number of folds that can be folded independently."""
+    modes: list[Natural]
+    """The numbers of the modes that fold independently in this way. The first of modes has number
+    1; lines of motions beside those in modes have the numbers that follow."""
+    assignment: dict[FoldText, Annotated[str, Keywords(enum=["M", "V", "F", "U"])]]
+    """Of all folds, on one side of the sheet; F where flat, U where it varies in the family."""
+    extends: VerdictText
+    """Whether the way truly folds."""
+    by: str
+    """What decided whether it truly folds."""
 
 
 class AsWrittenDocument(TypedDict):
@@ -108,6 +137,8 @@ class MotionKeys(TypedDict):
     """The number of elementary modes."""
     modes: list[ModeDocument]
     """The first elementary modes."""
+    way_list: list[WayDocument]
+    """The first 256 ways that `count` lists, in which modes and spaces of motions fold."""
     flat_folds: list[FoldText]
     """Folds that are flat in every motion."""
     still_folds: list[FoldText]
@@ -167,11 +198,11 @@ class PanelCountKeys(CountKeys):
 
 
 class ProvedPanels(PanelCountKeys):
-    """Motions of rigid panels, all of which are known to second order."""
+    """Motions of rigid panels, all of which are known to second order, or the graphs of them."""
 
     status: Literal["proved"]
-    by: Literal["enumeration"]
-    """How what is stated was proved."""
+    by: Literal["enumeration", "theorem"]
+    """How what is stated was proved; "theorem" if only the graphs are known."""
 
 
 class UndecidedPanels(PanelCountKeys):

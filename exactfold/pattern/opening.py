@@ -268,8 +268,8 @@ _COUNTED: Final = (
     "`exactfold count` (`count` in Python) says how its panels fold while they stay rigid"
 )
 _INSTEAD: Final = {
-    "export": "`exactfold fold --way N -o FILE` writes one of its ways as .fold, .obj, .stl or "
-    ".csv, with its motion",
+    "export": "`exactfold count` lists the ways of its rigid panels, and `exactfold export` writes "
+    "one, with `--way N` or `--letters`",
     "certify": "`exactfold count` (`count` in Python) proves all solutions of its equations",
 }
 """What else there is for rigid panels, by the caller that needs triangles."""

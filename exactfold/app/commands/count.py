@@ -195,7 +195,7 @@ class Asked(CountOptions):
         try:
             write_certificate(certificate_of_panels(ways), file)
         except NotApplicableError as error:
-            if ways.status is PROVED or ways.freedom is None:
+            if ways.second_order is not None or ways.freedom is None:
                 say(f"no certificate was written: {error}")
                 return None
         else:

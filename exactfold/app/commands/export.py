@@ -1,4 +1,4 @@
-"""`exactfold export`: writes a branch, named by its signs or its number, as a FOLD file.
+"""`exactfold export`: writes a branch, or one way of rigid panels, as a FOLD file.
 
 With `--coq` it writes the sheet as a file that applies the formal proof to this sheet, and with
 `--system` the equations of the sheet for another program.
@@ -22,21 +22,23 @@ from exactfold._support.documents import (
     VerdictText,
     VertexSigns,
 )
-from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.app.options.branches import ExportOptions
 from exactfold.app.options.choosing import choice_of
 from exactfold.app.shell.given import Given
 from exactfold.app.shell.patterns import in_doubt, read, read_any, tell_doubt, verdict
 from exactfold.app.shell.shell import EXIT, Bar, name_of, say, tell
-from exactfold.app.verbs.choosing import the_branch
+from exactfold.app.verbs.choosing import choose, the_branch
+from exactfold.app.verbs.chosen import Chosen, ChosenBranch, ChosenPanels
 from exactfold.branches.counting.find import find_branches
+from exactfold.branches.values.angles import require_amount
 from exactfold.branches.values.branch import Branch, GaugeText
 from exactfold.branches.values.export import AMOUNT, ENDINGS, BranchExport, exported
 from exactfold.errors import NotApplicableError, UndecidedBranchError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.described import PatternDocument, described
+from exactfold.pattern.described import PanelsDocument, PatternDocument, described, described_panels
 from exactfold.pattern.near_degeneracy import WarningDocument, warnings
-from exactfold.pattern.opening import Opened
+from exactfold.pattern.opening import Opened, has_branches, triangles
 from exactfold.pattern.writing.fold_writing import checked_target, write_text
 
 
@@ -49,11 +51,11 @@ class Wanted(ExportOptions):
         return Given(self.boundary_heights)
 
     def answer(self) -> int:
-        """Find the branch, write it, say what was written, and return the exit code.
+        """Find the branch or way, write it, say what was written, and return the exit code.
 
         A branch that `exported` refuses as undecided is not an error: the reason is printed to
-        stderr. Raises the other errors of `read`, `the_branch` and `exported`, and `UsageError` if
-        no branch is named.
+        stderr. Raises the other errors of `read_any`, `the_branch`, `choose`, `exported` and
+        `along_panels`, and `UsageError` if no way is named.
         """
         self.check_heights()
         output = self.written
@@ -61,34 +63,79 @@ class Wanted(ExportOptions):
             checked_target(output, ENDINGS, "a branch")  # before the work
         if output is None and self.as_json:
             raise UsageError("--json describes the file that is written: name it with -o")
+        require_amount(self.largest)
         with Bar("reading") as bar:
-            opened = read(self.file, self.reading, "export", verbose=self.verbose).opened
+            opened = read_any(self.file, self.reading, verbose=self.verbose)
+            if self.signs is not None or self.up is not None:
+                triangles(opened, "export")  # the error says what else there is
             self.require_name()
-            branch = self.branch(opened, bar)
+            chosen = self._chosen(opened, bar)
             bar("writing")
-            try:
-                export = exported(
-                    branch,
-                    amount=AMOUNT if self.amount is None else self.amount,
-                    title=self._title,
-                    force=self.force,
-                )
-            except UndecidedBranchError as error:
-                say(f"not written: {error}; {branch.reason}".rstrip("; "))
-                return EXIT[UNDECIDED]
+            if isinstance(chosen, ChosenBranch):
+                branch = chosen.branch
+                try:
+                    export = exported(
+                        branch, amount=self.largest, title=self._title, force=self.force
+                    )
+                except UndecidedBranchError as error:
+                    say(f"not written: {error}; {branch.reason}".rstrip("; "))
+                    return EXIT[UNDECIDED]
+                status, named = export.status, ("vertex signs", branch.sign_text)
+            else:
+                export, name = self._of_panels(chosen, bar)
+                status = PROVED if chosen.way is None else chosen.way.verdict
+                named = "motion", name
             if output is not None:
                 export.write(output)
         if output is None:
             sys.stdout.write(export.text)
         elif self.as_json:
-            summary = _summary(branch, export, output, name_of(self.file))
+            summary = _summary(chosen, export, status, output, name_of(self.file))
             print(json.dumps(in_doubt(opened, summary)))
         else:
             from exactfold.app import report
 
             tell_doubt(opened)
-            report.show(report.export_report(str(output), branch, export))
-        return EXIT[verdict(opened, export.status)]
+            report.show(report.export_report(str(output), named, status, export))
+        return EXIT[verdict(opened, status)]
+
+    def _chosen(self, opened: Opened, bar: Bar) -> Chosen:
+        """The way that the options name; a line says if it is one of infinitely many."""
+        sheet = opened.sheet
+        named = choice_of(self, opened, self.given)
+        if named.of_branches or (isinstance(sheet, CreasePattern) and has_branches(sheet)):
+            chosen: Chosen = ChosenBranch(self.branch(opened, bar), number=self.way)
+        else:
+            chosen = choose(opened, named, bar, default=False)
+        if isinstance(chosen, ChosenBranch) and chosen.number is not None:
+            _say_family(chosen.number, chosen.branch.pattern.Ve - 3)
+        elif isinstance(chosen, ChosenPanels) and chosen.way is not None:
+            _say_family(chosen.way.number, chosen.way.dimension)
+        return chosen
+
+    def _of_panels(self, chosen: ChosenPanels, bar: Bar) -> tuple[BranchExport, str]:
+        """A way of rigid panels, folded by the largest angle, and its name.
+
+        It is followed as `fold` follows it. Lines say what happens on the way, and where the motion
+        ends before this angle.
+        """
+        from exactfold.app.report.motion import event_text
+        from exactfold.app.verbs.moving import along_panels
+        from exactfold.motion.curves.events import ANGLE
+        from exactfold.motion.writing import exported_way
+
+        if chosen.answer.known.warning is not None:
+            say(f"warning: {chosen.answer.known.warning}")
+        bar("following")
+        motion = along_panels(chosen, until=f"{self.largest}deg", frames=2)
+        export = exported_way(motion, title=self._title)
+        reached = max(map(abs, export.angles.values()), default=0.0)
+        for event in motion.events:
+            if event.kind != ANGLE:
+                say(f"on the way to {self.largest:g} degrees: {event_text(event)}")
+        if reached < self.largest - _REACHED:
+            say(f"the sheet folds only to {reached:.1f} degrees: it is written there")
+        return export, f"{motion.name}: {motion.reason}"
 
     def branch(self, opened: Opened, bar: Bar) -> Branch:
         """The branch that the options name."""
@@ -101,6 +148,11 @@ class Wanted(ExportOptions):
         """Raise `UsageError` for boundary heights without vertex signs."""
         if self.boundary_heights is not None and self.signs is None and self.up is None:
             raise UsageError("--boundary-heights goes with --signs or --up")
+
+    @property
+    def largest(self) -> float:
+        """The largest fold angle in degrees."""
+        return AMOUNT if self.amount is None else self.amount
 
     @property
     def written(self) -> Path | None:
@@ -141,7 +193,7 @@ def write_coq(asked: Wanted) -> int:
             "digits and _, then .v"
         )
     with Bar("reading") as bar:
-        read_sheet = read(asked.file, asked.reading, "export", verbose=asked.verbose)
+        read_sheet = read(asked.file, asked.reading, "--coq", verbose=asked.verbose)
         pattern = read_sheet.pattern
         text = to_coq(pattern)
         branches = []
@@ -191,6 +243,16 @@ def write_system(asked: Wanted) -> int:
     return EXIT[PROVED]
 
 
+def _say_family(number: int, dimension: int) -> None:
+    if dimension > 1:
+        say(
+            f"way {number} is a family of dimension {dimension}: this is one of infinitely many "
+            "motions of it"
+        )
+
+
+_REACHED = 1e-6
+"""A motion that ends so close to the largest fold angle, in degrees, has reached it."""
 FEW = 64
 """Most branches that are written without `force`. With five vertices, Coq takes 1.4 s for each."""
 
@@ -219,17 +281,20 @@ _MODULE = re.compile(r"[A-Za-z][A-Za-z0-9_]*\.v\Z", re.ASCII)
 
 
 class ExportDocument(TypedDict):
-    """A branch that was written as a FOLD file."""
+    """A branch, or a way of rigid panels, that was written as a FOLD file."""
 
     format: Literal["exactfold export result"]
     version: Literal[2]
-    pattern: PatternDocument
+    pattern: PatternDocument | PanelsDocument
     status: VerdictText
-    vertex_signs: VertexSigns
-    """By interior vertex: 1 up, -1 down, 0 flat."""
+    way: int | None
+    """The number of the way of rigid panels; null for a branch or a motion that is not listed."""
+    vertex_signs: VertexSigns | None
+    """By interior vertex: 1 up, -1 down, 0 flat; null for rigid panels."""
     assignment: Assignment
     """By fold i-j: M (mountain), V (valley), F (flat) or U (undecided), seen from +z."""
-    gauge: GaugeText
+    gauge: GaugeText | None
+    """Null for rigid panels."""
     output: str
     """The FOLD file that was written."""
     angles: dict[FoldText, Degrees]
@@ -240,19 +305,27 @@ class ExportDocument(TypedDict):
 
 
 def _summary(
-    branch: Branch, export: BranchExport, output: Path, name: str | None
+    chosen: Chosen, export: BranchExport, status: Verdict, output: Path, name: str | None
 ) -> ExportDocument:
     """The object that --json prints: `schema("export")`."""
+    branch = chosen.branch if isinstance(chosen, ChosenBranch) else None
+    way = chosen.way if isinstance(chosen, ChosenPanels) else None
+    sheet = export.pattern
     return {
         "format": "exactfold export result",
         "version": 2,
-        "pattern": described(branch.pattern, name),
+        "pattern": described(sheet, name)
+        if isinstance(sheet, CreasePattern)
+        else described_panels(sheet, name),
         "output": str(output),
-        "status": str(export.status),
-        "vertex_signs": {str(v): s for v, s in sorted(branch.vertex_signs.items())},
-        "assignment": {f"{i}-{j}": a for (i, j), a in sorted(branch.assignment.items())},
-        "gauge": branch.gauge,
+        "status": str(status),
+        "way": None if way is None else way.number,
+        "vertex_signs": (
+            None if branch is None else {str(v): s for v, s in sorted(branch.vertex_signs.items())}
+        ),
+        "assignment": {f"{i}-{j}": a for (i, j), a in sorted(export.letters.items())},
+        "gauge": None if branch is None else branch.gauge,
         "angles": {f"{i}-{j}": angle for (i, j), angle in sorted(export.angles.items())},
         "length_error": export.length_error,
-        "warnings": warnings(branch.pattern),
+        "warnings": warnings(sheet) if isinstance(sheet, CreasePattern) else [],
     }

@@ -131,13 +131,29 @@ class FlatOptions(ReadingOptions):
     everything: Annotated[
         bool, flag("--all", text="List every vertex that fails, and every condition.")
     ] = False
+    output: Annotated[
+        Path | None,
+        written(
+            "Draw the folded state from above and from below, or why there is none, as FILE.svg, "
+            ".png or .pdf; or write the state with its layers as FILE.fold.",
+            "FILE",
+            "-o",
+            "--output",
+        ),
+    ] = None
+    state: Annotated[
+        int | None, number("With -o: the number of the state, from 0. Default: 0.", least=0)
+    ] = None
     certificate: Annotated[
         Path | None,
         written("Write a certificate of the answer, if it is proved.", "OUT.json"),
     ] = None
 
     def __post_init__(self) -> None:
-        apart(self.certificate, self.file)
+        apart(self.certificate, self.file, self.output)
+        apart(self.output, self.file)
+        if self.state is not None and self.output is None:
+            raise UsageError("--state names the state that -o writes: give -o FILE, too")
         if self.free and self.letters is not None:
             raise UsageError("--any folds every crease either way: leave out --letters")
 

@@ -51,6 +51,10 @@ class Legend:
         """The width of all items in a single row."""
         return sum(item.width for item in self.items) + 12
 
+    def extended(self, samples: Iterable[tuple[str, float, str]]) -> Legend:
+        """The legend with more items: a sample, its width in pixels, and its meaning."""
+        return Legend((*self.items, *(_Item(*sample) for sample in samples)))
+
     def placed(self, width: float, top: float) -> tuple[list[str], float]:
         """Elements in rows of this width below `top`, and the place where the last row ends."""
         if not self.items:

@@ -59,19 +59,19 @@ def _overlaps(
         after = slice(a + 1, None)
         meet = np.all((low[after] < high[a]) & (high[after] > low[a]), axis=1)
         for b in a + 1 + np.flatnonzero(meet & (owner[after] != owner[a])):
-            common = _common(triangles[a, :, :2], triangles[b, :, :2])
-            if (area := abs(_area(common))) <= _SAME * size**2:
+            common = common_part(triangles[a, :, :2], triangles[b, :, :2])
+            if (shared := abs(area(common))) <= _SAME * size**2:
                 continue
             middle = np.mean(common, axis=0)
             lead = _depth(triangles[a], middle) - _depth(triangles[b], middle)
             if abs(lead) > _SAME * size:
-                yield int(owner[a]), int(owner[b]), lead * area
+                yield int(owner[a]), int(owner[b]), lead * shared
 
 
-def _common(one: FloatArray, other: FloatArray) -> list[FloatArray]:
-    """The corners of the overlap of two triangles (Sutherland and Hodgman, 1974)."""
+def common_part(one: FloatArray, other: FloatArray) -> list[FloatArray]:
+    """The corners of the overlap of two convex polygons (Sutherland and Hodgman, 1974)."""
     corners = list(one)
-    turn = np.sign(_area(list(other)))
+    turn = np.sign(area(list(other)))
     for p, q in zip(other, np.roll(other, -1, axis=0), strict=True):
         sides = [turn * _cross(q - p, c - p) for c in corners]
         kept: list[FloatArray] = []
@@ -89,7 +89,8 @@ def _cross(a: FloatArray, b: FloatArray) -> float:
     return float(a[0] * b[1] - a[1] * b[0])
 
 
-def _area(corners: Sequence[FloatArray]) -> float:
+def area(corners: Sequence[FloatArray] | FloatArray) -> float:
+    """The area of a polygon; negative if its corners are clockwise."""
     pairs = zip(corners, [*corners[1:], *corners[:1]], strict=True)
     return 0.5 * sum(_cross(a, b) for a, b in pairs)
 

@@ -11,8 +11,10 @@ from rich.table import Table
 from rich.text import Text
 
 from exactfold._support.plurals import counted
+from exactfold._support.verdict import Verdict
 from exactfold.app.report.terminal import cut, facts_table, letters_text, status_text
 from exactfold.exact.numbers import decimal_above, format_rational
+from exactfold.pattern.crease_pattern import CreasePattern
 
 if TYPE_CHECKING:
     from exactfold.branches.counting.shapes import ShapeCount
@@ -117,19 +119,25 @@ def branches_report(rows: list[Row]) -> Group:
     return Group(table)
 
 
-def export_report(output: str, branch: Branch, export: BranchExport) -> Table:
-    """What `exactfold export` prints about the file that it wrote."""
+def export_report(
+    output: str, named: tuple[str, str], status: Verdict, export: BranchExport
+) -> Table:
+    """What `exactfold export` prints about the file that it wrote.
+
+    `named` says what was written: the signs of a branch, or the name of a way.
+    """
     sizes = [abs(angle) for angle in export.angles.values()]
+    frame = f"second order: lengths change by up to {100 * export.length_error:.2g} %"
+    if not isinstance(export.pattern, CreasePattern):
+        frame = f"panels stay rigid: lengths are kept to {export.length_error:.2g} of each"
+    letters = "".join(export.letters[fold] for fold in export.pattern.folds)
     return facts_table(
         [
             ("wrote", output),
-            ("status", status_text(export.status)),
-            ("vertex signs", cut(branch.sign_text)),
-            ("mountain-valley", letters_text(cut(branch.assignment_text))),
+            ("status", status_text(status)),
+            (named[0], cut(named[1])),
+            ("mountain-valley", letters_text(cut(letters))),
             ("fold angles", f"largest {max(sizes):.4g}, smallest {min(sizes):.4g} degrees"),
-            (
-                "folded frame",
-                f"second order: lengths change by up to {100 * export.length_error:.2g} %",
-            ),
+            ("folded frame", frame),
         ]
     )

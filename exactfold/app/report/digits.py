@@ -68,7 +68,7 @@ def digits_line(result: OfDigits) -> Text:
 
         panels = cast("Decomposition", result)
         said = panels_answer(replace(panels, meant=None))
-        known = panels.second_order is not None or panels.rigid is PROVED
+        known = panels.status is PROVED or panels.rigid is PROVED
         if not known and panels.freedom is not None:
             freedom = Text(f"{panels.freedom.text} - PROVED")
             return Text.assemble(_SHEETS[which], freedom, "; no more is known", end)

@@ -33,16 +33,14 @@ def flat_report(
     parts: list[Any] = [flat_answer(found)]
     if found.as_written is PROVED and found.components:
         parts += ["", Text(_parts(found))]
-    reasons = [one.text for one in found.failures] or [
-        condition_text(found, one) for one in found.conflict
-    ]
-    limit = len(reasons) if everything else FIRST
-    if reasons:
+    known = reasons(found, everything=everything)
+    if known:
         title = "Vertices that do not fold flat by themselves"
         if found.conflict:
             title = "Conditions that no order of layers satisfies together"
-        parts += ["", Text(title, style="bold"), *(Text(f"- {one}") for one in reasons[:limit])]
-        parts += more_text(len(reasons) - limit)
+        parts += ["", Text(title, style="bold")]
+        parts += [Text(f"{k}. {one}") for k, one in enumerate(known, 1)]
+        parts += more_text(len(found.failures or found.conflict) - len(known))
     if ends is not None:
         parts += [
             "",
@@ -72,6 +70,17 @@ def _ends(ends: Sequence[WayEnd], everything: bool) -> list[Any]:
             what += ", without contact"
         lines.append(Text.assemble(f"way {end.way}: {what} - ", status_text(end.status)))
     return [*lines, *more_text(len(ends) - limit)]
+
+
+def reasons(found: FlatStates, *, everything: bool = False) -> list[str]:
+    """The vertices that fail, or else the conditions that contradict each other, in words.
+
+    Unless all are asked for, these are the first `FIRST`.
+    """
+    limit = None if everything else FIRST
+    if found.failures:
+        return [one.text for one in found.failures[:limit]]
+    return [condition_text(found, one) for one in found.conflict[:limit]]
 
 
 def flat_answer(found: FlatStates) -> Text:

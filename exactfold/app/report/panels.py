@@ -11,6 +11,7 @@ from rich.text import Text
 
 from exactfold._support.plurals import agreeing, counted
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED
+from exactfold.app.report.connected_components import CHOICES, families
 from exactfold.app.report.terminal import (
     COUNTED,
     SPELLED,
@@ -109,6 +110,10 @@ def panels_answer(result: Decomposition) -> Text:
             f"{took}; whether each truly folds is ",
             status_text(UNDECIDED),
         )
+    if result.graphs is not None:
+        number = families(result.graphs, result.pattern.D)
+        what = f"; {CHOICES}" if result.graphs > 1 else ""
+        return Text.assemble(f"{number} - ", status_text(PROVED), f"{took}{what}")
     return Text.assemble(
         "the number of ways to fold is ", status_text(UNDECIDED), f"{took}: {result.reason}"
     )
@@ -140,7 +145,12 @@ def known_lines(result: Decomposition) -> list[str]:
     from exactfold.panels.result import product
 
     lines = []
-    if result.true is None and (freedom := result.freedom) is not None:
+    if result.graphs is not None:
+        lines.append(
+            "for all boundary heights each family has exactly one shape; the true motions near the "
+            "flat state form as many families"
+        )
+    elif result.true is None and (freedom := result.freedom) is not None:
         first = freedom.first_order
         said = first is None or f"dimension {first}" in result.reason
         more = "" if said else f"; the first-order motions have dimension {first}"
@@ -198,13 +208,16 @@ def _notes(result: Decomposition, everything: bool) -> list[str]:
             "to second order there are more, but not all of them truly fold: "
             f"{_ways(result.second_order or {})}"
         )
-    if result.found is not None:
+    if result.graphs is not None and result.found is not None:
+        kinds = ", ".join(f"{n} of dimension {d}" for d, n in result.found.items())
+        notes.append(f"irreducible components that the families lie in: at least {kinds}")
+    elif result.found is not None:
         ways = _ways(result.found).replace(" to fold", " to start to fold")
         notes.append(
             f"found to second order: at least {ways}; each is proved to be a component, and there "
             "may be more"
         )
-    if result.found_true not in (None, result.second_order):
+    if result.graphs is None and result.found_true not in (None, result.second_order):
         notes.append(f"known to fold truly: at least {_ways(result.found_true or {})}")
     if result.flat and result.rigid is not PROVED:
         notes.append(_flat(result.flat, "whatever the sheet does", everything))
@@ -221,8 +234,9 @@ def _notes(result: Decomposition, everything: bool) -> list[str]:
             "with python-sat (pip install 'exactfold[sat]') a search by clauses may find more ways"
         )
     if result.second_order is None and result.modes:
-        notes.append("each way listed below truly folds, and there may be others")
-    asked = result.drawn or result.doubt
+        more = "there may be others" if result.graphs is None else "lies in one of the families"
+        notes.append(f"each way listed below truly folds, and {more}")
+    asked = result.drawn or result.doubt or result.graphs is not None
     if result.second_order is None and result.rigid is not PROVED and not asked:
         notes.append(
             "even so, it is often known whether the sheet starts to fold with given mountains and "

@@ -184,7 +184,13 @@ def snapping(text: object) -> Snapping:
     """The value of --snap: a denominator, "auto" or "exact"."""
     if text == "auto":
         return "auto"
-    return "exact" if text == "exact" else whole(1)(text)
+    if text == "exact":
+        return "exact"
+    try:
+        return whole(1)(text)
+    except typer.BadParameter as error:
+        error.message += "; auto and exact are allowed, too"
+        raise
 
 
 def letter_map(text: object) -> dict[str, str]:

@@ -1,13 +1,19 @@
-"""Sheets with too many branches to list: what Theorem 2 says about their number."""
+"""Sheets with too many ways to list: what Theorems 2 and 6 say about their number."""
 
 from __future__ import annotations
 
 import time
+from typing import TYPE_CHECKING
 
 from exactfold._support.verdict import UNDECIDED
 from exactfold.branches.values.result import BranchCount
 from exactfold.checker.core.limits import MOST_UNKNOWNS
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.triangulated_triangles import find_triangulated_triangles
+from exactfold.pattern.validate import Triangle, orientation
+
+if TYPE_CHECKING:
+    from exactfold.pattern.panel_pattern import PanelPattern
 
 LIMIT = MOST_UNKNOWNS
 """A sheet with n foldable vertices has its 2^n branches listed, in memory or in a file, if n is
@@ -54,3 +60,36 @@ def too_many(pattern: CreasePattern) -> BranchCount:
         degree=1 << pattern.Vi,
         seconds=time.perf_counter() - start,
     )
+
+
+def graphs_over_boundary(sheet: PanelPattern) -> int | None:
+    """n if the solutions of a sheet are 2^n graphs over its boundary heights, else None.
+
+    That is so if all faces are triangles and the boundary is convex and has at least five vertices
+    (docs/any_border.md, Theorem 6). n is the number of interior vertices outside triangulated
+    triangles. Turns of the boundary are decided exactly in the field of the coordinates. None does
+    not mean that the solutions are not graphs.
+
+    >>> from exactfold.pattern.families import single_vertex
+    >>> from exactfold.pattern.opening import panels
+    >>> [graphs_over_boundary(panels(single_vertex(n))) for n in (5, 4)]
+    [1, None]
+    """
+    from exactfold.exact.surds import sign  # imported here: branches do not need them
+    from exactfold.pattern.panel_pattern import EnclosedPattern
+
+    if isinstance(sheet, EnclosedPattern) or any(len(face) != 3 for face in sheet.faces):
+        return None
+    following: dict[int, dict[int, int]] = {}
+    triangles: list[Triangle] = []
+    for a, b, c in sheet.faces:
+        triangles.append(min((a, b, c), (b, c, a), (c, a, b)))
+        for i, j, k in ((a, b, c), (b, c, a), (c, a, b)):
+            following.setdefault(i, {})[j] = k
+    after = dict((i, j) if (i, j) in sheet.sides else (j, i) for i, j in sheet.boundary_edges)
+    points = sheet.scaled_vertices
+    turns = (orientation(*(points[v] for v in (i, j, after[j]))) for i, j in after.items())
+    if len(after) < 5 or any(sign(turn) < 0 for turn in turns):
+        return None
+    stiff = find_triangulated_triangles(points, sheet.edges, triangles, following)
+    return len(sheet.interior) - len({v for _, inside in stiff for v in inside}) or None

@@ -55,6 +55,7 @@ def doubted(result: BranchCount | Decomposition, opened: Opened) -> BranchCount 
             true=None,
             found=None,
             found_true=None,
+            graphs=None,
             flat=(),
             still=(),
             modes=(),

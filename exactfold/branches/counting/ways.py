@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 from exactfold._support.clock import LIMIT, QUICK, UNLIMITED, Clock
 from exactfold._support.progress import Progress
-from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED
+from exactfold.branches.counting.by_theorem import graphs_over_boundary
 from exactfold.branches.counting.collect import count_branches, not_convex
 from exactfold.branches.counting.doubted import doubted
 from exactfold.branches.counting.registry import METHODS, choose
@@ -42,9 +43,10 @@ def count_ways(
     A triangulated sheet with three or four boundary vertices or one interior vertex has branches,
     which `count_branches` counts. So has a triangulated sheet with a convex boundary of more
     vertices; its irreducible components are the `families` of the result. Every other sheet has
-    motions of rigid panels, which `decompose` finds. The type of the result shows which theory
-    applied. Files of all formats are read (`open_pattern`); drawings are repaired and made exact.
-    `reading` says how.
+    motions of rigid panels, which `decompose` finds. If they are too many, and the sheet is a
+    convex triangulated one with irrational coordinates, the result has its `graphs`. The type of
+    the result shows which theory applied. Files of all formats are read (`open_pattern`); drawings
+    are repaired and made exact. `reading` says how.
 
     The clock ends the search for motions of panels, and nothing else. Raises the errors of
     `open_pattern` and `count_branches`.
@@ -144,7 +146,20 @@ def _counted(
         if ways.status is PROVED:
             return ways
         return replace(ways, reason=f"{ways.reason}; {not_convex(sheet)}")
-    return _decomposed(opened, progress, clock)
+    ways = _decomposed(opened, progress, clock)
+    if isinstance(sheet, CreasePattern) or ways.second_order is not None:
+        return ways
+    number = graphs_over_boundary(sheet)
+    if number is None:
+        return ways
+    return replace(
+        ways,
+        status=PROVED,
+        rigid=REFUTED,
+        reason=f"for all boundary heights there is exactly one solution with each sign vector: "
+        f"2^{number} graphs over the boundary heights, of dimension {sheet.D} modulo planes",
+        graphs=number,
+    )
 
 
 def decompose_opened(

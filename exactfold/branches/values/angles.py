@@ -48,7 +48,7 @@ class FoldAngles:
 
         Raises the errors of `amplitude`.
         """
-        _require_amount(amount)
+        require_amount(amount)
         self._require_bend()
         return {fold: amount * float(bend / self.largest) for fold, bend in self.bends.items()}
 
@@ -57,7 +57,7 @@ class FoldAngles:
 
         Raises `UsageError` unless 0 < amount <= 180, and `NotApplicableError` if no fold bends.
         """
-        _require_amount(amount)
+        require_amount(amount)
         self._require_bend()
         return Fraction(radians(amount)) / self.largest
 
@@ -115,7 +115,8 @@ def fold_angles(
     return FoldAngles(densities, bends)
 
 
-def _require_amount(amount: float) -> None:
+def require_amount(amount: float) -> None:
+    """Raise `UsageError` for a largest fold angle, in degrees, that no sheet has."""
     if not (isfinite(amount) and 0 < amount <= 180):
         raise UsageError(
             f"the largest fold angle cannot be {amount} degrees: give more than 0 and at most 180"

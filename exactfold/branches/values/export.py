@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from os import PathLike
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -23,6 +23,9 @@ from exactfold.interop.sheet_files import FOLD_ENDINGS, write_sheet
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.writing.fold_writing import checked_target, document_text, write_text
 
+if TYPE_CHECKING:
+    from exactfold.pattern.panel_pattern import PanelPattern
+
 AMOUNT = 30.0
 """The largest fold angle in degrees: visible, and still close to the unfolded state."""
 
@@ -31,14 +34,14 @@ ENDINGS: Final = (*FOLD_ENDINGS, *SHEET_ENDINGS, ".csv")
 
 @dataclass(frozen=True, repr=False)
 class BranchExport:
-    """A branch as `export_branch` writes it.
+    """A branch as `export_branch` writes it, or a way of rigid panels (`exported_way`).
 
     `pattern` is its sheet, and `letters` are its mountains and valleys. `document` is the FOLD
     object, and `text` is its JSON. `angles` are degrees by fold, as written. `length_error` is the
     largest relative change of the length of an edge in the frame in space.
     """
 
-    pattern: CreasePattern = field(repr=False)
+    pattern: CreasePattern | PanelPattern = field(repr=False)
     letters: Mapping[Edge, str] = field(repr=False)
     document: Mapping[str, Any]
     angles: Mapping[Edge, float]

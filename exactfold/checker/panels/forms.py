@@ -248,10 +248,10 @@ class Forms:
         """A vertex, and the values on the basis of the two linear factors of its form.
 
         If d and e have opposite signs, d l^2 + e m^2 = d (l - r m)(l + r m) with r^2 = -e / d. A
-        vertex with many settled neighbours is preferred, so that loops close early. If roots are
-        avoided, vertices come before it whose root r already lies in the field. The root is
-        adjoined to a field that holds the whole space, because numbers of the space are multiplied
-        by it later.
+        vertex with the most settled neighbours is preferred, so that loops close early; of several,
+        one whose root r already lies in the field. If roots are avoided, all vertices come first
+        whose root does. The root is adjoined to a field that holds the whole space, because numbers
+        of the space are multiplied by it later.
         """
         tower, folds = tower_of(space), {*folds_of(space)}
 
@@ -260,11 +260,14 @@ class Forms:
             return -sum(u in settled for u in active), len(active), v
 
         found = []
-        for v in sorted(products, key=rank):
+        ranks = sorted(map(rank, products))
+        for near, _, v in ranks:
+            if near > ranks[0][0] and not self.avoids_roots:
+                break
             (d, first), (e, second) = products[v]
             above, root = tower.adjoined(-(e / d))
             found.append((v, first, second, root))
-            if above is tower or not self.avoids_roots:
+            if above is tower:
                 break
         v, first, second, root = found[-1 if above is tower else 0]
         one, other = (

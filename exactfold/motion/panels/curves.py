@@ -1,4 +1,23 @@
-"""All fold angles of one elementary mode from those of one fold, by gains or transmissions."""
+"""All fold angles of one elementary mode from those of one fold, by gains or transmissions.
+
+Proof of Theorem 9 (docs/motion.md, 19). Consider a vertex with four active folds, and the part of
+its curve from the flat state on, without it, where no angle is 0 or 180 degrees. There is such a
+part, as all four angles have a first-order term. Let u_1, ..., u_4 be the directions of the folds
+in space; along the curve sum_j alpha_j' u_j = 0. Neighbours u_j, u_(j+1) are independent, as
+sectors are less than pi. If three, say u_2, u_3, u_4, were in one plane, so would be the panels
+between them, and fold 3 would be flat or at 180 degrees. So any three are independent: the closing
+condition has a derivative of rank 3 in the four angles, its solutions nearby are an analytic curve,
+and alpha_1' = 0 would make all derivatives 0. Hence all four angles are strictly monotone, their
+sizes grow from 0, and the part ends only where an angle is 180 degrees. The two folds of a straight
+pair that folds alone have equal sizes.
+
+In the whole mode the angle of one fold determines all others, monotonically, along a spanning tree
+of the active graph, and transmissions round a loop that compose to the identity near 0 do so as far
+as they are analytic. Suppose that the curve could be continued only up to some angle of a fold,
+with no fold at 180 degrees in the limit. The limit is closed at all vertices, by continuity, and no
+active fold is flat there; so the curve of each vertex continues beyond it, and with them that of
+the mode.
+"""
 
 from __future__ import annotations
 

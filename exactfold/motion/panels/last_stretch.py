@@ -10,6 +10,20 @@ closed: with D = S + g^2 the rotation by the fold angle about a unit axis (x, y)
 Dividing all heights by one number moves no two panels together or apart. So planes that separate
 panels in these coordinates for 0 <= S <= S_0 prove that they do not touch on the whole last
 stretch (docs/motion.md, 21).
+
+Proof of Theorem 11 there, in its notation:
+
+(a) With D = S + g^2, the rotation by alpha about a unit axis (x, y) becomes, in levelled
+coordinates, a matrix of rational functions of S with the denominator D > 0, as above. At S
+= 0 it reflects the plane in the axis, and adds to h what is stated.
+
+(b) Levelled coordinates are linear in space, so that panels touch in them if and only if they
+touch. Over a point inside the common set both panels have a levelled height near h_1 and h_2 for
+small S. If the difference has both signs, it is 0 on the way from one point to the other. If the
+panels never touch, it is never 0 over an inner point, and keeps its sign.
+
+(c) The positions for s -> 0 are injective maps that converge uniformly to the image, and "above" is
+the order of the heights.
 """
 
 from __future__ import annotations

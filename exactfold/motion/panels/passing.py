@@ -1,4 +1,15 @@
-"""Enclosed fold angles of a nonlinear mode: each is computed from another one at a vertex."""
+"""Enclosed fold angles of a nonlinear mode: each is computed from another one at a vertex.
+
+Proof of Theorem 10 (docs/motion.md, 20), in its notation: take the vertices in the order in which
+they are passed, the first known fold of each being the driver, or a fold of a vertex before.
+Suppose that the motion of all vertices before exists until there, so that t = tau^2 of the known
+fold is no larger on the way than at the end (Theorem 9). The signs of the discriminant, divided by
+c^2, and of a new c where it is not positive in any case, are those of b^2 - 4 (p + q t) a and of (p
++ q t) / p. Both are linear in t. They are positive at the flat sheet, the first because the two
+gains there are different, and positive at the end, hence on the way. So the chosen root continues
+the gain at the flat state, and no fold at the vertex is closed: the vertex follows, as in the proof
+of Theorem 9. Round loops the transmissions are the identity.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,20 @@
-"""Which elementary modes continue to true motions of the sheet."""
+"""Which elementary modes continue to true motions of the sheet.
+
+Proof of the order bound (docs/panels.md, Order bound), in its notation. Each transmission that is
+not linear is a branch at the origin of a curve in the plane of its two tau: at m vertices of
+bidegree (2, 2), with a branch for each local mode; where the equation is divided by x or y, at a
+and b vertices, of bidegree (1, 2) or (2, 1), with one branch. So the composite is one of 2^m
+branches, given by choices of local modes, of a curve that meets the diagonal with intersection
+number at most 2^m (2^a + 2^b). Suppose that the composite is not the diagonal, while r of the other
+branches are. Take the diagonal out r times; the number falls by 2r. Each of the 2^m - r branches
+that are left meets the diagonal at the origin, so the composite does so with a multiplicity of at
+most
+
+    2^m (2^a + 2^b) - 2r - (2^m - r - 1) <= 2^m (2^a + 2^b - 1) + 1 <= 2^(m + a + b) + 1 = 2^k + 1.
+
+The composite is odd; if it agrees with the identity up to the order 2^k + 1, the multiplicity is
+more.
+"""
 
 from __future__ import annotations
 

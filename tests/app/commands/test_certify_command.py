@@ -84,9 +84,6 @@ def test_panels_have_equations_but_no_certify(tmp_path: Path) -> None:
     assert (result.exit_code, result.stdout) == (UNDECIDED, "")
     assert "certify takes triangulated sheets" in result.stderr
     assert "proves all solutions of its equations" in result.stderr
-    result = run("export", "miura", "--way", "2", "-o", tmp_path / "way.fold")
-    assert (result.exit_code, result.stdout) == (UNDECIDED, "")
-    assert "`exactfold fold --way N -o FILE` writes one of its ways" in result.stderr
 
 
 def test_a_program_that_is_not_known_and_options_that_do_not_go_together() -> None:

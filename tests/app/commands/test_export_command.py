@@ -5,20 +5,25 @@ import subprocess
 import sys
 from dataclasses import replace
 
+import numpy as np
 import pytest
+from jsonschema import Draft202012Validator
 from typer.testing import CliRunner
 
+import exactfold
 from exactfold._support.verdict import UNDECIDED as UNPROVED
 from exactfold.app.cli import app
 from exactfold.branches import branch_certificate, count_branches, export_branch, find_branch
 from exactfold.errors import UndecidedBranchError
 from exactfold.interop import branch_to_coq, branches_to_coq, to_coq
-from exactfold.interop.fold_frames import BRANCH_KEY
+from exactfold.interop.fold_frames import BRANCH_KEY, MOTION_KEY
+from exactfold.motion.panels.listing import panel_ways
 from exactfold.pattern import load_fold
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.data import example_path
 from exactfold.pattern.degenerate import ringed_square
 from exactfold.pattern.families import two_vertex
+from exactfold.pattern.opening import open_pattern
 from exactfold.pattern.writing.fold_writing import fold_text
 
 OK, USAGE, BAD_INPUT, UNDECIDED = 0, 2, 3, 4
@@ -226,6 +231,121 @@ def test_a_branch_without_heights_is_refused_always(out):
     nothing = replace(found, root=None, assignment=letters, status=UNPROVED)
     with pytest.raises(UndecidedBranchError, match="nothing is proved"):
         export_branch(nothing, out, force=True)
+    assert not out.exists()
+
+
+# --- rigid panels --------------------------------------------------------------------------------
+
+
+def in_space(path):
+    """The fold angles of the last frame, in degrees, computed from its coordinates and faces."""
+    document = json.loads(path.read_text())
+    points = np.array(document["file_frames"][-1]["vertices_coords"])
+    sides = {}
+    for face in document["faces_vertices"]:
+        a, b, c = points[face[:3]]
+        normal = np.cross(b - a, c - b)
+        for i, j in zip(face, [*face[1:], face[0]], strict=True):
+            sides[i, j] = normal / np.linalg.norm(normal)
+    found = {}
+    for i, j in document["edges_vertices"]:
+        if (i, j) in sides and (j, i) in sides:
+            axis = (points[j] - points[i]) / np.linalg.norm(points[j] - points[i])
+            left, right = sides[i, j], sides[j, i]
+            sine, cosine = np.dot(np.cross(right, left), axis), np.dot(left, right)
+            found[i, j] = np.degrees(np.arctan2(sine, cosine))
+    return document, found
+
+
+def letters_in(path):
+    letters = json.loads(path.read_text())["edges_assignment"]
+    return "".join(letter for letter in letters if letter != "B")
+
+
+@pytest.mark.parametrize(("name", "way"), [("miura", 1), ("miura", 8), ("zigzags", 2)])
+def test_a_way_of_rigid_panels_has_its_letters_and_true_angles(out, name, way):
+    result = run(name, "--way", way, "--amount", "40", "-o", out)
+    assert result.exit_code == OK
+    assert "status           PROVED" in result.stdout
+    assert letters_in(out) == "".join(
+        panel_ways(exactfold.count(name))[way - 1].letters.get(fold, "F")
+        for fold in open_pattern(example_path(name)).sheet.folds
+    )
+    document, angles = in_space(out)
+    edges = [tuple(edge) for edge in document["edges_vertices"]]
+    written = dict(zip(edges, document["edges_foldAngle"], strict=True))
+    assert {fold: written[fold] for fold in angles} == pytest.approx(angles, abs=1e-6)
+    assert max(map(abs, angles.values())) == pytest.approx(40)
+    assert document[MOTION_KEY]["way"] == way
+
+
+def test_letters_name_a_way_of_rigid_panels(tmp_path, out):
+    assert run("miura", "--way", 2, "-o", out).exit_code == OK
+    letters = letters_in(out)
+    other = tmp_path / "other.fold"
+    assert run("miura", "--letters", letters, "-o", other).exit_code == OK
+    assert out.read_bytes() == other.read_bytes()
+
+
+def test_of_a_family_one_motion_is_written_and_said_so(out):
+    result = run("bird-base", "--way", 3, "-o", out, "--json")
+    assert result.exit_code == OK
+    assert "way 3 is a family of dimension 5: this is one of infinitely many" in result.stderr
+    said = json.loads(result.stdout)
+    Draft202012Validator(exactfold.schema("export")).validate(said)
+    assert (said["way"], said["status"], said["gauge"]) == (3, "proved", None)
+    _, angles = in_space(out)
+    by_fold = {f"{i}-{j}": angle for (i, j), angle in angles.items()}
+    assert by_fold == pytest.approx(said["angles"], abs=1e-5)
+    signs = {fold: "VMF"[(x < 0) + 2 * (abs(x) < 1e-6)] for fold, x in said["angles"].items()}
+    assert signs == said["assignment"]
+    followed = exactfold.follow("bird-base", 3, until="30deg", frames=2)
+    assert {f: x for f, x in followed.assignment.items() if x != "F"}.items() <= {
+        tuple(map(int, fold.split("-"))): x for fold, x in said["assignment"].items()
+    }.items()
+
+
+def test_a_family_of_branches_is_said_to_be_one(out):
+    result = run("waterbomb", "--way", 1, "-o", out)
+    assert (result.exit_code, signs_in(out)) == (OK, "+")
+    assert "way 1 is a family of dimension 3: this is one of infinitely many" in result.stderr
+
+
+def test_the_other_formats_of_a_way_of_rigid_panels(tmp_path):
+    for ending in ("obj", "csv", "json"):
+        assert run("zigzags", "--way", 1, "-o", tmp_path / f"a.{ending}").exit_code == OK
+    rows = (tmp_path / "a.csv").read_text().splitlines()
+    assert rows[0] == "fold,letter,degrees"
+    assert len(rows) == 13
+    [(letter, degrees)] = [row.split(",")[1:] for row in rows if row.startswith("14-15,")]
+    assert (letter, float(degrees)) == ("M", pytest.approx(-30))
+
+
+def test_contact_and_the_end_of_a_motion_are_said(out):
+    result = run("miura", "--way", 1, "--amount", 180, "-o", out)
+    assert result.exit_code == OK
+    assert "on the way to 180 degrees: folds" in result.stderr
+    assert "close: faces meet" in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("options", "code", "words"),
+    [
+        ([], USAGE, "give one of --way, --signs, --up and --letters"),
+        (["--way", "9"], USAGE, "there is no way 9: `count` lists 1 to 8"),
+        (["--way", "1", "--amount", "181"], USAGE, "largest fold angle cannot be 181.0 degrees"),
+        (["--letters", "M" * 24], UNDECIDED, "no known way has these letters"),
+        (
+            ["--signs", "+"],
+            UNDECIDED,
+            "`exactfold export` writes one, with `--way N` or `--letters`",
+        ),
+    ],
+)
+def test_what_rigid_panels_do_not_have(out, options, code, words):
+    result = run("miura", *options, "-o", out)
+    assert (result.exit_code, result.stdout) == (code, "")
+    assert words in result.stderr
     assert not out.exists()
 
 

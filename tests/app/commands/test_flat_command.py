@@ -53,7 +53,7 @@ def test_a_vertex_that_does_not_fold_flat():
     text = run("flat", "zigzags").stdout
     assert text.startswith("not flat-foldable with the drawn mountains and valleys: 4 vertices")
     odd = run("flat", "flat-octahedron", "--all").stdout
-    assert "- at vertex 4 the number of folded creases is odd (Kawasaki)" in odd
+    assert "1. at vertex 4 the number of folded creases is odd (Kawasaki)" in odd
     assert odd.count("(Kawasaki)") == 6
 
 
@@ -128,3 +128,44 @@ def test_certificates(tmp_path):
     done = run("flat", "bird-base", "--any", "--limit", "0.001", "--certificate", str(path))
     assert "no certificate was written: nothing is decided" in done.stderr
     assert not path.exists()
+
+
+def test_a_state_is_drawn_and_written(tmp_path):
+    for ending, start in [("svg", b"<svg"), ("png", b"\x89PNG"), ("pdf", b"%PDF"), ("fold", b"{")]:
+        file = tmp_path / f"state.{ending}"
+        done = run("flat", "waterbomb", "--state", "17", "-o", file)
+        assert done.exit_code == PROVED
+        assert done.stdout.endswith(f"state.{ending}: state 17, from 0, of 18 listed\n")
+        assert file.read_bytes().startswith(start)
+    document = json.loads((tmp_path / "state.fold").read_text("utf-8"))
+    assert document["file_frames"][0]["frame_title"] == "flat-folded state 17"
+    code, data = printed("waterbomb", "-o", tmp_path / "state.svg")
+    assert (code, data["states"]) == (PROVED, 18)
+
+
+def test_why_there_is_no_state_is_drawn(tmp_path):
+    file = tmp_path / "why.svg"
+    assert run("flat", "zigzags", "-o", file).exit_code == INVALID
+    assert "1. at vertex 9 every second sector" in file.read_text("utf-8")
+    fold = tmp_path / "state.fold"
+    done = run("flat", "zigzags", "-o", fold)
+    assert done.exit_code == INVALID
+    assert "was not written: no flat-folded state is known" in done.stderr
+    assert not fold.exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("-o", "state.txt"), "a folded sheet is written as .svg, .png, .pdf, .fold"),
+        (("--state", "0"), "give -o FILE, too"),
+        (("-o", "state.svg", "--state", "1"), "there is no state 1: 1 are listed, from 0"),
+        (("-o", "state.svg", "--certificate", "state.svg"), "already reads or writes"),
+    ],
+)
+def test_wrong_outputs(arguments, words, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    done = run("flat", "miura", *arguments)
+    assert done.exit_code == USAGE
+    assert words in done.stderr
+    assert not list(tmp_path.iterdir())

@@ -19,7 +19,7 @@ NEARLY = ("numpy.ma", "logging", "importlib.metadata", "multiprocessing")
     [
         (["--help"], ("numpy", "flint", "multiprocessing", "rich", *HEAVY)),
         (["random", "--interior", "3", "--seed", "1"], ("numpy", "flint", "rich", *HEAVY)),
-        (["info"], ("numpy", "multiprocessing", *HEAVY)),
+        (["info"], ("multiprocessing", *HEAVY)),
         (
             ["branch", "--up", "4"],
             ("flint", "mpmath", "sympy", "networkx", "exactfold.solve.algebraic"),

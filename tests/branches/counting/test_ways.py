@@ -7,20 +7,24 @@ from pathlib import Path
 
 import pytest
 from drawings import SQUARE, as_cp, as_fold
-from sheets import DENTED, scrambled
+from sheets import DENTED, HEXAGON, scrambled
 
-from exactfold import PROVED
-from exactfold.branches import count_branches, count_many
+from exactfold import PROVED, REFUTED
+from exactfold.app.report.panels import panels_answer
+from exactfold.branches import count_branches, count_many, find_connected_components
+from exactfold.branches.counting.by_theorem import graphs_over_boundary
 from exactfold.branches.counting.motion_facts import panel_facts
 from exactfold.branches.counting.ways import count_ways
 from exactfold.errors import SeveralSheetsError, UnreadableFileError, UsageError
+from exactfold.exact.surds import RATIONALS, real_root
 from exactfold.panels.decomposition import decompose
+from exactfold.panels.result import Decomposition
 from exactfold.pattern import write_fold
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.drawing.formats.read import parse_drawing
 from exactfold.pattern.families import single_vertex, two_vertex
 from exactfold.pattern.opening import has_branches, open_pattern, panels
-from exactfold.pattern.panel_pattern import PanelPattern
+from exactfold.pattern.panel_pattern import EnclosedPattern, PanelPattern
 from exactfold.pattern.reading import Reading
 
 BORDER = [(0, 1), (1, 2), (2, 3), (0, 3)]
@@ -60,6 +64,63 @@ def test_sheets_with_more_freedom_and_a_reflex_corner_are_decomposed() -> None:
     assert found.reason.startswith(f"{ways.reason}; the sheet has 6 boundary vertices")
     assert "a reflex corner, vertex 3" in found.reason
     assert found.found == ways.found
+
+
+def _sheared(sheet: CreasePattern) -> PanelPattern:
+    """The image of a sheet under a shear and a reflection over Q(sqrt 3)."""
+    root = real_root(3, RATIONALS)
+    return PanelPattern([(y + root * x, x) for x, y in sheet.vertices], sheet.edges)
+
+
+@pytest.mark.parametrize(
+    "sheet",
+    [
+        PENTAGON,
+        single_vertex(7),
+        *(scrambled(seed, HEXAGON, 5) for seed in range(4)),
+        *(scrambled(seed, [(0, 0), (4, 0), (4, 2), (4, 4), (0, 4)], 4) for seed in range(3)),
+    ],
+)
+def test_graphs_do_not_change_with_an_affine_map(sheet: CreasePattern) -> None:
+    """K_v is a form of curvature, which an affine map of the plane multiplies by a number."""
+    graphs = find_connected_components(sheet).graphs
+    assert graphs_over_boundary(panels(sheet)) == graphs.bit_length() - 1
+    assert graphs_over_boundary(_sheared(sheet)) == graphs.bit_length() - 1
+
+
+@pytest.mark.parametrize(
+    "sheet",
+    [scrambled(2, DENTED, 4), two_vertex(), CreasePattern([(0, 0), (1, 0), (0, 1)], [(0, 1, 2)])],
+)
+def test_graphs_need_a_convex_boundary_of_five_vertices(sheet: CreasePattern) -> None:
+    assert graphs_over_boundary(_sheared(sheet)) is None
+
+
+def test_graphs_need_triangles_and_known_positions() -> None:
+    pentagon = _sheared(PENTAGON)
+    rest = [edge for edge in pentagon.edges if edge != (1, 6)]
+    assert graphs_over_boundary(PanelPattern(pentagon.vertices, rest)) is None
+    directions = {(i, j): pentagon.direction(i, j) for i, j in pentagon.edges}
+    nearly = EnclosedPattern(pentagon.vertices, pentagon.edges, directions, Fraction(1, 9))
+    assert graphs_over_boundary(nearly) is None
+
+
+@pytest.mark.usefixtures("without_spaces")
+def test_a_convex_sheet_with_roots_has_graphs_where_its_motions_are_too_many() -> None:
+    found = count_ways(_sheared(scrambled(1, HEXAGON, 5, loose=True)))
+    assert isinstance(found, Decomposition)
+    assert (found.status, found.rigid, found.graphs) == (PROVED, REFUTED, 5)
+    assert (found.second_order, found.to_dict()["by"]) == (None, "theorem")
+    assert found.to_dict()["components"]["graphs"] == {"vertices": 5, "dimension": 3}
+    assert "2^5 graphs over the boundary heights, of dimension 3" in found.reason
+    lines = " ".join(str(panels_answer(found)).split())
+    assert lines.startswith("16 families of ways to fold, each of dimension 3 - PROVED")
+
+
+def test_a_convex_sheet_with_roots_has_its_components_where_they_are_known() -> None:
+    found = count_ways(_sheared(PENTAGON))
+    assert isinstance(found, Decomposition)
+    assert (found.second_order, found.graphs) == ({2: 2}, None)
 
 
 def test_a_sheet_without_interior_vertex_folds_at_each_fold() -> None:

@@ -295,6 +295,29 @@ def test_a_vertex_with_settled_neighbours_is_split_first() -> None:
         assert found.factors(left, found.first_order, frozenset({v}))[0] in neighbours
 
 
+def test_of_equally_near_vertices_one_without_a_new_root_is_split_first() -> None:
+    found = spaces(tiling(2, 2))
+    _, products, _, _ = found._forms(found.first_order)
+
+    def chosen(plain: set[int], settled: frozenset[int]) -> int:
+        """The choice if the forms of these vertices need no root, and all others sqrt 2."""
+        given = {
+            v: [(number(1), one), (number(-1 if v in plain else -2), other)]
+            for v, ((_, one), (_, other)) in products.items()
+            if v not in settled
+        }
+        return found.factors(given, found.first_order, settled)[0]
+
+    for v, around in found.near.items():
+        far = products.keys() - {v, *around}
+        assert far
+        found.avoids_roots = False
+        assert chosen({v}, frozenset()) == v
+        assert chosen(far, frozenset({v})) in around
+        found.avoids_roots = True
+        assert chosen(far, frozenset({v})) in far
+
+
 def test_forms_that_vanish_only_at_zero_leave_zero() -> None:
     found = spaces(half_crossed())
     values = {0: (1, -1), 1: (1, -2), 2: (3, -5)}

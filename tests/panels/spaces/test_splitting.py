@@ -80,6 +80,32 @@ def test_the_second_order_is_tried_where_the_first_takes_too_much_work(
         Splitting(moving, 10**7, Clock(0)).leaves(rows, size)
 
 
+def test_of_equally_near_vertices_one_without_a_new_root_is_split_first() -> None:
+    moving = stars(tiling(2, 2))
+    search = Splitting(moving, 10**7)
+    rows = splitting._on_folds(*first_order(moving))
+    forms = {v: search._form(v, rows) for v in moving}
+
+    def chosen(plain: set[int], settled: frozenset[int]) -> int:
+        """The choice if the forms of these vertices need no root, and all others sqrt 2."""
+        given = {
+            v: [(fmpq(1), one), (fmpq(-1 if v in plain else -2), other)]
+            for v, ((_, one), (_, other)) in forms.items()
+        }
+        waiting = [v for v in forms if v not in settled]
+        return search._chosen(splitting._Space(rows, given), settled, waiting)[0]
+
+    for v, star in moving.items():
+        around = {u for edge in star.folds for u in edge}
+        far = forms.keys() - around
+        assert far
+        search._avoids_roots = False
+        assert chosen({v}, frozenset()) == v
+        assert chosen(far, frozenset({v})) in around
+        search._avoids_roots = True
+        assert chosen(far, frozenset({v})) in far
+
+
 @pytest.mark.parametrize("name", sorted(SHEETS))
 def test_the_forms_on_random_subspaces_are_those_of_dense_rows(name: str) -> None:
     """Both sums of squares have the same values at random points of random subspaces."""
@@ -141,3 +167,22 @@ def test_completed_squares_leave_the_matrix_as_it_was() -> None:
     squares = diagonalised(matrix)
     assert matrix == [[none, one], [one, none]]
     assert sorted(d > 0 for d, _ in squares) == [False, True]
+
+
+def test_the_clock_is_asked_while_the_form_of_a_vertex_with_many_folds_is_made(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The form takes one step for each fold, and the clock ends it after any of them."""
+    star = stars(ring_of_fives())[0]
+    steps = 0
+
+    def counted(_: Clock) -> None:
+        nonlocal steps
+        steps += 1
+        if steps == 3:
+            raise TooManyModesError("the time limit was reached")
+
+    monkeypatch.setattr(Clock, "check", counted)
+    with pytest.raises(TooManyModesError, match="time limit"):
+        Splitting({star.vertex: star}, 10**7, Clock(60))
+    assert steps == 3

@@ -93,7 +93,8 @@ def line_for(job: Job, result: BranchCount | Decomposition | Exception) -> Line:
         known = _known(result)
         message = "; ".join([*known, result.reason])
         if result.status is PROVED:
-            second = not isinstance(result, BranchCount) and result.true is None
+            panels = None if isinstance(result, BranchCount) else result
+            second = panels is not None and panels.true is None and panels.graphs is None
             message = "to second order" if second else ""
         if (warning := result.warning) is not None and warning not in message:
             message = f"{message}{'; ' if message else ''}warning: {warning}"
@@ -158,8 +159,7 @@ def _ways(result: BranchCount | Decomposition) -> str:
     """
     if result.ways is not None:
         return str(result.ways)
-    proved = isinstance(result, BranchCount) and result.status is PROVED
-    return "infinite" if proved else "?"
+    return "infinite" if result.status is PROVED else "?"
 
 
 def _digest(job: Job) -> str | None:

@@ -142,12 +142,12 @@ def _mapped(
     for text, letter in (stated or {}).items():
         if letter not in tuple(LETTERS):
             raise UsageError(
-                f"{what}: the letter {shown(letter)} is not one of {', '.join(LETTERS)}"
+                f"--{what}: the letter {shown(letter)} is not one of {', '.join(LETTERS)}"
             )
         key = parsed(text.strip().lower()) or text.strip().lower()
         if key not in known:
             raise UsageError(
-                f"{what}: no line has {shown(text)}; the lines have {_listed(strokes, what)}"
+                f"--{what}: no line has {shown(text)}; the lines have {_listed(strokes, what)}"
             )
         letters[key] = letter
     return [next((letters[k] for k in several if k in letters), "") for several in keys]
