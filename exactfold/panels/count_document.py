@@ -62,6 +62,24 @@ class ModeDocument(TypedDict):
     """What decided whether it extends."""
 
 
+class WayDocument(TypedDict):
+    """One way to fold: a motion, or a family of motions."""
+
+    number: Positive
+    """What `--way` takes."""
+    dimension: Natural
+    """The number of folds that can be folded independently."""
+    modes: list[Natural]
+    """The numbers of the modes that fold independently in this way. The first of modes has number
+    1; lines of motions beside those in modes have the numbers that follow."""
+    assignment: dict[FoldText, Annotated[str, Keywords(enum=["M", "V", "F", "U"])]]
+    """Of all folds, on one side of the sheet; F where flat, U where it varies in the family."""
+    extends: VerdictText
+    """Whether the way truly folds."""
+    by: str
+    """What decided whether it truly folds."""
+
+
 class AsWrittenDocument(TypedDict):
     """The count for the digits of an inexact drawing."""
 
@@ -119,6 +137,8 @@ class MotionKeys(TypedDict):
     """The number of elementary modes."""
     modes: list[ModeDocument]
     """The first elementary modes."""
+    way_list: list[WayDocument]
+    """The first 256 ways that `count` lists, in which modes and spaces of motions fold."""
     flat_folds: list[FoldText]
     """Folds that are flat in every motion."""
     still_folds: list[FoldText]

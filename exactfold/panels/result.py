@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from importlib import import_module
 from typing import ClassVar, Literal
 
 from exactfold._support.notebook import Page
@@ -20,6 +21,7 @@ from exactfold.panels.count_document import (
     PanelCountDocument,
     PanelCountKeys,
     ProposalDocument,
+    WayDocument,
 )
 from exactfold.panels.isolated import IsolatedWays
 from exactfold.panels.modes.elementary import Support
@@ -90,8 +92,8 @@ class Decomposition(Page, Ways[Mode], Certified):
 
     If `graphs` is a number n, the sheet is triangulated, and its solutions and its true
     configurations near the flat state are 2^n graphs over the boundary heights, each of dimension
-    `pattern.D` (docs/any_border.md, Theorems 6 and 8). Then the status is PROVED although
-    `second_order`, the number of irreducible components, may be None.
+    `pattern.D` (docs/any_border.md, Theorem 6, and docs/any_border.md, Theorem 8). Then the status
+    is PROVED although `second_order`, the number of irreducible components, may be None.
     """
 
     pattern: PanelPattern
@@ -122,6 +124,7 @@ class Decomposition(Page, Ways[Mode], Certified):
     seconds: float = field(default=0.0, compare=False)
 
     WRITER: ClassVar = "exactfold.panels.certificate:certificate_of_panels"
+    LISTER: ClassVar = "exactfold.motion.panels.listing:way_documents"
 
     def listed(self) -> tuple[Mode, ...]:
         """`modes`."""
@@ -207,11 +210,18 @@ class Decomposition(Page, Ways[Mode], Certified):
             "proposal": None if self.proposal is None else self.proposal.to_dict(),
             "modes_count": self.modes_count,
             "modes": [mode.to_dict() for mode in self.modes],
+            "way_list": self._way_list(),
             "flat_folds": [f"{i}-{j}" for i, j in self.flat],
             "still_folds": [f"{i}-{j}" for i, j in self.still],
             "free_folds": [f"{i}-{j}" for i, j in self.free],
             "near_misses": [miss.to_dict() for miss in self.nearly_closing],
         }
+
+    def _way_list(self) -> list[WayDocument]:
+        """The ways that are listed; the room of motions numbers them, and imports this module."""
+        module, _, name = self.LISTER.partition(":")
+        listed: list[WayDocument] = getattr(import_module(module), name)(self)
+        return listed
 
     @property
     def freedom(self) -> Freedom | None:

@@ -14,8 +14,9 @@ from exactfold.pattern.drawing.drawing import Drawing, Line
 from exactfold.pattern.drawing.meant.left import left_relations, off_by
 from exactfold.pattern.opened import Opened, panels, triangulated
 
-if TYPE_CHECKING:  # sheets with exact digits do without it
+if TYPE_CHECKING:  # sheets with exact digits do without them
     from exactfold.pattern.panel_pattern import PanelPattern
+    from exactfold.pattern.reading import Reading
 
 
 _MOST_EDGES: Final = 1200
@@ -83,6 +84,8 @@ def _meaning(found: Opened, written: Callable[[], Opened]) -> Opened:
                 "or less noise"
             )
         reason = meant.reason or (_NO_LEVEL if left else "")
+        said = () if left else (_without_effect(reading),)
+        found = replace(found, lines=found.lines + said, seen=found.seen + said)
         return replace(found, meant=replace(meant, left=left, reason=reason))
     exact = meant.realized.sheet
     lines = tuple(line for line in raw.lines if not line.startswith("coordinates kept"))
@@ -98,6 +101,15 @@ def _meaning(found: Opened, written: Callable[[], Opened]) -> Opened:
         reading=reading,
         again=found.again,
     )
+
+
+def _without_effect(reading: Reading) -> str:
+    """What is said of options for an inexact drawing if the drawing is exact."""
+    given = {"--without": reading.without, "--also": reading.also}
+    numbers = {"--noise": reading.noise, "--unit": reading.unit}
+    names = [name for name, value in given.items() if value]
+    names += [name for name, value in numbers.items() if value is not None]
+    return f"{_NONE_NEAR}: {', '.join(names)} changed nothing"
 
 
 def recognised(found: Opened) -> Opened | None:

@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from typing import Any
 
 from exactfold.pattern.validate import Triangle, orientation
 
 
 def find_triangulated_triangles(
-    points: Sequence[tuple[int, int]],
+    points: Sequence[Sequence[Any]],
     edges: Collection[tuple[int, int]],
     triangles: Collection[Triangle],
     following: Mapping[int, Mapping[int, int]],
 ) -> tuple[tuple[Triangle, tuple[int, ...]], ...]:
     """The maximal 3-cycles with vertices inside, each with the sorted vertices inside it.
 
-    `points` are the vertices times an integer. `edges` are all edges (i, j) with i < j. `triangles`
-    are counter-clockwise and start with their smallest index. `following[v][a]` is b for every
-    triangle (v, a, b).
+    `points` are the vertices, exactly, or times an integer. `edges` are all edges (i, j) with
+    i < j. `triangles` are counter-clockwise and start with their smallest index. `following[v][a]`
+    is b for every triangle (v, a, b).
 
     For each edge, the common neighbours of its ends give every 3-cycle of the graph through it. The
     vertices inside a 3-cycle are found by walking from its sides over the faces inside. So the work

@@ -2,10 +2,16 @@
 
 python tests/benchmarks/real_files.py FOLDER [--against COMMIT] [--only TEXT] [--keep FOLDER]
     [--csv FILE]
+python tests/benchmarks/real_files.py FOLDER --noise FILE [--limit SECONDS] [--only TEXT]
+    [--keep FOLDER]
 
 Every file is a process of its own, ended after 60 seconds. The answers are kept below `--keep`, one
 file of JSON lines a program, so that an interrupted run goes on where it stopped. The summary at
 the end is that of docs/real_files.md; `--csv` writes a row for each file, as docs/real_files.csv.
+
+`--noise` finds the inexact drawings instead, and writes a row for each, as docs/real_noise.csv: the
+sheet that was meant, its answer, and that for the digits as written. Each count has the `--limit`
+of `exactfold count`.
 """
 
 from __future__ import annotations
@@ -53,25 +59,42 @@ REMEDIES = {
 }
 """What the message to a refused file names and nobody has to choose, with options of `count`."""
 
+NOISE = (
+    "file",
+    "eps",
+    "gap",
+    "relations",
+    "independent",
+    "moved",
+    "answer of the sheet that was meant",
+    "answer as written",
+)
+"""The columns of docs/real_noise.csv; lengths are shares of the size of the drawing."""
+
+SLOWEST = 10 * LIMIT
+"""No command of `--noise` takes longer, on a machine that has other work to do, too."""
+
 Line = dict[str, Any]
 
 
-def answered(path: Path, source: Path, *options: str) -> Line:
-    """What `exactfold count` of the program below `source` answers."""
-    command = [sys.executable, "-m", "exactfold", "count", str(path.resolve()), "--json", *options]
+def answered(
+    path: Path, source: Path, *options: str, command: str = "count", limit: float = LIMIT
+) -> Line:
+    """What a command of the program below `source` answers within `limit` seconds."""
+    words = [sys.executable, "-m", "exactfold", command, str(path.resolve()), "--json", *options]
     began = time.perf_counter()
     try:
         done = subprocess.run(
-            command,
+            words,
             capture_output=True,
             text=True,
-            timeout=LIMIT,
+            timeout=limit,
             check=False,
             cwd=source,
             env={**os.environ, "PYTHONPATH": str(source)},
         )
     except subprocess.TimeoutExpired:
-        return {"code": None, "seconds": LIMIT, "result": None, "error": ""}
+        return {"code": None, "seconds": limit, "result": None, "error": ""}
     seconds = round(time.perf_counter() - began, 1)
     results = [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
     line = {
@@ -248,6 +271,58 @@ def write_files(programs: dict[str, dict[str, Line]], path: Path) -> None:
             table.writerow([path_shown, *cells])
 
 
+def inexact(path: Path, seconds: str) -> Line:
+    """What is inferred from a drawing, and both answers; `meant` is None if it is exact."""
+    read = answered(path, HERE, command="vertices", limit=SLOWEST)["result"] or {}
+    line: Line = {"meant": read.get("meant")}
+    if line["meant"]:
+        line["of_meant"] = answered(path, HERE, "--limit", seconds, limit=SLOWEST)
+        digits = ("--snap", "exact", "--limit", seconds)
+        line["of_digits"] = answered(path, HERE, *digits, limit=SLOWEST)
+    return line
+
+
+def print_noise(paths: list[Path], folder: Path, keep: Path, out: Path, seconds: str) -> None:
+    """Write a row for each inexact drawing, in the columns of `NOISE`."""
+    kept: dict[str, Line] = {}
+    if keep.exists():
+        kept = {line["file"]: line for line in map(json.loads, keep.open())}
+    with keep.open("a") as lines:
+        for path in paths:
+            name = str(path.relative_to(folder))
+            if name not in kept:
+                kept[name] = {"file": name, **inexact(path, seconds)}
+                lines.write(json.dumps(kept[name]) + "\n")
+                lines.flush()
+                print(f"{'inexact' if kept[name]['meant'] else '-'}  {name}", flush=True)
+    with out.open("w", encoding="utf-8", newline="") as rows:
+        table = csv.writer(rows, lineterminator="\n")
+        table.writerow(NOISE)
+        for name, path_shown in short(kept).items():
+            if kept[name]["meant"]:
+                table.writerow([path_shown, *noise_row(kept[name])])
+
+
+def noise_row(line: Line) -> list[str]:
+    """The columns of `NOISE` after the first."""
+    meant = line["meant"]
+    numbers = [_number(meant[key]) for key in ("eps", "gap")]
+    inferred = meant["existence"] != "none"
+    relations = [str(len(meant["relations"])), str(meant["independent"])] if inferred else ["", ""]
+    moved = _number(meant["distance"]) if inferred else ""
+    answer = _said(line["of_meant"]) if inferred else f"none inferred: {meant['reason']}"
+    return [*numbers, *relations, moved, answer, _said(line["of_digits"])]
+
+
+def _number(value: float | None) -> str:
+    return "" if value is None else f"{value:.1e}"
+
+
+def _said(line: Line) -> str:
+    kind, said = kind_of(line)
+    return said if kind == KINDS[0] else f"{kind}: {said}" if said else kind
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", type=Path)
@@ -255,6 +330,8 @@ def main() -> None:
     parser.add_argument("--only", default="", help="only paths with this text")
     parser.add_argument("--keep", type=Path, default=Path("real-files"), help="where answers go")
     parser.add_argument("--csv", type=Path, metavar="FILE", help="write a row for each file")
+    parser.add_argument("--noise", type=Path, metavar="FILE", help="write the inexact drawings")
+    parser.add_argument("--limit", default=str(LIMIT), metavar="SECONDS", help="of each count")
     arguments = parser.parse_args()
     paths = [
         path
@@ -264,6 +341,10 @@ def main() -> None:
         and arguments.only in str(path)
     ]
     arguments.keep.mkdir(exist_ok=True)
+    if arguments.noise:
+        keep = arguments.keep / "noise.jsonl"
+        print_noise(paths, arguments.folder, keep, arguments.noise, arguments.limit)
+        return
     programs: dict[str, dict[str, Line]] = {}
     for heading, commit in (("before", arguments.against), ("now", None)):
         if heading == "now" or commit:

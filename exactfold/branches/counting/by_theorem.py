@@ -10,7 +10,7 @@ from exactfold.branches.values.result import BranchCount
 from exactfold.checker.core.limits import MOST_UNKNOWNS
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.triangulated_triangles import find_triangulated_triangles
-from exactfold.pattern.validate import orientation
+from exactfold.pattern.validate import Triangle, orientation
 
 if TYPE_CHECKING:
     from exactfold.pattern.panel_pattern import PanelPattern
@@ -81,7 +81,9 @@ def graphs_over_boundary(sheet: PanelPattern) -> int | None:
     if isinstance(sheet, EnclosedPattern) or any(len(face) != 3 for face in sheet.faces):
         return None
     following: dict[int, dict[int, int]] = {}
+    triangles: list[Triangle] = []
     for a, b, c in sheet.faces:
+        triangles.append(min((a, b, c), (b, c, a), (c, a, b)))
         for i, j, k in ((a, b, c), (b, c, a), (c, a, b)):
             following.setdefault(i, {})[j] = k
     after = dict((i, j) if (i, j) in sheet.sides else (j, i) for i, j in sheet.boundary_edges)
@@ -89,5 +91,5 @@ def graphs_over_boundary(sheet: PanelPattern) -> int | None:
     turns = (orientation(*(points[v] for v in (i, j, after[j]))) for i, j in after.items())
     if len(after) < 5 or any(sign(turn) < 0 for turn in turns):
         return None
-    stiff = find_triangulated_triangles(points, sheet.edges, sheet.faces, following)
+    stiff = find_triangulated_triangles(points, sheet.edges, triangles, following)
     return len(sheet.interior) - len({v for _, inside in stiff for v in inside}) or None

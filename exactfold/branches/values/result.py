@@ -322,6 +322,7 @@ class BranchCount(Page, Ways[Branch], Certified):
             "proposal": None,
             "modes_count": None,
             "modes": [],
+            "way_list": [],
             "flat_folds": [],
             "still_folds": [],
             "free_folds": [],

@@ -18,11 +18,13 @@ from exactfold.motion.panels.followable import (
     line_mode,
     panel_modes,
 )
+from exactfold.panels.count_document import WayDocument
 from exactfold.panels.result import Decomposition, Part
 from exactfold.panels.spaces.subspaces import Leaf
 from exactfold.panels.vertex.stars import stars
 from exactfold.pattern.panel_pattern import Edge
 
+_MOST_WRITTEN: Final = 256
 MOST_WAYS: Final = 4096
 """If a sheet has more ways, its modes are listed one by one."""
 _MOST_STEPS: Final = 20_000
@@ -132,6 +134,30 @@ def panel_ways(
         PanelWay(k, way.modes, way.free, way.spaces, way.letters, way.verdict, way.by)
         for k, way in enumerate(ways, 1)
     )
+
+
+def way_documents(result: Decomposition) -> list[WayDocument]:
+    """The first 256 ways in the JSON of a count, as `panel_ways` numbers them.
+
+    >>> from exactfold.panels.decomposition import decompose
+    >>> from exactfold.pattern.families import single_vertex
+    >>> from exactfold.pattern.opening import panels
+    >>> way, _ = way_documents(decompose(panels(single_vertex(4))))
+    >>> way["number"], way["dimension"], way["modes"], way["extends"], way["by"]
+    (1, 1, [1], 'proved', 'forest')
+    """
+    names = {(i, j): f"{i}-{j}" for i, j in result.pattern.folds}
+    return [
+        {
+            "number": way.number,
+            "dimension": way.dimension,
+            "modes": list(way.numbers),
+            "assignment": {name: way.letters.get(fold, "F") for fold, name in names.items()},
+            "extends": str(way.verdict),
+            "by": way.by,
+        }
+        for way in panel_ways(result)[:_MOST_WRITTEN]
+    ]
 
 
 def require_listed(ways: Sequence[PanelWay], number: int) -> None:

@@ -81,7 +81,7 @@ class Splitting(LimitedSearch):
         self._avoids_roots = False
         self._field = common_field(x for star in stars.values() for d in star.directions for x in d)
         self._other_factors: dict[tuple[int, int], tuple[Form, Row, Row | None]] = {}
-        self._local = {v: _local(star) for v, star in stars.items()}
+        self._local = {v: _local(star, clock) for v, star in stars.items()}
 
     def leaves(self, rows: Rows, size: int) -> list[Leaf]:
         """The leaves of a space without the flat state.
@@ -347,22 +347,32 @@ def _leaf(space: _Space, left: Iterable[int]) -> Leaf:
     return made_leaf(rows, len(names), left)
 
 
-def _local(star: Star) -> tuple[list[Edge], list[list[Entry]], list[tuple[Entry, Row]]]:
+def _local(
+    star: Star, clock: Clock
+) -> tuple[list[Edge], list[list[Entry]], list[tuple[Entry, Row]]]:
     """Folds whose densities determine those of a vertex, and its form in them as a matrix and as a
     sum of squares.
+
+    The form is sum over m < n of w_m w_n (u_m x u_n), where w_n is the density of fold n and u_n
+    its direction. The sum over m is one vector for each n, S_n = sum over m < n of w_m u_m. Raises
+    `TooManyModesError` if the clock has passed.
     """
     rows, size = first_order({star.vertex: star})
     units = [[fmpq(k == n) for k in range(size)] for n in range(size)]
     folds = [next(edge for edge, row in rows.items() if list(row) == unit) for unit in units]
-    ends = [
-        (edge, entry(x), entry(y)) for edge, (x, y) in zip(star.folds, star.directions, strict=True)
-    ]
     form = zeros(size)
-    for n, (edge, a, b) in enumerate(ends):
-        for other, s, t in ends[:n]:
-            c = s * b - t * a
-            for k, x in enumerate(rows.get(edge, ())):
-                for m, y in enumerate(rows.get(other, ())):
-                    form[k][m] = form[k][m] + c * x * y
-                    form[m][k] = form[m][k] + c * x * y
-    return folds, [list(map(plain, line)) for line in form], diagonalised(form)
+    before: list[tuple[Entry, Entry]] = [(fmpq(0), fmpq(0))] * size
+    for edge, direction in zip(star.folds, star.directions, strict=True):
+        clock.check()
+        a, b = map(entry, direction)
+        own = [(k, x) for k, x in enumerate(rows.get(edge, ())) if x]
+        turned = [s * b - t * a for s, t in before] if own else []
+        for k, x in own:
+            for m, c in enumerate(turned):
+                if c:
+                    form[k][m] = form[k][m] + c * x
+                    form[m][k] = form[m][k] + c * x
+        for k, x in own:
+            s, t = before[k]
+            before[k] = s + x * a, t + x * b
+    return folds, [list(map(plain, line)) for line in form], diagonalised(form, clock)

@@ -2,6 +2,7 @@
 
 import json
 import re
+from collections import Counter
 from fractions import Fraction
 
 import pytest
@@ -32,7 +33,7 @@ COUNT_KEYS = {
 PANEL_KEYS = {
     *("theory", "rigid", "components", "modes_count", "modes", "flat_folds", "free_folds"),
     *("near_misses", "meant", "as_written", "proposal", "read", "still_folds", "pieces", "letters"),
-    *("exceptional_vertices", "freedom", "drawn"),
+    *("exceptional_vertices", "freedom", "drawn", "way_list"),
 }
 EXTRA_KEYS = {
     "ways",
@@ -292,3 +293,18 @@ def test_a_limit_is_a_positive_number_of_seconds(tmp_path, limit):
         result = run(command, path, "--limit", limit)
         assert result.exit_code == USAGE
         assert "seconds" in " ".join(result.stderr.split())
+
+
+@pytest.mark.parametrize("name", ["miura", "bird-base", "flapping-bird"])
+def test_the_ways_of_panels_are_in_the_json_with_the_numbers_and_letters_of_the_table(name):
+    """Modes, spaces, and lines of motions beside them: each row of the table stands in the JSON."""
+    data = json.loads(run("count", name, "--json").stdout)
+    table = run("count", name, "--all").stdout
+    rows = re.findall(r"^ *(\d+) +(?:\d+ +)?([MVFU]{8,}) +yes", table, re.MULTILINE)
+    assert len(rows) == data["ways"] == len(data["way_list"])
+    for (number, letters), way in zip(rows, data["way_list"], strict=True):
+        assert way["number"] == int(number)
+        assert "".join(way["assignment"].values()) == letters
+        assert way["extends"] == "proved"
+    dimensions = Counter(str(way["dimension"]) for way in data["way_list"])
+    assert dimensions == data["components"]["second_order"]

@@ -169,6 +169,16 @@ def test_bad_overruling_is_an_error_of_its_own(
     assert said in " ".join(result.stderr.replace("│", " ").split())
 
 
+def test_what_changes_nothing_about_an_exact_drawing_is_said() -> None:
+    result = run("info", "miura", "--unit", 24)
+    assert result.exit_code == PROVED
+    said = " ".join(result.stderr.split())
+    assert (
+        "no relation between creases holds nearly but not exactly: --unit changed nothing" in said
+    )
+    assert "changed nothing" not in run("info", "miura").stderr
+
+
 def test_a_relation_that_the_drawing_misses_by_far_is_refused(miura: Path) -> None:
     with pytest.raises(UsageError, match="the drawing misses 'parallel 0-9,0-10' by"):
         exactfold.read(miura, also=["parallel 0-9,0-10"])

@@ -129,7 +129,7 @@ def test_keys_of_the_json_are_fixed():
     data = count_branches(two_vertex()).to_dict()
     more = {"ways", "format", "version", "by", "why", "open_questions", "settings", "warnings"}
     more |= {"theory", "rigid", "components", "modes_count", "modes", "flat_folds", "free_folds"}
-    more |= {"exceptional_vertices", "freedom", "drawn"}
+    more |= {"exceptional_vertices", "freedom", "drawn", "way_list"}
     more |= {"letters", "near_misses", "read", "still_folds", "meant", "as_written", "proposal"}
     assert set(data) - KEYS == more
     assert set(data["pattern"]) == {

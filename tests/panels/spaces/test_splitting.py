@@ -167,3 +167,22 @@ def test_completed_squares_leave_the_matrix_as_it_was() -> None:
     squares = diagonalised(matrix)
     assert matrix == [[none, one], [one, none]]
     assert sorted(d > 0 for d, _ in squares) == [False, True]
+
+
+def test_the_clock_is_asked_while_the_form_of_a_vertex_with_many_folds_is_made(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The form takes one step for each fold, and the clock ends it after any of them."""
+    star = stars(ring_of_fives())[0]
+    steps = 0
+
+    def counted(_: Clock) -> None:
+        nonlocal steps
+        steps += 1
+        if steps == 3:
+            raise TooManyModesError("the time limit was reached")
+
+    monkeypatch.setattr(Clock, "check", counted)
+    with pytest.raises(TooManyModesError, match="time limit"):
+        Splitting({star.vertex: star}, 10**7, Clock(60))
+    assert steps == 3

@@ -93,8 +93,8 @@ def line_for(job: Job, result: BranchCount | Decomposition | Exception) -> Line:
         known = _known(result)
         message = "; ".join([*known, result.reason])
         if result.status is PROVED:
-            second = not isinstance(result, BranchCount) and result.true is None
-            second = second and result.second_order is not None
+            panels = None if isinstance(result, BranchCount) else result
+            second = panels is not None and panels.true is None and panels.graphs is None
             message = "to second order" if second else ""
         if (warning := result.warning) is not None and warning not in message:
             message = f"{message}{'; ' if message else ''}warning: {warning}"

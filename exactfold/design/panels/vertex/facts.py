@@ -203,10 +203,12 @@ def _forced(star: Star, given: str, fan: Fan) -> dict[Edge, str]:
 
 def _straightened(star: Star) -> Iterator[tuple[Star, tuple[_Pair, ...]]]:
     """The star with nearly straight pairs made straight: one, several, or all of them."""
+    near = [(ball(x, _BITS), ball(y, _BITS)) for x, y in star.directions]
     pairs = tuple(
         _Pair(i, j, off)
         for i, j in combinations(range(len(star.folds)), 2)
-        if 0 < (off := _bend(star.directions[i], star.directions[j])) < NEAR
+        if not _is_bent(near[i], near[j])
+        and 0 < (off := _bend(star.directions[i], star.directions[j])) < NEAR
     )
     for size in range(1, len(pairs) + 1):
         if 1 < size < len(pairs) > _MOST_PAIRS:
@@ -219,6 +221,13 @@ def _straightened(star: Star) -> Iterator[tuple[Star, tuple[_Pair, ...]]]:
                 x, y = directions[pair.one]
                 directions[pair.other] = (-x, -y)
             yield Star(star.vertex, star.folds, tuple(directions)), chosen
+
+
+def _is_bent(a: tuple[arb, arb], b: tuple[arb, arb]) -> bool:
+    """Whether enclosures show that two directions miss a straight line by more than `NEAR`."""
+    along = a[0] * b[0] + a[1] * b[1]
+    across = a[0] * b[1] - a[1] * b[0]
+    return bool(along > 0 or abs(across) > 2 * NEAR * abs(along))
 
 
 def _bend(a: Point, b: Point) -> float:
