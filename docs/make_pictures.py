@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from exactfold import PROVED, branch, count, decompose, draw, follow
+from exactfold import PROVED, branch, count, decompose, draw, flat, follow
 from exactfold.app.pictures.crease_drawing import CreaseDrawing
 from exactfold.app.pictures.crease_lines import crease_lines
+from exactfold.app.pictures.flat_conflicts import conflict_picture
+from exactfold.app.pictures.flat_states import state_picture
 from exactfold.app.pictures.folded import Amount, folded
 from exactfold.app.pictures.svg import element, number, picture, text
 from exactfold.app.report import motion_animation, motion_stills
+from exactfold.app.report.flat import reasons
 from exactfold.motion import follow_panels
 from exactfold.pattern import CreasePattern
 
@@ -36,7 +39,7 @@ def pictures() -> dict[str, str]:
         motion = follow_panels(decompose(pattern), way=way)
         panels[f"{name}.svg"] = motion_stills(motion, 5, f"{pattern}, way {way}")
     others = {"folding.svg": folding(), "rim.svg": rim(), "rim-path.svg": rim_path()}
-    return branches | panels | drawings() | others
+    return branches | panels | drawings() | folded_flat() | others
 
 
 def rim_path() -> str:
@@ -80,6 +83,17 @@ def drawings() -> dict[str, str]:
         "draw-branch.svg": draw(one, title="random-8"),
         "draw-folded.svg": folded(follow(one), Amount.of("60deg"), "random-8").text,
         "draw-all.svg": draw(count("flat-octahedron"), title="flat-octahedron"),
+    }
+
+
+def folded_flat() -> dict[str, str]:
+    """Those of the page on folding flat, as `exactfold flat -o` makes them."""
+    twist = flat("square-twist")
+    return {
+        "flat-state.svg": state_picture(flat("miura").state(), "miura, flat-folded state 0"),
+        "flat-why.svg": conflict_picture(
+            twist, reasons(twist), "square-twist, no flat-folded state"
+        ),
     }
 
 

@@ -524,6 +524,20 @@ def test_the_commands_of_the_gallery_make_its_pictures(
         assert (tmp_path / file).read_text("utf-8") == shown, file
 
 
+def test_the_commands_of_the_page_on_folding_flat_make_its_pictures(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    page = (ROOT / "docs" / "flat.md").read_text("utf-8")
+    lines = re.findall(r"`(exactfold flat \S+ -o \S+\.svg)`", page)
+    assert [run(*shlex.split(line)[1:]).exit_code for line in lines] == [0, 1]
+    for line in lines:
+        file = line.split()[-1]
+        assert f"](pictures/{file})" in page
+        shown = (ROOT / "docs" / "pictures" / file).read_text("utf-8")
+        assert (tmp_path / file).read_text("utf-8") == shown, file
+
+
 def gallery_section(name: str) -> tuple[str, str]:
     """The page of the gallery, and what it says of this pattern."""
     page = (ROOT / "docs" / "gallery.md").read_text("utf-8")

@@ -27,8 +27,8 @@ from exactfold.pattern.panel_pattern import Edge
 
 Document: TypeAlias = dict[str, Any]
 Orders: TypeAlias = tuple[Order, ...]
-_COUNTED: Final = 1 << 16
-"""The number of pairs that overlap up to which the number of states gets a certificate."""
+MOST_PAIRS: Final = 1 << 16
+"""The number of pairs that overlap up to which certificates state their orders."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ def states_certificate(found: FlatStates, clock: Clock = UNLIMITED) -> Document:
     writer = _Writer(found, head["pattern"])
     if found.conflict:
         return _refuted(head, letters, writer.contradiction(clock))
-    if len(found.pairs) > _COUNTED or found.count != found.listed:
+    if len(found.pairs) > MOST_PAIRS or found.count != found.listed:
         return _state(found, head, letters, writer)
     claims: FlatCountClaims = {
         "letters": letters,
@@ -120,7 +120,7 @@ def _state(found: FlatStates, head: Document, letters: str, writer: _Writer) -> 
         "pieces": len(writer.folded.pieces),
         "pairs": len(bits),
     }
-    return _document(FLAT_STATE, head, claims, {"pieces": writer.pieces, "order": _digits(bits)})
+    return _document(FLAT_STATE, head, claims, {"pieces": writer.pieces, "order": digits_of(bits)})
 
 
 class _Writer:
@@ -390,12 +390,12 @@ class _Part:
                 steps.append([writer.orders(clause), hints])
         return {
             "pairs": [list(writer.pairs[pair]) for pair in self.component.pairs],
-            "states": [_digits([sign > 0 for sign in state]) for state in self.component.states],
+            "states": [digits_of([sign > 0 for sign in state]) for state in self.component.states],
             "steps": steps,
         }
 
 
-def _digits(bits: Sequence[bool]) -> str:
+def digits_of(bits: Sequence[bool]) -> str:
     """Bits as hexadecimal digits, the first bit as the highest of the first digit."""
     text = "".join("01"[bit] for bit in bits)
     text += "0" * (-len(text) % 4)

@@ -7,7 +7,7 @@ order.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import pairwise
 from math import ceil, degrees, pi
@@ -22,17 +22,20 @@ from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.errors import NotApplicableError, NotFollowedError, TooManyModesError
 from exactfold.exact.surds import ball
+from exactfold.layers.certificate import MOST_PAIRS, digits_of
 from exactfold.layers.document import WayEndDocument
 from exactfold.layers.images import Images, images_of
 from exactfold.layers.overlaps import Overlaps
 from exactfold.layers.pieces import pieces_of
 from exactfold.layers.states import FlatStates, Pair, State
+from exactfold.motion.claims import Claim
 from exactfold.motion.curves.events import CONTACT
 from exactfold.motion.panels.clearance import PanelClearance, prove_contacts
 from exactfold.motion.panels.following import follow_panels
 from exactfold.motion.panels.last_stretch import LastStretch
 from exactfold.motion.panels.listing import PanelWay, panel_ways
 from exactfold.motion.panels.motion import PanelMotion
+from exactfold.motion.panels.proving import PanelProof
 from exactfold.panels.result import Decomposition
 from exactfold.pattern.panel_pattern import Edge
 
@@ -121,6 +124,31 @@ def reached(motion: PanelMotion, contacts: PanelClearance | None = None) -> Reac
         state = State(images, {pair: -next(iter(found)) for pair, found in signs.items()})
     status, reason = _judged(contacts, crossing, images, state)
     return Reached(status, reason, motion, contacts, images, state, crossing)
+
+
+def with_layers(proof: PanelProof) -> PanelProof:
+    """A proof whose certificate also states the flat-folded state that the motion ends in.
+
+    It is the same proof if no state is proved, or if more than 65,536 pairs of pieces overlap.
+
+    >>> import exactfold
+    >>> from exactfold.motion import prove_panels
+    >>> proof = prove_panels(exactfold.follow("square-twist", 1, until="180deg", frames=2))
+    >>> with_layers(proof).certificate()["claims"]["layers"]["order"]
+    'dd0027d21'
+    """
+    contacts = proof.contacts
+    if not proof.certified or contacts is None or contacts.closes_from is None:
+        return proof
+    end = reached(proof.motion, contacts)
+    if end.status is not PROVED or end.state is None or len(end.state.orders) > MOST_PAIRS:
+        return proof
+    orders = sorted(end.state.orders.items())
+    layers = {
+        "pieces": [list(polygon) for polygon in end.images.pieces.polygons],
+        "order": digits_of([above > 0 for _, above in orders]),
+    }
+    return replace(proof, layers=Claim({"layers": layers}))
 
 
 @dataclass(frozen=True)

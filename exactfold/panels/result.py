@@ -92,8 +92,8 @@ class Decomposition(Page, Ways[Mode], Certified):
 
     If `graphs` is a number n, the sheet is triangulated, and its solutions and its true
     configurations near the flat state are 2^n graphs over the boundary heights, each of dimension
-    `pattern.D` (docs/any_border.md, Theorems 6 and 8). Then the status is PROVED although
-    `second_order`, the number of irreducible components, may be None.
+    `pattern.D` (docs/any_border.md, Theorem 6, and docs/any_border.md, Theorem 8). Then the status
+    is PROVED although `second_order`, the number of irreducible components, may be None.
     """
 
     pattern: PanelPattern

@@ -50,6 +50,8 @@ function rabbitEar(document) {
     classes: frames.map((frame) => frame.frame_classes),
     isFoldedForm: frames.map((frame) => ear.graph.isFoldedForm(frame)),
     angles: ear.graph.makeEdgesFoldAngleFromFaces(copy(frames[1])),
+    orders: frames[1].faceOrders ?? [],
+    foldedByEar: ear.graph.makeVerticesCoordsFlatFolded(copy(frames[0])),
     motion: Array.from({ length: ear.graph.countFrames(document) - 1 }, (_, k) => {
       const frame = ear.graph.flattenFrame(copy(document), k + 1);
       return {

@@ -14,8 +14,11 @@ from exactfold import random_square
 from exactfold.branches import count_branches, export_branch, find_branch
 from exactfold.errors import UsageError
 from exactfold.interop.fold_frames import BRANCH_KEY, HEIGHTS_KEY, branch_document
+from exactfold.layers import fold_flat
+from exactfold.layers.fold_frames import state_document
 from exactfold.motion import follow, write_motion
 from exactfold.pattern import families, load_fold, write_fold
+from exactfold.pattern.writing.fold_writing import document_text
 
 READERS = Path(__file__).with_name("fold_readers.mjs")
 
@@ -257,6 +260,30 @@ def test_rabbit_ear_reads_every_frame_of_a_motion(tmp_path, readers, until):
         inner = [letter != "B" for letter in own]
         turned = np.radians(np.array(seen["angles"]) - frame["edges_foldAngle"])[inner]
         assert np.cos(turned) == pytest.approx(np.ones(len(turned)), abs=1e-9)
+
+
+def test_fold_and_rabbit_ear_read_flat_folded_states(tmp_path, readers):
+    """The frames, the folded coordinates, and layers that agree with the letters."""
+    state = fold_flat("miura").state()
+    sheet = state.images.pieces.sheet
+    path = tmp_path / "state.fold"
+    path.write_text(document_text(state_document(state)), encoding="utf-8")
+    document = read(path)
+    (programs,) = readers(path)
+    assert programs["fold"]["json"]
+    assert programs["fold"]["traced"] == programs["fold"]["stated"]
+    seen = programs["ear"]
+    assert (seen["frames"], seen["folded"], seen["problems"]) == (2, 1, [[], []])
+    assert seen["classes"] == [["creasePattern"], ["foldedForm"]]
+    assert seen["components"] == [[2], [2]]
+    assert seen["isFoldedForm"] == [False, True]
+    assert len(seen["orders"]) == len(state.orders)
+    assert seen["orders"] == document["file_frames"][0]["faceOrders"]
+    folded = np.array(seen["foldedByEar"])  # by the other program, from the letters alone
+    places = np.array(state.images.places)
+    lengths = [np.linalg.norm(p[:, None] - p[None], axis=2) for p in (folded[:, :2], places)]
+    assert lengths[0] == pytest.approx(lengths[1], abs=1e-9)
+    assert len(folded) == len(sheet.vertices)
 
 
 def _check_fold_library(pattern, branch, document, seen):

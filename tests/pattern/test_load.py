@@ -224,6 +224,7 @@ def test_no_public_function_that_takes_a_pattern_is_missing():
         "design.Actuation",
         "design.AllAssignments",
         "design.Match",
+        "layers.FlatStates",
         "design.PanelMatch",
         "design.PanelAssignments",
         "design.BoundaryMatch",

@@ -174,7 +174,9 @@ class Group(TyperGroup):
         try:
             code = super().main(*args, **more)
         except _WRONG_USAGE as error:
-            if type(error).__name__ != "NoArgsIsHelpError":  # the help has been printed
+            if type(error).__name__ == "NoArgsIsHelpError":
+                typer.echo(error.format_message(), err=True)  # the help
+            else:
                 say(plain_usage(error))
             raise SystemExit(getattr(error, "exit_code", 2)) from None
         raise SystemExit(code if isinstance(code, int) else 0)

@@ -201,7 +201,7 @@ def prove(
     <Verdict.PROVED: 'proved'>
     """
     if isinstance(motion, PanelMotion):
-        return prove_panels(motion)
+        return _with_layers(prove_panels(motion))
     if isinstance(motion, FamilyMotion):
         raise NotFollowedError(
             f"this motion has no proof: it is {motion.reason}; `match` with its letters proves "
@@ -210,6 +210,14 @@ def prove(
     if not isinstance(motion, Motion):
         raise UsageError(f"{type(motion).__name__} is not a motion: `follow` makes one")
     return prove_motion(motion, progress=progress)
+
+
+def _with_layers(proof: PanelProof) -> PanelProof:
+    if proof.contacts is None or proof.contacts.closes_from is None:
+        return proof
+    from exactfold.layers.ends import with_layers
+
+    return with_layers(proof)
 
 
 def loops(

@@ -30,13 +30,15 @@ _PLACES = 44
 """Times are rounded to this many binary places."""
 
 
-def certificate_of_panel_motion(motion: PanelMotion, contacts: PanelClearance) -> Document:
+def certificate_of_panel_motion(
+    motion: PanelMotion, contacts: PanelClearance, layers: Claim | None = None
+) -> Document:
     """The certificate of a motion and its contacts, as a JSON object for `exactfold.checker`.
 
     It claims that the panels fold in this way, and a time before which no two of them touch. If a
     contact is proved, it also claims a time by which some panels touch; or if it is proved that
-    none touch before all folds close together, it claims this. The times are those of `contacts`,
-    made slightly weaker.
+    none touch before all folds close together, it claims this, and the order of `layers` then, if
+    that is given. The times are those of `contacts`, made slightly weaker.
 
     Raises `NotApplicableError` if a vertex needs more than one square root besides those of the
     coordinates.
@@ -58,6 +60,8 @@ def certificate_of_panel_motion(motion: PanelMotion, contacts: PanelClearance) -
     if contacts.closes_from is not None:
         version = CLOSING
         claims.append(closed_claim(motion, contacts.closes_from, timing))
+        if layers is not None:
+            claims.append(layers)
     else:
         clear, clear_claimed = clear_claim(motion, contacts, timing)
         claims.append(clear_claimed)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.certificates.entries import Document, write_certificate
 from exactfold.errors import NotApplicableError
+from exactfold.motion.claims import Claim
 from exactfold.motion.curves.motion_document import PanelProofDocument
 from exactfold.motion.panels.certificate import certificate_of_panel_motion
 from exactfold.motion.panels.clearance import PanelClearance, with_proved_contact
@@ -23,7 +24,8 @@ class PanelProof:
 
     `motion` has the first contact as it is proved; if it is not proved, the motion is unchanged.
     `contacts` says until when no two panels touch; it is None if nothing is proved of the motion.
-    `certified` says whether there is a certificate. `status` is PROVED if the whole motion is clear
+    `certified` says whether there is a certificate, and `layers` is what it claims of the state in
+    which all folds close together; None if nothing. `status` is PROVED if the whole motion is clear
     or its first contact is enclosed. Otherwise `reason` says what is missing.
     """
 
@@ -32,6 +34,7 @@ class PanelProof:
     motion: PanelMotion
     contacts: PanelClearance | None = None
     certified: bool = False
+    layers: Claim | None = None
 
     @property
     def passed(self) -> bool:
@@ -52,7 +55,7 @@ class PanelProof:
         """
         if self.contacts is None or not self.certified:
             raise NotApplicableError(f"there is no certificate: {self.reason}")
-        return certificate_of_panel_motion(self.motion, self.contacts)
+        return certificate_of_panel_motion(self.motion, self.contacts, self.layers)
 
     def write(self, path: str | os.PathLike[str]) -> bool:
         """Write `certificate`; False if there is none. Raises `UnwritableFileError`.

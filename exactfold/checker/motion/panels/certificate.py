@@ -7,10 +7,10 @@ about this motion, one class for each (docs/motion.md, 20 to 22).
 The claims are `assignment`, with a letter for each fold in lexicographic order; the `drivers`, a
 fold of each mode that moves and each free fold that does, which at time t have the angle t; in
 version 2 their different `rates`, the largest 1; `clear` and `contact` as for branches; and in
-version 3 the folds that are `closed` at time pi, all that move, with no contact before. The
-evidence has the `densities` of the active folds at each interior vertex, numbers of the field of
-the sheet or with the square root of one `radicand` more, and the parameters x until which panels
-are parted, and at which an edge runs through a panel.
+version 3 the folds that are `closed` at time pi, all that move, with no contact before, and the
+order of `layers` in which they end. The evidence has the `densities` of the active folds at each
+interior vertex, numbers of the field of the sheet or with the square root of one `radicand` more,
+and the parameters x until which panels are parted, and at which an edge runs through a panel.
 """
 
 from __future__ import annotations
@@ -25,14 +25,16 @@ from ..contacts import TouchingFaces
 from .closing import Closed
 from .contacts import Clear, Contact
 from .folding import Driven, Folding, OwnRates, PanelClaim
+from .layers import Layers, LayersDocument
 
-CLAIMS: tuple[type[PanelClaim], ...] = (Driven, OwnRates, Clear, Closed, Contact)
+CLAIMS: tuple[type[PanelClaim], ...] = (Driven, OwnRates, Clear, Closed, Layers, Contact)
 """All claims, in the order in which a summary states them."""
 
 
 class _Optional(TypedDict, total=False):
     rates: list[str]
     closed: list[list[int]]
+    layers: LayersDocument
     contact: TouchingFaces
 
 
@@ -47,7 +49,7 @@ class VerifiedPanelMotion(_Optional):
 
 PLAIN, RATED, CLOSING = 1, 2, 3
 """The versions: in 2 each driver has a rate of its own, in 1 and 3 all move at the same rate. In 3
-no panels touch until all folds that move close.
+no panels touch until all folds that move close; a file may state their layers then.
 """
 
 
@@ -59,7 +61,7 @@ def check(data: dict[str, Any]) -> VerifiedPanelMotion:
     """
     sheet, digest = read_panels(data["pattern"])
     version = data["version"]
-    only = {OwnRates: RATED, Closed: CLOSING}
+    only = {OwnRates: RATED, Closed: CLOSING, Layers: CLOSING}
     kinds = [kind for kind in CLAIMS if only.get(kind, version) == version]
     claims = read_claims(kinds, data["claims"], data["evidence"])
     folding = Folding(sheet, data["claims"], data["evidence"])

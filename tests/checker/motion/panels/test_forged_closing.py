@@ -14,9 +14,10 @@ from forge_panel_motions import given, strip
 import exactfold
 from exactfold import checker
 from exactfold.checker.core.intervals import Interval
-from exactfold.checker.motion.panels.closing import LastStretch, _turn
+from exactfold.checker.motion.panels.closing import LastStretch
 from exactfold.checker.motion.panels.folding import Folding
 from exactfold.checker.motion.panels.series import BITS
+from exactfold.checker.motion.panels.turning import turn_for
 from exactfold.checker.sheets.panels import read_panels
 from exactfold.motion import follow_panels, prove_panels
 
@@ -118,9 +119,9 @@ def test_levelled_positions_begin_at_the_image() -> None:
 
 
 def test_planes_that_turn() -> None:
-    assert _turn([[1.0, 0.0, 0.0]], [1.0]) == [0.0, 0.0, 0.0]
-    m = _turn([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [-1.0, 0.5])
+    assert turn_for([[1.0, 0.0, 0.0]], [1.0]) == [0.0, 0.0, 0.0]
+    m = turn_for([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [-1.0, 0.5])
     assert m is not None
     assert m[0] > 1
     assert m[1] > -0.5
-    assert _turn([[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]], [-1.0, 0.0]) is None
+    assert turn_for([[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]], [-1.0, 0.0]) is None
