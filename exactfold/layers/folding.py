@@ -8,8 +8,6 @@ from dataclasses import replace
 from math import prod
 from typing import Final
 
-import numpy as np
-
 from exactfold._support.clock import LIMIT, Clock
 from exactfold._support.plurals import agreeing, counted
 from exactfold._support.progress import Progress
@@ -20,7 +18,7 @@ from exactfold.exact.surds import exact
 from exactfold.layers.conflicts import ConflictSearch
 from exactfold.layers.constraints import Constraints
 from exactfold.layers.images import Complex, Images, images_of
-from exactfold.layers.nearly import Blurred
+from exactfold.layers.nearly import Blurred, half_step, reflections, size_of
 from exactfold.layers.orders import LISTED, Orders, Search
 from exactfold.layers.overlaps import Overlaps
 from exactfold.layers.pieces import pieces_of
@@ -34,9 +32,11 @@ from exactfold.pattern.panel_pattern import Edge, EnclosedPattern, PanelPattern,
 
 _NEAR: Final = 2e-4
 """In a drawing, a corner and a line of the folded image that miss each other by less than this,
-by the size, may have been meant to meet."""
-_ROUNDING: Final = 1e-11
+by the size of the sheet, may have been meant to meet, however exact its digits are."""
+_ROUNDING: Final = 1e-14
 """Moves by so much of the size are rounding errors of floats."""
+_DIGITS: Final = 1e-11
+"""So are moves by so much of the size that half of the last digit explains."""
 _ENCLOSED: Final = (
     "the folds of the sheet that was meant have exact directions, but its vertices are known only "
     "nearly, so that it is not known which of them meet when it is folded"
@@ -65,8 +65,8 @@ def fold_flat(
     or if the conditions on orders contradict each other. It is UNDECIDED after `limit` seconds, and
     if it is one about inexact digits of a drawing: if its reading is in doubt (`Opened.doubt`), if
     it depends on whether corners and lines of the folded image that nearly meet do, or if reading
-    moved coordinates and the
-    digits as written have another number of states. The snap "exact" takes the digits as they are.
+    moved coordinates and the digits as written have another number of states. The snap "exact"
+    takes the digits as they are.
 
     Raises `UsageError` for letters that do not fit, `PackageMissingError` without python-sat, and
     the errors of `open_sheet`.
@@ -85,11 +85,13 @@ def fold_flat(
     doubt, near = "", None  # what was not read from a file is exact
     if opened.reading.snap != "exact":
         doubt = opened.doubt
-        if found.as_written is not UNDECIDED:
-            if found.near is not None and opened.again is not None:
-                near = replace(found.near, states=_if_met(found, clock))
+        if found.as_written is not UNDECIDED and opened.again is not None:
+            written = _as_written(opened)
+            if found.images is not None:
+                near = _near(found, _blur(opened, written, found.images), clock)
+            if near is not None:
                 doubt = doubt or _depends(near, found.count)
-            doubt = doubt or _moved(opened, found, letters, clock)
+            doubt = doubt or _moved(opened, written, found, letters, clock)
     seconds = time.perf_counter() - start
     return replace(found, doubt=doubt, near=near, meant=opened.meant, seconds=seconds)
 
@@ -115,7 +117,7 @@ def _found(
         progress("overlaps", 0, 0)
     overlaps = Overlaps(images)
     pairs = tuple((i, j) for i, j in overlaps.pairs.tolist())
-    found = replace(found, images=images, pairs=pairs, near=_near(overlaps))
+    found = replace(found, images=images, pairs=pairs)
     constraints = Constraints(overlaps)
     try:
         orders = Search(constraints, clock, progress, most).run()
@@ -133,16 +135,39 @@ def _found(
     )
 
 
-def _if_met(found: FlatStates, clock: Clock) -> int | None:
+def _as_written(opened: Opened) -> Opened:
+    """The sheet with the digits of its file; the sheet itself if reading moved none."""
+    asked = isinstance(opened.reading.snap, int)
+    if opened.again is None or asked or not opened.largest_move:
+        return opened
+    try:
+        return opened.again(opened.reading.as_written)
+    except (InputError, UsageError):
+        return opened
+
+
+def _blur(opened: Opened, written: Opened, images: Images) -> float:
+    """What misses by less than this, by the size of the sheet, may have been meant to meet.
+
+    If vertices are off by e, a point behind k reflections is off by up to (1 + 2 k) e, as long as
+    directions are exact. Two of them miss each other by up to twice as much.
+    """
+    off = 0.0
+    if not isinstance(opened.reading.snap, int):
+        inferred = opened.meant is not None and opened.meant.inferred
+        off = half_step((written if inferred else opened).sheet.vertices)
+        if opened.meant is not None and inferred:
+            off = max(off, opened.meant.noise or 0.0, opened.meant.distance or 0.0)
+    return max(_NEAR, 2 * (1 + 2 * reflections(images.pieces)) * off)
+
+
+def _if_met(found: FlatStates, overlaps: Overlaps, blur: float, clock: Clock) -> int | None:
     """The number of states if all corners and lines that nearly meet are taken to meet.
 
     This is computed in floats, and proves nothing. None if it is not known.
     """
-    if found.images is None:
-        return None
-    overlaps = Overlaps(found.images)
     try:
-        blurred = Blurred(overlaps, _NEAR * _width(overlaps))
+        blurred = Blurred(overlaps, blur)
         orders = Search(Constraints(blurred), clock.at_least(5), most=1).run()
     except (KeyError, ValueError, TooManyModesError):
         return None
@@ -165,12 +190,12 @@ def _depends(near: Near, count: int | None) -> str:
     return f"{near.text}; if all that nearly meets is taken to meet, {states}"
 
 
-def _width(overlaps: Overlaps) -> float:
-    return float(max(np.ptp(overlaps.sides.x), np.ptp(overlaps.sides.y)))
-
-
 def _moved(
-    opened: Opened, found: FlatStates, letters: Mapping[Edge, str] | str | None, clock: Clock
+    opened: Opened,
+    written: Opened,
+    found: FlatStates,
+    letters: Mapping[Edge, str] | str | None,
+    clock: Clock,
 ) -> str:
     """Why an answer is in doubt for which coordinates were moved; empty if it is not.
 
@@ -178,19 +203,19 @@ def _moved(
     a vertex does not, the digits are noise, and say nothing against the coordinates that were found
     for them; and so do moves by the rounding of floats.
     """
-    asked = isinstance(opened.reading.snap, int)
-    inferred = opened.meant is not None and opened.meant.inferred
-    if opened.again is None or asked or inferred or opened.largest_move <= _ROUNDING:
+    if written is opened or opened.largest_move <= _ROUNDING:
+        return ""
+    if opened.largest_move <= min(_DIGITS, half_step(written.sheet.vertices)):
         return ""
     try:
-        written = fold_flat(opened.again(opened.reading.as_written), letters, limit=clock.left)
+        digits = fold_flat(written, letters, limit=clock.left)
     except (InputError, UsageError):
         return ""
-    if written.failures or (written.status, written.count) == (found.status, found.count):
+    if digits.failures or (digits.status, digits.count) == (found.status, found.count):
         return ""
     states = "a number of states that is not known"
-    if written.count is not None:
-        states = counted(written.count, "state")
+    if digits.count is not None:
+        states = counted(digits.count, "state")
     return (
         f"coordinates moved by up to {opened.largest_move:.1g} of the size when the drawing was "
         f"read, and the digits as written have {states}: --snap exact takes them, --snap DEN a grid"
@@ -202,8 +227,6 @@ def _letters(
 ) -> tuple[dict[Edge, str], Used]:
     """The letter M, V, F or U of each fold, and whose they are."""
     flat = {fold: opened.assignment.get(fold, "U") for fold in folds}
-    if not {"M", "V", "U"} & set(flat.values()):
-        flat = dict.fromkeys(folds, "U")  # the file says nothing about directions
     drawn = {fold: "F" if x in "FJ" else x if x in "MV" else "U" for fold, x in flat.items()}
     if letters is None or letters == "drawn":
         if {"M", "V"} & set(drawn.values()):
@@ -226,16 +249,19 @@ def _components(orders: Orders) -> tuple[Component, ...]:
     )
 
 
-def _near(overlaps: Overlaps) -> Near | None:
-    """The nearest corner and line that miss each other by less than `_NEAR`."""
+def _near(found: FlatStates, blur: float, clock: Clock) -> Near | None:
+    """The nearest corner and line, if they miss each other by less than a share of the size."""
+    if found.images is None:
+        return None
+    overlaps = Overlaps(found.images)
     sides = overlaps.sides
-    width = _width(overlaps)
+    size = size_of(found.pattern.scaled_vertices)
     line, point, distance = sides.nearest
-    if not distance < _NEAR * width:
+    if not distance < blur * size:
         return None
     vertex = next(v for v, number in overlaps.number.items() if number == point)
-    edge = overlaps.edge_on(line)
-    return Near(float(distance / width), vertex, edge)
+    states = _if_met(found, overlaps, blur * size, clock)
+    return Near(sides.distance(line, point) / size, vertex, overlaps.edge_on(line), states)
 
 
 def _unscaled(images: Images, point: Complex) -> Point:

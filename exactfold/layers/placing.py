@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from fractions import Fraction
 from math import frexp
 from typing import Any, Final, TypeAlias
@@ -108,7 +109,7 @@ class Placing:
         if key not in self._known:
             one = 1 << self.plane.bits
             for real in (lambda m: m / one, lambda m: Fraction(m, one)):
-                for entry in tried(real):
+                for entry in _possible(tried(real)):
                     if self._is_place(entry, clause):
                         self._known[key] = len(self.entries)
                         self.entries.append(entry)
@@ -122,6 +123,12 @@ class Placing:
         except CertificateError:
             return False
         return True
+
+
+def _possible(entries: Iterator[list[Any]]) -> Iterator[list[Any]]:
+    """The entries up to the first that floats are too coarse for: a length of 0, or none at all."""
+    with suppress(ZeroDivisionError, OverflowError):
+        yield from entries
 
 
 def _short(middle: Real, room: Real, finer: int) -> str:

@@ -129,6 +129,12 @@ class Sides:
         x, y = self.points[point]
         return self.lines[line].at(x, y).sign()
 
+    def distance(self, line: int, point: int) -> float:
+        """The distance of a point from a line, with the value computed exactly."""
+        x, y = self.points[point]
+        value = abs(float(self.lines[line].at(x, y)))
+        return value / float(np.hypot(self.a[line], self.b[line]))
+
     def _whole(self) -> tuple[Floats, Floats, Floats, Floats, Floats] | None:
         """All numbers times common denominators, if they become integers below 2^25."""
         xy = _integers([c for point in self.points for c in point])

@@ -54,6 +54,8 @@ class Conflict:
 class Near:
     """A corner and a line of the folded image that nearly meet: their distance by the size.
 
+    The size is the larger side of the rectangle round the sheet.
+
     `states` is the number of states if everything that is as near is taken to meet, computed in
     floats; None if it is not known.
     """
@@ -66,9 +68,10 @@ class Near:
     @property
     def text(self) -> str:
         """The near miss in words."""
+        by = f"{self.distance:.1g}" if self.distance else "less than 1e-300"
         return (
             f"in the folded image vertex {self.vertex} misses the line of edge {self.edge[0]}-"
-            f"{self.edge[1]} by {self.distance:.1g} of the size"
+            f"{self.edge[1]} by {by} of the size"
         )
 
 

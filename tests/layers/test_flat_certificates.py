@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from fractions import Fraction
 
 import pytest
 from flat_sheets import fan, folded_map, strip
@@ -12,6 +13,7 @@ from exactfold.errors import NotApplicableError, SolverError
 from exactfold.layers import certificate as writing
 from exactfold.layers.certificate import states_certificate
 from exactfold.layers.proofs import Prover
+from exactfold.pattern.panel_pattern import PanelPattern
 
 
 def verified(found):
@@ -69,6 +71,16 @@ def test_all_states_of_a_square_map():
     """A001418: three by three."""
     claims = verified(flat(folded_map(3, 3), "any", most=2000))
     assert claims["states"] == 1368
+
+
+@pytest.mark.parametrize(
+    ("start", "width"), [(10**12, Fraction(1, 10**6)), (1, Fraction(1, 10**18))]
+)
+def test_places_are_found_where_floats_are_too_coarse(start, width):
+    points = [(start + x * width, start + y * width) for x in range(5) for y in (0, 1)]
+    edges = [(2 * k, 2 * k + 1) for k in range(5)] + [(k, k + 2) for k in range(8)]
+    found = flat(PanelPattern(points, edges))
+    assert verified(found)["states"] == found.count == 16
 
 
 def test_what_is_not_decided_has_no_certificate():

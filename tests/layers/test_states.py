@@ -97,6 +97,19 @@ def test_creases_that_are_not_folded_join_panels():
     assert len(found.images.pieces.polygons) == 3
 
 
+@pytest.mark.parametrize("letters", [None, "any"])
+def test_a_file_whose_folds_all_have_f_is_not_folded(letters):
+    corners = [[0, 0], [2, 0], [2, 2], [0, 2]]
+    edges = [[0, 1], [1, 2], [2, 3], [3, 0], [0, 2]]
+    sheet = {"vertices_coords": corners, "edges_vertices": edges}
+    kept = flat({**sheet, "edges_assignment": [*"BBBBF"]}, letters)
+    assert (kept.status, kept.count, kept.letters) == (PROVED, 1, {(0, 2): "F"})
+    assert len(kept.images.maps) == 1
+    for said in ({}, {"edges_assignment": [*"BBBBU"]}):
+        free = flat({**sheet, **said}, letters)
+        assert (free.status, free.count, free.letters) == (PROVED, 2, {(0, 2): "U"})
+
+
 def test_the_order_of_panels_across_a_flat_edge_is_one():
     """A square on a flat crease of another layer cannot pass through it."""
     sheet = grid((0, 1, 2), (0, 1, 2))
