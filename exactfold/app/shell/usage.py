@@ -175,16 +175,21 @@ class Group(TyperGroup):
             code = super().main(*args, **more)
         except _WRONG_USAGE as error:
             if type(error).__name__ == "NoArgsIsHelpError":
-                typer.echo(error.format_message(), err=True)  # the help
+                typer.echo(_message(error), err=True)  # the help
             else:
                 say(plain_usage(error))
             raise SystemExit(getattr(error, "exit_code", 2)) from None
         raise SystemExit(code if isinstance(code, int) else 0)
 
 
+def _message(error: Any) -> str:
+    """What an error of typer says."""
+    return str(error.format_message())
+
+
 def plain_usage(error: Any) -> str:
     """What is wrong with a command line, in one line that points to the help of the command."""
-    text = " ".join(error.format_message().split()).rstrip(".")
+    text = " ".join(_message(error).split()).rstrip(".")
     text = re.sub(
         r"^Invalid value for (.+?): ", lambda match: match[1].replace("'", "") + ": ", text
     )
