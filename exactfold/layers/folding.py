@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 from dataclasses import replace
-from math import prod
+from math import prod, radians
 from typing import Final
 
 from exactfold._support.clock import LIMIT, Clock
@@ -23,7 +23,7 @@ from exactfold.layers.orders import LISTED, Orders, Search
 from exactfold.layers.overlaps import Overlaps
 from exactfold.layers.pieces import pieces_of
 from exactfold.layers.states import Component, Conflict, FlatStates, Near, Used
-from exactfold.layers.vertices import failures
+from exactfold.layers.vertices import Failure, failures
 from exactfold.layers.witnesses import witness
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.loading import PatternLike, open_sheet
@@ -92,6 +92,7 @@ def fold_flat(
             if near is not None:
                 doubt = doubt or _depends(near, found.count)
             doubt = doubt or _moved(opened, written, found, letters, clock)
+            doubt = doubt or _hardly_fails(found.failures)
     seconds = time.perf_counter() - start
     return replace(found, doubt=doubt, near=near, meant=opened.meant, seconds=seconds)
 
@@ -220,6 +221,16 @@ def _moved(
         f"coordinates moved by up to {opened.largest_move:.1g} of the size when the drawing was "
         f"read, and the digits as written have {states}: --snap exact takes them, --snap DEN a grid"
     )
+
+
+def _hardly_fails(stuck: tuple[Failure, ...]) -> str:
+    """Why a refutation by single vertices is in doubt; empty if it is not.
+
+    It is if Kawasaki's condition alone fails, by angles that may be meant to be 0.
+    """
+    if not stuck or any(one.off is None or abs(radians(one.off)) > _NEAR for one in stuck):
+        return ""
+    return f"{stuck[0].text}, which may be noise: --snap exact takes the digits as they are"
 
 
 def _letters(

@@ -216,3 +216,20 @@ def test_the_sheet_that_was_meant_is_named():
     found = exactfold.flat(sheet)
     assert found.status is PROVED
     assert found.locally_flat is PROVED
+
+
+@pytest.mark.parametrize(("snap", "status"), [("auto", UNDECIDED), ("exact", REFUTED)])
+def test_a_vertex_that_hardly_fails_is_not_refuted(snap, status):
+    """Its sectors 50.3, 60.1, 59.2, 65.4, 70.5, 54.5 fold flat, and so do no seven decimals."""
+    points = [(0, 0), (0.9925462, 0.1218693), (0.5402403, 0.8415108), (-0.4601998, 0.8878154)]
+    points += [(-0.9982398, 0.0593064), (-0.4694716, -0.8829476), (0.6755902, -0.7372773)]
+    edges = [[0, i] for i in range(1, 7)] + [[i, i % 6 + 1] for i in range(1, 7)]
+    file = {
+        "file_spec": 1.1,
+        "vertices_coords": points,
+        "edges_vertices": edges,
+        "edges_assignment": ["U"] * 6 + ["B"] * 6,
+    }
+    answer = fold_flat(exactfold.read_fold(json.dumps(file), snap=snap))
+    assert answer.status is status
+    assert ("Kawasaki" in answer.doubt) is (status is UNDECIDED)
