@@ -93,7 +93,9 @@ def fold_flat(
                 doubt = doubt or _depends(near, found.count)
             doubt = doubt or _moved(opened, written, found, letters, clock)
     seconds = time.perf_counter() - start
-    return replace(found, doubt=doubt, near=near, meant=opened.meant, seconds=seconds)
+    return replace(
+        found, doubt=doubt, near=near, meant=opened.meant, cuts=opened.cuts, seconds=seconds
+    )
 
 
 def _found(
