@@ -122,9 +122,10 @@ class FlatDocument(TypedDict):
     """The nearest corner and line of the folded image that do not meet, if they nearly do."""
     meant: MeantDocument | None
     """What was inferred if the digits of the drawing are inexact; else null."""
+    cuts_opened: bool
+    """Whether this is an answer about the sheet whose cuts are opened."""
     as_written: WrittenDocument | None
-    """If the status is undecided because digits are in doubt: the answer for them."""
+    """If digits are in doubt: the answer for the coordinates as they were read."""
     ways: list[WayEndDocument] | None
     """Where the ways of the sheet end; null without `--ways`."""
-    """If digits are in doubt: the answer for the coordinates as they were read."""
     seconds: NotNegative

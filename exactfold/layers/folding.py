@@ -94,7 +94,9 @@ def fold_flat(
             doubt = doubt or _moved(opened, written, found, letters, clock)
             doubt = doubt or _hardly_fails(found.failures)
     seconds = time.perf_counter() - start
-    return replace(found, doubt=doubt, near=near, meant=opened.meant, seconds=seconds)
+    return replace(
+        found, doubt=doubt, near=near, meant=opened.meant, cuts=opened.cuts, seconds=seconds
+    )
 
 
 def _found(

@@ -127,6 +127,7 @@ class FlatStates:
     If there is no state, `conflict` is the smallest set found of conditions that contradict each
     other. `stopped` says why not everything is known. `doubt` says why the answer is one about the
     digits of the drawing only; then the status is UNDECIDED, and `as_written` is that answer.
+    With `cuts`, it is an answer about the sheet whose cuts are opened.
     """
 
     pattern: PanelPattern
@@ -142,6 +143,7 @@ class FlatStates:
     doubt: str = ""
     near: Near | None = None
     meant: Meant | None = None
+    cuts: bool = False
     seconds: float = field(default=0.0, compare=False)
 
     @property
@@ -286,6 +288,7 @@ def _document(found: FlatStates, name: str | None) -> FlatDocument:
             "states": near.states,
         },
         "meant": None if found.meant is None else found.meant.to_dict(),
+        "cuts_opened": found.cuts,
         "as_written": {
             "status": str(found.as_written),
             "states": found.count,

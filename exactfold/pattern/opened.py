@@ -43,8 +43,9 @@ class Opened(Picture):
     each for what was read, how coordinates were made exact, and each repair; it is empty if the
     file needed nothing. `brief` says the same in a few words: lines, coordinates, repairs. `seen`
     has the sentences that nobody should miss, such as creases that are lost. `snapped` is the
-    largest change of a coordinate by `snap`. `again` reads the sheet once more with another
-    `Reading` than `reading`; it is None for a sheet that was not read from a file.
+    largest change of a coordinate by `snap`. `cuts` says that cuts were opened.
+    `again` reads the sheet once more with another `Reading` than `reading`; it is None for a
+    sheet that was not read from a file.
 
     `meant` is None if no relation between creases holds nearly but not exactly. Otherwise the
     digits of the file are inexact, and `meant` says what was inferred from them: either `sheet` is
@@ -59,6 +60,7 @@ class Opened(Picture):
     snapped: Fraction = Fraction(0)
     largest_move: float = 0.0
     field_name: str = "Q"
+    cuts: bool = False
     meant: Meant | None = None
     reading: Reading = field(default=PLAIN, repr=False, compare=False)
     again: Callable[[Reading], Opened] | None = field(default=None, repr=False, compare=False)

@@ -237,6 +237,7 @@ def _chosen(drawing: Drawing, sheets: Sheets, reading: Reading) -> Opened:
         seen,
         largest_move=sheets.coordinates.largest_move,
         field_name=pattern.field_name,
+        cuts=any(one.cuts for one in sheets.repairs),
     )
 
 

@@ -95,10 +95,13 @@ def flat_answer(found: FlatStates) -> Text:
     sheet = ""
     if found.meant is not None and found.meant.inferred and not found.doubt:
         sheet = f"{found.meant.name}: "
+    if found.cuts:
+        sheet += "the sheet with its cuts opened: "
     letters = _LETTERS[found.letters_used]
+    cuts = " with its cuts opened" if found.cuts else ""
     if found.doubt:
         return Text.assemble(
-            f"whether the sheet folds flat {letters} is ",
+            f"whether the sheet{cuts} folds flat {letters} is ",
             status_text(UNDECIDED),
             f"{took}: {found.doubt}\nThe coordinates as they were read: "
             f"{_answer(found, letters)} - ",

@@ -43,7 +43,8 @@ class Repair:
 
     Indices are those of the given drawing; points that were added follow them. `lost` has the
     lines that were dropped, or taken for the boundary, although they may have been meant as folds.
-    A `loud` repair is always printed, as it changes what the answer is about.
+    A `loud` repair is always printed, as it changes what the answer is about; `cuts` says that it
+    opened cuts.
     """
 
     step: str
@@ -52,6 +53,7 @@ class Repair:
     sentence: str
     lost: tuple[Lost, ...] = ()
     loud: bool = False
+    cuts: bool = False
 
     def __repr__(self) -> str:
         return f"<Repair: {self.step}, {self.count}>"

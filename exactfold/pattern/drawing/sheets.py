@@ -112,7 +112,8 @@ def sheets(drawing: Drawing) -> tuple[tuple[Drawing, ...], list[Repair]]:
     )
     points = drawing.points
     reports = repair("border", len(alone), alone, points, empty_ones)
-    reports += repair("border", len(slits), slits, points, opened)
+    cuts = repair("border", len(slits), slits, points, opened)
+    reports += [replace(each, cuts=True) for each in cuts]
     return tuple(made), [replace(each, loud=True) for each in reports]
 
 
