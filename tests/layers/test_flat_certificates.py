@@ -60,7 +60,7 @@ def test_one_state_is_verified_where_there_are_too_many(monkeypatch):
     assert found.count == 60
     claims = verified(found)
     assert claims["pairs"] == len(found.pairs)
-    monkeypatch.setattr(writing, "_COUNTED", 0)
+    monkeypatch.setattr(writing, "MOST_PAIRS", 0)
     drawn = flat("bird-base")
     claims = verified(drawn)
     assert claims["assignment"] == claims["letters"] == "".join(drawn.letters.values())

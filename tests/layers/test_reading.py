@@ -230,6 +230,6 @@ def test_a_vertex_that_hardly_fails_is_not_refuted(snap, status):
         "edges_vertices": edges,
         "edges_assignment": ["U"] * 6 + ["B"] * 6,
     }
-    answer = fold_flat(exactfold.read_fold(json.dumps(file), snap=snap))
+    answer = flat(read(file, snap=snap))
     assert answer.status is status
     assert ("Kawasaki" in answer.doubt) is (status is UNDECIDED)
