@@ -108,7 +108,8 @@ def _along(answer: Decomposition, way: PanelWay, drawn: Mapping[Edge, str] | Non
     if way.verdict is PROVED and way.spaces:
         from exactfold.app.viewer.families import representative
 
-        direction = representative(way, answer.known, drawn or {})
+        listed = {fold: letter for fold, letter in way.letters.items() if letter in "MV"}
+        direction = representative(way, answer.known, {**(drawn or {}), **listed})
         return ChosenPanels(answer, way, {}, direction=direction)
     return ChosenPanels(answer, way, way.rates if way.verdict is PROVED else {})
 

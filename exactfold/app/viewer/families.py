@@ -47,8 +47,7 @@ def representative(
 ) -> Representative | None:
     """A direction in which a way folds that bends in spaces of motions; None if none is found.
 
-    A line of motions is followed to the side on which the list shows it. Among the directions of a
-    family one is chosen that has many of the `letters` of the file.
+    Among the directions of a family one is chosen that has many of the `letters` of the file.
     """
     densities = {fold: -1.0 if letters.get(fold) == "M" else 1.0 for fold in way.free}
     for mode in way.modes:
@@ -59,7 +58,7 @@ def representative(
         if id(leaf) in motions:
             densities |= {edge: float(x.mid()) for edge, x in motions[id(leaf)].items()}
             continue
-        point = _point_of(leaf, moving, {**letters, **_given(way.letters)})
+        point = _point_of(leaf, moving, letters)
         if point is None:
             return None
         densities |= point
@@ -104,10 +103,6 @@ def side_with(letters: str, drawn: str) -> int:
         if all(seen[k] == letter for k, letter in wanted):
             return side
     return 0
-
-
-def _given(letters: Mapping[Edge, str]) -> dict[Edge, str]:
-    return {fold: letter for fold, letter in letters.items() if letter in "MV"}
 
 
 def _point_of(
