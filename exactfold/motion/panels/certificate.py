@@ -7,7 +7,13 @@ from fractions import Fraction
 from math import ceil, cos, floor, pi, sin, tan
 
 from exactfold.certificates.entries import Document
-from exactfold.checker.motion.panels.certificate import CLOSING, PANEL_MOTION, PLAIN, RATED
+from exactfold.checker.motion.panels.certificate import (
+    CLOSING,
+    LAYERED,
+    PANEL_MOTION,
+    PLAIN,
+    RATED,
+)
 from exactfold.checker.motion.panels.times import Clock, OneRate, Rates, time_of
 from exactfold.errors import NotApplicableError
 from exactfold.exact.numbers import format_rational
@@ -61,6 +67,7 @@ def certificate_of_panel_motion(
         version = CLOSING
         claims.append(closed_claim(motion, contacts.closes_from, timing))
         if layers is not None:
+            version = LAYERED
             claims.append(layers)
     else:
         clear, clear_claimed = clear_claim(motion, contacts, timing)

@@ -7,10 +7,11 @@ about this motion, one class for each (docs/motion.md, 20 to 22).
 The claims are `assignment`, with a letter for each fold in lexicographic order; the `drivers`, a
 fold of each mode that moves and each free fold that does, which at time t have the angle t; in
 version 2 their different `rates`, the largest 1; `clear` and `contact` as for branches; and in
-version 3 the folds that are `closed` at time pi, all that move, with no contact before, and the
-order of `layers` in which they end. The evidence has the `densities` of the active folds at each
-interior vertex, numbers of the field of the sheet or with the square root of one `radicand` more,
-and the parameters x until which panels are parted, and at which an edge runs through a panel.
+versions 3 and 4 the folds that are `closed` at time pi, all that move, with no contact before, and
+in version 4 the order of `layers` in which they end. The evidence has the `densities` of the active
+folds at each interior vertex, numbers of the field of the sheet or with the square root of one
+`radicand` more, and the parameters x until which panels are parted, and at which an edge runs
+through a panel.
 """
 
 from __future__ import annotations
@@ -47,9 +48,9 @@ class VerifiedPanelMotion(_Optional):
     sha256: str
 
 
-PLAIN, RATED, CLOSING = 1, 2, 3
-"""The versions: in 2 each driver has a rate of its own, in 1 and 3 all move at the same rate. In 3
-no panels touch until all folds that move close; a file may state their layers then.
+PLAIN, RATED, CLOSING, LAYERED = 1, 2, 3, 4
+"""The versions: in 2 each driver has a rate of its own, in the others all move at the same rate. In
+3 and 4 no panels touch until all folds that move close, and 4 states their layers then.
 """
 
 
@@ -61,8 +62,8 @@ def check(data: dict[str, Any]) -> VerifiedPanelMotion:
     """
     sheet, digest = read_panels(data["pattern"])
     version = data["version"]
-    only = {OwnRates: RATED, Closed: CLOSING, Layers: CLOSING}
-    kinds = [kind for kind in CLAIMS if only.get(kind, version) == version]
+    only = {OwnRates: (RATED,), Closed: (CLOSING, LAYERED), Layers: (LAYERED,)}
+    kinds = [kind for kind in CLAIMS if version in only.get(kind, PANEL_MOTION.versions)]
     claims = read_claims(kinds, data["claims"], data["evidence"])
     folding = Folding(sheet, data["claims"], data["evidence"])
     for claim in claims:
@@ -77,7 +78,7 @@ def summary(claims: VerifiedPanelMotion) -> str:
 
 PANEL_MOTION = DocumentKind(
     format="exactfold panel motion",
-    versions=(PLAIN, RATED, CLOSING),
+    versions=(PLAIN, RATED, CLOSING, LAYERED),
     names="format version pattern claims evidence",
     claims=VerifiedPanelMotion,
     check=check,

@@ -41,6 +41,7 @@ class Layers(PanelClaim):
     """
 
     names = ("layers",)
+    always = True
 
     def check(self, folding: Folding) -> None:
         """Refuse an order that is not that of the heights; `Closed` has verified the rest."""

@@ -146,11 +146,12 @@ def test_keys_and_bits() -> None:
 
 
 def test_only_motions_that_close_end_in_layers() -> None:
-    document = whole()
-    document["version"] = 1
-    del document["claims"]["closed"]
-    with pytest.raises(checker.CertificateError, match="expected an object with the keys"):
-        verified(document)
+    for version, without in ((1, "closed"), (3, None), (4, "closed")):
+        document = whole()
+        document["version"] = version
+        document["claims"].pop(without, None)
+        with pytest.raises(checker.CertificateError, match="expected an object with the keys"):
+            verified(document)
 
 
 def test_the_work_is_limited() -> None:
