@@ -68,8 +68,7 @@ def fold_flat(
     moved coordinates and the digits as written have another number of states. The snap "exact"
     takes the digits as they are.
 
-    Raises `UsageError` for letters that do not fit, `PackageMissingError` without python-sat, and
-    the errors of `open_sheet`.
+    Raises `UsageError` for letters that do not fit, and the errors of `open_sheet`.
 
     >>> fold_flat("miura")
     <FlatStates: proved, 1 state, <PanelPattern: 9 interior vertices, 24 folds, 16 panels>>

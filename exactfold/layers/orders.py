@@ -14,7 +14,6 @@ from scipy.sparse.csgraph import connected_components
 from exactfold._support.clock import UNLIMITED, Clock
 from exactfold._support.progress import Progress
 from exactfold.errors import TooManyModesError
-from exactfold.interop.packages import optional
 from exactfold.layers.common import Common
 from exactfold.layers.constraints import Constraints, taco_clauses
 from exactfold.layers.sides import Indices
@@ -92,7 +91,7 @@ class Search:
         return np.concatenate([np.zeros((0, 3), dtype=np.int64), *self._used])
 
     def run(self) -> Orders:
-        """All orders; raises `PackageMissingError` without python-sat."""
+        """All orders."""
         try:
             self._classes()
             self._set(self._class(np.array(list(self.constraints.given.values()), dtype=np.int64)))
@@ -388,6 +387,7 @@ def models(
 
 
 def solver(clauses: Sequence[Sequence[int]]) -> Any:
-    """A solver for clauses; raises `PackageMissingError` without python-sat."""
-    solvers = optional("pysat.solvers", "'exactfold[sat]'")
-    return solvers.Solver("glucose4", bootstrap_with=clauses)
+    """A solver for clauses."""
+    from pysat.solvers import Solver  # loaded where it is used
+
+    return Solver("glucose4", bootstrap_with=clauses)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from importlib.util import find_spec
 from itertools import combinations
 from typing import Final
 
@@ -22,11 +21,6 @@ _MOST_FOLDS: Final = 8
 """At a vertex with more folds only straight pairs are tried."""
 _MOST_ROUNDS: Final = 400
 _SIDES: Final = {"V": 1, "M": -1}
-
-
-def has_solver() -> bool:
-    """Whether python-sat is installed, an optional package."""
-    return find_spec("pysat") is not None
 
 
 class ModeClauses:

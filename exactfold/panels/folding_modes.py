@@ -9,7 +9,7 @@ from typing import Final
 from exactfold._support.clock import UNLIMITED, Clock
 from exactfold._support.verdict import PROVED
 from exactfold.exact.surds import exact, sign, simple
-from exactfold.panels.clauses import ModeClauses, has_solver
+from exactfold.panels.clauses import ModeClauses
 from exactfold.panels.modes.extension import extension
 from exactfold.panels.result import Mode
 from exactfold.panels.spaces.found import exact_leaf
@@ -50,10 +50,9 @@ def folding_modes(
     """
     straight = (folding_mode(pattern, moving, line) for line in straight_creases(moving))
     modes = _by_letters(mode for mode in straight if mode is not None)
-    if has_solver():
-        clauses = ModeClauses(pattern, moving, clock=clock)
-        modes |= _by_letters(islice(clauses, _MOST_BY_CLAUSES))
-    if not modes or not has_solver():
+    clauses = ModeClauses(pattern, moving, clock=clock)
+    modes |= _by_letters(islice(clauses, _MOST_BY_CLAUSES))
+    if not modes:
         modes |= _by_letters(_proposed(pattern, moving, rows, size, most, clock))
     return _chosen(sorted(modes.values(), key=lambda mode: -len(mode.assignment)))
 

@@ -8,13 +8,11 @@ from panel_sheets import grid, miura, shifted_columns, tiling
 
 from exactfold._support.clock import Clock
 from exactfold._support.verdict import PROVED
-from exactfold.panels.clauses import ModeClauses, has_solver
+from exactfold.panels.clauses import ModeClauses
 from exactfold.panels.decomposition import decompose
 from exactfold.panels.vertex.stars import stars
 from exactfold.pattern.loading import open_sheet
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
-
-pytestmark = pytest.mark.skipif(not has_solver(), reason="python-sat is not installed")
 
 SHEETS = {
     "miura": miura(2, 3),

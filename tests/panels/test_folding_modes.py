@@ -47,7 +47,7 @@ def result(request: pytest.FixtureRequest) -> Decomposition:
         patch.setattr(by_spaces, "found_components", lambda *_: ([], False))
         patch.setattr(by_spaces, "MOST_STEPS", 0)
         if not solver:
-            patch.setattr(by_modes, "has_solver", lambda: False)
+            patch.setattr(by_modes, "ModeClauses", lambda *_, **__: [])
             patch.setattr(by_modes, "straight_creases", lambda _: [])
         found = decompose(boxes(5, slants))
     assert (found.status, found.found) == (UNDECIDED, None)

@@ -200,8 +200,6 @@ def _drawn(drawn: Drawn) -> str:
 
 
 def _notes(result: Decomposition, everything: bool) -> list[str]:
-    from exactfold.panels.clauses import has_solver
-
     notes = []
     if result.true is not None and result.second_order != result.true:
         notes.append(
@@ -228,10 +226,6 @@ def _notes(result: Decomposition, everything: bool) -> list[str]:
         notes.append(
             f"{counted(number, 'fold')} from boundary to boundary "
             f"{'folds' if number == 1 else 'fold'} independently of everything else"
-        )
-    if result.second_order is None and not result.doubt and not has_solver():
-        notes.append(
-            "with python-sat (pip install 'exactfold[sat]') a search by clauses may find more ways"
         )
     if result.second_order is None and result.modes:
         more = "there may be others" if result.graphs is None else "lies in one of the families"

@@ -12,7 +12,7 @@ from exactfold._support.verdict import PROVED
 from exactfold.design.panels.match import match_panels
 from exactfold.design.panels.refutation import held
 from exactfold.design.refutations.refutation import Letters
-from exactfold.panels.clauses import ModeClauses, has_solver
+from exactfold.panels.clauses import ModeClauses
 from exactfold.panels.nearby.answers import with_nearby
 from exactfold.panels.partial import Drawn
 from exactfold.panels.result import Decomposition
@@ -53,12 +53,10 @@ def folding_together(pattern: PanelPattern, letters: Letters, clock: Clock) -> t
 
     They are modes that were found by clauses (`ModeClauses`) and share no vertex, so that they fold
     independently, and folds from boundary to boundary. The modes with the most folds are taken
-    first. Without python-sat only the latter are found.
+    first.
     """
     interior = set(pattern.interior)
     folds = {e for e in pattern.folds if letters[e] in "MV" and not interior.intersection(e)}
-    if not has_solver():
-        return tuple(sorted(folds))
     moving = stars(pattern, held(letters))
     taken: set[int] = set()
     modes = islice(ModeClauses(pattern, moving, letters, clock), _MOST_MODES)

@@ -5,11 +5,8 @@ import json
 import pytest
 
 import exactfold
-from exactfold._support.clock import Clock
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED
-from exactfold.design.panels.drawn import folding_together
 from exactfold.design.panels.match import PanelMatch
-from exactfold.panels.clauses import has_solver
 from exactfold.panels.decomposition import decompose
 from exactfold.panels.result import Decomposition
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
@@ -72,7 +69,6 @@ def test_a_way_that_was_found_is_proved_as_drawn() -> None:
     assert drawn.starts is not REFUTED
 
 
-@pytest.mark.skipif(not has_solver(), reason="python-sat is not installed")
 def test_creases_that_fold_together_as_drawn_while_the_others_stay_flat() -> None:
     """They are proved by `match` with the letter F for all others."""
     found = counted(by_letter("V"))
@@ -84,13 +80,6 @@ def test_creases_that_fold_together_as_drawn_while_the_others_stay_flat() -> Non
     )
     assert isinstance(matched, PanelMatch)
     assert (matched.starts, matched.truly) == (PROVED, PROVED)
-
-
-def test_without_python_sat_only_free_folds_are_known(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("exactfold.design.panels.drawn.has_solver", lambda: False)
-    pattern = boxes(5)
-    free = {e for e in pattern.folds if not set(e) & set(pattern.interior)}
-    assert set(folding_together(pattern, by_letter("V"), Clock())) == free
 
 
 def test_without_letters_or_with_a_complete_answer_nothing_is_said() -> None:
