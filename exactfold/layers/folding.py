@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 from dataclasses import replace
-from math import prod, radians
+from math import hypot, prod, radians
 from typing import Final
 
 from exactfold._support.clock import LIMIT, Clock
@@ -23,7 +23,7 @@ from exactfold.layers.orders import LISTED, Orders, Search
 from exactfold.layers.overlaps import Overlaps
 from exactfold.layers.pieces import pieces_of
 from exactfold.layers.states import Component, Conflict, FlatStates, Near, Used
-from exactfold.layers.vertices import Failure, failures
+from exactfold.layers.vertices import failures
 from exactfold.layers.witnesses import witness
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.loading import PatternLike, open_sheet
@@ -86,12 +86,13 @@ def fold_flat(
         doubt = opened.doubt
         if found.as_written is not UNDECIDED and opened.again is not None:
             written = _as_written(opened)
+            off = _noise(opened, written)
             if found.images is not None:
-                near = _near(found, _blur(opened, written, found.images), clock)
+                near = _near(found, _blur(off, found.images), clock)
             if near is not None:
                 doubt = doubt or _depends(near, found.count)
             doubt = doubt or _moved(opened, written, found, letters, clock)
-            doubt = doubt or _hardly_fails(found.failures)
+            doubt = doubt or _hardly_fails(found, off)
     seconds = time.perf_counter() - start
     return replace(
         found, doubt=doubt, near=near, meant=opened.meant, cuts=opened.cuts, seconds=seconds
@@ -138,9 +139,9 @@ def _found(
 
 
 def _as_written(opened: Opened) -> Opened:
-    """The sheet with the digits of its file; the sheet itself if reading moved none."""
+    """The sheet with the digits of its file; the sheet itself if a grid was asked for."""
     asked = isinstance(opened.reading.snap, int)
-    if opened.again is None or asked or not opened.largest_move:
+    if opened.again is None or asked:
         return opened
     try:
         return opened.again(opened.reading.as_written)
@@ -148,18 +149,22 @@ def _as_written(opened: Opened) -> Opened:
         return opened
 
 
-def _blur(opened: Opened, written: Opened, images: Images) -> float:
+def _noise(opened: Opened, written: Opened) -> float:
+    """By so much of the size vertices may be off, as far as the digits and the reader tell."""
+    if isinstance(opened.reading.snap, int):
+        return 0.0
+    off = half_step(written.sheet.vertices)  # the digits: reading may have scaled the sheet
+    if opened.meant is not None and opened.meant.inferred:
+        off = max(off, opened.meant.noise or 0.0, opened.meant.distance or 0.0)
+    return off
+
+
+def _blur(off: float, images: Images) -> float:
     """What misses by less than this, by the size of the sheet, may have been meant to meet.
 
     If vertices are off by e, a point behind k reflections is off by up to (1 + 2 k) e, as long as
     directions are exact. Two of them miss each other by up to twice as much.
     """
-    off = 0.0
-    if not isinstance(opened.reading.snap, int):
-        inferred = opened.meant is not None and opened.meant.inferred
-        off = half_step((written if inferred else opened).sheet.vertices)
-        if opened.meant is not None and inferred:
-            off = max(off, opened.meant.noise or 0.0, opened.meant.distance or 0.0)
     return max(_NEAR, 2 * (1 + 2 * reflections(images.pieces)) * off)
 
 
@@ -224,14 +229,25 @@ def _moved(
     )
 
 
-def _hardly_fails(stuck: tuple[Failure, ...]) -> str:
+def _hardly_fails(found: FlatStates, off: float) -> str:
     """Why a refutation by single vertices is in doubt; empty if it is not.
 
-    It is if Kawasaki's condition alone fails, by angles that may be meant to be 0.
+    It is if Kawasaki's condition alone fails, by angles that may be meant to be 0: if both ends of
+    creases are off by e in each coordinate, their directions are by up to 3 e / length.
     """
-    if not stuck or any(one.off is None or abs(radians(one.off)) > _NEAR for one in stuck):
+    if not found.failures:
         return ""
-    return f"{stuck[0].text}, which may be noise: --snap exact takes the digits as they are"
+    points = found.pattern.scaled_vertices
+    size = size_of(points)
+    for one in found.failures:
+        x, y = points[one.vertex]
+        ends = (points[i + j - one.vertex] for i, j in found.pattern.folds if one.vertex in (i, j))
+        lengths = (hypot(float(a - x), float(b - y)) for a, b in ends)
+        meant = max(_NEAR, sum(3 * off * size / length for length in lengths))
+        if one.off is None or abs(radians(one.off)) > meant:
+            return ""
+    text = found.failures[0].text
+    return f"{text}, which may be noise: --snap exact takes the digits as they are"
 
 
 def _letters(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 from itertools import accumulate
-from math import cos, sin
+from math import cos, radians, sin
 
 import pytest
 from running import UNDECIDED as EXIT_UNDECIDED
@@ -218,18 +218,28 @@ def test_the_sheet_that_was_meant_is_named():
     assert found.locally_flat is PROVED
 
 
+@pytest.mark.parametrize("digits", [2, 3, 5, 7, 9])
 @pytest.mark.parametrize(("snap", "status"), [("auto", UNDECIDED), ("exact", REFUTED)])
-def test_a_vertex_that_hardly_fails_is_not_refuted(snap, status):
-    """Its sectors 50.3, 60.1, 59.2, 65.4, 70.5, 54.5 fold flat, and so do no seven decimals."""
-    points = [(0, 0), (0.9925462, 0.1218693), (0.5402403, 0.8415108), (-0.4601998, 0.8878154)]
-    points += [(-0.9982398, 0.0593064), (-0.4694716, -0.8829476), (0.6755902, -0.7372773)]
-    edges = [[0, i] for i in range(1, 7)] + [[i, i % 6 + 1] for i in range(1, 7)]
-    file = {
-        "file_spec": 1.1,
+def test_a_vertex_that_hardly_fails_is_not_refuted(digits, snap, status):
+    """Its sectors 50.3, 60.1, 59.2, 65.4, 70.5, 54.5 fold flat; those of rounded points do not."""
+    found = flat(read(star([50.3, 60.1, 59.2, 65.4, 70.5, 54.5], digits), snap=snap))
+    assert found.status is status
+    assert ("Kawasaki" in found.doubt) is (status is UNDECIDED)
+
+
+def test_a_vertex_that_fails_by_more_than_its_digits_is_refuted():
+    found = flat(read(star([50.3, 60.1, 59.2, 65.4, 71.5, 53.5], 3)))
+    assert found.status is REFUTED
+
+
+def star(sectors, digits):
+    """A vertex with sectors in degrees, the ends of its folds at distance 1, rounded."""
+    turns = [radians(7 + turn) for turn in accumulate(sectors[:-1], initial=0)]
+    points = [[0, 0]] + [[round(cos(t), digits), round(sin(t), digits)] for t in turns]
+    n = len(sectors)
+    return {
         "vertices_coords": points,
-        "edges_vertices": edges,
-        "edges_assignment": ["U"] * 6 + ["B"] * 6,
+        "edges_vertices": [[0, k] for k in range(1, n + 1)]
+        + [[k, k % n + 1] for k in range(1, n + 1)],
+        "edges_assignment": ["U"] * n + ["B"] * n,
     }
-    answer = flat(read(file, snap=snap))
-    assert answer.status is status
-    assert ("Kawasaki" in answer.doubt) is (status is UNDECIDED)
