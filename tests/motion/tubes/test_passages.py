@@ -195,7 +195,7 @@ def test_faces_that_are_not_parted_on_the_arc_are_named(motion, proof, monkeypat
 
 @pytest.mark.slow
 def test_a_node_that_is_not_found_is_not_claimed(motion, monkeypatch):
-    monkeypatch.setattr(chain, "passage_ahead", lambda labels, links: None)
+    monkeypatch.setattr(chain, "passage_ahead", lambda labels, links, early=False: None)
     proof = prove(motion)
     assert proof.status is UNDECIDED
     assert proof.reason.startswith(
