@@ -177,7 +177,8 @@ class Meant:
         inexact = "" if self.noise is None else f"inexact by {self.noise:.0e}, "
         relations = counted(len(self.relations), "relation")
         enclosed = ", positions enclosed" if self.existence == "box" else ""
-        return f"{inexact}{relations} inferred, moved by up to {self._within}{enclosed}"
+        moved = f"moved by up to {self._within}" if self.distance else "nothing moved"
+        return f"{inexact}{relations} inferred, {moved}{enclosed}"
 
     @property
     def listed(self) -> tuple[str, ...]:

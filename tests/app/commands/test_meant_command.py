@@ -177,6 +177,9 @@ def test_what_changes_nothing_about_an_exact_drawing_is_said() -> None:
         "no relation between creases holds nearly but not exactly: --unit changed nothing" in said
     )
     assert "changed nothing" not in run("info", "miura").stderr
+    stated = run("info", "miura", "--unit", 12, "--noise", "1e-9").stderr
+    assert "--noise, --unit changed nothing" in " ".join(stated.split())
+    assert "inferred" not in stated
 
 
 def test_a_relation_that_the_drawing_misses_by_far_is_refused(miura: Path) -> None:
