@@ -16,6 +16,8 @@ from running import INVALID, PROVED, UNDECIDED, USAGE, run
 import exactfold
 from exactfold.errors import NotApplicableError, UsageError
 from exactfold.pattern.drawing.meant import inference, positions
+from exactfold.pattern.loading import open_sheet
+from exactfold.pattern.reading import Reading
 
 
 def written(tmp_path: Path, document: dict[str, Any], name: str = "noisy") -> Path:
@@ -298,6 +300,13 @@ def test_ways_are_counted_from_directions_if_coordinates_are_too_long(too_long: 
     assert {f"{i}-{j}" for i, j in folds} <= set(pattern["directions"])
     said = run("count", too_long, "-v").stderr
     assert "directions of its folds are exact; the positions of its vertices are enclosed" in said
+
+
+def test_no_second_way_to_an_exact_sheet_is_tried_after_the_time_limit(too_long: Path) -> None:
+    opened = open_sheet(too_long, Reading(limit=0))
+    assert opened.meant is not None
+    assert opened.meant.existence == "none"
+    assert opened.doubt.endswith("share of the time limit, 0 of 0 seconds (--limit), was used up")
 
 
 @pytest.mark.parametrize(
