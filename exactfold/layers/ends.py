@@ -205,9 +205,10 @@ def way_ends(
     in doubt, all are.
 
     >>> import exactfold
-    >>> ends = way_ends(exactfold.decompose("square-twist"), exactfold.flat("square-twist", "any"))
+    >>> vertex = "single-vertex-4"
+    >>> ends = way_ends(exactfold.decompose(vertex), exactfold.flat(vertex, "any"))
     >>> [end.state for end in ends if end.status is PROVED]
-    [1, 3]
+    [0, 1]
     """
     clock = Clock(limit)
     ways = [way for way in panel_ways(answer.known) if way.verdict is PROVED and not way.spaces]

@@ -331,6 +331,7 @@ def test_ways_are_followed_by_number_or_signs_in_the_session_of_the_sheet(server
     assert gone["error"] == "the sheet is no longer open here: open it again"
 
 
+@pytest.mark.slow
 def test_a_dropped_drawing_is_read_and_what_was_mended_is_told(server):
     path = example_path("bird-base")
     data = base64.b64encode(path.read_bytes()).decode()

@@ -179,6 +179,7 @@ def test_documents_are_what_their_schema_says(name):
         Draft202012Validator(schema("view")).validate(wrong)
 
 
+@pytest.mark.slow
 def test_it_says_what_is_proved_of_a_motion_of_panels():
     said = [way["motion"]["said"] for way in document_of("zigzags")["ways"][:3]]
     growing = "it exists until a fold reaches 180 degrees, and all angles grow; "
@@ -210,6 +211,7 @@ def test_graphs_over_the_boundary_heights_are_families_with_a_motion_each():
     assert [0, 1] in folds  # it goes from border to border, and nothing else turns it
 
 
+@pytest.mark.slow
 def test_families_of_panels_have_a_representative_each_and_the_letters_of_the_file_come_first():
     document = view_document("bird-base", frames=3)
     matched = match_panels("bird-base")

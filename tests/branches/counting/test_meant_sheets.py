@@ -8,6 +8,7 @@ from math import hypot
 
 import pytest
 from noise_put_back import SHEETS, answer, noisy, turned
+from sampling import slow_after
 
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.branches.counting.ways import count_ways
@@ -89,7 +90,7 @@ def random_grid(seed: int, digits: int) -> Drawing:
 
 
 @pytest.mark.parametrize("digits", [6, 12])
-@pytest.mark.parametrize("seed", range(15))
+@pytest.mark.parametrize("seed", slow_after(3, range(15)))
 def test_no_relation_is_inferred_for_random_corners(seed: int, digits: int) -> None:
     opened = from_drawing(random_grid(seed, digits))
     assert opened.meant is None
