@@ -15,8 +15,8 @@ from exactfold._support.documents import Fold, Keywords, Natural, Triangle
 from exactfold._support.progress import Progress
 from exactfold.app.viewer.folded import (
     NOT_ASKED,
-    Ending,
     ClosedEnd,
+    Ending,
     Folded,
     closing_ways,
     flat_states,
