@@ -6,7 +6,7 @@ import itertools
 import json
 import re
 from fractions import Fraction
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +19,8 @@ from exactfold._support.clock import Clock
 from exactfold.app.pictures import crease_style
 from exactfold.app.report.connected_components import piece_notes
 from exactfold.app.viewer import page as page_module
-from exactfold.app.viewer import view_document, view_page
+from exactfold.app.viewer import view_document as view_all
+from exactfold.app.viewer import view_page
 from exactfold.app.viewer.coding import coded_frames, decoded_frames, levelled
 from exactfold.app.viewer.document import Known
 from exactfold.branches import count_branches, count_ways, find_branch
@@ -31,6 +32,7 @@ from exactfold.pattern.families import single_vertex
 from exactfold.pattern.loading import open_sheet
 from exactfold.solve.certify import algebraic
 
+view_document = partial(view_all, flat=False)  # flat-folded states: test_folded.py
 PAGE = Path(page_module.__file__).parent / "page"
 HEXAGON = [(4, 0), (2, 3), (-2, 3), (-4, 0), (-2, -3), (2, -3)]
 CORNER_AND_CENTRE = CreasePattern(
