@@ -238,17 +238,22 @@ def kinds(relations: Iterable[Relation]) -> str:
 def inferred(written: PanelPattern, reading: Reading) -> Meant:
     """The sheet that was meant by a drawing with inexact digits, or why none is inferred.
 
-    `written` is the sheet with the digits as written; its coordinates are rational. If no exact
-    sheet is found that has all relations, those between distant edges are left out, in the order of
+    `written` is the sheet with the digits as written; its coordinates are rational. If all
+    coordinates are small in a frame along an edge, these are taken. If no exact sheet is found that
+    has all relations, those between distant edges are left out, in the order of
     `_DISTANT`; this is done for sheets of up to 1,000 edges. If that does not help, positions are
     enclosed, with all relations or without all between distant edges. Once half of the time limit
     has passed, none of this is tried. Raises the errors of `infer` for relations that do not exist
     or contradict each other.
     """
-    from exactfold.pattern.meant_sheet import enclose, realize, recognise
+    from exactfold.pattern.meant_sheet import enclose, in_a_frame, realize, recognise
 
     clock = Clock(reading.limit).share(1 / 2)
     all_found = _found(written, reading, ())
+    if not reading.without:
+        meant = _realized(written, all_found, partial(in_a_frame, relations=all_found.relations))
+        if meant.inferred and not meant.left:
+            return meant
     first = meant = _realized(written, all_found, realize)
     if all_found.angles is None or meant.inferred:
         return meant

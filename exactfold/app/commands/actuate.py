@@ -13,11 +13,12 @@ from exactfold.app.shell.json_numbers import numbers_by_name
 from exactfold.app.shell.patterns import in_doubt, read_any, tell_doubt, verdict
 from exactfold.app.shell.shell import EXIT, Bar, name_of
 from exactfold.app.verbs.actuating import Actuated, actuate_opened
+from exactfold.certificates.entries import write_certificate
 from exactfold.design.actuation.result import Actuation
-from exactfold.errors import InputError, NumberError
+from exactfold.errors import InputError, NotApplicableError, NumberError
 from exactfold.exact.numbers import as_rational
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
-from exactfold.pattern.writing.fold_writing import checked_target, write_text
+from exactfold.pattern.writing.fold_writing import checked_target, require_folder, write_text
 
 if TYPE_CHECKING:
     from exactfold.pattern.panel_pattern import PanelPattern
@@ -35,6 +36,8 @@ class Driven(ActuateOptions):
         hinges = self.hinges  # before the work
         if self.output is not None:
             checked_target(self.output, (".csv",), "a table of torques")
+        if self.certificate is not None:
+            require_folder(self.certificate)
         with Bar("reading") as bar:
             opened = read_any(self.file, self.reading, verbose=self.verbose)
             self.require_name()
@@ -42,9 +45,9 @@ class Driven(ActuateOptions):
             found = actuate_opened(
                 opened, choice_of(self, opened), self.creases, torques, hinges, bar
             )
-            self._write_table(found)
+            self._write(found)
         if self.as_json:
-            document = found.to_dict(name_of(self.file))
+            document = found.to_dict(name_of(self.file), self._certificate)
             print(json.dumps(in_doubt(opened, document)))
         else:
             from exactfold.app import report
@@ -53,8 +56,20 @@ class Driven(ActuateOptions):
             report.show(report.actuation_report(found, everything=self.everything))
         return EXIT[verdict(opened, found.status)]
 
-    def _write_table(self, found: Actuated) -> None:
-        """Write the torques in N mm, if they are asked for."""
+    @property
+    def _certificate(self) -> str | None:
+        return None if self.certificate is None else str(self.certificate)
+
+    def _write(self, found: Actuated) -> None:
+        """Write the certificate and the torques in N mm, if they are asked for."""
+        if self.certificate is not None:
+            if isinstance(found, Actuation):
+                raise NotApplicableError(
+                    "torques for a branch have no certificate yet; those for rigid panels have one"
+                )
+            from exactfold.design.actuation.panels.certificate import panel_torques_certificate
+
+            write_certificate(panel_torques_certificate(found), self.certificate)
         if self.output is not None and self.hinges is not None:
             letters = found.branch.assignment if isinstance(found, Actuation) else found.assignment
             write_text(self.output, self.hinges.table(found.pattern, found.torques, letters))

@@ -163,6 +163,10 @@ class ActuateOptions(WayOptions):
             "Write the torques in N mm as a table, for --stiffness.", "FILE.csv", "-o", "--output"
         ),
     ] = None
+    certificate: Annotated[
+        Path | None,
+        written("Write the evidence for `exactfold check`; of rigid panels only.", "OUT.json"),
+    ] = None
     as_json: Json = False
     everything: Annotated[bool, flag("--all", text="List every branch in the ranking.")] = False
 
@@ -174,7 +178,8 @@ class ActuateOptions(WayOptions):
             raise UsageError("--stiffness and --width go together: give both or neither")
         if self.output is not None and self.stiffness is None:
             raise UsageError("-o writes torques in N mm: give --stiffness and --width, too")
-        apart(self.output, self.file, self.torques)
+        apart(self.output, self.file, self.torques, self.certificate)
+        apart(self.certificate, self.file, self.torques)
 
     @property
     def hinges(self) -> Hinges | None:

@@ -138,6 +138,8 @@ class ActuationDocument(TypedDict):
     orthogonal: OrthogonalDocument | None
     ranking: list[RankedDocument]
     warnings: list[WarningDocument]
+    certificate: str | None
+    """The file with the evidence, if one was written."""
     seconds: NotNegative
 
 
@@ -281,6 +283,7 @@ class Actuation:
             "orthogonal": None if orthogonal is None else orthogonal_document(orthogonal),
             "ranking": [row.to_dict() for row in self.ranking()],
             "warnings": warnings(self.pattern),
+            "certificate": certificate,
             "seconds": round(self.seconds, 3),
         }
 

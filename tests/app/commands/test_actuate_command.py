@@ -214,3 +214,17 @@ def test_newtons_are_for_panels():
     result = run("actuate", "two-vertex", "--signs", "+-", *hinges)
     assert result.exit_code == USAGE
     assert "torques in N mm are for rigid panels" in result.stderr
+
+
+def test_a_certificate_of_torques_for_panels_is_checked(tmp_path):
+    path = tmp_path / "torques.json"
+    result = run("actuate", "zigzags", "--way", 1, "--certificate", path, "--json")
+    assert result.exit_code == PROVED
+    assert valid(result.stdout)["certificate"] == str(path)
+    checked = run("check", path)
+    assert checked.exit_code == PROVED
+    assert "the way is self-foldable" in " ".join(checked.stdout.split())
+    refused = run("actuate", "two-vertex", "--signs", "+-", "--certificate", tmp_path / "b.json")
+    assert refused.exit_code == USAGE
+    assert "torques for a branch have no certificate yet" in refused.stderr
+    assert not (tmp_path / "b.json").exists()

@@ -17,7 +17,7 @@ from sampling import slow_after
 
 import exactfold
 from exactfold.errors import NotApplicableError, UsageError
-from exactfold.pattern.drawing.meant import inference, positions
+from exactfold.pattern.drawing.meant import inference, positions, turning
 from exactfold.pattern.loading import open_sheet
 from exactfold.pattern.reading import Reading
 
@@ -286,8 +286,9 @@ def test_a_denominator_that_leaves_near_relations_is_no_remedy(miura: Path) -> N
 
 @pytest.fixture
 def too_long(miura: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The turned Miura sheet, where coordinates of more than 10 bits count as too long."""
+    """The turned Miura sheet, seen from no edge; coordinates of more than 10 bits are too long."""
     monkeypatch.setattr(positions, "_MOST_BITS", 10)
+    monkeypatch.setattr(turning, "_FRAMES", 0)
     return miura
 
 

@@ -141,9 +141,11 @@ class _Search:
         search = TorquesForWay(self.rays, self.progress)
         best = search.best(self.creases, self.nodes)
         torques, bound = best.torques, best.bound
+        shown = best.shown
         if self.given is not None:
             torques = list(self.given.values())
             bound *= max(map(abs, torques))
+            shown = bound
         powers = self.rays.powers(torques)
         margin, (_, bound) = outward(self.rays.margin(powers)), outward((bound, bound))
         status, reason = self._judged(margin, torques)
@@ -172,6 +174,8 @@ class _Search:
             self._alone() if verdict is PROVED else None,
             self.motions,
             tuple(self.sides[place] for place in self.way.motions),
+            best.proof,
+            outward((shown, shown))[1],
         )
 
     def _side(self, place: int, rates: Rates) -> int:

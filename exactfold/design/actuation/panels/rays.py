@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import isqrt
+from typing import TypeAlias
 
 import numpy as np
 
@@ -17,6 +18,12 @@ from exactfold.design.actuation.powers import Bounds, Powers, Ray
 _ONE = 1 << BITS
 _POINT_BITS = 30
 """Bits of the coefficients of a point of a family."""
+
+
+Recipe: TypeAlias = "int | tuple[tuple[int, Fraction], ...]"
+"""A rival: the number of the motion of the way that is turned to the other side; or a ray of
+another way, as the places of its motions with their coefficients.
+"""
 
 
 @dataclass(frozen=True)
@@ -56,7 +63,9 @@ class Rays:
         low.append([x for x, _ in target])
         high.append([x for _, x in target])
         self.rivals: list[Ray] = []
-        for unit in own:
+        self._points: dict[int, Recipe] = {}
+        for number, unit in enumerate(own):
+            self._points[len(low)] = number
             turned = [
                 (-t[1], -t[0]) if any(u) else tuple(t) for u, t in zip(unit, target, strict=True)
             ]
@@ -113,8 +122,17 @@ class Rays:
         self.low.append([x >> _POINT_BITS for x in low])
         self.high.append([-(-x >> _POINT_BITS) for x in high])
         ray = len(self.low) - 1, 1
+        unit = Fraction(1, 1 << _POINT_BITS)
+        self._points[ray[0]] = tuple(
+            (place, x * unit) for place, x in zip(way.motions, c, strict=True) if x
+        )
         self.rivals.append(ray)
         return ray
+
+    def recipe(self, ray: Ray) -> Recipe:
+        """What a rival is made of."""
+        place, sign = ray
+        return self._points.get(place, ((place, Fraction(sign)),))
 
     # --- what torques do -------------------------------------------------------------------------
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Literal, TypedDict
+from typing import ClassVar, Literal, TypedDict
 
 from exactfold._support.documents import (
     Assignment,
@@ -18,11 +18,12 @@ from exactfold._support.documents import (
     Sign,
     VerdictText,
 )
+from exactfold._support.results import Certified
 from exactfold._support.verdict import Verdict
 from exactfold.design.actuation.hinges import Hinges
 from exactfold.design.actuation.orthogonal import OrthogonalTorques
 from exactfold.design.actuation.panels.motions import Springs, WayMotions
-from exactfold.design.actuation.panels.rays import WayPower
+from exactfold.design.actuation.panels.rays import Recipe, WayPower
 from exactfold.design.actuation.result import (
     HingesDocument,
     OrthogonalDocument,
@@ -102,11 +103,13 @@ class PanelActuationDocument(TypedDict):
     """The folds, the one first whose loss costs most."""
     orthogonal: OrthogonalDocument | None
     hinges: HingesDocument | None
+    certificate: str | None
+    """The file with the evidence, if one was written."""
     seconds: NotNegative
 
 
 @dataclass(frozen=True, repr=False)
-class PanelActuation:
+class PanelActuation(Certified):
     """Torques that drive a sheet of rigid panels along one way, and all that is proved of them.
 
     The ray that is driven turns all motions of the way by the same share, to the sides that
@@ -123,7 +126,8 @@ class PanelActuation:
     known; the bounds `margin` then hold for the known ones, and `best` for all.
 
     `status` is PROVED if the margin is proved to be positive, and REFUTED if it is proved not to
-    be.
+    be. The rivals and weights of `proof` show that no margin exceeds `shown`, which is `best`
+    unless branch and bound shows more of few folds.
     """
 
     pattern: PanelPattern
@@ -147,8 +151,12 @@ class PanelActuation:
     orthogonal: OrthogonalTorques | None
     motions: WayMotions = field(repr=False)
     sides: tuple[int, ...]
+    proof: tuple[tuple[Recipe, Fraction], ...] = field(repr=False)
+    shown: Fraction = field(repr=False)
     hinges: Hinges | None = None
     seconds: float = field(default=0.0, compare=False)
+
+    WRITER: ClassVar = "exactfold.design.actuation.panels.certificate:panel_torques_certificate"
 
     @property
     def driven(self) -> tuple[Edge, ...]:
@@ -170,7 +178,9 @@ class PanelActuation:
             most = row.power[1] if most is None else max(most, row.power[1])
         return tuple(reversed(above))
 
-    def to_dict(self, name: str | None = None) -> PanelActuationDocument:
+    def to_dict(
+        self, name: str | None = None, certificate: str | None = None
+    ) -> PanelActuationDocument:
         """The object printed by `exactfold actuate --json`: `schema("actuate")`."""
         return {
             "format": "exactfold actuate result",
@@ -216,6 +226,7 @@ class PanelActuation:
             "hinges": None
             if self.hinges is None
             else hinges_document(self.hinges, self.pattern, self.torques),
+            "certificate": certificate,
             "seconds": round(self.seconds, 3),
         }
 

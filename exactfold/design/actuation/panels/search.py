@@ -12,8 +12,8 @@ import numpy as np
 from exactfold._support.arrays import BoolArray, FloatArray
 from exactfold._support.progress import Progress
 from exactfold.design.actuation.choices import CreaseChoice
-from exactfold.design.actuation.panels.rays import Rays
-from exactfold.design.actuation.powers import exact_weights, margin_bound, shares
+from exactfold.design.actuation.panels.rays import Rays, Recipe
+from exactfold.design.actuation.powers import Weights, exact_weights, margin_bound, shares
 from exactfold.design.actuation.programs import Proposal, largest_margin
 
 _JOINING: Final = 24
@@ -35,12 +35,15 @@ _DIGITS: Final = (6, 9, 12)
 class Best:
     """The torques found, the proved bound of all margins, and the shares of the folds in the bound
     of torques on all folds. Without one of these folds, no margin exceeds that bound less its
-    share.
+    share. The rivals and weights of `proof` show the bound, or for few folds a bound that may be
+    larger, `shown`.
     """
 
     torques: list[Fraction]
     bound: Fraction
     shares: list[Fraction]
+    proof: tuple[tuple[Recipe, Fraction], ...]
+    shown: Fraction
 
 
 class TorquesForWay:
@@ -63,13 +66,26 @@ class TorquesForWay:
         """The best torques on all folds, or on so many of them."""
         proposal = self._on_all_folds()
         rays, directions = [self.rays.rivals[k] for k in self.known], self.rays.directions
-        weights = exact_weights(rays, proposal.weights)
+        weights: Weights = exact_weights(rays, proposal.weights)
         bound = margin_bound(directions, self.rays.target, weights)
         by_fold = shares(directions, self.rays.target, weights)
-        torques = proposal.torques
+        torques, shown = proposal.torques, bound
         if creases is not None and creases < int(self.allowed.sum()):
             torques, bound = self._on_few_folds(creases, nodes)
-        return Best(self.rounded(torques), bound, by_fold)
+            weights, shown = self._shown_on_few(creases)
+        proof = tuple((self.rays.recipe(ray), weight) for ray, weight in weights)
+        return Best(self.rounded(torques), bound, by_fold, proof, max(bound, shown))
+
+    def _shown_on_few(self, creases: int) -> tuple[Weights, Fraction]:
+        """Weights, and the bound that they show of torques on so many folds."""
+        rays = self.rays.rivals
+        gaps = self._gaps(range(len(rays)))
+        proposal = largest_margin(gaps, self.allowed, self.allowed, creases)
+        weights = exact_weights(rays, proposal.weights)
+        every = [True] * len(self.allowed)
+        return weights, margin_bound(
+            self.rays.directions, self.rays.target, weights, every, creases
+        )
 
     def _on_all_folds(self) -> Proposal:
         for done in range(_ROUNDS):
