@@ -4,6 +4,7 @@ from fractions import Fraction
 from itertools import chain
 
 import pytest
+from sampling import slow_after
 
 from exactfold.errors import NotApplicableError, UsageError
 from exactfold.pattern.triangulating import delaunay_sheets, random_squares
@@ -109,7 +110,7 @@ def whole_triangulations(interior, seed, denominator):
             return points, triangles, rounds
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", slow_after(1, range(6)))
 @pytest.mark.parametrize(
     ("interior", "denominator"),
     # crowded grids with points on edges and on circles, a sparse one, and one for long integers
@@ -165,6 +166,7 @@ def test_samples_on_a_crowded_grid_show_that_the_draw_is_hopeless(drawn):
     assert 0 < len(drawn) <= 3
 
 
+@pytest.mark.slow
 def test_a_draw_with_a_chance_is_not_given_up():
     assert sample_random_square(200, 4).attempts == 124  # one sample in some thirty passes
     with pytest.raises(NotApplicableError, match="all 60 samples"):
