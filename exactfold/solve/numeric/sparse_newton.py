@@ -24,10 +24,15 @@ _EXCESS = 2.0**-70
 
 Steps towards a flat star would gain one bit each. The enclosure aims at an excess, too.
 """
-_SMOOTHING = 1e-4
-"""The smoothing of the first step, as a share of the l_v at the start."""
-_SHARPER = 0.3
+_SMOOTHING = 30.0
+_LARGEST_SMOOTHING = 0.01
+"""The smoothing of the first step, as a share of the l_v at the start: 30 / n, but at most this.
+
+The l_v on a branch shrink like the area of a star.
+"""
 _HALVED = 0.5
+_QUICK = 0.05
+_SHARPER = 0.01
 _FAST = 0.75
 _SMALL = 0.05
 _RINGS = 4
@@ -116,14 +121,16 @@ def solve(
 
     Next to a flat star g has a kink, at which a few vertices would shorten the steps of all. So the
     curvatures aimed at are larger by a square at first, which rounds all kinks (the path of
-    docs/branch.md, Theorem 5 (b)). It shrinks after each full step that halves the sum, and is 0 in
-    the end. If the smoothed steps stop, plain ones go on.
+    docs/branch.md, Theorem 5 (b)). From the second step on this square shrinks with each full step
+    that halves the sum, and fast as soon as the sum does. It is 0 in the end. If the smoothed steps
+    stop, plain ones go on.
     """
     smoothing = 0.0
     try:
         x = _start(sheet, signs) if start is None else start
         if start is None:
-            smoothing = _SMOOTHING * float(np.abs(Point.at(sheet, x).lines).max(initial=0.0))
+            share = min(_LARGEST_SMOOTHING, _SMOOTHING / max(sheet.n, 1))
+            smoothing = share * float(np.abs(Point.at(sheet, x).lines).max(initial=0.0))
         for step in range(1, _ITERATIONS + 1):
             if progress is not None:
                 progress(step)
@@ -135,8 +142,8 @@ def solve(
             if smoothing:
                 if length == 0.0 or change <= _NOISE * size:
                     smoothing = 0.0
-                elif length == 1.0 and gain <= _HALVED:
-                    smoothing *= _SHARPER
+                elif step > 1 and length == 1.0 and gain <= _HALVED:
+                    smoothing *= _SHARPER if gain <= _QUICK else _HALVED
                 continue
             if length == 1.0 and change <= _CONVERGED * size:
                 return End(x, step, "")
