@@ -24,9 +24,10 @@ _EXCESS = 2.0**-70
 
 Steps towards a flat star would gain one bit each. The enclosure aims at an excess, too.
 """
+_MANY = 1000
+"""Sheets with more unknowns are smoothed at first; on small ones, no vertex shortens many steps."""
 _SMOOTHING = 30.0
-_LARGEST_SMOOTHING = 0.01
-"""The smoothing of the first step, as a share of the l_v at the start: 30 / n, but at most this.
+"""The smoothing of the first step, as a share of the l_v at the start: this, divided by n.
 
 The l_v on a branch shrink like the area of a star.
 """
@@ -122,15 +123,27 @@ def solve(
     Next to a flat star g has a kink, at which a few vertices would shorten the steps of all. So the
     curvatures aimed at are larger by a square at first, which rounds all kinks (the path of
     docs/branch.md, Theorem 5 (b)). From the second step on this square shrinks with each full step
-    that halves the sum, and fast as soon as the sum does. It is 0 in the end. If the smoothed steps
-    stop, plain ones go on.
+    that halves the sum, and fast as soon as the sum does. It is 0 in the end. If that finds no
+    zero, and on sheets with at most 1000 unknowns, all steps are plain.
     """
-    smoothing = 0.0
+    if start is None and sheet.n > _MANY:
+        end = _solve(sheet, signs, None, _SMOOTHING / sheet.n, progress)
+        if not end.failure:
+            return end
+    return _solve(sheet, signs, start, 0.0, progress)
+
+
+def _solve(
+    sheet: FloatSheet,
+    signs: FloatArray,
+    start: FloatArray | None,
+    smoothing: float,
+    progress: Callable[[int], None] | None,
+) -> End:
+    """`solve` with a smoothing that begins with this share of the l_v at the start."""
     try:
         x = _start(sheet, signs) if start is None else start
-        if start is None:
-            share = min(_LARGEST_SMOOTHING, _SMOOTHING / max(sheet.n, 1))
-            smoothing = share * float(np.abs(Point.at(sheet, x).lines).max(initial=0.0))
+        smoothing *= float(np.abs(Point.at(sheet, x).lines).max(initial=0.0))
         for step in range(1, _ITERATIONS + 1):
             if progress is not None:
                 progress(step)
