@@ -215,7 +215,7 @@ def counted_with_letters(
     from exactfold.design.panels.drawn import with_drawn
 
     known = with_drawn(result, opened, progress=progress, clock=clock.share(5 / 6))
-    if opened.doubt:
+    if result.doubt:
         known = _with_proposal(known, opened, clock)
     return replace(known, seconds=time.perf_counter() - start)
 
@@ -228,11 +228,14 @@ def _with_proposal(result: Decomposition, opened: Opened, clock: Clock) -> Decom
     from exactfold.panels.result import Proposal
     from exactfold.pattern.meaning import proposals
 
-    made = proposals(opened, _PROPOSING)
+    loops = [miss.off for miss in result.known.nearly_closing]
+    made = proposals(opened, _PROPOSING, loops)
     if not made or clock.passed:
         return result
     (noise, sheet), *rest = made
     answer = counted_with_letters(sheet, "auto", 0, clock.at_most(_PROPOSING))
+    if answer.doubt:
+        return result
     relations = () if sheet.meant is None else sheet.meant.relations
     missed = max((relation.defect for relation in relations), default=0.0)
     others = tuple(level for level, _ in rest)
