@@ -39,9 +39,8 @@ def _answer(result: PeriodicCount) -> Text:
     where = f"for the direction {x},{y}"
     found = counted(len(result.branches), "branch")
     if result.status is not PROVED:
-        return Text.assemble(
-            status_text(result.status), f": {found} found {where}; {result.reason}"
-        )
+        rest = f": {found} found {where}; {result.reason}"
+        return Text.assemble(status_text(result.status), rest)
     weight = result.with_multiplicity
     more = "" if weight == len(result.branches) else f", {weight} with multiplicity"
     return Text.assemble(status_text(result.status), f": {found}{more}, all real, {where}")

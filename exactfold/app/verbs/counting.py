@@ -166,15 +166,16 @@ def count(
     with it.
 
     Raises `InputError` for anything that is not a sheet, `UsageError` for an unknown method, for
-    several workers for one sheet, and for a periodic sheet without a direction. UNDECIDED does not mean that there are no other ways.
+    several workers for one sheet, and for a periodic sheet without a direction. UNDECIDED does not
+    mean that there are no other ways.
 
     >>> import exactfold
     >>> exactfold.count("two-vertex")
     <BranchCount: proved, 4 branches, <CreasePattern: 2 interior and 4 boundary vertices>>
     >>> exactfold.count("zigzags")
     <Decomposition: proved, {1: 3, 2: 1}, <PanelPattern: 4 interior vertices, 12 folds, 9 panels>>
-    >>> exactfold.count("waterbomb-cell", direction=(3, 4))
-    <PeriodicCount: proved, 3 branches, 1 space of pleats, <PeriodicPattern: 3 vertices in the cell>>
+    >>> exactfold.count("waterbomb-cell", direction=(3, 4)).with_multiplicity
+    3
     >>> for name, result in exactfold.count(["two-vertex", "flat-vertex"]):
     ...     print(name, len(result))
     two-vertex 4

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Iterable
 from typing import Any
 
 from exactfold._support.verdict import PROVED
-from exactfold.branches.periodic.result import PeriodicCount
+from exactfold.branches.periodic.result import AlgebraicLine, HeightSpace, PeriodicCount
 from exactfold.branches.periodic.spaces import Cover, Space
 from exactfold.certificates.entries import box_entry
-from exactfold.checker.branches.periodic import PERIODIC, PeriodicClaims
+from exactfold.checker.branches.periodic import PERIODIC, PeriodicClaims, SpaceClaim
 from exactfold.errors import NotApplicableError
 from exactfold.exact.numbers import format_rational
 from exactfold.pattern.periodic.cell_files import cell_document
@@ -41,8 +42,8 @@ def periodic_certificate(result: PeriodicCount) -> dict[str, Any]:
         "distinct": len(result.branches),
         "with_multiplicity": sum(branch.multiplicity for branch in result.branches),
         "branches": [{**branch} for branch in document["branches"]],
-        "pleats": [space.to_dict() for space in result.pleats],
-        "families": [space.to_dict() for space in result.families],
+        "pleats": _claims(result.pleats),
+        "families": _claims(result.families),
     }
     points: dict[Space, list[Cover]] = defaultdict(list)
     for cover in evidence.covers:
@@ -69,6 +70,14 @@ def periodic_certificate(result: PeriodicCount) -> dict[str, Any]:
             ],
         },
     }
+
+
+def _claims(spaces: Iterable[HeightSpace | AlgebraicLine]) -> list[SpaceClaim]:
+    return [
+        {"dimension": space.dimension, "basis": [_texts(row) for row in space.basis]}
+        for space in spaces
+        if isinstance(space, HeightSpace)
+    ]
 
 
 def _texts(row: Row) -> list[str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.branches.periodic.exactly import ExactRay, exact_rays
 from exactfold.branches.periodic.rays import Ray, prove_rays
-from exactfold.branches.periodic.result import PeriodicCount
+from exactfold.branches.periodic.result import Evidence, PeriodicBranch, PeriodicCount
 from exactfold.branches.periodic.shown import Shown
 from exactfold.branches.periodic.spaces import Cover, Space, Spaces, combined, echelon
 from exactfold.errors import NotCountedError
@@ -26,15 +26,6 @@ from exactfold.solve.numeric.periodic_rays import PeriodicRays
 MOST = 20
 """The most vertices, outside triangulated triangles, of a cell that is counted."""
 _MOST_OPEN = 1000
-
-
-@dataclass(frozen=True)
-class Evidence:
-    """How each sign vector is proved: by a simple ray in a box, or by a space over Q."""
-
-    problem: PeriodicProblem
-    rays: tuple[Ray, ...]
-    covers: tuple[Cover, ...]
 
 
 def count_periodic(

@@ -23,7 +23,9 @@ from exactfold.exact.numbers import format_integer, format_rational
 from exactfold.pattern.periodic.periodic_pattern import PeriodicPattern
 
 if TYPE_CHECKING:
-    from exactfold.branches.periodic.counting import Evidence
+    from exactfold.branches.periodic.rays import Ray
+    from exactfold.branches.periodic.spaces import Cover
+    from exactfold.rigidity.equations.periodic import PeriodicProblem
 
 Whole: TypeAlias = Annotated[str, Keywords(pattern="^-?[0-9]+$")]
 
@@ -179,6 +181,15 @@ class PeriodicDocument(TypedDict):
     """The certificate that was written."""
     seconds: NotNegative
     """The time that the count took."""
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """How each sign vector is proved: by a simple ray in a box, or by a space over Q."""
+
+    problem: PeriodicProblem
+    rays: tuple[Ray, ...]
+    covers: tuple[Cover, ...]
 
 
 @dataclass(frozen=True, repr=False)

@@ -7,8 +7,8 @@ vectors s: the span of the cone C_s. The evidence shows for every pair which spa
               is inside stays flat, and each such vertex doubles multiplicities. The rest is about
               the sheet with the rings as faces.
   unit        z = (w_1, ..., w_m, c) has c = b / unit.
-  rays        boxes in which the entry `place` of z is 1, and which hold one simple solution each, by
-              Krawczyk's test. A ray whose vertices all have a sign is the cone of these signs.
+  rays        boxes in which the entry `place` of z is 1, and which hold one simple solution each,
+              by Krawczyk's test. A ray whose vertices all have a sign is the cone of these signs.
   spaces      a `basis` on which all forms vanish, and points of the space. The cone of every sign
               vector that agrees with a point off its flat vertices F lies in the radical, on all a
               with K_u(point, a) = 0 for u not in F, of the sum of the K_v with v in F; and this has
@@ -116,9 +116,8 @@ class _Proof:
         self.cell = cell
         self.rings = [self._ring(entry) for entry in items(evidence["triangles"], "triangles")]
         sheet = cell.emptied(self.rings)
-        at_most(
-            len(sheet.points), PERIODIC_VERTICES, "the vertices of the cell", "PERIODIC_VERTICES"
-        )
+        number = len(sheet.points)
+        at_most(number, PERIODIC_VERTICES, "the vertices of the cell", "PERIODIC_VERTICES")
         self.forms = CellForms(sheet, direction, unit)
         self.covered: set[tuple[int, ...]] = set()
         self.branches: list[PeriodicBranchClaim] = []
@@ -216,6 +215,8 @@ class _Proof:
     def _point(self, point: Row, space: list[Row]) -> None:
         """Cover all sign vectors that agree with a point of a space off its flat vertices."""
         forms = self.forms
+        inside = any(point) and len(echelon([*space, point])) == len(space)
+        require(inside, "a point is 0, or not in its space")
         flat = [v for v in forms.labels if not any(_dot(r, point) for r in forms.bends_at[v])]
         fixed = [_image(forms.forms[v], point) for v in forms.labels if v not in flat]
         normal = kernel(fixed, forms.size + 1)

@@ -166,10 +166,8 @@ class CellForms:
         bits = 16
         while True:
             cone = {
-                spoke: -Fraction(
-                    isqrt(s.numerator * s.denominator << 2 * bits), s.denominator << bits
-                )
-                for spoke, s in squares.items()
+                k: -Fraction(isqrt(s.numerator * s.denominator << 2 * bits), s.denominator << bits)
+                for k, s in squares.items()
             }
             if sum(w * cone[i] * cone[j] for i, j, w in terms) > 0:
                 break
