@@ -36,7 +36,6 @@ from exactfold.app.verbs.showing import draw as draw
 from exactfold.app.verbs.showing import view as view
 from exactfold.branches import Branch as Branch
 from exactfold.branches import BranchCount as BranchCount
-from exactfold.branches import PeriodicCount as PeriodicCount
 from exactfold.design import Actuation as Actuation
 from exactfold.design import Match as Match
 from exactfold.errors import ExactfoldError as ExactfoldError
@@ -49,7 +48,6 @@ from exactfold.panels import Decomposition as Decomposition
 from exactfold.pattern import CreasePattern as CreasePattern
 from exactfold.pattern import Opened as Opened
 from exactfold.pattern import PanelPattern as PanelPattern
-from exactfold.pattern import PeriodicPattern as PeriodicPattern
 from exactfold.pattern import delaunay as delaunay
 from exactfold.pattern import examples as examples
 from exactfold.pattern import random_square as random_square

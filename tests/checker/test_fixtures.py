@@ -32,6 +32,7 @@ def test_there_are_certificates_of_every_kind() -> None:
         "letters",
         "starting",
         "pieces",
+        "periodic",
         "assignments",
         "meant",
         "freedom",

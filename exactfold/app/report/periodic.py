@@ -41,6 +41,9 @@ def _answer(result: PeriodicCount) -> Text:
     if result.status is not PROVED:
         rest = f": {found} found {where}; {result.reason}"
         return Text.assemble(status_text(result.status), rest)
+    families = len(result.families)
+    if families:
+        found += f" and {families} {agreeing(families, 'family')}"
     weight = result.with_multiplicity
     more = "" if weight == len(result.branches) else f", {weight} with multiplicity"
     return Text.assemble(status_text(result.status), f": {found}{more}, all real, {where}")
@@ -56,6 +59,8 @@ def _notes(result: PeriodicCount, certificate: str | None) -> list[str]:
         )
     elif result.status is PROVED:
         notes.append("no pleats: every way to start folding rolls the sheet up")
+    if result.families:
+        notes.append("a family is a linear space of two or more dimensions in which b is not 0")
     if certificate is not None:
         notes.append(f"certificate: {certificate}")
     return notes

@@ -175,7 +175,7 @@ def count(
     >>> exactfold.count("zigzags")
     <Decomposition: proved, {1: 3, 2: 1}, <PanelPattern: 4 interior vertices, 12 folds, 9 panels>>
     >>> exactfold.count("waterbomb-cell", direction=(3, 4)).with_multiplicity
-    3
+    4
     >>> for name, result in exactfold.count(["two-vertex", "flat-vertex"]):
     ...     print(name, len(result))
     two-vertex 4
@@ -183,9 +183,7 @@ def count(
     """
     if direction is not None or isinstance(sheet, PeriodicPattern):
         if direction is None:
-            raise UsageError(
-                "a periodic sheet is counted for one direction, as in direction=(3, 4)"
-            )
+            raise UsageError("a periodic sheet is counted for one `direction`, such as (3, 4)")
         if (method, seed, snap, number, workers, limit) != ("auto", 0, None, None, 1, LIMIT):
             raise UsageError("only `progress` goes with `direction`")
         from exactfold.branches.periodic.counting import count_periodic

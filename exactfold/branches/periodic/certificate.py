@@ -8,9 +8,11 @@ from typing import Any
 
 from exactfold._support.verdict import PROVED
 from exactfold.branches.periodic.result import AlgebraicLine, HeightSpace, PeriodicCount
+from exactfold.branches.periodic.shown import Shown, sorted_branches
 from exactfold.branches.periodic.spaces import Cover, Space
 from exactfold.certificates.entries import box_entry
-from exactfold.checker.branches.periodic import PERIODIC, PeriodicClaims, SpaceClaim
+from exactfold.checker.branches.periodic import PERIODIC, PeriodicClaims
+from exactfold.checker.branches.periodic_proof import PeriodicBranchClaim, SpaceClaim
 from exactfold.errors import NotApplicableError
 from exactfold.exact.numbers import format_rational
 from exactfold.pattern.periodic.cell_files import cell_document
@@ -36,23 +38,37 @@ def periodic_certificate(result: PeriodicCount) -> dict[str, Any]:
             "a Groebner basis proved the count, as a solution with flat vertices or a pleat is "
             "irrational; no certificate states that"
         )
-    document = result.to_dict()
+    shown = Shown(evidence.problem)
+    found = [shown.branch(ray.signs, ray.b, ray.in_box) for ray in evidence.rays]
+    lines = {cover.space for cover in evidence.covers if cover.space.is_ray}
+    found += [shown.exact_branch(space.basis[0]) for space in lines]
+    branches: list[PeriodicBranchClaim] = [
+        {
+            "vertex_signs": branch.vertex_signs,
+            "multiplicity": branch.multiplicity,
+            "b": branch.b,
+            "letters": branch.letters,
+        }
+        for branch in sorted_branches(found)
+    ]
     claims: PeriodicClaims = {
-        "direction": document["direction"],
+        "direction": list(result.direction),
         "distinct": len(result.branches),
         "with_multiplicity": sum(branch.multiplicity for branch in result.branches),
-        "branches": [{**branch} for branch in document["branches"]],
+        "branches": branches,
         "pleats": _claims(result.pleats),
         "families": _claims(result.families),
+        "sha256": result.pattern.sha256,
     }
     points: dict[Space, list[Cover]] = defaultdict(list)
     for cover in evidence.covers:
         points[cover.space].append(cover)
     cell = cell_document(result.pattern)
+    pattern = {"lattice": cell["lattice"], "vertices": cell["points"], "faces": cell["faces"]}
     return {
         "format": PERIODIC.format,
         "version": PERIODIC.version,
-        "cell": {key: cell[key] for key in ("lattice", "points", "faces")},
+        "pattern": pattern,
         "claims": claims,
         "evidence": {
             "triangles": [

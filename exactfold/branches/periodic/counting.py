@@ -13,8 +13,8 @@ from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.branches.periodic.exactly import ExactRay, exact_rays
 from exactfold.branches.periodic.rays import Ray, prove_rays
-from exactfold.branches.periodic.result import Evidence, PeriodicBranch, PeriodicCount
-from exactfold.branches.periodic.shown import Shown
+from exactfold.branches.periodic.result import Evidence, PeriodicCount
+from exactfold.branches.periodic.shown import Shown, sorted_branches
 from exactfold.branches.periodic.spaces import Cover, Space, Spaces, combined, echelon
 from exactfold.errors import NotCountedError
 from exactfold.exact.linalg import nullspace
@@ -37,7 +37,7 @@ def count_periodic(
     angles to the axis of the cylinder, in the coordinates of the points; only its direction counts.
     All solutions of second order with heights w + (b/2) (n . x)^2 are real and form linear spaces.
     Without pleats there are 2^(V - 1) with multiplicity, one for each pair of opposite vertex sign
-    vectors, each 2^(number of flat vertices) times (docs/tessellations.md, Theorems A and B).
+    vectors, each 2^(number of flat vertices) times (docs/tessellations.md, Theorem 16).
     Newton's method proposes a ray for each sign vector, and Krawczyk's test, or linear algebra over
     Q, proves it.
 
@@ -94,12 +94,9 @@ def _result(
     problem: PeriodicProblem, rays: PeriodicRays, proved: dict[int, Ray], covers: list[Cover]
 ) -> PeriodicCount:
     shown = Shown(problem)
-    branches = [
-        shown.branch(rays.signs[ray.row].astype(int).tolist(), ray.b, ray.letters)
-        for ray in proved.values()
-    ]
+    branches = [shown.branch(ray.signs, ray.b, ray.letters) for ray in proved.values()]
     spaces = list(dict.fromkeys(cover.space for cover in covers))
-    lines = [space for space in spaces if space.dimension == 1 and space.bends]
+    lines = [space for space in spaces if space.is_ray]
     branches += [shown.exact_branch(space.basis[0]) for space in lines]
     wide = [space for space in spaces if space.dimension > 1 and space.bends]
     left = [
@@ -138,14 +135,6 @@ def _of_exact(problem: PeriodicProblem, rays: Sequence[ExactRay]) -> PeriodicCou
         sorted_branches(shown.branch(ray.signs, ray.b, ray.letters) for ray in rays if ray.b),
         tuple(shown.algebraic(ray) for ray in rays if not ray.b),
     )
-
-
-def sorted_branches(branches: Iterable[PeriodicBranch]) -> tuple[PeriodicBranch, ...]:
-    """Branches in the order of their vertex signs: down before flat before up."""
-    return tuple(sorted(branches, key=lambda branch: branch.vertex_signs.translate(_ORDER)))
-
-
-_ORDER = str.maketrans("-0+", "012")
 
 
 def pleat_spaces(spaces: Iterable[Space]) -> list[tuple[Row, ...]]:

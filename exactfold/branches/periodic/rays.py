@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from exactfold._support.arrays import FloatArray
 from exactfold.branches.values.letters import LETTERS
-from exactfold.branches.values.roots import BoxRoot
+from exactfold.branches.values.roots import AlgebraicRoot, BoxRoot
 from exactfold.rigidity.equations.periodic import PeriodicProblem, in_chart
 from exactfold.rigidity.equations.quadratic import QuadraticSystem
 from exactfold.solve.certify.box import IsolatingBox
@@ -24,14 +24,17 @@ _LETTERS = np.array([ord(LETTERS[sign]) for sign in (-1, 0, 1)], dtype=np.uint8)
 class Ray:
     """A simple ray, in the chart z_place = 1; `root` is on the side with the signs of its row.
 
-    `b` is the sign of b on this side, and `letters` are those of the folds of the sheet.
+    `b` is the sign of b on this side. `letters` are those of the folds of the sheet, and `in_box`
+    those that the box alone shows.
     """
 
     row: int
+    signs: tuple[int, ...]
     place: int
     root: BoxRoot
     b: int
     letters: str
+    in_box: str
 
 
 @dataclass(frozen=True)
@@ -68,10 +71,12 @@ class RayChart:
         rest = FloatSigns((*self.folds, self.bend)).on(boxes) * side[:, None].astype(np.int8)
         good = boxes.proved & (vertices * side[:, None] == signs).all(axis=1) & (rest != 0).all(1)
         letters = _LETTERS[rest[:, :-1] + 1]
+        names = list(map(tuple, signs.astype(int).tolist()))
         for k, row in enumerate(rows.tolist()):
             if good[k]:
                 root = BoxRoot(boxes.box(k), int(side[k]), self.system)
-                yield Ray(row, self.place, root, int(rest[k, -1]), letters[k].tobytes().decode())
+                text = letters[k].tobytes().decode()
+                yield Ray(row, names[k], self.place, root, int(rest[k, -1]), text, text)
             else:
                 ray = self._exactly(row, points[k], int(side[k]), signs[k])
                 if ray is not None:
@@ -95,12 +100,27 @@ class RayChart:
                 return None
             b = root.sign(self.bend)
             if b and None not in found:
-                letters = "".join(LETTERS[root.sign(line)] for line in self.folds)
-                best = Ray(row, self.place, root, b, letters)
-                if "U" not in letters:
-                    break
+                text = "".join(LETTERS[root.sign(line)] for line in self.folds)
+                names = tuple(map(int, signs.tolist()))
+                best = Ray(row, names, self.place, root, b, text, text)
+                if "U" not in text:
+                    return best
             root = root.sharpened(bits)
-        return best
+        return None if best is None else replace(best, letters=self._letters(best.root))
+
+    def _letters(self, root: BoxRoot) -> str:
+        """The letters at a root; those that its box leaves open, if its exact zero is found."""
+        from exactfold.branches.values.known_roots import zero_in  # loads FLINT
+
+        found = [root.sign(line) for line in self.folds]
+        known = zero_in(self.system, root.box)
+        if known is not None:
+            exact = AlgebraicRoot(*known, side=root.side)
+            found = [
+                exact.sign(line) if sign is None else sign
+                for sign, line in zip(found, self.folds, strict=True)
+            ]
+        return "".join(map(LETTERS.__getitem__, found))
 
 
 def prove_rays(problem: PeriodicProblem, rays: FloatArray, signs: FloatArray) -> dict[int, Ray]:

@@ -46,7 +46,7 @@ class PeriodicBranch:
     letters: str
     multiplicity: int
 
-    def to_dict(self) -> BranchDocument:
+    def to_dict(self) -> PeriodicBranchDocument:
         """The object in the JSON of a count."""
         return {
             "vertex_signs": self.vertex_signs,
@@ -71,7 +71,7 @@ class HeightSpace:
         """The dimension."""
         return len(self.basis)
 
-    def to_dict(self) -> SpaceDocument:
+    def to_dict(self) -> PeriodicSpaceDocument:
         """The object in the JSON of a count."""
         return {
             "dimension": self.dimension,
@@ -97,7 +97,7 @@ class AlgebraicLine:
         """The dimension: 1."""
         return 1
 
-    def to_dict(self) -> LineDocument:
+    def to_dict(self) -> PeriodicLineDocument:
         """The object in the JSON of a count."""
         low, high = self.interval
         row = [[format_rational(c) for c in height] for height in self.heights]
@@ -109,7 +109,7 @@ class AlgebraicLine:
         }
 
 
-class BranchDocument(TypedDict):
+class PeriodicBranchDocument(TypedDict):
     """A branch of a periodic sheet: a pair of opposite rays."""
 
     vertex_signs: SignsText
@@ -122,7 +122,7 @@ class BranchDocument(TypedDict):
     """A letter for each of the edges, on this side."""
 
 
-class SpaceDocument(TypedDict):
+class PeriodicSpaceDocument(TypedDict):
     """A linear space of solutions."""
 
     dimension: Positive
@@ -131,7 +131,7 @@ class SpaceDocument(TypedDict):
     """Each row: the height w of every vertex, 0 at the first, and then b."""
 
 
-class LineDocument(TypedDict):
+class PeriodicLineDocument(TypedDict):
     """A line of pleats whose heights are algebraic numbers."""
 
     dimension: Literal[1]
@@ -169,11 +169,11 @@ class PeriodicDocument(TypedDict):
     """How many are not: none, by theorem."""
     edges: list[list[int]]
     """The edges [u, v, i, j] in the order of the letters: from vertex u to v moved by (i, j)."""
-    branches: list[BranchDocument]
+    branches: list[PeriodicBranchDocument]
     """The isolated solutions, sorted by vertex signs; those found if undecided."""
-    pleats: list[SpaceDocument | LineDocument]
+    pleats: list[PeriodicSpaceDocument | PeriodicLineDocument]
     """The maximal spaces of solutions with b = 0; none if and only if (H) holds."""
-    families: list[SpaceDocument]
+    families: list[PeriodicSpaceDocument]
     """The spaces of two or more dimensions in which b is not 0."""
     open: list[str]
     """Sign vectors that are undecided, 1000 at most."""
@@ -224,6 +224,11 @@ class PeriodicCount(Ways[PeriodicBranch], Certified):
     def with_multiplicity(self) -> int | None:
         """The same with multiplicity; 2^(V - 1) if there are no pleats."""
         return None if self.open else sum(branch.multiplicity for branch in self.branches)
+
+    @property
+    def real(self) -> int | None:
+        """How many isolated solutions with b = 1 are real: all of them, by theorem."""
+        return self.distinct
 
     def listed(self) -> tuple[PeriodicBranch, ...]:
         """The branches."""

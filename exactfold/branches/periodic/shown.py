@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -98,3 +98,11 @@ class Shown:
         p, q = self.problem.direction
         along = p * point[0] + q * point[1]
         return along * along
+
+
+def sorted_branches(branches: Iterable[PeriodicBranch]) -> tuple[PeriodicBranch, ...]:
+    """Branches in the order of their vertex signs: down before flat before up."""
+    return tuple(sorted(branches, key=lambda branch: branch.vertex_signs.translate(_ORDER)))
+
+
+_ORDER = str.maketrans("-0+", "012")

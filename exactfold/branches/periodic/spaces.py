@@ -1,10 +1,10 @@
 """Linear spaces of solutions of a periodic sheet, found in floats and proved over Q.
 
 All solutions form linear spaces: the spans L_e of the cones C_e of sign vectors
-(docs/tessellations.md, Theorem A). Take h in C_e. Let F be the vertices that are flat in h, N the
+(docs/tessellations.md, Theorem 15). Take h in C_e. Let F be the vertices that are flat in h, N the
 space of all a with K_u(h, a) = 0 for all u that are not in F, and Z the radical, on N, of the sum
 of the K_v with v in F. If all K_v vanish on Z, then Z is a component of the solutions, and it holds
-C_s for every s that agrees with h off F (docs/tessellations.md, Theorem D).
+C_s for every s that agrees with h off F (docs/tessellations.md, Theorem 17).
 """
 
 from __future__ import annotations
@@ -40,6 +40,11 @@ class Space:
     def dimension(self) -> int:
         """The dimension."""
         return len(self.basis)
+
+    @property
+    def is_ray(self) -> bool:
+        """Whether it is a line on which b is not 0."""
+        return len(self.basis) == 1 and self.bends
 
     @property
     def bends(self) -> bool:

@@ -8,12 +8,13 @@ translates and 0 at the first vertex. They are the numbers z = (w_1, ..., w_m, c
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Sequence
 from fractions import Fraction
 from math import gcd, isqrt, lcm
 from typing import Any
 
-from ..core.reading import Coordinates, integer, items, keys, require
+from ..core.reading import Coordinates, digits, integer, items, keys, require
 from .sheet import Point, turn
 
 Corner = tuple[int, int, int]
@@ -58,6 +59,21 @@ class Cell:
         v, i, j = corner
         (ax, ay), (bx, by), (x, y) = *self.lattice, self.points[v]
         return x + i * ax + j * bx, y + i * ay + j * by
+
+    def sha256(self) -> str:
+        """The digest of the cell; it does not depend on the order of the faces."""
+
+        def text(numbers: Sequence[Fraction]) -> str:
+            parts = [f"{digits(x.numerator)}/{digits(x.denominator)}" for x in numbers]
+            return " ".join(part.removesuffix("/1") for part in parts)
+
+        lines = ["exactfold periodic pattern 1"]
+        lines += [f"l {text(vector)}" for vector in self.lattice]
+        lines += [f"v {text(point)}" for _, point in sorted(self.points.items())]
+        turned = [min(f, f[1:] + f[:1], f[2:] + f[:2]) for f in self.faces]
+        seen = sorted([_seen(face[0], corner) for corner in face] for face in turned)
+        lines += ["f " + " ".join(f"{v} {i} {j}" for v, i, j in face) for face in seen]
+        return hashlib.sha256("".join(line + "\n" for line in lines).encode()).hexdigest()
 
     def opposite(self, edge: Side) -> tuple[Corner, Corner]:
         """The third corners of the faces to the left and to the right of an edge."""
@@ -104,7 +120,7 @@ def read_corners(value: Any, what: str, count: int) -> list[Corner]:
 
 def read_cell(data: Any) -> Cell:
     """Read and verify the cell of a certificate."""
-    keys(data, "lattice points faces", "cell")
+    keys(data, "lattice vertices faces", "pattern")
     coordinate = Coordinates()
 
     def pair(value: Any) -> Point:
@@ -112,7 +128,7 @@ def read_cell(data: Any) -> Cell:
         return coordinate(x), coordinate(y)
 
     lattice = [pair(vector) for vector in items(data["lattice"], "lattice", 2)]
-    points = dict(enumerate(map(pair, items(data["points"], "points"))))
+    points = dict(enumerate(map(pair, items(data["vertices"], "vertices"))))
     faces = []
     for entry in items(data["faces"], "faces"):
         face = read_corners(entry, "face", len(points))

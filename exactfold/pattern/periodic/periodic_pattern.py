@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from typing import TypeAlias
 
-from exactfold.exact.numbers import RationalLike, as_rational
+from exactfold.exact.numbers import RationalLike, as_rational, format_rational
 from exactfold.pattern.crease_pattern import Point
 from exactfold.pattern.periodic import cells
 from exactfold.pattern.periodic.cells import Corner, Face, Side
@@ -127,6 +128,21 @@ class PeriodicPattern:
         u, v, i, j = edge
         w, wi, wj = self._next[v][(u, -i, -j)]
         return self._next[u][(v, i, j)], (w, wi + i, wj + j)
+
+    @cached_property
+    def sha256(self) -> str:
+        """The digest of the cell, which certificates name; the order of faces does not matter."""
+        numbers = (("l", self.lattice), ("v", self.points))
+        lines = ["exactfold periodic pattern 1"]
+        lines += [
+            f"{key} {format_rational(x)} {format_rational(y)}"
+            for key, some in numbers
+            for x, y in some
+        ]
+        lines += [
+            "f " + " ".join(f"{v} {i} {j}" for v, i, j in face) for face in sorted(self.faces)
+        ]
+        return hashlib.sha256("".join(line + "\n" for line in lines).encode()).hexdigest()
 
     def __repr__(self) -> str:
         noun = "vertex" if self.V == 1 else "vertices"

@@ -1,13 +1,13 @@
 r"""Rays of a periodic sheet for all sign vectors, in floats.
 
 For signs e let C_e be the closed cone of heights with K_v >= 0 and e_v l_v >= 0 at every vertex.
-All K_v vanish on it, and it contains more than 0 (docs/tessellations.md, Theorem A). For small
+All K_v vanish on it, and it contains more than 0 (docs/tessellations.md, Theorem 15). For small
 epsilon > 0 the V equations
 
     (1 + epsilon)^(1/2) l_v = e_v (|A_v z|^2 + 1)^(1/2)
 
 in the V unknowns z have exactly one solution, and as epsilon tends to 0 its direction tends into
-C_e (the proof of Theorem A (b)). Newton's method on nappes solves them for a small epsilon. Then
+C_e (the proof of Theorem 15). Newton's method on nappes solves them for a small epsilon. Then
 steps on the forms themselves, at right angles to the ray, sharpen it. Nothing here is proved.
 """
 
