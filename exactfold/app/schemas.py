@@ -67,7 +67,11 @@ DOCUMENTS: Final = {
     ),
     "motions": ("exactfold motions --json", "motion.loops.matching:LoopsDocument"),
     "view": ("the document inside a page of exactfold view", "app.viewer.document:ViewDocument"),
-    "actuate": ("exactfold actuate --json", "design.actuation.result:ActuationDocument"),
+    "actuate": (
+        "exactfold actuate --json",
+        "design.actuation.result:ActuationDocument",
+        "design.actuation.panels.result:PanelActuationDocument",
+    ),
     "assignments": (
         "exactfold assignments --json",
         "design.circles.assignment_list:AssignmentsDocument",

@@ -43,6 +43,7 @@ from .motion.certificate import MOTION
 from .motion.loops import LOOPS
 from .motion.panels.certificate import PANEL_MOTION
 from .panels.certificate import PANELS
+from .panels.torques import PANEL_TORQUES
 from .sheets.meant import MEANT
 
 USAGE = "usage: python exactfold/checker CERTIFICATE [WORKERS]"
@@ -58,6 +59,7 @@ DOCUMENTS: tuple[DocumentKind[Any], ...] = (
     PANEL_LETTERS,
     PANEL_ASSIGNMENTS,
     PANEL_FREEDOM,
+    PANEL_TORQUES,
     MOTION,
     PANEL_MOTION,
     MEANT,

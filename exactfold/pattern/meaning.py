@@ -16,7 +16,6 @@ from exactfold.pattern.opened import Opened, panels, triangulated
 
 if TYPE_CHECKING:  # sheets with exact digits do without them
     from exactfold.pattern.panel_pattern import PanelPattern
-    from exactfold.pattern.reading import Reading
 
 
 _MOST_EDGES: Final = 1200
@@ -77,6 +76,8 @@ def _meaning(found: Opened, written: Callable[[], Opened]) -> Opened:
             found, meant=Meant(left=left, reason="the coordinates in the file are irrational")
         )
     meant = inferred(sheet, reading)
+    if not left and meant.inferred and not meant.distance:
+        return _unchanged(found)
     if meant.realized is None or meant.realized.sheet is None:
         if meant.reason and reading.overrules and (reading.also or not left):
             raise UsageError(
@@ -84,8 +85,7 @@ def _meaning(found: Opened, written: Callable[[], Opened]) -> Opened:
                 "or less noise"
             )
         reason = meant.reason or (_NO_LEVEL if left else "")
-        said = () if left else (_without_effect(reading),)
-        found = replace(found, lines=found.lines + said, seen=found.seen + said)
+        found = found if left else _unchanged(found)
         return replace(found, meant=replace(meant, left=left, reason=reason))
     exact = meant.realized.sheet
     lines = tuple(line for line in raw.lines if not line.startswith("coordinates kept"))
@@ -103,13 +103,15 @@ def _meaning(found: Opened, written: Callable[[], Opened]) -> Opened:
     )
 
 
-def _without_effect(reading: Reading) -> str:
-    """What is said of options for an inexact drawing if the drawing is exact."""
+def _unchanged(found: Opened) -> Opened:
+    """An exact drawing; its lines say that the options for inexact ones changed nothing."""
+    reading = found.reading
     given = {"--without": reading.without, "--also": reading.also}
     numbers = {"--noise": reading.noise, "--unit": reading.unit}
     names = [name for name, value in given.items() if value]
     names += [name for name, value in numbers.items() if value is not None]
-    return f"{_NONE_NEAR}: {', '.join(names)} changed nothing"
+    said = (f"{_NONE_NEAR}: {', '.join(names)} changed nothing",)
+    return replace(found, lines=found.lines + said, seen=found.seen + said)
 
 
 def recognised(found: Opened) -> Opened | None:

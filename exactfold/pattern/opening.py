@@ -47,6 +47,10 @@ _OF_EDGES = (MalformedPatternError, DisconnectedError)
 _HEAD = 1 << 20
 """A cell says what it is within so many bytes."""
 _BOX = "`--box`, which takes the rectangle round the drawing for the edge of the paper, reads it"
+_IN_A_BOX = (
+    "the drawing has no edge of the paper, so the rectangle round it is taken, as with --box; if "
+    "the paper is another, draw its edge as a closed line"
+)
 _FORCE = "`--force` (`force=True` in Python) reads the sheet all the same"
 
 
@@ -174,7 +178,8 @@ def from_drawing(drawing: Drawing, reading: Reading = PLAIN) -> Opened:
 
     A drawing with exact coordinates of its own keeps them, and is repaired only if it is not a
     sheet otherwise. Its lines F and J join panels in any case. With `reading.box`, the rectangle
-    round the drawing is its boundary.
+    round the drawing is its boundary. So it is, and `seen` says so, for a drawing of mountains and
+    valleys without a boundary line that can be read in no other way.
 
     >>> from exactfold.pattern.drawing.drawing import Line
     >>> crossed = Drawing(((0, 0), (2, 0), (2, 2), (0, 2), (1, 0), (1, 2)),
@@ -198,7 +203,10 @@ def from_drawing(drawing: Drawing, reading: Reading = PLAIN) -> Opened:
             return meaning(found, lambda: from_drawing(drawing, reading.as_written))
         except (FoldError, PatternError, MalformedDrawingError) as error:
             if k == len(tried) or isinstance(error, MalformedDrawingError):
-                remedies = [_BOX] if _box_helps(drawing, reading, error) else []
+                boxed_in = _box_helps(drawing, reading, error)
+                if boxed_in and _has_creases_only(drawing):
+                    return _in_a_box(drawing, reading)
+                remedies = [_BOX] if boxed_in else []
                 remedies += [_FORCE] if isinstance(error, MalformedDrawingError) else []
                 error.args = ("; ".join((str(error), *remedies)), *error.args[1:])
                 raise
@@ -218,6 +226,18 @@ def _box_helps(drawing: Drawing, reading: Reading, error: Exception) -> bool:
     except InputError:
         return False
     return bool(found.sheet.folds)
+
+
+def _has_creases_only(drawing: Drawing) -> bool:
+    """Whether the letters of a drawing tell mountains or valleys, and no boundary."""
+    letters = {line.letter for line in drawing.lines}
+    return bool(letters & {"M", "V"}) and "B" not in letters
+
+
+def _in_a_box(drawing: Drawing, reading: Reading) -> Opened:
+    """The sheet of a drawing with the rectangle round it, which is said."""
+    found = from_drawing(drawing, replace(reading, box=True))
+    return replace(found, lines=(*found.lines, _IN_A_BOX), seen=(_IN_A_BOX, *found.seen))
 
 
 def _chosen(drawing: Drawing, sheets: Sheets, reading: Reading) -> Opened:

@@ -71,6 +71,7 @@ MOTIONS = exactfold.panels.decompose(OPENED.sheet)
 SPACES = exactfold.panels.decompose(panels(single_vertex(5)))
 MOTION = exactfold.motion.follow(exactfold.branches.find_branch(PATTERN, "+-"), frames=4)
 BY_FOLDS = exactfold.motion.find_driven(single_vertex(5), {(0, 5): 9, (2, 5): 6})
+HINGES = exactfold.design.Hinges(Fraction(1, 2), Fraction(100))
 DRIVEN = exactfold.design.actuate(exactfold.pattern.data.example_path("single-vertex-4"), "+")
 ALL = exactfold.design.all_assignments(single_vertex(5))
 MATCH = exactfold.design.match(PATTERN, exactfold.branches.find_branch(PATTERN, "+-").assignment)
@@ -231,6 +232,8 @@ VALUES = {
         MOTION.curve.framework, np.array([0.0, 0.0, 0.0, 1.0, 0.3, -0.1])
     ),
     "actuation": DRIVEN,
+    "actuation of panels": exactfold.actuate("zigzags", way=1, hinges=HINGES),
+    "hinges": HINGES,
     "lines of a certificate": exactfold.branches.certificate(COUNT),
     "checked certificate": exactfold.check(exactfold.branches.certificate(COUNT)),
     "match": MATCH,

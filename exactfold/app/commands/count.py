@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,11 +14,11 @@ from exactfold.app.commands.stream import Streaming, advice
 from exactfold.app.options.patterns import CountOptions
 from exactfold.app.shell.given import Given
 from exactfold.app.shell.patterns import located, read, read_any
-from exactfold.app.shell.shell import EXIT, Bar, apart, name_of, say
+from exactfold.app.shell.shell import EXIT, STDIN, Bar, apart, name_of, say
 from exactfold.app.verbs.counting import counted_with_letters
 from exactfold.branches.values.result import BranchCount
 from exactfold.certificates.entries import write_certificate
-from exactfold.errors import NotApplicableError, UsageError
+from exactfold.errors import NotApplicableError, SeveralSheetsError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.drawing.bounds import read_bytes
 from exactfold.pattern.opening import Opened, is_cell_file
@@ -57,7 +58,12 @@ class Asked(CountOptions):
         if streamed is not None:
             result = streamed
         else:
-            opened, result = self._counted()
+            try:
+                opened, result = self._counted()
+            except SeveralSheetsError as error:
+                if not self._takes_all(error):
+                    raise
+                return self._each(error.known)
         written = self._certified(result, streamed)
         if self.as_json:
             print(json.dumps(result.to_dict(written, name_of(self.pattern))))
@@ -86,6 +92,21 @@ class Asked(CountOptions):
             for line in report.proposal_lines(result.proposal):
                 report.show(line)
         return EXIT[result.status]
+
+    def _takes_all(self, error: SeveralSheetsError) -> bool:
+        """Whether the sheets of a drawing are all counted, as none was chosen.
+
+        One JSON object and one certificate are about one sheet, and standard input is read once.
+        """
+        return not (not error.sheets or self.as_json or self.certificate or self.pattern == STDIN)
+
+    def _each(self, known: str) -> int:
+        """Count every sheet of the drawing, and say so."""
+        from exactfold.app.commands.several.batch import Batch
+
+        say(f"{known}: each is counted, as with --sheet all; --sheet N chooses one")
+        options = {option.name: getattr(self, option.name) for option in fields(self)}
+        return Batch(**{**options, "sheet": "all"}).run()
 
     def _of_digits(self, result: BranchCount | Decomposition) -> None:
         if result.as_written is not None:

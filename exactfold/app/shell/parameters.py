@@ -100,6 +100,14 @@ def degrees(text: object) -> float:
         raise typer.BadParameter(f"{str(text)!r} is not a number") from None
 
 
+def exact_number(text: object) -> Fraction:
+    """The exact number in a text such as 0.5 or 1/3."""
+    try:
+        return parse_rational(str(text))
+    except NumberError:
+        raise typer.BadParameter(f"{str(text)!r} is not a number") from None
+
+
 def duration(text: object) -> float:
     """A positive number of seconds; "inf" is no limit."""
     try:

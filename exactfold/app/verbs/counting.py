@@ -195,7 +195,8 @@ def count(
                 f"{workers} workers share a list of sheets; a single sheet takes one worker"
             )
         choose(method)
-        return _counted(sheet, Reading(snap, number), method, seed, Clock(limit), progress)
+        reading = Reading(snap, number, limit=limit)
+        return _counted(sheet, reading, method, seed, Clock(limit), progress)
     from exactfold.branches.counting.batch import count_many
 
     return count_many(
@@ -203,7 +204,7 @@ def count(
         jobs=workers,
         method=method,
         seed=seed,
-        reading=Reading(snap, number),
+        reading=Reading(snap, number, limit=limit),
         progress=progress,
         limit=limit,
         counting=counted_with_letters,

@@ -81,6 +81,8 @@ SPACE_STEPS = 1 << 24  # products of densities in one search
 SPACE_LEAVES = 1 << 12  # spaces of motions of one part
 MOST_LISTED = 1 << 12  # modes of one support that are checked one by one
 MOST_SUPPORTS = 1 << 15  # supports of a sheet
+TORQUE_WAYS = 1 << 12  # ways that torques are compared with
+TORQUE_RAYS = 1 << 12  # rays in the proof that no torques have a larger margin
 TREE_JOINTS = 10  # folds to other vertices at one vertex of a tree
 TREE_CASES = 1 << 16  # cases of one vertex of a tree
 

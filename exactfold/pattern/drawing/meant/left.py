@@ -49,9 +49,9 @@ def left_relations(sheet: Sheet) -> tuple[Relation, ...]:
     """The relations that the sheet nearly has but does not have exactly, the nearest first.
 
     These are straight paths through a vertex, straight borders, and sums of Kawasaki at vertices
-    with four folds, with a defect of at most 3e-3. If k relations have at most the defect of the
-    k-th, and chance may bring k / 2 as near with a probability of at least 1e-3, these k are
-    not near.
+    with an even number of folds, at least four, with a defect of at most 3e-3. If k relations have
+    at most the defect of the k-th, and chance may bring k / 2 as near with a probability of at
+    least 1e-3, these k are not near.
 
     >>> from exactfold.pattern.families import two_vertex
     >>> left_relations(two_vertex())
@@ -217,7 +217,7 @@ def _tests(sheet: Sheet, places: FloatArray) -> Iterator[_Tests]:
         pairs = np.stack([ends[:, i], ends[:, j]], axis=-1).reshape(-1, 2)
         order = (first[:, None] + np.arange(len(i))).ravel()
         yield _Tests.of("straight", places, np.repeat(hubs, len(i)), pairs, order)
-        if degree == 4:
+        if degree >= 4 and degree % 2 == 0:
             yield _Tests.of("kawasaki", places, hubs, ends, first + len(i))
 
 
