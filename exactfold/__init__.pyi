@@ -19,13 +19,13 @@ from exactfold._support.verdict import REFUTED as REFUTED
 from exactfold._support.verdict import UNDECIDED as UNDECIDED
 from exactfold._support.verdict import Verdict as Verdict
 from exactfold.app.schemas import schema as schema
+from exactfold.app.verbs.actuating import actuate as actuate
 from exactfold.app.verbs.checking import Checked as Checked
 from exactfold.app.verbs.checking import check as check
 from exactfold.app.verbs.counting import branch as branch
 from exactfold.app.verbs.counting import count as count
 from exactfold.app.verbs.counting import decompose as decompose
 from exactfold.app.verbs.counting import read as read
-from exactfold.app.verbs.designing import actuate as actuate
 from exactfold.app.verbs.designing import match as match
 from exactfold.app.verbs.designing import vertices as vertices
 from exactfold.app.verbs.layering import flat as flat

@@ -102,12 +102,14 @@ class MalformedDrawingError(InputError):
 class SeveralSheetsError(InputError):
     """A drawing has several sheets and none was chosen, or the chosen sheet does not exist.
 
-    `sheets` is the number of sheets to choose from; 0 if another choice was made.
+    `sheets` is the number of sheets to choose from, and `known` says which they are; 0 if another
+    choice was made.
     """
 
-    def __init__(self, message: str, sheets: int = 0) -> None:
+    def __init__(self, message: str, sheets: int = 0, known: str = "") -> None:
         super().__init__(message)
         self.sheets = sheets
+        self.known = known
 
 
 class CertificateFormatError(InputError):
@@ -221,6 +223,13 @@ class NotADiskError(PatternError):
 
 class DisconnectedError(NotADiskError):
     """There are two or more separate sheets."""
+
+
+class NotPeriodicError(PatternError):
+    """The faces of a cell and their translates do not cover the plane, each point once.
+
+    The lattice vectors are parallel, an edge does not have one face on each side, or faces overlap.
+    """
 
 
 class NotApplicableError(ExactfoldError):

@@ -13,7 +13,7 @@ os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 # Each run draws other examples: some in every run find more than many in a few runs. How long one
 # takes on a busy machine is no matter.
 settings.register_profile(
-    "some", max_examples=30, deadline=None, suppress_health_check=[HealthCheck.too_slow]
+    "some", max_examples=20, deadline=None, suppress_health_check=[HealthCheck.too_slow]
 )
 settings.load_profile("some")
 

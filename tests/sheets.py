@@ -86,12 +86,27 @@ def scrambled(
             face = source.randrange(len(pattern.triangles))
             a, b, c = source.sample(range(5, 60), 3)
             pattern = with_point(pattern, face, (a, b, c))
-        for _ in range(6 * inside):
-            other = flipped(pattern, source.choice(pattern.folds))
-            pattern = other or pattern
+        pattern = _flipped_at_random(pattern, 6 * inside, source)
         stiff = pattern.Vt or collinear_folds(pattern)
         if not pattern.chords and not (loose and stiff):
             return pattern
+
+
+def _flipped_at_random(pattern: CreasePattern, times: int, source: random.Random) -> CreasePattern:
+    """What `flipped` at random folds, one after the other, makes of a pattern.
+
+    Only the last sheet is built.
+    """
+    points, faces = pattern.integer_vertices[0], list(pattern.triangles)
+    opposite = {e: k for a, b, c in faces for e, k in (((a, b), c), ((b, c), a), ((c, a), b))}
+    for _ in range(times):
+        i, j = source.choice(sorted(e for e in opposite if e[0] < e[1] and e[::-1] in opposite))
+        k, m = opposite[i, j], opposite[j, i]
+        if turn(points[i], points[m], points[k]) <= 0 or turn(points[j], points[k], points[m]) <= 0:
+            continue
+        faces = [t for t in faces if not {i, j} <= {*t}] + [(i, m, k), (j, k, m)]
+        opposite = {e: k for a, b, c in faces for e, k in (((a, b), c), ((b, c), a), ((c, a), b))}
+    return CreasePattern(pattern.vertices, faces)
 
 
 def reflex_corners(seed: int) -> list[tuple[int, int]]:

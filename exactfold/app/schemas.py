@@ -45,6 +45,10 @@ DOCUMENTS: Final = {
         "branches.values.count_document:StreamedUndecided",
     ),
     "shapes": ("exactfold count --curvature --json", "branches.counting.shapes:ShapesDocument"),
+    "periodic": (
+        "exactfold count CELL --direction X,Y --json",
+        "branches.periodic.result:PeriodicDocument",
+    ),
     "branch": (
         "exactfold branch --json, and each line of it",
         "branches.values.branch:BranchDocument",
@@ -63,7 +67,11 @@ DOCUMENTS: Final = {
     ),
     "motions": ("exactfold motions --json", "motion.loops.matching:LoopsDocument"),
     "view": ("the document inside a page of exactfold view", "app.viewer.document:ViewDocument"),
-    "actuate": ("exactfold actuate --json", "design.actuation.result:ActuationDocument"),
+    "actuate": (
+        "exactfold actuate --json",
+        "design.actuation.result:ActuationDocument",
+        "design.actuation.panels.result:PanelActuationDocument",
+    ),
     "assignments": (
         "exactfold assignments --json",
         "design.circles.assignment_list:AssignmentsDocument",

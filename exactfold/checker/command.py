@@ -17,6 +17,7 @@ from .branches.branch import BRANCH
 from .branches.compact import COMPACT
 from .branches.connected_components import PIECES
 from .branches.listing import LISTING
+from .branches.periodic import PERIODIC
 from .core.kinds import DocumentKind, LineKind, Verified
 from .core.limits import MOST_BYTES, MOST_LINE
 from .core.lines import lines, read_object
@@ -42,6 +43,7 @@ from .motion.certificate import MOTION
 from .motion.loops import LOOPS
 from .motion.panels.certificate import PANEL_MOTION
 from .panels.certificate import PANELS
+from .panels.torques import PANEL_TORQUES
 from .sheets.meant import MEANT
 
 USAGE = "usage: python exactfold/checker CERTIFICATE [WORKERS]"
@@ -50,12 +52,14 @@ DOCUMENTS: tuple[DocumentKind[Any], ...] = (
     LISTING,
     BRANCH,
     PIECES,
+    PERIODIC,
     PANELS,
     LETTERS,
     ASSIGNMENTS,
     PANEL_LETTERS,
     PANEL_ASSIGNMENTS,
     PANEL_FREEDOM,
+    PANEL_TORQUES,
     MOTION,
     PANEL_MOTION,
     MEANT,

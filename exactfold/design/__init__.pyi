@@ -2,7 +2,10 @@ from exactfold.design.actuation.actuate import MOST_FOLDABLE as MOST_FOLDABLE
 from exactfold.design.actuation.actuate import actuate as actuate
 from exactfold.design.actuation.directions import Directions as Directions
 from exactfold.design.actuation.every import actuate_all as actuate_all
+from exactfold.design.actuation.hinges import Hinges as Hinges
 from exactfold.design.actuation.orthogonal import OrthogonalTorques as OrthogonalTorques
+from exactfold.design.actuation.panels.actuate import actuate_panels as actuate_panels
+from exactfold.design.actuation.panels.result import PanelActuation as PanelActuation
 from exactfold.design.actuation.result import Actuation as Actuation
 from exactfold.design.actuation.result import Ranked as Ranked
 from exactfold.design.assignments.boundary_match import match_boundary as match_boundary

@@ -17,7 +17,7 @@ import numpy as np
 from flint import arb, ctx
 
 from exactfold._support.arrays import FloatArray
-from exactfold._support.clock import LIMIT, Clock
+from exactfold._support.clock import LIMIT, UNLIMITED, Clock
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.errors import NotApplicableError, NotFollowedError, TooManyModesError
@@ -55,6 +55,8 @@ class Reached:
     if `status` is PROVED: then no two panels touch before all folds are closed. If the status is
     REFUTED, some panels touch or pass through each other before. `contacts` says which and when, as
     far as that is proved, or `crossing` has two pieces that pass through each other at the end.
+    `heights` has the height of each vertex over the folded image near closing, to first order and
+    up to a common factor, in floats.
     """
 
     status: Verdict
@@ -64,6 +66,7 @@ class Reached:
     images: Images = field(repr=False)
     state: State | None = field(repr=False)
     crossing: Pair | None = None
+    heights: FloatArray | None = field(default=None, repr=False, compare=False)
 
     def number_in(self, states: FlatStates, *, mirrored: bool = False) -> int | None:
         """The number of the state among those listed of the same sheet; None if it is not there.
@@ -88,12 +91,14 @@ class Reached:
         return number
 
 
-def reached(motion: PanelMotion, contacts: PanelClearance | None = None) -> Reached:
+def reached(
+    motion: PanelMotion, contacts: PanelClearance | None = None, clock: Clock = UNLIMITED
+) -> Reached:
     """The flat-folded state that a motion of panels ends in, and the proof that it gets there.
 
     As all folds close, panels lie above each other in the order of their heights to first order:
     docs/motion.md, Theorem 11. `contacts` is what `prove_contacts` says of the motion, if that is
-    known.
+    known; else the proof ends with the clock.
 
     Raises `NotApplicableError` for a motion of which not all folds close at the same time, at its
     end.
@@ -110,7 +115,7 @@ def reached(motion: PanelMotion, contacts: PanelClearance | None = None) -> Reac
             "order of layers"
         )
     if contacts is None:
-        contacts = prove_contacts(motion)
+        contacts = prove_contacts(motion, clock)
     images = images_of(pieces_of(motion.pattern, motion.assignment))
     if images.torn:
         raise ArithmeticError("a motion that closes all its folds has no folded image")
@@ -123,7 +128,7 @@ def reached(motion: PanelMotion, contacts: PanelClearance | None = None) -> Reac
     if all(len(found) == 1 for found in signs.values()):
         state = State(images, {pair: -next(iter(found)) for pair, found in signs.items()})
     status, reason = _judged(contacts, crossing, images, state)
-    return Reached(status, reason, motion, contacts, images, state, crossing)
+    return Reached(status, reason, motion, contacts, images, state, crossing, heights.of_vertices())
 
 
 def with_layers(proof: PanelProof) -> PanelProof:
@@ -200,9 +205,10 @@ def way_ends(
     in doubt, all are.
 
     >>> import exactfold
-    >>> ends = way_ends(exactfold.decompose("square-twist"), exactfold.flat("square-twist", "any"))
+    >>> vertex = "single-vertex-4"
+    >>> ends = way_ends(exactfold.decompose(vertex), exactfold.flat(vertex, "any"))
     >>> [end.state for end in ends if end.status is PROVED]
-    [1, 3]
+    [0, 1]
     """
     clock = Clock(limit)
     ways = [way for way in panel_ways(answer.known) if way.verdict is PROVED and not way.spaces]
@@ -210,11 +216,12 @@ def way_ends(
     for k, way in enumerate(ways):
         if progress is not None:
             progress("ways", k, len(ways))
-        ends.append(_end_of(answer, way, states, clock))
+        ends.append(way_end(answer, way, states, clock))
     return tuple(ends)
 
 
-def _end_of(answer: Decomposition, way: PanelWay, states: FlatStates, clock: Clock) -> WayEnd:
+def way_end(answer: Decomposition, way: PanelWay, states: FlatStates, clock: Clock) -> WayEnd:
+    """Where one way ends, one of those of `way_ends`; UNDECIDED if the clock passes before."""
     folds = answer.known.pattern.folds
     letters = {fold: way.letters.get(fold, "F") for fold in folds}
     if states.doubt:
@@ -223,7 +230,7 @@ def _end_of(answer: Decomposition, way: PanelWay, states: FlatStates, clock: Clo
         clock.check()
         motion = follow_panels(answer, way=way.number, until="180deg", frames=2)
         letters = dict(motion.assignment)
-        end = reached(motion)
+        end = reached(motion, clock=clock)
     except (NotApplicableError, NotFollowedError, TooManyModesError) as error:
         return WayEnd(way.number, letters, UNDECIDED, str(error))
     if end.status is not PROVED:
@@ -262,6 +269,7 @@ class _Heights:
     """
 
     def __init__(self, images: Images, stretch: LastStretch) -> None:
+        self.images = images
         pieces, maps = images.pieces, images.maps
         points = {v: [ball(c, _BITS) for c in point] for v, point in images.points.items()}
         self.corners = [[points[v] for v in polygon] for polygon in pieces.polygons]
@@ -295,6 +303,17 @@ class _Heights:
             np.array([[float(c.mid()) for c in point] for point in polygon])
             for polygon in self.corners
         ]
+
+    def of_vertices(self) -> FloatArray:
+        """The height over each vertex of the sheet, in its unit, rounded to floats."""
+        sheet, scale = self.images.pieces.sheet, float(self.images.scale)
+        found = np.zeros(len(sheet.vertices))
+        for panel, face in enumerate(sheet.faces):
+            a, b, c = (float(x.mid()) for x in self.heights[self.images.pieces.of_panel[panel][0]])
+            for v in face:
+                x, y = self.images.places[v]
+                found[v] = a * x + b * y + c / scale
+        return found
 
     def signs(self, one: int, two: int) -> dict[int, tuple[Fraction, Fraction]]:
         """The proved signs of the height of one piece minus that of another, where both lie.

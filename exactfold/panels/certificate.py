@@ -208,12 +208,17 @@ def _mode(mode: Mode, together: _Together, moving: Mapping[int, Star]) -> ModeCl
     verdict = mode.extends.verdict
     refuted = verdict is REFUTED
     return {
-        "choice": "".join(_line(local, moving[local.vertex]) for local in mode.choice),
+        "choice": choice_text(mode.choice, moving),
         "assignment": "".join(mode.assignment[edge] for edge in together.folds),
         "extends": str(verdict),
         "loop": list(mode.extends.cycle) if refuted else None,
         "order": mode.extends.order if refuted else None,
     }
+
+
+def choice_text(choice: Iterable[LocalMode], moving: Mapping[int, Star]) -> str:
+    """The name of a mode in a certificate: its line at each vertex, "0" if there is only one."""
+    return "".join(_line(local, moving[local.vertex]) for local in choice)
 
 
 def _line(local: LocalMode, star: Star) -> str:

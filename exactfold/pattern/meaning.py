@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
@@ -12,11 +12,11 @@ from exactfold.errors import FoldError, PatternError, TooLargeError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.drawing.drawing import Drawing, Line
 from exactfold.pattern.drawing.meant.left import left_relations, off_by
+from exactfold.pattern.drawing.meant.levels import loop_levels
 from exactfold.pattern.opened import Opened, panels, triangulated
 
 if TYPE_CHECKING:  # sheets with exact digits do without them
     from exactfold.pattern.panel_pattern import PanelPattern
-    from exactfold.pattern.reading import Reading
 
 
 _MOST_EDGES: Final = 1200
@@ -77,6 +77,8 @@ def _meaning(found: Opened, written: Callable[[], Opened]) -> Opened:
             found, meant=Meant(left=left, reason="the coordinates in the file are irrational")
         )
     meant = inferred(sheet, reading)
+    if not left and meant.inferred and not meant.distance:
+        return _unchanged(found)
     if meant.realized is None or meant.realized.sheet is None:
         if meant.reason and reading.overrules and (reading.also or not left):
             raise UsageError(
@@ -84,8 +86,7 @@ def _meaning(found: Opened, written: Callable[[], Opened]) -> Opened:
                 "or less noise"
             )
         reason = meant.reason or (_NO_LEVEL if left else "")
-        said = () if left else (_without_effect(reading),)
-        found = replace(found, lines=found.lines + said, seen=found.seen + said)
+        found = found if left else _unchanged(found)
         return replace(found, meant=replace(meant, left=left, reason=reason))
     exact = meant.realized.sheet
     lines = tuple(line for line in raw.lines if not line.startswith("coordinates kept"))
@@ -103,13 +104,15 @@ def _meaning(found: Opened, written: Callable[[], Opened]) -> Opened:
     )
 
 
-def _without_effect(reading: Reading) -> str:
-    """What is said of options for an inexact drawing if the drawing is exact."""
+def _unchanged(found: Opened) -> Opened:
+    """An exact drawing; its lines say that the options for inexact ones changed nothing."""
+    reading = found.reading
     given = {"--without": reading.without, "--also": reading.also}
     numbers = {"--noise": reading.noise, "--unit": reading.unit}
     names = [name for name, value in given.items() if value]
     names += [name for name, value in numbers.items() if value is not None]
-    return f"{_NONE_NEAR}: {', '.join(names)} changed nothing"
+    said = (f"{_NONE_NEAR}: {', '.join(names)} changed nothing",)
+    return replace(found, lines=found.lines + said, seen=found.seen + said)
 
 
 def recognised(found: Opened) -> Opened | None:
@@ -151,16 +154,22 @@ def recognised(found: Opened) -> Opened | None:
     )
 
 
-def proposals(found: Opened, seconds: float) -> list[tuple[float, Opened]]:
+def proposals(
+    found: Opened, seconds: float, loops: Sequence[float] = ()
+) -> list[tuple[float, Opened]]:
     """Exact sheets near a drawing without a clear noise level, each with a level that gives it.
 
     The levels are those at the widest gaps between the relations that the drawing misses, the
-    widest first. A sheet that still nearly has relations is left out, and so is one that is far
-    from the drawing for what this misses. After `seconds` no other level is tried. The list is
-    empty if the sheet that was meant is known, or if something was said about it.
+    widest first. If it misses none narrowly, but loops of folds nearly close, off by `loops`, they
+    are parts of the largest of these. A sheet that still nearly has relations is left out, and so
+    is one that is far from the drawing for what this misses, or has the relations of one before.
+    After `seconds` no other level is tried. The list is empty if the sheet that was meant is known,
+    or if something was said about it.
     """
     reading = found.reading
-    if not found.doubt or found.again is None or reading.overrules or reading.snap == "exact":
+    if not (found.doubt or loops) or reading.overrules or reading.snap == "exact":
+        return []
+    if found.again is None or (found.meant is not None and found.meant.inferred):
         return []
     if isinstance(reading.snap, int) or len(found.sheet.edges) > _MOST_EDGES:
         return []
@@ -170,13 +179,19 @@ def proposals(found: Opened, seconds: float) -> list[tuple[float, Opened]]:
     except (FoldError, PatternError):
         return []
     made: list[tuple[float, Opened]] = []
-    for level in _levels(panels(raw.sheet) if isinstance(raw.sheet, CreasePattern) else raw.sheet):
+    drawn = panels(raw.sheet) if isinstance(raw.sheet, CreasePattern) else raw.sheet
+    for level in _levels(drawn) if found.doubt else loop_levels(max(loops)):
         if time.monotonic() > end:
             break
         opened = found.again(replace(reading, noise=level))
         meant = opened.meant
         if meant is None or not meant.inferred or opened.doubt:
             continue
+        names = {relation.name for relation in meant.relations}
+        if any(
+            other.meant and names == {r.name for r in other.meant.relations} for _, other in made
+        ):
+            continue  # the same sheet but for free angles
         missed = max(relation.defect for relation in meant.relations)
         if opened.largest_move <= _TIMES_MISSED * missed:
             made.append((level, opened))

@@ -9,6 +9,7 @@ from fractions import Fraction
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final, TypeAlias, TypedDict
 
+from exactfold._support.clock import Clock
 from exactfold._support.documents import Natural, NotNegative
 from exactfold._support.plurals import agreeing, counted
 from exactfold.errors import NotApplicableError
@@ -177,7 +178,8 @@ class Meant:
         inexact = "" if self.noise is None else f"inexact by {self.noise:.0e}, "
         relations = counted(len(self.relations), "relation")
         enclosed = ", positions enclosed" if self.existence == "box" else ""
-        return f"{inexact}{relations} inferred, moved by up to {self._within}{enclosed}"
+        moved = f"moved by up to {self._within}" if self.distance else "nothing moved"
+        return f"{inexact}{relations} inferred, {moved}{enclosed}"
 
     @property
     def listed(self) -> tuple[str, ...]:
@@ -236,15 +238,22 @@ def kinds(relations: Iterable[Relation]) -> str:
 def inferred(written: PanelPattern, reading: Reading) -> Meant:
     """The sheet that was meant by a drawing with inexact digits, or why none is inferred.
 
-    `written` is the sheet with the digits as written; its coordinates are rational. If no exact
-    sheet is found that has all relations, those between distant edges are left out, in the order of
+    `written` is the sheet with the digits as written; its coordinates are rational. If all
+    coordinates are small in a frame along an edge, these are taken. If no exact sheet is found that
+    has all relations, those between distant edges are left out, in the order of
     `_DISTANT`; this is done for sheets of up to 1,000 edges. If that does not help, positions are
-    enclosed, with all relations or without all between distant edges. Raises the errors of `infer`
-    for relations that do not exist or contradict each other.
+    enclosed, with all relations or without all between distant edges. Once half of the time limit
+    has passed, none of this is tried. Raises the errors of `infer` for relations that do not exist
+    or contradict each other.
     """
-    from exactfold.pattern.meant_sheet import enclose, realize, recognise
+    from exactfold.pattern.meant_sheet import enclose, in_a_frame, realize, recognise
 
+    clock = Clock(reading.limit).share(1 / 2)
     all_found = _found(written, reading, ())
+    if not reading.without:
+        meant = _realized(written, all_found, partial(in_a_frame, relations=all_found.relations))
+        if meant.inferred and not meant.left:
+            return meant
     first = meant = _realized(written, all_found, realize)
     if all_found.angles is None or meant.inferred:
         return meant
@@ -255,17 +264,20 @@ def inferred(written: PanelPattern, reading: Reading) -> Meant:
         out = tuple(one for one in all_found.relations if one.name not in kept)
         return replace(fewer, left_out=out)
 
-    meant = _realized(written, all_found, partial(recognise, relations=all_found.relations))
+    if not clock.passed:
+        meant = _realized(written, all_found, partial(recognise, relations=all_found.relations))
     kinds_found = {relation.kind for relation in all_found.relations}
     distant = [kind for kind in _DISTANT if kind in kinds_found]
     attempts = len(distant) if len(written.edges) <= _MOST_EDGES else 0
     for number in range(1, attempts + 1):
-        if not meant.inferred:
+        if not meant.inferred and not clock.passed:
             meant = without(distant[:number], realize)
     for dropped in ([], distant) if distant else ([],):
-        if not meant.inferred:
+        if not meant.inferred and not clock.passed:
             meant = without(dropped, enclose)
-    return meant if meant.inferred else replace(meant, reason=first.reason)
+    if meant.inferred:
+        return meant
+    return replace(meant, reason=f"{first.reason}{f'; {clock.said}' if clock.passed else ''}")
 
 
 def _found(written: PanelPattern, reading: Reading, dropped: Sequence[Kind]) -> Inference:

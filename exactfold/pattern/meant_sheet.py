@@ -36,6 +36,7 @@ from exactfold.pattern.drawing.meant.peeling import Lines
 from exactfold.pattern.drawing.meant.positions import NO_PLACES, Point, bound_edges, placed_together
 from exactfold.pattern.drawing.meant.refining import Refined, refined
 from exactfold.pattern.drawing.meant.solving import holds, recognised_positions
+from exactfold.pattern.drawing.meant.turning import turned_positions
 from exactfold.pattern.drawing.meant.values import Angles, Edge, Existence, Relation
 from exactfold.pattern.panel_entries import panels_document
 from exactfold.pattern.panel_pattern import EnclosedPattern, PanelPattern
@@ -139,6 +140,33 @@ def recognise(
     points = recognised_positions(written, near, angles, bound, noise) if near.exists else None
     if points is None:
         return _none(drawn, "its coordinates are no short numbers in a field of one square root")
+    return _checked(drawn, written, points, noise, relations)
+
+
+def in_a_frame(
+    drawn: PanelPattern, angles: Angles, noise: float, relations: Iterable[Relation]
+) -> Realized:
+    """The exact sheet near a drawing that has all relations, if it is small in a frame.
+
+    The frame is one along an edge (`turned_positions`). The relations are checked exactly, so that
+    the `angles` are not needed. Raises `UsageError` if the coordinates of the drawing are
+    irrational.
+    """
+    written = tuple(_written(point) for point in drawn.vertices)
+    points = turned_positions(written, drawn.edges, noise)
+    if points is None:
+        return _none(drawn, "its coordinates are no small numbers in a frame along an edge")
+    return _checked(drawn, written, points, noise, relations)
+
+
+def _checked(
+    drawn: PanelPattern,
+    written: Written,
+    points: Sequence[Point],
+    noise: float,
+    relations: Iterable[Relation],
+) -> Realized:
+    """The sheet with recognised positions, if it is near the drawing and has all relations."""
     if missed := [relation.name for relation in relations if not holds(relation, points)]:
         return _none(drawn, f"the positions that were recognised miss {missed[0]}")
     made = _compared(drawn, written, points)

@@ -51,9 +51,9 @@ class NearDegeneracy:
 def near_degenerate(pattern: PatternLike) -> NearDegeneracy | None:
     """The relations between creases that a pattern nearly has; None if there are none.
 
-    These are straight paths, straight borders, and sums of Kawasaki at vertices with four folds
-    (`left_relations`). The result None does not mean that the pattern is generic, and a result does
-    not mean that the pattern was meant to be degenerate.
+    These are straight paths, straight borders, and Kawasaki sums (`left_relations`). The result
+    None does not mean that the pattern is generic, and a result does not mean that the pattern was
+    meant to be degenerate.
 
     >>> rounded = CreasePattern(
     ...     [(0, 0), (3, 0), (2, 2), (0, 1), ("0.3333333333333", "0.3333333333333001")],

@@ -26,13 +26,14 @@ from exactfold.errors import (
 )
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.drawing.bounds import read_bytes
-from exactfold.pattern.drawing.drawing import Drawing, Snap
+from exactfold.pattern.drawing.drawing import Drawing, Loud, Snap
 from exactfold.pattern.fold import FoldFile, parse_bytes
 from exactfold.pattern.meaning import meaning, recognised
 from exactfold.pattern.opened import Opened as Opened
 from exactfold.pattern.opened import ReadDocument as ReadDocument
 from exactfold.pattern.opened import panels as panels
 from exactfold.pattern.opened import triangulated as triangulated
+from exactfold.pattern.periodic.formats import is_cell
 from exactfold.pattern.reading import PLAIN, Reading
 
 # Drawings need libraries that take long to load; triangulated sheets are read without them.
@@ -43,7 +44,13 @@ if TYPE_CHECKING:
 _FINAL = (NumberError, StaleExactCoordinatesError)
 _OF_EDGES = (MalformedPatternError, DisconnectedError)
 """For these errors of the strict reader, the error of the reader of drawings is raised instead."""
+_HEAD = 1 << 20
+"""A cell says what it is within so many bytes."""
 _BOX = "`--box`, which takes the rectangle round the drawing for the edge of the paper, reads it"
+_IN_A_BOX = Loud(
+    "the drawing has no edge of the paper, so the rectangle round it is taken, as with --box; if "
+    "the paper is another, draw its edge as a closed line"
+)
 _FORCE = "`--force` (`force=True` in Python) reads the sheet all the same"
 
 
@@ -77,8 +84,22 @@ def open_pattern(
         raise
 
 
+def is_cell_file(path: str | PathLike[str]) -> bool:
+    """Whether a file is the cell of a periodic sheet; False for one that cannot be read."""
+    try:
+        with open(path, "rb") as stream:
+            return is_cell(stream.read(_HEAD))
+    except (OSError, ValueError):
+        return False
+
+
 def opened(raw: bytes, name: str, reading: Reading = PLAIN) -> Opened:
     """Reads the bytes of a file like `open_pattern`; messages do not begin with its name."""
+    if is_cell(raw):
+        raise FoldError(
+            "this is the cell of a periodic sheet, which only `exactfold count --direction X,Y` "
+            "(`count` with `direction` in Python) takes"
+        )
     strict: InputError | None = None
     snap = reading.snap
     if snap != "auto" and not reading.repairs and reading.number in (None, 1):
@@ -157,7 +178,8 @@ def from_drawing(drawing: Drawing, reading: Reading = PLAIN) -> Opened:
 
     A drawing with exact coordinates of its own keeps them, and is repaired only if it is not a
     sheet otherwise. Its lines F and J join panels in any case. With `reading.box`, the rectangle
-    round the drawing is its boundary.
+    round the drawing is its boundary. So it is, and `seen` says so, for a drawing of mountains and
+    valleys without a boundary line that can be read in no other way.
 
     >>> from exactfold.pattern.drawing.drawing import Line
     >>> crossed = Drawing(((0, 0), (2, 0), (2, 2), (0, 2), (1, 0), (1, 2)),
@@ -181,7 +203,10 @@ def from_drawing(drawing: Drawing, reading: Reading = PLAIN) -> Opened:
             return meaning(found, lambda: from_drawing(drawing, reading.as_written))
         except (FoldError, PatternError, MalformedDrawingError) as error:
             if k == len(tried) or isinstance(error, MalformedDrawingError):
-                remedies = [_BOX] if _box_helps(drawing, reading, error) else []
+                boxed_in = _box_helps(drawing, reading, error)
+                if boxed_in and _has_creases_only(drawing):
+                    return _in_a_box(drawing, reading)
+                remedies = [_BOX] if boxed_in else []
                 remedies += [_FORCE] if isinstance(error, MalformedDrawingError) else []
                 error.args = ("; ".join((str(error), *remedies)), *error.args[1:])
                 raise
@@ -201,6 +226,18 @@ def _box_helps(drawing: Drawing, reading: Reading, error: Exception) -> bool:
     except InputError:
         return False
     return bool(found.sheet.folds)
+
+
+def _has_creases_only(drawing: Drawing) -> bool:
+    """Whether the letters of a drawing tell mountains or valleys, and no boundary."""
+    letters = {line.letter for line in drawing.lines}
+    return bool(letters & {"M", "V"}) and "B" not in letters
+
+
+def _in_a_box(drawing: Drawing, reading: Reading) -> Opened:
+    """The sheet of a drawing with the rectangle round it, which is said."""
+    found = from_drawing(drawing, replace(reading, box=True))
+    return replace(found, lines=(*found.lines, _IN_A_BOX), seen=(_IN_A_BOX, *found.seen))
 
 
 def _chosen(drawing: Drawing, sheets: Sheets, reading: Reading) -> Opened:

@@ -23,7 +23,8 @@ class Reading:
     The others overrule what is inferred from a drawing with inexact digits. `without` names
     relations that were not meant, `also` relations that were. `noise` is the noise level, as a
     share of the size, and `unit` is n for a grid of angles pi / n. `relations` lists the relations
-    among the lines of the result.
+    among the lines of the result. After half of `limit` seconds, no further way to an exact sheet
+    with these relations is tried.
     """
 
     snap: Snap | None = None
@@ -40,6 +41,7 @@ class Reading:
     relations: bool = False
     force: bool = False
     box: bool = False
+    limit: float | None = None
 
     @property
     def repairs(self) -> bool:

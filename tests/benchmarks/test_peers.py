@@ -33,6 +33,7 @@ the solution for t :
 """
 
 
+@pytest.mark.slow
 def test_the_smallest_size_is_complete(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

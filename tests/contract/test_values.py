@@ -57,6 +57,9 @@ BENT = {  # the path 0-4-2 is straight but for the last digits
     ],
     "faces_vertices": [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]],
 }
+CELL = exactfold.pattern.read_cell("yoshimura-cell")
+ROLLED = exactfold.branches.count_periodic(CELL, (1, 2))
+LINE = exactfold.branches.AlgebraicLine((-2, 0, 1), (Fraction(1), Fraction(2)), ((Fraction(0),),))
 OPENED = exactfold.pattern.open_pattern(exactfold.pattern.data.example_path("zigzags"))
 PIECES = exactfold.branches.find_connected_components(
     exactfold.CreasePattern(
@@ -68,6 +71,7 @@ MOTIONS = exactfold.panels.decompose(OPENED.sheet)
 SPACES = exactfold.panels.decompose(panels(single_vertex(5)))
 MOTION = exactfold.motion.follow(exactfold.branches.find_branch(PATTERN, "+-"), frames=4)
 BY_FOLDS = exactfold.motion.find_driven(single_vertex(5), {(0, 5): 9, (2, 5): 6})
+HINGES = exactfold.design.Hinges(Fraction(1, 2), Fraction(100))
 DRIVEN = exactfold.design.actuate(exactfold.pattern.data.example_path("single-vertex-4"), "+")
 ALL = exactfold.design.all_assignments(single_vertex(5))
 MATCH = exactfold.design.match(PATTERN, exactfold.branches.find_branch(PATTERN, "+-").assignment)
@@ -143,6 +147,11 @@ VALUES = {
     **STUDIES,
     **LAYERS,
     "pattern": PATTERN,
+    "cell": CELL,
+    "periodic count": ROLLED,
+    "periodic branch": ROLLED[0],
+    "space of heights": ROLLED.pleats[0],
+    "algebraic line": LINE,
     "pattern with long coordinates": exactfold.CreasePattern(
         [(0, 0), (10**5000, 0), (0, "1/7"), (1, "1/50")], [(0, 1, 3), (1, 2, 3), (2, 0, 3)]
     ),
@@ -223,6 +232,8 @@ VALUES = {
         MOTION.curve.framework, np.array([0.0, 0.0, 0.0, 1.0, 0.3, -0.1])
     ),
     "actuation": DRIVEN,
+    "actuation of panels": exactfold.actuate("zigzags", way=1, hinges=HINGES),
+    "hinges": HINGES,
     "lines of a certificate": exactfold.branches.certificate(COUNT),
     "checked certificate": exactfold.check(exactfold.branches.certificate(COUNT)),
     "match": MATCH,

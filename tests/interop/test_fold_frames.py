@@ -144,6 +144,7 @@ def test_the_slopes_of_the_model_are_those_of_its_forces(tmp_path):
     assert np.max(np.abs(np.transpose(differences) - model.slopes(x, 0.7))) < 1e-7
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("amount", [pytest.param(10, marks=pytest.mark.slow), 30])
 @pytest.mark.parametrize("name", ["two-vertex", "three", "four", "flat-vertex", "reflex"])
 def test_the_model_stays_on_every_branch(tmp_path, name, amount):

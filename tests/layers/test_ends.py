@@ -8,6 +8,7 @@ from math import pi
 import numpy as np
 import pytest
 from panel_sheets import grid, miura
+from sampling import slow_after
 
 import exactfold
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED
@@ -79,6 +80,7 @@ def common_point(one, two):
     return tried[np.minimum(depths(one), depths(two)).argmax()]
 
 
+@pytest.mark.slow
 def test_the_square_twist_reaches_all_its_states():
     """Four states, by the engine: two ways reach them, each to both sides. The others touch."""
     ends = ends_of("square-twist")
@@ -91,7 +93,7 @@ def test_the_square_twist_reaches_all_its_states():
         assert end.reached.state is None
 
 
-@pytest.mark.parametrize("name", ["pinwheel-base", "fish-base"])
+@pytest.mark.parametrize("name", slow_after(1, ["fish-base", "pinwheel-base"]))
 def test_each_way_reaches_a_state_with_its_letters(name):
     ends = [end for end in ends_of(name) if end.status is PROVED]
     assert len(ends) > 3
@@ -105,6 +107,7 @@ def test_each_way_reaches_a_state_with_its_letters(name):
         assert found == end.reached.state.orders
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "way"), [("square-twist", 1), ("fish-base", 2)])
 def test_orders_are_those_of_floats_near_the_end(name, way):
     motion = to_the_end(name, way)
@@ -174,6 +177,7 @@ def test_what_is_not_known_is_said():
     assert {(end.status, end.reason) for end in doubted} == {(UNDECIDED, "rounded")}
 
 
+@pytest.mark.slow
 def test_states_of_other_letters_have_no_number():
     drawn = exactfold.flat("windmill", "any")
     ends = way_ends(exactfold.decompose("fish-base"), drawn, limit=None)

@@ -7,6 +7,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from sampling import slow_after
 from sheets import random_wheel, reflex_corners, scrambled
 
 from exactfold import CreasePattern, random_square
@@ -50,7 +51,7 @@ def assert_rigid(motion):
 
 @pytest.mark.parametrize("n", [2])
 def test_lengths_are_kept_on_random_squares(n):
-    for branch in squares(n, 4):
+    for branch in squares(n, 2):
         motion = follow(branch, until="return", through_branch_points=True, frames=9)
         assert motion.end in ("return", "singular")
         assert_rigid(motion)
@@ -107,7 +108,7 @@ def the_branch(pattern, wanted):
                 yield branch, side
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", slow_after(1, range(4)))
 def test_the_mirror_image_of_a_sheet_has_the_mirror_motion(seed):
     pattern = random_square(3, seed=seed)
     branch = find_branch(pattern, drawn_signs(3, seed))
@@ -181,7 +182,7 @@ def four_bar(sectors, one, two):
     return outer @ other - np.cos(c)
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", slow_after(1, range(3)))
 @pytest.mark.parametrize("sign", "+-")
 def test_one_vertex_of_degree_four_is_a_spherical_four_bar(seed, sign):
     pattern = random_wheel(seed, 4)

@@ -97,6 +97,7 @@ def test_they_can_be_followed_and_are_shown(result: Decomposition) -> None:
     assert len(result.to_dict()["modes"]) == len(result.modes)
 
 
+@pytest.mark.slow
 def test_lines_with_more_than_four_folds_at_a_vertex_are_left_out() -> None:
     moving = stars(boxes(5, "/"))
     rows, size = first_order(moving)

@@ -185,6 +185,7 @@ def on_a_leaf(w: np.ndarray, edges: list[Edge], found: list[Leaf]) -> bool:
     return False
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["miura", "strip", "tiling", "shifted"])
 def test_random_starts_land_on_listed_components(name: str) -> None:
     pattern = SHEETS[name]

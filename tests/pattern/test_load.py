@@ -222,6 +222,7 @@ def test_no_public_function_that_takes_a_pattern_is_missing():
         "branches.PanelFacts",
         "pattern.Converted",
         "design.Actuation",
+        "design.PanelActuation",
         "design.AllAssignments",
         "design.Match",
         "layers.FlatStates",

@@ -70,6 +70,7 @@ def test_defects_go_with_the_size_of_the_pattern():
     assert near_degenerate(CreasePattern([(0, 0), (4 * 10**300, 0), (0, 1)], [(0, 1, 2)])) is None
 
 
+@pytest.mark.slow
 def test_random_decimals_are_hardly_ever_suspected():
     source = random.Random(0)
     suspected = 0

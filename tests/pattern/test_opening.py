@@ -249,11 +249,11 @@ def test_a_sheet_that_hangs_by_a_vertex_is_refused() -> None:
 def test_the_rectangle_round_a_drawing_is_the_edge_of_the_paper(tmp_path):
     path = tmp_path / "open.cp"
     path.write_text("2 0 0 3 2\n3 3 0 0 2\n2 1 0 1 2\n")
-    with pytest.raises(
-        InputError, match=r"`--box`, which takes the rectangle round the .* reads it; "
-    ):
-        open_pattern(path)
     found = open_pattern(path, Reading(box=True))
+    unasked = open_pattern(path)
+    assert unasked.sheet == found.sheet
+    assert "has no edge of the paper, so the rectangle round it is taken" in unasked.seen[0]
+    assert found.seen == ()
     assert len(found.sheet.interior) == 3
     assert len(found.sheet.faces) == 7
     assert len(found.sheet.boundary_edges) == 6
@@ -262,6 +262,15 @@ def test_the_rectangle_round_a_drawing_is_the_edge_of_the_paper(tmp_path):
     )
     again = found.again(Reading(box=True, snap="exact"))
     assert again.sheet == found.sheet
+
+
+def test_the_rectangle_is_only_advised_if_some_of_the_edge_is_drawn(tmp_path):
+    path = tmp_path / "open.cp"
+    path.write_text("1 0 0 3 0\n2 0 0 3 2\n3 3 0 0 2\n2 1 0 1 2\n")
+    with pytest.raises(
+        InputError, match=r"`--box`, which takes the rectangle round the .* reads it; "
+    ):
+        open_pattern(path)
 
 
 def test_a_file_of_triangles_in_a_box_is_read_as_a_drawing(tmp_path):

@@ -84,7 +84,7 @@ def check_same(seed: int, n: int, changed: QuadraticSystem) -> None:
     assert before[1] % 2 == 0
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=8, deadline=None)
 @given(seed=seeds, n=st.integers(2, 4), data=st.data())
 def test_permuted_unknowns_and_equations(seed: int, n: int, data: st.DataObject) -> None:
     system = random_system(seed, n)
@@ -99,7 +99,7 @@ def test_permuted_unknowns_and_equations(seed: int, n: int, data: st.DataObject)
     check_same(seed, n, changed)
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=8, deadline=None)
 @given(seed=seeds, n=st.integers(1, 4), data=st.data())
 def test_scaled_equations(seed: int, n: int, data: st.DataObject) -> None:
     system = random_system(seed, n)
@@ -114,7 +114,7 @@ def test_scaled_equations(seed: int, n: int, data: st.DataObject) -> None:
     check_same(seed, n, changed)
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=8, deadline=None)
 @given(seed=seeds, n=st.integers(1, 3), data=st.data())
 def test_combined_equations(seed: int, n: int, data: st.DataObject) -> None:
     row = st.lists(fractions, min_size=n, max_size=n)
@@ -122,7 +122,7 @@ def test_combined_equations(seed: int, n: int, data: st.DataObject) -> None:
     check_same(seed, n, combine(random_system(seed, n), weights))
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=8, deadline=None)
 @given(seed=seeds, n=st.integers(1, 3), data=st.data())
 def test_affine_change_of_variables(seed: int, n: int, data: st.DataObject) -> None:
     row = st.lists(fractions, min_size=n + 1, max_size=n + 1)

@@ -60,6 +60,7 @@ def test_balls_hold_what_they_are_made_of(value: Number, place: int) -> None:
     assert width(x) <= 2 * radius * scale * (1 + Fraction(1, 2**28))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("operation", [operator.add, operator.sub, operator.mul])
 @pytest.mark.parametrize("precision", [2, 53, 106])
 @settings(max_examples=50)

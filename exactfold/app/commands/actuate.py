@@ -1,67 +1,81 @@
-"""`exactfold actuate`: finds torques for one branch, or judges given torques, with proof."""
+"""`exactfold actuate`: finds torques for one way, or judges given torques, with proof."""
 
 from __future__ import annotations
 
 import json
 from fractions import Fraction
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from exactfold.app.options.choosing import choice_of
 from exactfold.app.options.motions import ActuateOptions
 from exactfold.app.shell.json_numbers import numbers_by_name
-from exactfold.app.shell.patterns import in_doubt, read, tell_doubt, verdict
+from exactfold.app.shell.patterns import in_doubt, read_any, tell_doubt, verdict
 from exactfold.app.shell.shell import EXIT, Bar, name_of
-from exactfold.app.verbs.choosing import the_branch
-from exactfold.branches.counting.find import BranchFinder
-from exactfold.design.actuation.actuate import actuate
-from exactfold.errors import InputError, NumberError
+from exactfold.app.verbs.actuating import Actuated, actuate_opened
+from exactfold.certificates.entries import write_certificate
+from exactfold.design.actuation.result import Actuation
+from exactfold.errors import InputError, NotApplicableError, NumberError
 from exactfold.exact.numbers import as_rational
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
-from exactfold.pattern.opening import Opened, triangles
+from exactfold.pattern.writing.fold_writing import checked_target, require_folder, write_text
+
+if TYPE_CHECKING:
+    from exactfold.pattern.panel_pattern import PanelPattern
 
 
 class Driven(ActuateOptions):
     """The options of one call, and how they are answered."""
 
     def answer(self) -> int:
-        """Find or judge the torques, print the answer, and return the exit code.
+        """Find or judge the torques, write and print the answer, and return the exit code.
 
-        Raises the errors of `read`, `the_branch` and `actuate`, `InputError`, and `UsageError` if
-        no way is named.
+        Raises the errors of `read_any` and `actuate_opened`, `InputError`, and `UsageError` if no
+        way is named.
         """
+        hinges = self.hinges  # before the work
+        if self.output is not None:
+            checked_target(self.output, (".csv",), "a table of torques")
+        if self.certificate is not None:
+            require_folder(self.certificate)
         with Bar("reading") as bar:
-            read_sheet = read(self.file, self.reading, "actuate", verbose=self.verbose)
-            pattern = read_sheet.pattern
+            opened = read_any(self.file, self.reading, verbose=self.verbose)
             self.require_name()
-            torques = None if self.torques is None else torques_in(self.torques, pattern)
-            actuation = actuate(
-                pattern,
-                self._signs(read_sheet.opened, bar),
-                creases=self.creases,
-                torques=torques,
-                progress=bar,
+            torques = None if self.torques is None else torques_in(self.torques, opened.sheet)
+            found = actuate_opened(
+                opened, choice_of(self, opened), self.creases, torques, hinges, bar
             )
+            self._write(found)
         if self.as_json:
-            document = actuation.to_dict(name_of(self.file))
-            print(json.dumps(in_doubt(read_sheet.opened, document)))
+            document = found.to_dict(name_of(self.file), self._certificate)
+            print(json.dumps(in_doubt(opened, document)))
         else:
             from exactfold.app import report
 
-            tell_doubt(read_sheet.opened)
-            report.show(report.actuation_report(actuation, everything=self.everything))
-        return EXIT[verdict(read_sheet.opened, actuation.status)]
+            tell_doubt(opened)
+            report.show(report.actuation_report(found, everything=self.everything))
+        return EXIT[verdict(opened, found.status)]
 
-    def _signs(self, opened: Opened, bar: Bar) -> dict[int, int]:
-        """The vertex signs of the side that is to be driven."""
-        choice = choice_of(self, opened)
-        if choice.signs is not None or choice.up is not None:
-            finder = BranchFinder(triangles(opened, "actuate"))
-            return finder.signs(choice.signs, choice.up)
-        chosen = the_branch(opened, choice, bar, needs="actuate")
-        return {v: chosen.side * sign for v, sign in chosen.branch.vertex_signs.items()}
+    @property
+    def _certificate(self) -> str | None:
+        return None if self.certificate is None else str(self.certificate)
+
+    def _write(self, found: Actuated) -> None:
+        """Write the certificate and the torques in N mm, if they are asked for."""
+        if self.certificate is not None:
+            if isinstance(found, Actuation):
+                raise NotApplicableError(
+                    "torques for a branch have no certificate yet; those for rigid panels have one"
+                )
+            from exactfold.design.actuation.panels.certificate import panel_torques_certificate
+
+            write_certificate(panel_torques_certificate(found), self.certificate)
+        if self.output is not None and self.hinges is not None:
+            letters = found.branch.assignment if isinstance(found, Actuation) else found.assignment
+            write_text(self.output, self.hinges.table(found.pattern, found.torques, letters))
 
 
-def torques_in(path: Path, pattern: CreasePattern) -> dict[Edge, Fraction]:
+def torques_in(path: Path, pattern: CreasePattern | PanelPattern) -> dict[Edge, Fraction]:
     """The exact torques in a JSON file {"i-j": number}.
 
     A number may be text such as "1/3". Raises `UnreadableFileError` and `InputError`.

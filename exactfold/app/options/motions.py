@@ -1,6 +1,7 @@
 """The options of the commands that fold and drive sheets, and checks of which go together."""
 
 from dataclasses import dataclass
+from fractions import Fraction
 from pathlib import Path
 from typing import Annotated
 
@@ -16,12 +17,14 @@ from exactfold.app.shell.parameters import (
     PrescribedAngles,
     Resume,
     Side,
+    exact_number,
     flag,
     fold_name,
     number,
     written,
 )
 from exactfold.app.shell.shell import apart
+from exactfold.design.actuation.hinges import Hinges
 from exactfold.errors import UsageError
 
 
@@ -139,6 +142,31 @@ class ActuateOptions(WayOptions):
             "named.",
         ),
     ] = None
+    stiffness: Annotated[
+        Fraction | None,
+        typer.Option(
+            parser=exact_number,
+            metavar="NUMBER",
+            help="Give torques in N mm: the stiffness of 1 mm of hinge, in N mm / rad. For rigid "
+            "panels, with --width.",
+        ),
+    ] = None
+    width: Annotated[
+        Fraction | None,
+        typer.Option(
+            parser=exact_number, metavar="MM", help="The width of the sheet in mm, for --stiffness."
+        ),
+    ] = None
+    output: Annotated[
+        Path | None,
+        written(
+            "Write the torques in N mm as a table, for --stiffness.", "FILE.csv", "-o", "--output"
+        ),
+    ] = None
+    certificate: Annotated[
+        Path | None,
+        written("Write the evidence for `exactfold check`; of rigid panels only.", "OUT.json"),
+    ] = None
     as_json: Json = False
     everything: Annotated[bool, flag("--all", text="List every branch in the ranking.")] = False
 
@@ -146,3 +174,16 @@ class ActuateOptions(WayOptions):
         super().__post_init__()
         if self.creases is not None and self.torques is not None:
             raise UsageError("--creases and --torques do not go together")
+        if (self.stiffness is None) != (self.width is None):
+            raise UsageError("--stiffness and --width go together: give both or neither")
+        if self.output is not None and self.stiffness is None:
+            raise UsageError("-o writes torques in N mm: give --stiffness and --width, too")
+        apart(self.output, self.file, self.torques, self.certificate)
+        apart(self.certificate, self.file, self.torques)
+
+    @property
+    def hinges(self) -> Hinges | None:
+        """The hinges that the options describe; `UsageError` for numbers that are not positive."""
+        if self.stiffness is None or self.width is None:
+            return None
+        return Hinges(self.stiffness, self.width)

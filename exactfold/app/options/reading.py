@@ -103,6 +103,7 @@ class ReadingOptions:
             relations=self.relations,
             force=self.force,
             box=self.box,
+            limit=getattr(self, "limit", None),  # of the commands that have --limit
         )
 
 

@@ -22,15 +22,19 @@ if TYPE_CHECKING:
 _MARKED: Final = "#e69f00"
 _FONT, _LINE, _LETTER = 11.0, 15.0, 0.5
 _NARROWEST: Final = 420.0
+_SMALL: Final = 0.6
+"""The share of the usual size for a picture beside its reasons."""
 
 
-def conflict_picture(found: FlatStates, reasons: Sequence[str], title: str = "") -> str:
+def conflict_picture(
+    found: FlatStates, reasons: Sequence[str], title: str = "", *, written: bool = True
+) -> str:
     """The crease pattern with the vertices that fail, or the conditions that contradict, as SVG.
 
     `reasons` has a line for each of `found.failures`, or else of `found.conflict`, or for the first
-    ones. They stand below the picture with their numbers, which also mark their places: a ring at a
-    vertex, or a thick line along each crease. The panels that take part are shaded. Everything that
-    is marked has the class `marked`.
+    ones. They stand below the picture, if `written`, with their numbers, which also mark their
+    places: a ring at a vertex, or a thick line along each crease. The panels that take part are
+    shaded. Everything that is marked has the class `marked`.
 
     >>> from exactfold.layers.folding import fold_flat
     >>> found = fold_flat("zigzags")
@@ -39,19 +43,19 @@ def conflict_picture(found: FlatStates, reasons: Sequence[str], title: str = "")
     (4, True)
     """
     lines = crease_lines(found.pattern, found.letters)
-    drawing = CreaseDrawing(lines, {}, {}, natural_size(lines))
+    drawing = CreaseDrawing(lines, {}, {}, natural_size(lines) * (1.0 if written else _SMALL))
     below, above = _failures(found, drawing) if found.failures else _conditions(found, drawing)
     numbers = _numbers(found, drawing, len(reasons))
     width, height = drawing.extent
     key = legend(lines.letters, (), drawing.style, of_way=False)
-    wide = max(width, min(key.natural, 320.0), _NARROWEST)
+    wide = max(width, min(key.natural, 320.0), _NARROWEST if written else 0.0)
     keyed, y = key.placed(wide, height)
     rest = len(found.failures or found.conflict) - len(reasons)
     texts = [f"{k}. {reason}" for k, reason in enumerate(reasons, 1)]
     if rest > 0:
         texts.append(f"and {rest} more")
     words = []
-    for one in texts:
+    for one in texts if written else ():
         for k, part in enumerate(wrap(one, int((wide - 40) / (_LETTER * _FONT)))):
             y += _LINE
             words.append(svg.text(part, 20 if k == 0 else 33, y, size=_FONT))

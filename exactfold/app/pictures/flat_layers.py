@@ -13,10 +13,14 @@ from exactfold._support.arrays import FloatArray
 from exactfold.app.pictures.painting import area, common_part
 
 if TYPE_CHECKING:
+    from exactfold.layers.images import Images
     from exactfold.layers.states import State
+    from exactfold.pattern.panel_pattern import Edge
 
 _SAME: Final = 1e-9
 """Areas below this share of the square of the size of the image are dropped."""
+_CLOSE: Final = 1e-6
+"""Lines shorter than three times this share of the size of a layer are dropped."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +38,18 @@ def corners_of(state: State) -> list[FloatArray]:
     for polygon, place in zip(images.pieces.polygons, images.maps, strict=True):
         corners = np.array([images.places[v] for v in polygon], dtype=np.float64)
         found.append(corners[::-1] if place.flipped else corners)
+    return found
+
+
+def edges_on(images: Images) -> list[set[Edge]]:
+    """The edges of the sheet on each piece of the paper: those of its whole panels."""
+    pieces = images.pieces
+    sheet = pieces.sheet
+    found: list[set[Edge]] = [set() for _ in pieces.polygons]
+    for i, j in sheet.edges:
+        faces = [sheet.sides[side] for side in ((i, j), (j, i)) if side in sheet.sides]
+        for piece in {piece for face in faces for piece in pieces.of_panel[face]}:
+            found[piece].add((i, j))
     return found
 
 
@@ -137,3 +153,23 @@ def _half(corners: FloatArray, a: FloatArray, b: FloatArray) -> FloatArray:
         if sides[k] >= 0:
             kept.append(corner)
     return np.array(kept, dtype=np.float64).reshape(-1, 2)
+
+
+def clipped(ends: FloatArray, corners: FloatArray) -> FloatArray | None:
+    """The part of a line in a convex polygon, counter-clockwise, borders included; or None."""
+    size = float(np.ptp(corners, axis=0).max())
+    start, direction = ends[0], ends[1] - ends[0]
+    low, high = 0.0, 1.0
+    for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        normal = np.array([a[1] - b[1], b[0] - a[0]]) / max(float(np.hypot(*(b - a))), 1e-300)
+        at, slope = float(normal @ (start - a)) + _CLOSE * size, float(normal @ direction)
+        if abs(slope) <= _CLOSE * size:
+            if at + min(slope, 0.0) < 0:
+                return None
+        elif slope > 0:
+            low = max(low, -at / slope)
+        else:
+            high = min(high, -at / slope)
+    if (high - low) * float(np.hypot(*direction)) <= 3 * _CLOSE * size:
+        return None
+    return np.array([start + low * direction, start + high * direction])

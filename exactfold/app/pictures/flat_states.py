@@ -12,7 +12,7 @@ from exactfold._support.arrays import FloatArray
 from exactfold.app.pictures import svg
 from exactfold.app.pictures.crease_legend import legend
 from exactfold.app.pictures.crease_style import Style
-from exactfold.app.pictures.flat_layers import Layer, bottom_to_top
+from exactfold.app.pictures.flat_layers import Layer, bottom_to_top, clipped, edges_on
 from exactfold.pattern.panel_pattern import Edge
 
 if TYPE_CHECKING:
@@ -20,10 +20,9 @@ if TYPE_CHECKING:
 
 FRONT, BACK = "#a9d8f2", "#f8f0a0"
 """The two sides of the paper: blue is the side that the crease pattern shows, as in stills."""
-_OPAQUE: Final = 0.7
+OPAQUE: Final = 0.7
 """How much of what lies below a layer it hides."""
 _SIZE, _MARGIN, _GAP, _CAPTION = 380.0, 14.0, 30.0, 24.0
-_CLOSE: Final = 1e-6
 _SWATCH: Final = 16.0
 
 
@@ -111,14 +110,11 @@ class _Drawing:
     @cached_property
     def lines(self) -> list[list[tuple[str, Edge]]]:
         """For each piece the lines of the sheet on it, each with its letter."""
-        pieces, letters = self.state.images.pieces, self.state.letters
-        sheet = pieces.sheet
-        found: list[set[tuple[str, Edge]]] = [set() for _ in pieces.polygons]
-        for i, j in sheet.edges:
-            faces = [sheet.sides[side] for side in ((i, j), (j, i)) if side in sheet.sides]
-            for piece in {piece for face in faces for piece in pieces.of_panel[face]}:
-                found[piece].add((letters.get((i, j), "B"), (i, j)))
-        return [sorted(some) for some in found]
+        letters = self.state.letters
+        return [
+            sorted((letters.get(edge, "B"), edge) for edge in edges)
+            for edges in edges_on(self.state.images)
+        ]
 
     @cached_property
     def letters(self) -> set[str]:
@@ -145,7 +141,7 @@ class _Drawing:
             self._seen(layer.corners, below=below),
             closed=True,
             fill=FRONT if front else BACK,
-            fill_opacity=_OPAQUE,
+            fill_opacity=OPAQUE,
             shape_rendering="crispEdges",
         )
         drawn: dict[str, list[str]] = {}
@@ -180,23 +176,3 @@ class _Drawing:
             (float(a), float(b))
             for a, b in zip(x * self.scale, (high[1] - points[:, 1]) * self.scale, strict=True)
         ]
-
-
-def clipped(ends: FloatArray, corners: FloatArray) -> FloatArray | None:
-    """The part of a line in a convex polygon, counter-clockwise, borders included; or None."""
-    size = float(np.ptp(corners, axis=0).max())
-    start, direction = ends[0], ends[1] - ends[0]
-    low, high = 0.0, 1.0
-    for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
-        normal = np.array([a[1] - b[1], b[0] - a[0]]) / max(float(np.hypot(*(b - a))), 1e-300)
-        at, slope = float(normal @ (start - a)) + _CLOSE * size, float(normal @ direction)
-        if abs(slope) <= _CLOSE * size:
-            if at + min(slope, 0.0) < 0:
-                return None
-        elif slope > 0:
-            low = max(low, -at / slope)
-        else:
-            high = min(high, -at / slope)
-    if (high - low) * float(np.hypot(*direction)) <= 3 * _CLOSE * size:
-        return None
-    return np.array([start + low * direction, start + high * direction])

@@ -9,29 +9,36 @@ from rich.table import Table
 from rich.text import Text
 
 from exactfold._support.plurals import counted
+from exactfold.app.report.panel_actuation import between, panels_actuation
 from exactfold.app.report.terminal import facts_table, letters_text, more_text, status_text
-from exactfold.exact.numbers import decimal_above, decimal_below, decimal_near
+from exactfold.exact.numbers import decimal_above, decimal_near
 
 if TYPE_CHECKING:
-    from exactfold.design.actuation.result import Actuation, Bounds
+    from exactfold.design.actuation.panels.result import PanelActuation
+    from exactfold.design.actuation.result import Actuation
 
 _FIRST = 8
 """The number of branches of the ranking that are shown, unless all are asked for."""
 
 
-def actuation_report(actuation: Actuation, *, everything: bool = False) -> Group:
-    """The torques, what is proved of them, and the branches sorted by power."""
+def actuation_report(actuation: Actuation | PanelActuation, *, everything: bool = False) -> Group:
+    """The torques, what is proved of them, and the branches or ways sorted by power."""
+    from exactfold.design.actuation.result import Actuation
+
+    if not isinstance(actuation, Actuation):
+        return panels_actuation(actuation, everything=everything)
     branch = actuation.branch
     rows: list[tuple[str, str | Text]] = [
         ("status", Text.assemble(status_text(actuation.status), f" ({actuation.reason})")),
         ("vertex signs", branch.sign_text),
         ("mountain-valley", letters_text(branch.assignment_text)),
-        ("margin", f"{_between(actuation.margin)}; {_best(actuation)}"),
+        ("margin", f"{between(actuation.margin)}; {_best(actuation)}"),
         (
             "power",
-            f"{_between(actuation.power)}; on any other ray {_between(actuation.largest_rival)}",
+            f"{between(actuation.power)}; on any other ray {between(actuation.largest_rival)}",
         ),
         ("alone", _alone(actuation)),
+        ("self-foldable", _folding(actuation)),
     ]
     if not actuation.driven:
         return Group(facts_table(list(rows)))
@@ -44,9 +51,9 @@ def actuation_report(actuation: Actuation, *, everything: bool = False) -> Group
     )
 
 
-def _between(bounds: Bounds) -> str:
-    low, high = (decimal_below(bounds[0], 6), decimal_above(bounds[1], 6))
-    return low if low == high else f"from {low} to {high}"
+def _folding(actuation: Actuation) -> Text:
+    verdict = status_text(actuation.self_foldable)
+    return Text.assemble(verdict, f" ({actuation.self_foldable_reason})")
 
 
 def _best(actuation: Actuation) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from pathlib import Path
@@ -14,9 +14,11 @@ from exactfold._support.clock import Clock
 from exactfold._support.plurals import counted, visible
 from exactfold.app.pictures.film import filmed
 from exactfold.app.viewer.document import FRAMES, Known, sheet_json
+from exactfold.app.viewer.folded import NOT_ASKED, flat_states, folded_sheet
 from exactfold.app.viewer.listing import Listed, listed_ways
-from exactfold.app.viewer.ways import Following, branch_way, not_followed
+from exactfold.app.viewer.ways import Following, Way, branch_way, not_followed
 from exactfold.branches.counting.find import BranchFinder, branch_finder
+from exactfold.branches.counting.pools import process_pool
 from exactfold.errors import ExactfoldError, UsageError
 from exactfold.exact.surds import Number
 from exactfold.pattern.crease_pattern import CreasePattern
@@ -131,7 +133,8 @@ class Session:
             brief=task.live,
         )
         self.known, self._finders = Known(opened, name, listed), {}
-        document = self.known.document([way for way, _ in listed.ways], served=True)
+        ways = [way for way, _ in listed.ways]
+        document = self.known.document(ways, NOT_ASKED, served=True)
         yield {"kind": "listed", "document": document}
         first = 0 if listed.drawn is None else listed.drawn["way"]
         order = [first, *(k for k in range(len(listed.ways)) if k != first)]
@@ -143,7 +146,11 @@ class Session:
                 left = sum(listed.ways[m][1] is not None for m in order[place:])
                 yield {"kind": "late", "text": _late(left, task.limit)}
                 return
-            yield {"kind": "way", "way": k, **self._motion(listed, k)}
+            found = self._motion(listed, k)
+            ways[k] = {**ways[k], **found["found"]}
+            yield {"kind": "way", "way": k, **found}
+        if not task.live:
+            yield from _folded(self.known, ways, late)
 
     def _followed(self, task: Follow) -> Answer:
         if self.known is None:
@@ -167,6 +174,17 @@ class Session:
         _, job = listed.ways[k]
         found = not_followed("this way is not followed") if job is None else listed.follower(job)
         return {"found": found}
+
+
+def _folded(known: Known, ways: Sequence[Way], clock: Clock) -> Iterator[Answer]:
+    """The flat-folded states of a sheet, and then the ways that end in them, one by one."""
+    states = flat_states(known.opened, clock)
+    if not states:
+        return
+    sheets = [folded_sheet(one, clock) for one in states]
+    yield {"kind": "folded", "folded": {"sheets": sheets, "ends": []}}
+    for end in known.ends(states, ways, process_pool(1), clock):
+        yield {"kind": "end", "end": end}
 
 
 def _late(left: int, limit: float) -> str:

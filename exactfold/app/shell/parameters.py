@@ -100,6 +100,14 @@ def degrees(text: object) -> float:
         raise typer.BadParameter(f"{str(text)!r} is not a number") from None
 
 
+def exact_number(text: object) -> Fraction:
+    """The exact number in a text such as 0.5 or 1/3."""
+    try:
+        return parse_rational(str(text))
+    except NumberError:
+        raise typer.BadParameter(f"{str(text)!r} is not a number") from None
+
+
 def duration(text: object) -> float:
     """A positive number of seconds; "inf" is no limit."""
     try:
@@ -144,6 +152,17 @@ def distance(text: object) -> Fraction:
     if value <= 0:
         raise typer.BadParameter(f"{text} is not positive")
     return value
+
+
+def direction_vector(text: object) -> tuple[Fraction, Fraction]:
+    """The two rational coordinates of a direction, such as 3,4 or 1/2,-1."""
+    try:
+        x, y = (parse_rational(part) for part in str(text).split(","))
+    except ValueError:  # also NumberError, which is one
+        raise typer.BadParameter(f"{str(text)!r} is not a direction such as 3,4") from None
+    if x == 0 == y:
+        raise typer.BadParameter("0,0 is no direction")
+    return x, y
 
 
 def noise_level(text: object) -> Fraction:

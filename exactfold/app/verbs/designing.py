@@ -1,18 +1,14 @@
-"""`match`, `vertices` and `actuate`: ways with given letters, each vertex, and torques."""
+"""`match` and `vertices`: ways with given letters, and each vertex by itself."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from exactfold._support.clock import LIMIT, Clock
 from exactfold._support.progress import Progress
-from exactfold._support.verdict import PROVED, UNDECIDED
-from exactfold.app.verbs.choosing import the_branch
-from exactfold.app.verbs.chosen import Choice, Letters, asked_letters
-from exactfold.branches.counting.find import Signs
-from exactfold.design.actuation.actuate import actuate as actuate_branch
+from exactfold._support.verdict import PROVED
+from exactfold.app.verbs.chosen import Letters, asked_letters
 from exactfold.design.assignments.boundary_match import can_pop, match_boundary
 from exactfold.design.assignments.search import match as match_branches
 from exactfold.design.panels.match import match_panels
@@ -20,17 +16,14 @@ from exactfold.design.panels.vertex.vertices import open_vertices
 from exactfold.design.panels.vertex.vertices import vertices as vertices_of
 from exactfold.design.refutations.asked import by_fold
 from exactfold.errors import NotCountedError
-from exactfold.pattern.crease_pattern import CreasePattern, Edge
+from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.loading import PatternLike, open_sheet
-from exactfold.pattern.opening import triangles
 
 if TYPE_CHECKING:
-    from exactfold.design.actuation.result import Actuation
     from exactfold.design.assignments.boundary_result import BoundaryMatch
     from exactfold.design.assignments.result import Match
     from exactfold.design.panels.match import PanelMatch
     from exactfold.design.panels.vertex.vertices import Vertices
-    from exactfold.exact.numbers import RationalLike
 
 
 def match(
@@ -95,46 +88,6 @@ def vertices(sheet: PatternLike, letters: Letters | None = None) -> Vertices:
     """
     opened = open_sheet(sheet)
     return vertices_of(opened, None if letters is None else asked_letters(opened, letters))
-
-
-def actuate(
-    sheet: PatternLike,
-    signs: Signs | None = None,
-    *,
-    way: int | None = None,
-    up: Iterable[int] | None = None,
-    letters: Letters | None = None,
-    creases: int | None = None,
-    torques: Mapping[Edge, RationalLike] | None = None,
-    progress: Progress | None = None,
-) -> Actuation:
-    """Find torques on the folds that drive a triangulated sheet along one branch and no other.
-
-    The branch is named as in `branch`. If `creases` is given, at most so many folds have torques.
-    If `torques`, exact numbers by fold, are given, they are judged instead (docs/actuation.md). If
-    the digits of a drawing are in doubt, the answer is UNDECIDED, and `reason` says why.
-
-    Raises `NotCountedError` for larger panels and for more than 12 vertices that fold, and the
-    errors of `branch` and of `exactfold.design.actuate`.
-
-    >>> import exactfold
-    >>> exactfold.actuate("two-vertex", "+-")
-    <Actuation of +-: proved, margin 0.982 of at most 0.982>
-    """
-    opened = open_sheet(sheet)
-    pattern = triangles(opened, "actuate")
-    wanted: Signs | None = signs
-    if way is not None or letters is not None:
-        chosen = the_branch(opened, Choice(way, signs, up, letters), progress, needs="actuate")
-        signed = chosen.branch.vertex_signs.items()
-        wanted, up = {v: chosen.side * sign for v, sign in signed}, None
-    found = actuate_branch(
-        pattern, wanted, up=up, creases=creases, torques=torques, progress=progress
-    )
-    if not opened.doubt:
-        return found
-    reason = f"{opened.doubt}; the digits as written: {found.status}, {found.reason}"
-    return replace(found, status=UNDECIDED, reason=reason)
 
 
 def _at_most(most: int | None) -> dict[str, int]:

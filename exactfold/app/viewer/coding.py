@@ -13,6 +13,8 @@ from exactfold._support.documents import Keywords
 _STEPS: Final = 1 << 23
 _ORDER: Final = 4
 _BYTES: Final = 6
+_PLANE: Final = 1e-6
+"""A sheet lies in a plane if its thickness is less than this share of its width."""
 
 
 class CodedFrames(TypedDict):
@@ -65,7 +67,8 @@ def decoded_frames(coded: CodedFrames) -> FloatArray:
 def levelled(coords: FloatArray) -> FloatArray:
     """Frames moved and turned, each as close to the previous one as possible (Kabsch).
 
-    So the sheet stays in the middle of the picture and turns no more than necessary.
+    So the sheet stays in the middle of the picture and turns no more than necessary. If it ends in
+    a plane, it turns steadily until this plane is level.
     """
     frames = [coords[0] - coords[0].mean(axis=0)]
     for shape in coords[1:]:
@@ -73,7 +76,24 @@ def levelled(coords: FloatArray) -> FloatArray:
         u, _, v = np.linalg.svd(centred.T @ frames[-1])
         turn = u @ np.diag([1.0, 1.0, float(np.sign(np.linalg.det(u @ v))) or 1.0]) @ v
         frames.append(centred @ turn)
-    return np.array(frames)
+    return _settled(np.array(frames))
+
+
+def _settled(frames: FloatArray) -> FloatArray:
+    """Frames that end level if the last one lies in a plane; others as they are."""
+    _, sizes, axes = np.linalg.svd(frames[-1])
+    normal = axes[2] * (1.0 if axes[2][2] >= 0 else -1.0)
+    across = np.cross(normal, [0.0, 0.0, 1.0])
+    length = float(np.linalg.norm(across))
+    if sizes[2] > _PLANE * sizes[1] or length < _PLANE:
+        return frames
+    axis, angle = across / length, float(np.arctan2(length, normal[2]))
+    share = np.linspace(0.0, 1.0, len(frames))
+    turns = (angle * share**2 * (3 - 2 * share))[:, None, None]
+    cos, sin = np.cos(turns), np.sin(turns)  # Rodrigues' formula
+    return np.asarray(
+        cos * frames + sin * np.cross(axis, frames) + (1 - cos) * (frames @ axis)[..., None] * axis
+    )
 
 
 def _bytes(values: np.ndarray[Any, np.dtype[np.int64]]) -> bytes:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from os import PathLike
@@ -13,9 +13,18 @@ from typing import TYPE_CHECKING, Annotated, Any, Final, Literal, TypedDict
 from exactfold._support.clock import LIMIT, UNLIMITED, Clock
 from exactfold._support.documents import Fold, Keywords, Natural, Triangle
 from exactfold._support.progress import Progress
+from exactfold.app.viewer.folded import (
+    NOT_ASKED,
+    ClosedEnd,
+    Ending,
+    Folded,
+    closing_ways,
+    flat_states,
+    folded_sheet,
+)
 from exactfold.app.viewer.listing import Drawn, Facts, Listed, file_letters, listed_ways
 from exactfold.app.viewer.marks import Mark, marks_of
-from exactfold.app.viewer.ways import Followed, Letters, Way, not_followed
+from exactfold.app.viewer.ways import Followed, FollowingPanels, Letters, Way, not_followed
 from exactfold.branches.counting.pools import Pool, process_pool
 from exactfold.errors import UsageError, WorkerDiedError
 from exactfold.pattern.crease_pattern import CreasePattern
@@ -26,12 +35,15 @@ from exactfold.pattern.writing.fold_writing import fold_document
 
 if TYPE_CHECKING:
     from exactfold.branches.values.branch import Branch
+    from exactfold.layers.states import FlatStates
 
 FRAMES: Final = 32
 MOST_FRAMES: Final = 1000
 
 _WORTH_A_PROCESS: Final = 6
 """Following this many motions takes about as long as starting a process."""
+_FOLLOWING: Final = 0.9
+"""This share of the time may go by before no further way is followed."""
 
 
 class FlatSheet(TypedDict):
@@ -63,6 +75,7 @@ class ViewDocument(Facts):
     ways: list[Way]
     drawn: Drawn | None
     """The way with the letters of the file, if it is known."""
+    folded: Folded
     served: bool
     """Whether motions that are missing can be asked for."""
 
@@ -75,6 +88,7 @@ def view_document(
     ways: Sequence[int] | None = None,
     frames: int = FRAMES,
     proving: bool = False,
+    flat: bool = True,
     workers: int = 1,
     limit: float | Clock = LIMIT,
     progress: Progress | None = None,
@@ -92,6 +106,9 @@ def view_document(
     has the letters of the file, but the sheet is proved to fold with them, that motion comes first.
     Each way is followed in `frames` frames to the first contact; if it cannot be followed, the
     document says why.
+
+    In the time that is left, the flat-folded states of the sheet are searched for, and which of
+    them its ways end in ([flat folding](docs/flat.md)), unless `flat` is false.
 
     With `proving`, motions along branches are proved, too (`prove`), and so are the first contacts
     of motions of panels that are proved to exist (`prove_contacts`). `workers` is the number of
@@ -120,7 +137,10 @@ def view_document(
     )
     useful = max(1, len(known.listed) // _WORTH_A_PROCESS)
     pool = process_pool(min(workers, useful))
-    return known.document(known.followed(pool, clock.at_least((clock.limit or 0.0) / 4), progress))
+    following = clock.share(_FOLLOWING).at_least((clock.limit or 0.0) / 4)
+    followed = known.followed(pool, following, progress)
+    folded = known.folded(followed, pool, clock, progress) if flat else NOT_ASKED
+    return known.document(followed, folded)
 
 
 @dataclass(frozen=True)
@@ -186,7 +206,40 @@ class Known:
             ways[k] = {**ways[k], **not_followed(_left(ways[k], clock))}
         return ways
 
-    def document(self, ways: Sequence[Way], served: bool = False) -> ViewDocument:
+    def folded(
+        self, ways: Sequence[Way], pool: Pool, clock: Clock, progress: Progress | None
+    ) -> Folded:
+        """The flat-folded states, and the ways that end in them, as far as the clock allows."""
+        states = flat_states(self.opened, clock)
+        sheets = [folded_sheet(one, clock) for one in states]
+        ends = [] if not states else [*self.ends(states, ways, pool, clock, progress)]
+        return {"sheets": sheets, "ends": sorted(ends, key=lambda end: end["way"])}
+
+    def ends(
+        self,
+        states: tuple[FlatStates, ...],
+        ways: Sequence[Way],
+        pool: Pool,
+        clock: Clock,
+        progress: Progress | None = None,
+    ) -> Iterator[ClosedEnd]:
+        """The ends of followed ways that close all their folds, as they are found."""
+        if not isinstance(self.follower, FollowingPanels):
+            return
+        found = closing_ways(self.known, ways)
+        jobs = ((k, way, ways[k]) for k, way in found)
+        begun = itertools.takewhile(lambda _: not clock.passed, jobs)
+        results = pool(Ending(self.follower, states, clock), begun)
+        with closing(results):
+            for done, (_, end) in enumerate(results, 1):
+                if isinstance(end, WorkerDiedError):
+                    raise end
+                if progress is not None:
+                    progress("closing", done, len(found))
+                if end is not None:
+                    yield end
+
+    def document(self, ways: Sequence[Way], folded: Folded, served: bool = False) -> ViewDocument:
         """The whole document; `served` means that the page can ask for missing motions."""
         return {
             "format": "exactfold view result",
@@ -197,6 +250,7 @@ class Known:
             **self.known.facts,
             "ways": [*ways],
             "drawn": self.known.drawn,
+            "folded": folded,
             "served": served,
         }
 

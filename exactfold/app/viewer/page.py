@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, Final
 from exactfold._support.clock import LIMIT, Clock
 from exactfold._support.progress import Progress
 from exactfold.app.pictures import crease_style
+from exactfold.app.pictures.flat_states import BACK, FRONT, OPAQUE
 from exactfold.app.viewer.document import FRAMES, ViewDocument, view_document
 from exactfold.pattern.loading import PatternLike
 from exactfold.pattern.writing.fold_writing import checked_target, write_text
@@ -100,6 +101,7 @@ def write_view(
     ways: Sequence[int] | None = None,
     frames: int = FRAMES,
     proving: bool = False,
+    flat: bool = True,
     workers: int = 1,
     limit: float | Clock = LIMIT,
     progress: Progress | None = None,
@@ -121,6 +123,7 @@ def write_view(
         ways=ways,
         frames=frames,
         proving=proving,
+        flat=flat,
         workers=workers,
         limit=limit,
         progress=progress,
@@ -196,7 +199,7 @@ def look_css() -> str:
 
 
 def look_script() -> str:
-    """The widths and dashes of lines as a constant in the page's script.
+    """Widths, dashes and colours of lines, and of paper, as a constant in the page's script.
 
     >>> look_script()[:14]
     'const LOOK = {'
@@ -211,8 +214,16 @@ def look_script() -> str:
             "most": style.width(letter, 1.0),
             "dash": list(crease_style.DASH.get(letter, ())),
             "cap": attributes["stroke_linecap"],
+            "colour": crease_style.COLOUR[letter],
         }
-    look = {"letters": letters, "full": crease_style.FULL, "smallest": crease_style.LEAST}
+    look = {
+        "letters": letters,
+        "full": crease_style.FULL,
+        "smallest": crease_style.LEAST,
+        "front": FRONT,
+        "back": BACK,
+        "opaque": OPAQUE,
+    }
     return f"const LOOK = {json.dumps(look, separators=(',', ':'))};\n"
 
 

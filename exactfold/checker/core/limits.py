@@ -62,6 +62,7 @@ MOST_ASSIGNMENTS = 1 << 18  # assignments of a part of a sheet of rigid panels
 LETTER_STEPS = 1 << 20  # letters of a vertex, or forcing sets, that are tried fold by fold
 ASSIGNED_VERTICES = 8  # vertices that can pop, of a sheet whose assignments are listed
 PIECE_VERTICES = 16  # vertices that can pop, of a sheet whose pieces are counted
+PERIODIC_VERTICES = 20  # vertices of a cell whose sign vectors are counted one by one
 PIECE_UNKNOWNS = 9  # unknowns of a system for solutions with flat vertices
 MOST_MONOMIALS = 500  # monomials in the proof that a system has no zero
 
@@ -80,6 +81,8 @@ SPACE_STEPS = 1 << 24  # products of densities in one search
 SPACE_LEAVES = 1 << 12  # spaces of motions of one part
 MOST_LISTED = 1 << 12  # modes of one support that are checked one by one
 MOST_SUPPORTS = 1 << 15  # supports of a sheet
+TORQUE_WAYS = 1 << 12  # ways that torques are compared with
+TORQUE_RAYS = 1 << 12  # rays in the proof that no torques have a larger margin
 TREE_JOINTS = 10  # folds to other vertices at one vertex of a tree
 TREE_CASES = 1 << 16  # cases of one vertex of a tree
 

@@ -58,7 +58,7 @@ def check(data: dict[str, Any]) -> PanelsClaims:
     modes = Modes(sheet, {v: around for v, around in near.items() if v in small})
     free = [e for e in sheet.folds if sheet.boundary_set.issuperset(e) and e not in held]
     live = {pair(v, u) for v, around in near.items() for u in around}
-    pairs = _paired(_supports(modes), items(claims["supports"], "supports"))
+    pairs = paired(supports_of(modes), items(claims["supports"], "supports"))
     supports, loops = [support for support, _ in pairs], Loops(modes)
     extending = [_extending(loops, support, entry) for support, entry in pairs]
     parts = _parts(sheet, large, items(claims.get("spaces", []), "spaces"))
@@ -117,7 +117,8 @@ def _parts(sheet: PanelSheet, large: list[Near], given: list[Any]) -> list[PartC
 # --- supports ------------------------------------------------------------------------------------
 
 
-def _supports(modes: Modes) -> list[Support]:
+def supports_of(modes: Modes) -> list[Support]:
+    """All supports of a sheet; raises `LimitError` if they are too many."""
     supports = []
     for support in modes.supports():
         supports.append(support)
@@ -125,7 +126,7 @@ def _supports(modes: Modes) -> list[Support]:
     return supports
 
 
-def _paired(supports: Sequence[Support], given: list[Any]) -> list[tuple[Support, dict[str, Any]]]:
+def paired(supports: Sequence[Support], given: list[Any]) -> list[tuple[Support, dict[str, Any]]]:
     """Each support with its entry in the file; raises unless the file lists each of them once."""
     known = {support.folds: support for support in supports}
     entries: dict[tuple[Edge, ...], dict[str, Any]] = {}
@@ -157,7 +158,7 @@ def _extending(loops: Loops, support: Support, entry: dict[str, Any]) -> tuple[i
         rows = loops.modes.listed(support)
         verdicts = [
             _extends(loops, support, row, mode, number is None)
-            for row, mode in _listed(loops.modes, support, rows, entry["modes"])
+            for row, mode in listed(loops.modes, support, rows, entry["modes"])
         ]
         good = sum(verdict is True for verdict in verdicts)
     shown = f"{good} modes of {named(support)} extend, not {number!a}"
@@ -175,7 +176,7 @@ def kind_of(loops: Loops, support: Support) -> str:
     return "linear" if all(step.quadratic is None for step in steps) else "loops"
 
 
-def _listed(
+def listed(
     modes: Modes, support: Support, rows: list[dict[int, int]], given: Any
 ) -> list[tuple[dict[int, int], dict[str, Any] | None]]:
     """Each mode with its entry in the file, or with None if the file lists no modes.

@@ -23,7 +23,7 @@ def components(supports: Weighted, free: int) -> dict[str, int]:
     total = {free: 1}
     for group in _groups(supports):
         counts: dict[int, int] = {}
-        for chosen in _maximal([supports[k][0] for k in group]):
+        for chosen in maximal_sets([supports[k][0] for k in group]):
             number = 1
             for k in chosen:
                 number *= supports[group[k]][1]
@@ -71,7 +71,7 @@ def _groups(supports: Weighted) -> list[list[int]]:
     return groups
 
 
-def _maximal(groups: list[tuple[int, ...]]) -> Iterator[list[int]]:
+def maximal_sets(groups: list[tuple[int, ...]]) -> Iterator[list[int]]:
     """Yield each maximal set of supports with no common vertex.
 
     This is the search of Bron and Kerbosch, with one bit for each support. The supports in

@@ -215,6 +215,7 @@ class TorqueSearch:
             best,
             self.creases,
             self.given is not None,
+            orthogonality.self_foldable,
             orthogonality.dimension,
             names,
             orthogonality.orthogonal,

@@ -147,6 +147,7 @@ class _Together:
             best,
             None,
             False,
+            alone.self_foldable,
             alone.dimension,
             tuple(self.signs[b] for b in alone.independent),
             alone.orthogonal,

@@ -12,6 +12,7 @@ import numpy as np
 from scipy.linalg import qr
 
 from exactfold._support.arrays import BigArray, BoolArray, FloatArray
+from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.branches.values.angles import fold_angles
 from exactfold.branches.values.branch import Branch
 from exactfold.design.actuation.directions import BITS, Directions
@@ -87,9 +88,11 @@ class Alone:
     """The torques that do no work on any branch but one: proved bounds of their dimension.
 
     `independent` are the places of other branches that are proved to be linearly independent.
-    `orthogonal` is an example of such torques, or None.
+    `orthogonal` is an example of such torques, or None. `self_foldable` says whether some such
+    torques do work on the branch itself.
     """
 
+    self_foldable: Verdict
     dimension: tuple[int, int]
     independent: list[int]
     orthogonal: OrthogonalTorques | None
@@ -114,7 +117,23 @@ def alone(
     orthogonal = None
     if dimension[0] > 0:
         orthogonal = orthogonal_torques(directions, place, independent, directions.moving)
-    return Alone(dimension, independent, orthogonal)
+    verdict = REFUTED if dimension[1] == 0 else UNDECIDED
+    if dimension[0] > 0:
+        verdict = _is_outside(directions, branches, place, size - dimension[0])
+    return Alone(verdict, dimension, independent, orthogonal)
+
+
+def _is_outside(
+    directions: Directions, branches: Sequence[Branch], place: int, rank_of_others: int
+) -> Verdict:
+    """Whether a branch is no sum of multiples of the others, which have at most this rank."""
+    everything = independent_rows(directions, range(len(branches)))
+    if everything is not None and len(everything[0]) > rank_of_others:
+        return PROVED
+    others = _exact_rank([branch for b, branch in enumerate(branches) if b != place])
+    if others is not None and others == _exact_rank(branches):
+        return REFUTED
+    return UNDECIDED
 
 
 def alone_each(directions: Directions, branches: Sequence[Branch], size: int) -> Iterator[Alone]:

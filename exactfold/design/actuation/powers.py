@@ -125,14 +125,34 @@ def margin_bound(
     """An upper bound of the margin of all torques of size at most 1, by weak duality.
 
     If `limited` is given, the bound is for torques that drive at most `most` of these folds and any
-    of the others. If `barred` is given, it is for torques that do not drive these folds. The margin
-    of tau is at most sum_r w_r tau . (u - u_r) = tau . g for weights w_r >= 0 with sum 1 on rivals
-    r. As |tau_e| <= 1, tau . g is at most the sum of |g_e| over the `most` largest of the limited
-    folds and over all other folds. So every choice of weights gives a true bound.
+    of the others. If `barred` is given, it is for torques that do not drive these folds. It is the
+    sum of the `most` largest shares of the limited folds, and of those of all other folds
+    (`shares`). So every choice of weights gives a true bound. Raises the errors of `shares`.
+    """
+    sizes, unit = _shares(directions, chosen, weights)
+    if barred is not None:
+        sizes[np.array(barred)] = 0
+    within = np.zeros(len(sizes), dtype=np.bool_) if limited is None else np.array(limited)
+    largest = sorted(sizes[within].tolist(), reverse=True)[:most]
+    return Fraction(sum(sizes[~within].tolist()) + sum(largest), unit)
+
+
+def shares(directions: Directions, chosen: int, weights: Weights) -> list[Fraction]:
+    """The share of each fold in the upper bound of all margins.
+
+    The margin of tau is at most sum_r w_r tau . (u - u_r) = tau . g for weights w_r >= 0 with sum 1
+    on rivals r. As |tau_e| <= 1, it is at most the sum of the shares |g_e|, and at most this sum
+    less |g_e| if fold e is not driven.
 
     Raises `ArithmeticError` if a weight is negative, if the weights do not add up to 1, or if a
     weight is not on a rival; the chosen ray itself is no rival.
     """
+    sizes, unit = _shares(directions, chosen, weights)
+    return [Fraction(size, unit) for size in sizes.tolist()]
+
+
+def _shares(directions: Directions, chosen: int, weights: Weights) -> tuple[BigArray, int]:
+    """The shares as integers, and the number by which they are divided."""
     places = range(len(directions.lows))
     for place, sign in (ray for ray, _ in weights):
         if (place, sign) == (chosen, 1) or place not in places or sign not in (-1, 1):
@@ -145,12 +165,7 @@ def margin_bound(
         ends = directions.lows[place], directions.highs[place]
         under, over = ends if sign > 0 else (-ends[1], -ends[0])
         low, high = low - weight * over, high - weight * under
-    sizes = np.maximum(abs(low), abs(high))
-    if barred is not None:
-        sizes[np.array(barred)] = 0
-    within = np.zeros(len(sizes), dtype=np.bool_) if limited is None else np.array(limited)
-    largest = sorted(sizes[within].tolist(), reverse=True)[:most]
-    return Fraction(sum(sizes[~within].tolist()) + sum(largest), common << BITS)
+    return np.maximum(abs(low), abs(high)), common << BITS
 
 
 def exact_weights(rays: Sequence[Ray], weights: FloatArray) -> list[tuple[Ray, Fraction]]:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
-from typing import Literal, TypedDict
+from typing import TYPE_CHECKING, Literal, TypedDict
 
 import numpy as np
 
@@ -23,9 +23,10 @@ from exactfold._support.documents import (
     VerdictText,
     VertexSigns,
 )
-from exactfold._support.verdict import Verdict
+from exactfold._support.verdict import PROVED, REFUTED, Verdict
 from exactfold.branches.values.branch import Branch
 from exactfold.design.actuation.directions import Directions
+from exactfold.design.actuation.hinges import MODEL, Hinges
 from exactfold.design.actuation.orthogonal import OrthogonalTorques
 from exactfold.design.actuation.powers import Powers
 from exactfold.errors import UsageError
@@ -33,6 +34,9 @@ from exactfold.exact.numbers import RationalLike, as_rational, format_rational
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.described import PatternDocument, described
 from exactfold.pattern.near_degeneracy import WarningDocument, warnings
+
+if TYPE_CHECKING:
+    from exactfold.pattern.panel_pattern import PanelPattern
 
 Bounds = tuple[Fraction, Fraction]
 
@@ -72,14 +76,42 @@ class OrthogonalDocument(TypedDict):
     """The largest power on another branch is at most this share."""
 
 
+class RivalsDocument(TypedDict):
+    """The other ways that torques are compared with."""
+
+    number: Natural
+    """The number of the other ways that are known to fold."""
+    complete: bool
+    """Whether these are proved to be all other ways."""
+    unknown: str
+    """Why there may be others; empty if all are known."""
+
+
+class HingesDocument(TypedDict):
+    """Torques in N mm, in floating point."""
+
+    model: str
+    stiffness: Rational
+    """Of 1 mm of hinge, in N mm / rad."""
+    width: Rational
+    """Of the sheet, in mm."""
+    lengths: dict[FoldText, NotNegative]
+    """By fold i-j, in mm."""
+    torques: dict[FoldText, float]
+    """By fold i-j, in N mm, in the flat state."""
+
+
 class ActuationDocument(TypedDict):
     """Torques for one branch, and what is proved of them."""
 
     format: Literal["exactfold actuate result"]
-    version: Literal[2]
+    version: Literal[3]
     pattern: PatternDocument
     status: VerdictText
     reason: str
+    self_foldable: VerdictText
+    """Whether some torques do work on this branch and on no other (Tachi and Hull)."""
+    self_foldable_reason: str
     vertex_signs: VertexSigns
     """By interior vertex, on the ray that is driven: 1 up, -1 down, 0 flat."""
     assignment: Assignment
@@ -92,12 +124,13 @@ class ActuationDocument(TypedDict):
     """The most creases that may be driven."""
     margin: Pair[Rational]
     """Bounds of the power on the branch less the largest on any other ray."""
-    best: Rational
+    bound: Rational
     """No torques that are allowed have a larger margin."""
     power: Pair[Rational]
     """Bounds of the power along the ray of the branch."""
     largest_rival: Pair[Rational]
     """Bounds of the largest power along another ray."""
+    rivals: RivalsDocument
     orthogonal_dimension: Pair[Natural]
     """Bounds of the dimension of the torques that do no work on any other branch."""
     independent: list[SignsText]
@@ -105,6 +138,8 @@ class ActuationDocument(TypedDict):
     orthogonal: OrthogonalDocument | None
     ranking: list[RankedDocument]
     warnings: list[WarningDocument]
+    certificate: str | None
+    """The file with the evidence, if one was written."""
     seconds: NotNegative
 
 
@@ -144,11 +179,11 @@ class Actuation:
     torques, on at most `creases` folds if that is not None. `given` says whether the torques were
     given or found.
 
-    `orthogonal_dimension` are proved bounds of the dimension of the torques that do no work on any
-    other branch (Tachi and Hull's necessary condition), modulo the torques that do no work on any
-    motion. `independent` are other branches whose fold angles are proved to be linearly
-    independent. If the dimension is proved to be positive, `orthogonal` is an example of such
-    torques.
+    `self_foldable` says whether some torques do work on this branch and on no other (Tachi and
+    Hull). `orthogonal_dimension` are proved bounds of the dimension of the torques that do no work
+    on any other branch, modulo the torques that do no work on any motion. `independent` are other
+    branches whose fold angles are proved to be linearly independent. If the dimension is proved to
+    be positive, `orthogonal` is an example of such torques.
 
     `status` is PROVED if the margin is proved to be positive, and REFUTED if it is proved not to
     be.
@@ -163,6 +198,7 @@ class Actuation:
     best: Fraction
     creases: int | None
     given: bool
+    self_foldable: Verdict
     orthogonal_dimension: tuple[int, int]
     independent: tuple[str, ...]
     orthogonal: OrthogonalTorques | None
@@ -220,37 +256,48 @@ class Actuation:
     def _powers(self, torques: Mapping[Edge, Fraction]) -> Powers:
         return Powers.of(self.directions, [torques[fold] for fold in self.directions.folds])
 
-    def to_dict(self, name: str | None = None) -> ActuationDocument:
+    def to_dict(self, name: str | None = None, certificate: str | None = None) -> ActuationDocument:
         """The object printed by `exactfold actuate --json`: `schema("actuate")`."""
         low, high = self.orthogonal_dimension
         orthogonal = self.orthogonal
         return {
             "format": "exactfold actuate result",
-            "version": 2,
+            "version": 3,
             "pattern": described(self.pattern, name),
             "status": str(self.status),
             "reason": self.reason,
+            "self_foldable": str(self.self_foldable),
+            "self_foldable_reason": self.self_foldable_reason,
             "vertex_signs": {str(v): s for v, s in sorted(self.branch.vertex_signs.items())},
             "assignment": {f"{i}-{j}": a for (i, j), a in sorted(self.branch.assignment.items())},
-            "torques": _texts(self.torques),
+            "torques": torque_texts(self.torques),
             "given": self.given,
             "creases": self.creases,
             "margin": [format_rational(x) for x in self.margin],
-            "best": format_rational(self.best),
+            "bound": format_rational(self.best),
             "power": [format_rational(x) for x in self.power],
             "largest_rival": [format_rational(x) for x in self.largest_rival],
+            "rivals": {"number": len(self.directions) - 1, "complete": True, "unknown": ""},
             "orthogonal_dimension": [low, high],
             "independent": list(self.independent),
-            "orthogonal": None
-            if orthogonal is None
-            else {
-                "torques": _texts(orthogonal.torques),
-                "share": format_rational(outward((orthogonal.share, orthogonal.share))[1]),
-            },
+            "orthogonal": None if orthogonal is None else orthogonal_document(orthogonal),
             "ranking": [row.to_dict() for row in self.ranking()],
             "warnings": warnings(self.pattern),
+            "certificate": certificate,
             "seconds": round(self.seconds, 3),
         }
+
+    @property
+    def self_foldable_reason(self) -> str:
+        """Why torques can do work on this branch alone, or cannot, in words."""
+        if self.self_foldable is PROVED:
+            return "some torques do work on this branch and on no other"
+        if self.self_foldable is REFUTED:
+            return (
+                "torques that do no work on the other branches do none on this one: the other "
+                "branches span it"
+            )
+        return "the rank of the other branches is not known"
 
     def __repr__(self) -> str:
         signs = self.branch.sign_text
@@ -262,7 +309,7 @@ class Actuation:
 
 
 def checked_torques(
-    pattern: CreasePattern, torques: Mapping[Edge, RationalLike]
+    pattern: CreasePattern | PanelPattern, torques: Mapping[Edge, RationalLike]
 ) -> dict[Edge, Fraction]:
     """Exact torques of all folds from torques of some of them; missing folds have torque 0.
 
@@ -275,5 +322,31 @@ def checked_torques(
     return {fold: as_rational(torques.get(fold, 0)) for fold in pattern.folds}
 
 
-def _texts(torques: Mapping[Edge, Fraction]) -> dict[str, str]:
+def torque_texts(torques: Mapping[Edge, Fraction]) -> dict[str, str]:
+    """Torques by fold, as in the JSON output."""
     return {f"{i}-{j}": format_rational(torque) for (i, j), torque in sorted(torques.items())}
+
+
+def orthogonal_document(orthogonal: OrthogonalTorques) -> OrthogonalDocument:
+    """The key `orthogonal` of the JSON output."""
+    return {
+        "torques": torque_texts(orthogonal.torques),
+        "share": format_rational(outward((orthogonal.share, orthogonal.share))[1]),
+    }
+
+
+def hinges_document(
+    hinges: Hinges, pattern: CreasePattern | PanelPattern, torques: Mapping[Edge, Fraction]
+) -> HingesDocument:
+    """The key `hinges` of the JSON output."""
+    lengths = hinges.lengths(pattern)
+    return {
+        "model": MODEL,
+        "stiffness": format_rational(hinges.stiffness),
+        "width": format_rational(hinges.width),
+        "lengths": {f"{i}-{j}": length for (i, j), length in lengths.items()},
+        "torques": {
+            f"{i}-{j}": float(hinges.stiffness) * lengths[i, j] * float(torque)
+            for (i, j), torque in sorted(torques.items())
+        },
+    }

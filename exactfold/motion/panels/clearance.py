@@ -11,6 +11,7 @@ import numpy as np
 from flint import arb, ctx
 
 from exactfold._support.arrays import FloatArray, IndexArray
+from exactfold._support.clock import UNLIMITED, Clock
 from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.errors import NotApplicableError
 from exactfold.exact.surds import ball
@@ -65,12 +66,13 @@ class PanelClearance:
         return f"<PanelClearance: {self.status}, clear until {self.clear:.6g}{what}>"
 
 
-def prove_contacts(motion: PanelMotion) -> PanelClearance:
+def prove_contacts(motion: PanelMotion, clock: Clock = UNLIMITED) -> PanelClearance:
     """The first contact of a motion of panels, proved (docs/motion.md, 20 and 21).
 
     The positions of all vertices are enclosed over intervals of time, computed from the exact
     motion. Planes are found that separate all panels (docs/motion.md, Theorem 7). Panels touch
-    where an edge runs through a panel, or at time pi, where all folds close.
+    where an edge runs through a panel, or at time pi, where all folds close. When the clock has
+    passed, the rest of the motion is UNDECIDED.
 
     Raises `NotApplicableError` for a motion that is not proved to exist (`motion.exists`), and for
     a sheet whose positions are known only nearly.
@@ -103,6 +105,8 @@ def prove_contacts(motion: PanelMotion) -> PanelClearance:
         clear = nextafter(piece.middle + at, 0.0)  # this covers the rounding of the sum
         if left:
             break
+        if clock.passed:
+            return PanelClearance(UNDECIDED, clear, None, (), clock.said)
     else:
         if clear >= nextafter(end, 0.0):
             return PanelClearance(PROVED, motion.duration, _closing(motion, pi), (), "", end)

@@ -89,7 +89,10 @@ class PanelMode:
         """Fold angle / length to first order, up to a common factor; the signs are those of
         `letters`.
         """
-        roots = Roots(self.pattern.field)
+        return MappingProxyType(self.densities_in(Roots(self.pattern.field)))
+
+    def densities_in(self, roots: Roots) -> dict[Edge, Density]:
+        """`densities` with the square roots of `roots`, which several modes may share."""
         first = self.folds[0]
         known = {first: roots.density(Fraction(1 if self.letters[first] == "V" else -1))}
         for k, fold in self.order_from(first):
@@ -97,7 +100,7 @@ class PanelMode:
                 if other not in known:
                     gain = roots.density(self.choice[k].gain(fold, other))
                     known[other] = known[fold].times(gain)
-        return MappingProxyType(dict(sorted(known.items())))
+        return dict(sorted(known.items()))
 
     def __reduce__(self) -> tuple[object, ...]:
         # Cached values are not pickled.

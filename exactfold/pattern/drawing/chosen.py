@@ -23,13 +23,14 @@ def chosen(sheets: Sequence[Drawing], number: int | None) -> int:
         return 0
     if number is not None and 1 <= number <= len(sheets):
         return number - 1
-    known = f"the drawing holds {counted(len(sheets), 'sheet')}"
+    known = f"the drawing holds {counted(len(sheets), 'sheet')}{_listed(sheets)}"
     if number is not None:
-        raise SeveralSheetsError(f"there is no sheet {number}: {known}{_listed(sheets)}")
+        raise SeveralSheetsError(f"there is no sheet {number}: {known}")
     raise SeveralSheetsError(
-        f"{known}{_listed(sheets)}: choose one with --sheet N (`number=` in Python), or count all "
-        "with `exactfold count FILE --sheet all`",
+        f"{known}: choose one with --sheet N (`number=` in Python), or count all with `exactfold "
+        "count FILE --sheet all`",
         len(sheets),
+        known,
     )
 
 

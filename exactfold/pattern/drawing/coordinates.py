@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import lcm
 from typing import Final
@@ -312,7 +312,7 @@ def _size(written: Written) -> Fraction:
 
 
 def _with(drawing: Drawing, points: Sequence[Point]) -> Drawing:
-    return Drawing(tuple(points), drawing.lines, drawing.source, drawing.remarks)
+    return replace(drawing, points=tuple(points), exact=False)
 
 
 def _parts(points: Sequence[Point]) -> list[int]:

@@ -60,7 +60,8 @@ class Drawing(Picture):
     `remarks` has a sentence for each thing that the reader left out or interpreted; those that
     nobody should miss are `Loud`. Points may
     nearly coincide, and lines may cross or repeat; `repaired` mends that. `exact` says that the
-    file states exact coordinates beside its decimals, so that they need not be found.
+    file states exact coordinates beside its decimals, so that they need not be found. `coloured`
+    says that colours may give the letters, as in an SVG file.
     """
 
     points: tuple[Point, ...]
@@ -68,6 +69,7 @@ class Drawing(Picture):
     source: str
     remarks: tuple[str, ...] = ()
     exact: bool = False
+    coloured: bool = False
 
     def __repr__(self) -> str:
         return (

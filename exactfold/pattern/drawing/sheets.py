@@ -86,11 +86,11 @@ def sheets(drawing: Drawing) -> tuple[tuple[Drawing, ...], list[Repair]]:
     framing = {k for outer in enclosing for k in outer}
     for k, part in enumerate(parts):
         alone_there = enclosing.count(enclosing[k]) == 1
-        _check_nested(part, [parts[m] for m in enclosing[k]], alone_there, places)
+        _check_nested(part, [parts[m] for m in enclosing[k]], alone_there, places, drawing.coloured)
         nested = enclosing[k] or k in framing
         if nested and (len(part.faces) == 1 or all(line.letter in "BC" for line in part.lines)):
             alone.append(part.outline[0])
-        elif inside := _cuts(part, places):
+        elif inside := _cuts(part, places, drawing.coloured):
             found, empty, moved = pieces(drawing, part.faces, part.lines)
             made += found
             alone += empty
@@ -183,7 +183,9 @@ def _check_all(drawing: Drawing, parts: Sequence[_Part], places: FloatArray) -> 
         )
 
 
-def _check_nested(part: _Part, outer: Sequence[_Part], is_alone: bool, places: FloatArray) -> None:
+def _check_nested(
+    part: _Part, outer: Sequence[_Part], is_alone: bool, places: FloatArray, coloured: bool
+) -> None:
     """Raises an error if a part inside others is neither a hole nor a sheet there.
 
     Its outline tells: a hole and a sheet have boundary lines. Lines without a letter are a boundary
@@ -196,10 +198,11 @@ def _check_nested(part: _Part, outer: Sequence[_Part], is_alone: bool, places: F
         v = part.outline[0]
         why = "leave out a frame round the drawing; a hole is drawn with boundary lines"
         if any(line.letter == "C" for line in part.lines):
+            how = " by `--colours '#0f0=U,#ff0=U'`"
             why = (
                 "sheets with slits that do not begin at the edge of the paper are not counted yet; "
-                "to read this one without cuts, give its cuts and flat lines the letter U, in an "
-                "SVG file by `--colours '#0f0=U,#ff0=U'`"
+                "to read this one without cuts, give its cuts and flat lines the letter U"
+                f"{how if coloured else ''}"
             )
         raise DisconnectedError(
             f"creases near ({places[v][0]:.6g}, {places[v][1]:.6g}) lie inside a panel, and no "
@@ -221,7 +224,7 @@ def _enclosing(parts: Sequence[_Part], places: FloatArray) -> list[list[int]]:
     return found
 
 
-def _cuts(part: _Part, places: FloatArray) -> list[Line]:
+def _cuts(part: _Part, places: FloatArray, coloured: bool) -> list[Line]:
     """The cuts of a part: lines C between two faces, and lines B round a hole off the edge."""
     boundary = {frozenset(pair) for pair in _sides(part.outline)}
     inside = [
@@ -245,11 +248,11 @@ def _cuts(part: _Part, places: FloatArray) -> list[Line]:
         ends = [[f"({places[v][0]:.6g}, {places[v][1]:.6g})" for v in line[:2]] for line in wrong]
         named = ", ".join(f"from {a} to {b}" for a, b in ends[:_NAMED])
         more = ", ..." if len(wrong) > _NAMED else ""
+        how = " (`--colours black=U`, or black=C; all lines of this colour get the letter)"
         raise FoldError(
             f"{counted(len(wrong), 'boundary line')} {agreeing(len(wrong), 'is')} between two "
             f"panels ({named}{more}): give {'it' if len(wrong) == 1 else 'them'} the letter U for "
-            "a crease, C for a cut, or F for nothing (for an SVG file: `--colours black=U`, or "
-            "black=C; all lines of this colour get the letter)"
+            f"a crease, C for a cut, or F for nothing{how if coloured else ''}"
         )
     return inside
 
@@ -267,4 +270,4 @@ def _alone(drawing: Drawing, part: _Part) -> Drawing:
     number = {v: k for k, v in enumerate(members)}
     lines = tuple(Line(number[a], number[b], letter) for a, b, letter in part.lines)
     points = tuple(drawing.points[v] for v in members)
-    return Drawing(points, lines, drawing.source, drawing.remarks)
+    return replace(drawing, points=points, lines=lines, exact=False)

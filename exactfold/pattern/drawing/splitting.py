@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from itertools import combinations
 from typing import Final, TypeAlias
 
@@ -70,7 +71,7 @@ def split(drawing: Drawing, within: float) -> tuple[Drawing, list[Repair]]:
         + repairs
         + repair("split", len(bent), sorted(bent), points, bend)
     )
-    return Drawing(tuple(points), tuple(pieces), drawing.source, drawing.remarks), reports
+    return replace(drawing, points=tuple(points), lines=tuple(pieces), exact=False), reports
 
 
 def _junctions(places: FloatArray, lines: Sequence[Line], within: float) -> Junctions:

@@ -157,3 +157,74 @@ def test_too_many_rivals(tmp_path):
     assert result.exit_code == UNDECIDED
     assert "at most 12 can" in result.stderr
     assert error_class(result) == "NotCountedError"
+
+
+# --- rigid panels --------------------------------------------------------------------------------
+
+
+def test_panels_are_driven_along_a_way(tmp_path):
+    table = tmp_path / "torques.csv"
+    hinges = ("--stiffness", "0.5", "--width", 100)
+    command = ("actuate", "zigzags", "--way", 1, "--creases", 3, *hinges)
+    result = run(*command, "-o", table, "--json")
+    assert result.exit_code == PROVED
+    data = valid(result.stdout)
+    assert (data["self_foldable"], data["rivals"]["number"], data["way"]) == ("proved", 2, 1)
+    assert Fraction(data["margin"][0]) <= Fraction(data["bound"])
+    driven = [name for name, torque in data["torques"].items() if torque != "0"]
+    rows = [line.split(",") for line in table.read_text().splitlines()[1:]]
+    assert sorted(row[0] for row in rows) == sorted(driven)
+    for name, _, _, _, torque in rows:
+        assert float(torque) == pytest.approx(data["hinges"]["torques"][name], rel=1e-5)
+    text = run(*command).stdout
+    assert "Model of the torques in N mm: linear springs at the folds, rigid panels" in text
+    assert "on 3 creases at most" in text
+
+
+def test_all_ways_and_folds_of_panels_are_listed_if_asked():
+    short = run("actuate", "miura", "--way", 1)
+    assert "REFUTED (torques that do no work on the other ways do none on" in short.stdout
+    assert "family" not in short.stdout
+    assert run("actuate", "miura", "--letters", "drawn").stdout
+
+
+@pytest.mark.parametrize(
+    ("options", "code", "message"),
+    [
+        (["--way", 8, "--creases", 2], USAGE, "way 8 has 3 degrees of freedom: drive at least 3"),
+        (["--way", 9], USAGE, "there is no way 9: `count` lists 1 to 8"),
+        (["--signs", "+"], USAGE, "signs is for branches of triangulated sheets"),
+        (["--way", 1, "--stiffness", 0, "--width", 1], USAGE, "a stiffness of 0 N mm / rad"),
+        (["--way", 1, "--stiffness", -1, "--width", 1], USAGE, "a stiffness of -1 N mm / rad"),
+        (["--way", 1, "--stiffness", 1], USAGE, "--stiffness and --width go together"),
+        (["--way", 1, "--stiffness", "x", "--width", 1], USAGE, "'x' is not a number"),
+        (["--way", 1, "-o", "OUT.csv"], USAGE, "-o writes torques in N mm"),
+    ],
+)
+def test_what_is_refused_of_panels_writes_nothing(options, code, message, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    result = run("actuate", "miura", *options)
+    assert result.exit_code == code
+    assert message in " ".join(result.stderr.split())
+    assert not list(tmp_path.iterdir())
+
+
+def test_newtons_are_for_panels():
+    hinges = ("--stiffness", "1", "--width", "1")
+    result = run("actuate", "two-vertex", "--signs", "+-", *hinges)
+    assert result.exit_code == USAGE
+    assert "torques in N mm are for rigid panels" in result.stderr
+
+
+def test_a_certificate_of_torques_for_panels_is_checked(tmp_path):
+    path = tmp_path / "torques.json"
+    result = run("actuate", "zigzags", "--way", 1, "--certificate", path, "--json")
+    assert result.exit_code == PROVED
+    assert valid(result.stdout)["certificate"] == str(path)
+    checked = run("check", path)
+    assert checked.exit_code == PROVED
+    assert "the way is self-foldable" in " ".join(checked.stdout.split())
+    refused = run("actuate", "two-vertex", "--signs", "+-", "--certificate", tmp_path / "b.json")
+    assert refused.exit_code == USAGE
+    assert "torques for a branch have no certificate yet" in refused.stderr
+    assert not (tmp_path / "b.json").exists()

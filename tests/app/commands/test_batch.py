@@ -178,13 +178,18 @@ def test_without_a_choice_the_sheets_are_listed(tmp_path: Path) -> None:
     path = several_sheets(tmp_path / "two.cp")
     listed = "sheet 1 with 1 fold, 2 x 2 at (3, 0); sheet 2 with 2 folds, 2 x 2 at (6, 0)"
     remedy = "choose one with --sheet N (`number=` in Python), or count all with"
-    result = run("count", path)
+    result = run("count", path, "--json")
     assert result.exit_code == BAD_INPUT
     assert f"the drawing holds 2 sheets ({listed}): {remedy}" in result.stderr
+    every = run("count", path)
+    asked = run("count", path, "--sheet", "all")
+    assert (every.exit_code, every.stdout) == (asked.exit_code, asked.stdout)
+    assert f"holds 2 sheets ({listed}): each is counted, as with --sheet all; " in every.stderr
+    assert "choose one with --sheet N" in run("count", path, "--certificate", "c.json").stderr
     result = run("count", path, "--sheet", 3)
     assert f"there is no sheet 3: the drawing holds 2 sheets ({listed})" in result.stderr
     many = several_sheets(tmp_path / "many.cp", dict.fromkeys(range(1, 15), "M"))
-    assert "sheet 12 with 1 fold, 2 x 2 at (36, 0); and 2 more): " in run("count", many).stderr
+    assert "sheet 12 with 1 fold, 2 x 2 at (36, 0); and 2 more): " in run("info", many).stderr
 
 
 def test_the_same_from_one_process_and_from_two(tmp_path: Path) -> None:
@@ -459,3 +464,11 @@ def test_what_went_wrong_does_not_repeat_the_folders_of_a_file(tmp_path: Path) -
     lines = result.stdout.splitlines()
     assert f"{missing}:" in lines
     assert "  cannot read missing.svg: No such file or directory" in lines
+
+
+def test_an_edge_of_the_paper_that_is_not_drawn_is_said_in_a_table_too(tmp_path: Path) -> None:
+    (tmp_path / "open.cp").write_text("2 0 0 3 2\n3 3 0 0 2\n2 1 0 1 2\n")
+    result = run("count", tmp_path / "open.cp", "two-vertex", "--jobs", 1)
+    assert result.exit_code == 0
+    said = " ".join(result.stdout.split())
+    assert "the drawing has no edge of the paper, so the rectangle round it is taken" in said

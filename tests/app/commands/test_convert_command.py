@@ -170,7 +170,6 @@ def test_sheets_that_branches_do_not_take_are_refused_with_what_to_do(tmp_path: 
         ["branch"],
         ["branch", "--drive", "0-4=3"],
         ["export", "--signs", "+"],
-        ["actuate"],
         ["count", "--stream"],
     ):
         given = [tmp_path / "c.txt"] if command[-1] == "--stream" else []

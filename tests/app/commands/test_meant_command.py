@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import random
 import re
+from collections.abc import Sequence
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -12,10 +13,13 @@ from typing import Any
 import pytest
 from noise_put_back import SHEETS, noisy, turned
 from running import INVALID, PROVED, UNDECIDED, USAGE, run
+from sampling import slow_after
 
 import exactfold
 from exactfold.errors import NotApplicableError, UsageError
-from exactfold.pattern.drawing.meant import inference, positions
+from exactfold.pattern.drawing.meant import inference, positions, turning
+from exactfold.pattern.loading import open_sheet
+from exactfold.pattern.reading import Reading
 
 
 def written(tmp_path: Path, document: dict[str, Any], name: str = "noisy") -> Path:
@@ -100,10 +104,11 @@ def test_match_and_python_answer_about_the_same_sheet(miura: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "command", [("fold",), ("draw", "--way", "1"), ("info",), ("view",), ("convert",)]
+    "command",
+    slow_after(4, [["fold"], ["draw", "--way", "1"], ["info"], ["convert"], ["view"]]),
 )
 def test_all_commands_take_the_sheet_that_was_meant(
-    miura: Path, tmp_path: Path, command: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+    miura: Path, tmp_path: Path, command: Sequence[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
     name, *more = command
@@ -177,6 +182,9 @@ def test_what_changes_nothing_about_an_exact_drawing_is_said() -> None:
         "no relation between creases holds nearly but not exactly: --unit changed nothing" in said
     )
     assert "changed nothing" not in run("info", "miura").stderr
+    stated = run("info", "miura", "--unit", 12, "--noise", "1e-9").stderr
+    assert "--noise, --unit changed nothing" in " ".join(stated.split())
+    assert "inferred" not in stated
 
 
 def test_a_relation_that_the_drawing_misses_by_far_is_refused(miura: Path) -> None:
@@ -278,8 +286,9 @@ def test_a_denominator_that_leaves_near_relations_is_no_remedy(miura: Path) -> N
 
 @pytest.fixture
 def too_long(miura: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The turned Miura sheet, where coordinates of more than 10 bits count as too long."""
+    """The turned Miura sheet, seen from no edge; coordinates of more than 10 bits are too long."""
     monkeypatch.setattr(positions, "_MOST_BITS", 10)
+    monkeypatch.setattr(turning, "_FRAMES", 0)
     return miura
 
 
@@ -297,6 +306,14 @@ def test_ways_are_counted_from_directions_if_coordinates_are_too_long(too_long: 
     assert "directions of its folds are exact; the positions of its vertices are enclosed" in said
 
 
+def test_no_second_way_to_an_exact_sheet_is_tried_after_the_time_limit(too_long: Path) -> None:
+    opened = open_sheet(too_long, Reading(limit=0))
+    assert opened.meant is not None
+    assert opened.meant.existence == "none"
+    assert opened.doubt.endswith("share of the time limit, 0 of 0 seconds (--limit), was used up")
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "command",
     [
@@ -307,7 +324,7 @@ def test_ways_are_counted_from_directions_if_coordinates_are_too_long(too_long: 
     ],
 )
 def test_no_certificate_has_enclosed_positions(
-    too_long: Path, tmp_path: Path, command: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+    too_long: Path, tmp_path: Path, command: Sequence[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
     name, *more = command
@@ -318,9 +335,11 @@ def test_no_certificate_has_enclosed_positions(
     assert not (tmp_path / "out.json").exists()
 
 
-@pytest.mark.parametrize("command", [("fold",), ("info",), ("vertices",), ("view", "-o", "a.html")])
+@pytest.mark.parametrize(
+    "command", slow_after(1, [["info"], ["fold"], ["vertices"], ["view", "-o", "a.html"]])
+)
 def test_other_commands_take_enclosed_positions(
-    too_long: Path, tmp_path: Path, command: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+    too_long: Path, tmp_path: Path, command: Sequence[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
     name, *more = command
@@ -328,6 +347,7 @@ def test_other_commands_take_enclosed_positions(
     assert result.exit_code == PROVED, result.stderr
 
 
+@pytest.mark.slow
 def test_a_doubt_is_said_once_and_no_letters_of_the_digits_are_listed(by_hand: Path) -> None:
     for command in ("count", "match", "info", "assignments"):
         letters = ["--letters", "M" * 10] if command == "match" else []

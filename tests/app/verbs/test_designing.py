@@ -66,6 +66,9 @@ def test_torques_for_a_branch_however_it_is_named():
     assert given.given
 
 
-def test_torques_need_triangles():
-    with pytest.raises(NotCountedError, match="actuate takes triangulated sheets"):
+def test_panels_are_driven_along_their_ways_and_not_by_signs():
+    with pytest.raises(UsageError, match="signs is for branches of triangulated sheets"):
         exactfold.actuate("miura", "+")
+    with pytest.raises(UsageError, match="name the way by one of"):
+        exactfold.actuate("miura")
+    assert exactfold.actuate("zigzags", way=1).way.number == 1

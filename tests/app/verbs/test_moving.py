@@ -180,6 +180,7 @@ def test_loops_are_written_and_checked(tmp_path):
         exactfold.loops("miura")
 
 
+@pytest.mark.slow
 def test_a_way_in_a_space_of_motions_is_followed_in_one_of_its_directions():
     motion = exactfold.follow("flapping-bird", 7, until="60deg", frames=4)
     ways = panel_ways(exactfold.decompose("flapping-bird"))

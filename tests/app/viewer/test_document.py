@@ -6,7 +6,7 @@ import itertools
 import json
 import re
 from fractions import Fraction
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +19,8 @@ from exactfold._support.clock import Clock
 from exactfold.app.pictures import crease_style
 from exactfold.app.report.connected_components import piece_notes
 from exactfold.app.viewer import page as page_module
-from exactfold.app.viewer import view_document, view_page
+from exactfold.app.viewer import view_document as view_all
+from exactfold.app.viewer import view_page
 from exactfold.app.viewer.coding import coded_frames, decoded_frames, levelled
 from exactfold.app.viewer.document import Known
 from exactfold.branches import count_branches, count_ways, find_branch
@@ -31,6 +32,7 @@ from exactfold.pattern.families import single_vertex
 from exactfold.pattern.loading import open_sheet
 from exactfold.solve.certify import algebraic
 
+view_document = partial(view_all, flat=False)  # flat-folded states: test_folded.py
 PAGE = Path(page_module.__file__).parent / "page"
 HEXAGON = [(4, 0), (2, 3), (-2, 3), (-4, 0), (-2, -3), (2, -3)]
 CORNER_AND_CENTRE = CreasePattern(
@@ -177,6 +179,7 @@ def test_documents_are_what_their_schema_says(name):
         Draft202012Validator(schema("view")).validate(wrong)
 
 
+@pytest.mark.slow
 def test_it_says_what_is_proved_of_a_motion_of_panels():
     said = [way["motion"]["said"] for way in document_of("zigzags")["ways"][:3]]
     growing = "it exists until a fold reaches 180 degrees, and all angles grow; "
@@ -208,6 +211,7 @@ def test_graphs_over_the_boundary_heights_are_families_with_a_motion_each():
     assert [0, 1] in folds  # it goes from border to border, and nothing else turns it
 
 
+@pytest.mark.slow
 def test_families_of_panels_have_a_representative_each_and_the_letters_of_the_file_come_first():
     document = view_document("bird-base", frames=3)
     matched = match_panels("bird-base")

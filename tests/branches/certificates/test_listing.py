@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 from old_listing import old_listing
+from sampling import slow_after
 from sheets import SQUARE, TRIANGLE, dart, reflex_corners, scrambled, straight_side, with_point
 
 from exactfold import PROVED, CreasePattern, check, checker, random_square
@@ -46,7 +47,9 @@ OTHERS = {
 """Sheets of which version 1 cannot speak, and the kind of their evidence."""
 
 
-@pytest.mark.parametrize("name", SIMPLE)
+@pytest.mark.parametrize(
+    "name", slow_after(len(SIMPLE) - 1, sorted(SIMPLE, key=lambda name: SIMPLE[name].Vi))
+)
 def test_a_count_writes_what_a_stream_writes(tmp_path: Path, name: str) -> None:
     counted, streamed = tmp_path / "counted.txt", tmp_path / "streamed.txt"
     result = count_branches(SIMPLE[name])

@@ -49,6 +49,7 @@ def test_branches_are_those_of_the_count(name: str) -> None:
         assert [b.entry() for b in found] == [b.entry() for b in result.branches]
 
 
+@pytest.mark.slow
 def test_every_kind_of_root_is_read_back(monkeypatch: pytest.MonkeyPatch) -> None:
     result = count_branches(DEGENERATE["grid"]())
     found = list(branches_of(certificate(result)))

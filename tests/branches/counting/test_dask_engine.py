@@ -106,6 +106,7 @@ def script(folder: Path, text: str, *arguments: Path) -> list[str]:
     return run.stdout.splitlines()
 
 
+@pytest.mark.slow
 def test_killed_workers_lose_nothing_and_nothing_is_counted_twice(tmp_path: Path) -> None:
     pytest.importorskip("distributed")
     one, two = tmp_path / "one.txt", tmp_path / "two.txt"

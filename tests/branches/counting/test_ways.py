@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from drawings import SQUARE, as_cp, as_fold
+from sampling import slow_after
 from sheets import DENTED, HEXAGON, scrambled
 
 from exactfold import PROVED, REFUTED
@@ -77,7 +78,7 @@ def _sheared(sheet: CreasePattern) -> PanelPattern:
     [
         PENTAGON,
         single_vertex(7),
-        *(scrambled(seed, HEXAGON, 5) for seed in range(4)),
+        *slow_after(2, (scrambled(seed, HEXAGON, 5) for seed in range(4))),
         *(scrambled(seed, [(0, 0), (4, 0), (4, 2), (4, 4), (0, 4)], 4) for seed in range(3)),
     ],
 )
@@ -105,6 +106,7 @@ def test_graphs_need_triangles_and_known_positions() -> None:
     assert graphs_over_boundary(nearly) is None
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("without_spaces")
 def test_a_convex_sheet_with_roots_has_graphs_where_its_motions_are_too_many() -> None:
     found = count_ways(_sheared(scrambled(1, HEXAGON, 5, loose=True)))

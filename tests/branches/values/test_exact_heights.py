@@ -4,6 +4,7 @@ from fractions import Fraction
 
 import pytest
 import sympy
+from sampling import slow_after
 from sheets import random_wheel
 
 from exactfold import Branch, random_square
@@ -47,7 +48,7 @@ def check(branch: Branch) -> None:
         assert abs(sympy.N(total, 60)) < 10**-50
 
 
-@pytest.mark.parametrize("pattern", [single_vertex(4), DART, two_vertex()])
+@pytest.mark.parametrize("pattern", slow_after(2, [single_vertex(4), DART, two_vertex()]))
 def test_heights_of_the_exact_engine(pattern):
     result = count_branches(pattern, method="groebner")
     assert len(result) == 1 << pattern.Vi

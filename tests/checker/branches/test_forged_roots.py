@@ -21,6 +21,7 @@ from forge import (
     verified_lines,
 )
 from old_listing import as_lines
+from sampling import slow_after
 
 from exactfold import checker
 from exactfold.branches import read_branches
@@ -50,7 +51,7 @@ def test_there_is_one_of_each_kind_of_evidence() -> None:
 
 
 @pytest.mark.parametrize("name", OLD)
-@pytest.mark.parametrize("block", [1, 3, 256])
+@pytest.mark.parametrize("block", slow_after(1, [3, 1, 256]))
 def test_listings_of_earlier_versions_hold_as_lines(name: str, block: int) -> None:
     old = given(name)
     claims = {key: claim for key, claim in old["claims"].items() if key != "branches"}
@@ -276,7 +277,9 @@ def changed(name: str, values: Callable[[object], Iterator[object]]) -> Iterator
                     yield [*parts[:number], replaced(line, path, other), *parts[number + 1 :]]
 
 
-@pytest.mark.parametrize("name", [CHORD, "compact-roots-classes", "compact-roots-rigid"])
+@pytest.mark.parametrize(
+    "name", slow_after(1, [CHORD, "compact-roots-classes", "compact-roots-rigid"])
+)
 def test_a_value_of_another_type_is_refused(name: str) -> None:
     """By an error of the checker; what is accepted says the same."""
     claims, tried = given_lines(name)[-1]["claims"], 0

@@ -280,6 +280,7 @@ def test_a_loop_that_fails_at_a_higher_order_says_nothing_of_the_second() -> Non
 # --- spaces of motions ---------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_spaces_of_motions_are_excluded_by_sets_of_folds() -> None:
     """Theorem 5; the letters of the second file agree with a straight crease, all else flat."""
     message = "the sets of folds do not exclude all spaces of motions"

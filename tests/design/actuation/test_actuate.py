@@ -149,7 +149,7 @@ def rank_to_sixty_digits(branches):
         (two_vertex(), 0),
         (random_square(2, seed=4), 0),
         (flat_vertex_square(), 1),
-        (degenerate.gridded_square(), 0),
+        pytest.param(degenerate.gridded_square(), 0, marks=pytest.mark.slow),
         pytest.param(hypar(1), 0, marks=pytest.mark.slow),
     ],
 )

@@ -43,6 +43,7 @@ def by_letter(letter: str) -> dict[Edge, str]:
     return dict.fromkeys(boxes(5).folds, letter)
 
 
+@pytest.mark.slow
 def test_all_valleys_are_refuted_and_the_bounds_are_those_of_the_sheet() -> None:
     found = counted(by_letter("V"))
     assert found.status is UNDECIDED

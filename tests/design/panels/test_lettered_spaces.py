@@ -47,6 +47,7 @@ def is_motion(moving, motion):
     return True
 
 
+@pytest.mark.slow
 def test_each_line_of_the_list_is_found_by_its_letters(crane):
     sheet, moving, lines = crane
     for line in lines:
@@ -90,6 +91,7 @@ def test_random_letters_are_found_or_refuted_as_the_list_says(crane):
     assert answers == {(True, True), (False, True), (False, False)}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("letters", "truly"), [("VVMVVVMMMMVVVVVV", REFUTED), ("VMVVVVMMMMMMVMVV", UNDECIDED)]
 )

@@ -10,6 +10,7 @@ from itertools import combinations, product
 import numpy as np
 import pytest
 from panel_sheets import one_vertex, star_of
+from sampling import slow_after
 from scipy.optimize import least_squares
 
 from exactfold._support.verdict import PROVED, REFUTED
@@ -174,9 +175,7 @@ def starts_to_second_order(star: Star, letters: str) -> bool:
     return {1, -1} <= signs or signs == {0}
 
 
-@pytest.mark.parametrize(
-    "seed", [pytest.param(k, marks=[pytest.mark.slow] * (k > 2)) for k in range(12)]
-)
+@pytest.mark.parametrize("seed", slow_after(2, [1, 2, 0, *range(3, 12)]))
 def test_agrees_with_the_second_order(seed: int) -> None:
     """All letterings of random vertices, with straight pairs and crossings, sectors of any size."""
     rng = random.Random(seed)
@@ -215,6 +214,7 @@ def _closing(angles: np.ndarray, around: np.ndarray) -> np.ndarray:
     )
 
 
+@pytest.mark.slow
 def test_folded_vertices_have_letters_that_fold() -> None:
     """Necessity at finite angles: near the flat sheet, every configuration has such letters."""
     compared = 0

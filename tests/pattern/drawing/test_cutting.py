@@ -2,6 +2,7 @@
 
 import json
 import random
+from dataclasses import replace
 from fractions import Fraction
 
 import pytest
@@ -179,9 +180,12 @@ def test_borders_between_panels_are_listed_with_what_to_do():
         opened(*lines)
     assert str(refusal.value) == (
         "2 boundary lines are between two panels (from (2, 0) to (2, -1), from (2, -1) to (2, "
-        "-4)): give them the letter U for a crease, C for a cut, or F for nothing (for an SVG "
-        "file: `--colours black=U`, or black=C; all lines of this colour get the letter)"
+        "-4)): give them the letter U for a crease, C for a cut, or F for nothing (`--colours "
+        "black=U`, or black=C; all lines of this colour get the letter)"
     )
+    with pytest.raises(FoldError) as without_colours:
+        from_drawing(replace(picture(*lines), coloured=False))
+    assert str(without_colours.value).endswith(" C for a cut, or F for nothing")
 
 
 def test_boundary_lines_round_a_panel_at_the_edge_are_no_hole():

@@ -59,6 +59,7 @@ def test_positive_scaling_changes_nothing(matrices, scale):
     assert QuadraticSystem.from_rational(scaled) == QuadraticSystem.from_rational(matrices)
 
 
+@pytest.mark.slow
 @patient
 @given(pairs, points, points)
 def test_realification_is_real_and_imaginary_part(matrices, a, b):

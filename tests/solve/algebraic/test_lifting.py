@@ -201,6 +201,7 @@ def reordered(system, order, weights):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("weights", [(1, 1, 1, 1), (7, 1, 3, 2)])
 def test_every_order_of_the_unknowns_has_the_same_profile(weights):
     """Fixed coefficients of the deflation were too special for four of the 24 orders."""

@@ -8,8 +8,8 @@ const ICONS = {
   note: "M9 8.2V14M9 4.4v.2",
 };
 
-export function showFacts(page, way) {
-  const facts = [countFact(page), ...(page.freedom ? [["note", sentence(page.freedom), ""]] : []), ...(way ? wayFacts(page, way) : []), ...page.notes.map((text) => ["open", "To know", text])];
+export function showFacts(page, way, end) {
+  const facts = [countFact(page), ...(page.freedom ? [["note", sentence(page.freedom), ""]] : []), ...(way ? wayFacts(page, way, end) : []), ...flatFacts(page), ...page.notes.map((text) => ["open", "To know", text])];
   const items = facts.map(item);
   if (page.read.length) items.push(reading(page.read, page.served));
   document.getElementById("facts").replaceChildren(...items);
@@ -32,7 +32,7 @@ export function own(page) {
   return page.answer.includes(page.reason) ? "" : page.reason;
 }
 
-function wayFacts(page, way) {
+function wayFacts(page, way, end) {
   const noun = page.kind === "branches" ? "branch" : "way to fold";
   const facts = [];
   if (way.status === "proved") facts.push(["good", `This ${noun}: proved`, way.reason]);
@@ -41,15 +41,33 @@ function wayFacts(page, way) {
   if (way.family) facts.push(["note", "One of infinitely many", `a family of dimension ${way.family.dimension}; the sliders choose others in floats, without contacts`]);
   if (way.multiplicity > 1) facts.push(["note", `Counted ${way.multiplicity} times`, "because flat vertices count double"]);
   if (way.motion) {
-    const drawn = way.motion.said;
+    const closed = end?.status === "proved";  // then contacts are proved, too
+    const drawn = closed ? way.motion.said.replace("; contacts were found in floats", "") : way.motion.said;
     if (way.motion.proved) facts.push(["good", "The motion: proved", drawn]);
     else if (way.motion.exists) facts.push(["good", "The motion exists: proved", drawn]);
     else facts.push(["open", "The motion: not proved", drawn]);
-    facts.push(["note", "It ends", way.motion.ending]);
+    if (!closed) facts.push(["note", "It ends", way.motion.ending]);
+    if (end) facts.push(endFact(end));
   } else if (way.why && way.status === "proved") {
     facts.push(["open", "No motion is drawn", way.why]);
   }
   return facts;
+}
+
+// Where the way ends of which all folds close together.
+function endFact({ status, said }) {
+  if (status === "proved") return ["good", "It folds flat: proved", said];
+  if (status === "refuted") return ["good", "Proved: it does not get to a flat-folded state", said];
+  return ["open", "Whether it folds flat is undecided", said];
+}
+
+// The flat-folded states of the sheet, with the letters of the file and with any.
+function flatFacts(page) {
+  const sheets = page.folded?.sheets ?? [];
+  if (!sheets.length) return [];
+  const words = sheets.map(({ answer }) => answer.split(/ is UNDECIDED| - /)[0]);
+  const all = sheets.every(({ status }) => status !== "undecided");
+  return [[all ? "good" : "open", all ? "Folded flat: proved" : "Folded flat", words.join("; ")]];
 }
 
 // How the drawing was read; it is the same for every way, and the user opens it.

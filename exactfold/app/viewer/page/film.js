@@ -8,7 +8,11 @@ const A_SECOND = 15, MOST_PICTURES = 90;
 export function createFilm(view, server) {
   byId("png").disabled = byId("gif").disabled = !view.drawable();
   byId("mp4").hidden = !server;
-  byId("png").addEventListener("click", () => view.picture().toBlob((data) => save(data, ".png")));
+  byId("png").addEventListener("click", async () => {
+    const ground = getComputedStyle(byId("folded").closest(".pane")).backgroundColor;
+    const picture = (view.store.get().folded && (await view.folded.picture(ground))) || view.picture();
+    picture.toBlob((data) => save(data, ".png"));
+  });
   byId("gif").addEventListener("click", () => film(".gif", gif));
   byId("mp4").addEventListener("click", () => film(".mp4", mp4));
 

@@ -28,10 +28,11 @@ export async function unpacked(text) {
 export function saveState(view, editing) {
   clearTimeout(timer);
   timer = setTimeout(async () => {
-    const { way, mirrored, time, asks, search, playing } = view.store.get();
+    const { way, mirrored, folded, time, asks, search, playing } = view.store.get();
     if (playing || view.page.busy) return;
     const state = new URLSearchParams({ way: way + 1, t: time.toFixed(3) });
     if (mirrored) state.set("side", "-");
+    if (folded) state.set("flat", `${folded.sheet}.${folded.state}`);
     if (asks.size) state.set("asks", [...asks].map(([fold, letter]) => `${fold}${letter}`).join("."));
     if (search) state.set("find", search);
     if (editing?.changed()) {
@@ -51,6 +52,8 @@ export async function loadState() {
   if (Number.isInteger(way) && way > 0) begin.way = way - 1;
   if (state.has("t") && time >= 0 && time <= 1) begin.time = time;
   if (state.has("way")) begin.mirrored = state.get("side") === "-";
+  const flat = /^(\d+)\.(\d+)$/.exec(state.get("flat") ?? "");
+  if (flat) begin.folded = { sheet: Number(flat[1]), state: Number(flat[2]) };
   const asks = [...(state.get("asks") ?? "").matchAll(/(\d+)([MV])/g)];
   if (asks.length) begin.asks = new Map(asks.map(([, fold, letter]) => [Number(fold), letter]));
   if (state.has("find")) begin.search = state.get("find");

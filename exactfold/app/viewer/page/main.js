@@ -46,6 +46,8 @@ async function openSheet(request, begin = {}) {
         whole = true;
         show({ ...line.document, busy: true }, begin);
       } else if (line.kind === "way") view.arrived(line.way, line.found);
+      else if (line.kind === "folded") view.foldedFlat(line.folded);
+      else if (line.kind === "end") view.foldedFlat(line.end);
       else if (line.kind === "late") say(line.text);
       else if (line.kind === "error") throw new Error(line.error);
     });

@@ -29,7 +29,7 @@ function drawLine(node, letter, share, scale = 1) {
 export function createPattern(holder, sheet, store, { onVertex, onAsk, onHint, poppable }) {
   const picture = svg("svg", { role: "group", "aria-label": "Crease pattern" });
   holder.append(picture);
-  let folds = [], vertices = [], place = null, scale = 1, held = false, after = null;
+  let folds = [], vertices = [], place = null, scale = 1, held = false, after = null, own = null;
   const over = svg("g", {});
 
   function layout() {
@@ -67,8 +67,8 @@ export function createPattern(holder, sheet, store, { onVertex, onAsk, onHint, p
     const side = shown ? seen(shown, mirrored) : { letters: sheet.letters, signs: "" };
     const largest = (shown?.angles ?? []).reduce((most, angle) => Math.max(most, Math.abs(angle)), 1e-9);
     folds.forEach((node, k) => {
-      const letter = side.letters[k] ?? "U", asked = asks.get(k);
-      const part = shown?.angles.length ? Math.abs(shown.angles[k]) / largest : null;
+      const letter = (own ?? side.letters)[k] ?? "U", asked = asks.get(k);
+      const part = !own && shown?.angles.length ? Math.abs(shown.angles[k]) / largest : null;
       drawLine(node.querySelector(".line"), letter, part, scale);
       const badge = node.querySelector(".badge");
       badge.toggleAttribute("hidden", !asked);
@@ -78,7 +78,7 @@ export function createPattern(holder, sheet, store, { onVertex, onAsk, onHint, p
       const wish = asked ? `, asked to be a ${NAMES[asked]}` : "";
       const next = { M: "valley", V: "either" }[asked] ?? "mountain";
       const click = !ways.length ? "" : next === "either" ? " Click: no longer ask." : ` Click: ask for a ${next}.`;
-      name(node, `Fold ${i}–${j}: ${shown ? NAMES[letter] : FILE_NAMES[letter]}${wish}.${click}`);
+      name(node, `Fold ${i}–${j}: ${shown || own ? NAMES[letter] : FILE_NAMES[letter]}${wish}.${click}`);
     });
     vertices.forEach((node, k) => {
       const sign = side.signs[k];
@@ -135,6 +135,7 @@ export function createPattern(holder, sheet, store, { onVertex, onAsk, onHint, p
     back: (pixel) => place.back(pixel),
     hold: (yes) => (held = yes),  // the scale is kept while a vertex moves
     redraw: layout,
+    letters: (text) => ((own = text), paint()),  // those of a flat-folded state; null for those of the way
     onLayout: (call) => (after = call),
     overlay: (nodes) => over.replaceChildren(...nodes),
     mark(marks) {

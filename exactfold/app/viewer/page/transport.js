@@ -54,11 +54,11 @@ export function createTransport(store) {
     play.title = playing ? "Pause (space)" : "Play (space)";
   }
 
-  function describe(motion) {
+  function describe(motion, closed = false) {
     document.getElementById("transport").hidden = !motion;
     if (!motion && store.get().playing) store.set({ playing: false });
     slider.value = motion ? Math.round(store.get().time * 1000) : 0;
-    document.getElementById("ending").textContent = motion ? ENDINGS[motion.end] ?? motion.end : "";
+    document.getElementById("ending").textContent = closed ? "folded flat" : motion ? ENDINGS[motion.end] ?? motion.end : "";
     const ticks = (motion?.events ?? []).filter(({ time }) => time < motion.duration * 0.999).map(({ time }) => {
       const tick = document.createElement("i");
       tick.style.left = `${(100 * time) / motion.duration}%`;

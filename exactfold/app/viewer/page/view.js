@@ -4,6 +4,7 @@ import { popped, poppedSigns, seen } from "./choose.js";
 import { decodeFrames, positionsAt } from "./frames.js";
 import { download, fileName, foldFile } from "./foldfile.js";
 import { createFamily } from "./family.js";
+import { createFolded } from "./folded.js";
 import { own, sentence, showFacts } from "./facts.js";
 import { createList } from "./list.js";
 import { createPattern, legendItems } from "./pattern.js";
@@ -43,6 +44,11 @@ function flatPositions({ points }) {
   return Float64Array.from(points.flatMap(([x, y]) => [x - middle[0], y - middle[1], 0]));
 }
 
+// A state in the address, if the page has it.
+function stateIn(found, folded) {
+  return folded && found?.sheets[folded.sheet]?.stacks[folded.state] ? folded : null;
+}
+
 // Shows the document `page`. `server` follows ways and finds branches on demand; null without one.
 // `signal` ends what listens beyond the parts of the page, `begin` is the state to begin with, and
 // `changed` is called when the state changes. `moves` undoes moves of vertices; null without them.
@@ -51,7 +57,7 @@ export function createView(page, { server, signal, begin = {}, moves = null, cha
   const flat = flatPositions(sheet);
   const store = createStore({
     ways: page.ways, way: page.drawn?.way ?? 0, mirrored: page.drawn?.mirrored ?? false, time: 0, playing: false,
-    speed: 1, asks: new Map(), search: "", beside: null, ...begin,
+    speed: 1, asks: new Map(), search: "", beside: null, ...begin, folded: stateIn(page.folded, begin.folded),
   });
   const positions = new Float64Array(flat.length), others = new Float64Array(flat.length);
   const radius = flat.reduce((most, _, i) => (i % 3 ? most : Math.max(most, Math.hypot(flat[i], flat[i + 1]))), 1e-12);
@@ -67,9 +73,16 @@ export function createView(page, { server, signal, begin = {}, moves = null, cha
     return decoded.get(way);
   }
 
+  // The order of the layers at the end of a way, if it is proved: they lie apart in the last frame.
+  function layersOf(way) {
+    const { layered } = folded.endOf(store.get().ways.indexOf(way)) ?? {};
+    return layered?.length ? layered : null;
+  }
+
   function placeAt(way, mirrored, time, out) {
-    const frames = framesOf(way);
-    if (frames) positionsAt(frames, Math.min(time, 1 - APART), mirrored, out);
+    const frames = framesOf(way), layered = frames && layersOf(way);
+    if (layered) frames.values.set(layered, frames.values.length - frames.size);
+    if (frames) positionsAt(frames, layered ? time : Math.min(time, 1 - APART), mirrored, out);
     else out.set(flat);
     return frames;
   }
@@ -87,6 +100,8 @@ export function createView(page, { server, signal, begin = {}, moves = null, cha
   }
 
   function largest() {
+    const { ways, way, time } = store.get();
+    if (time === 1 && layersOf(ways[way])) return 180;
     return foldAngles(sheet, positions).reduce((most, angle) => Math.max(most, Math.abs(angle)), 0);
   }
 
@@ -99,14 +114,20 @@ export function createView(page, { server, signal, begin = {}, moves = null, cha
 
   function describe() {
     const { ways, way, mirrored } = store.get();
-    const shown = ways[way];
-    showFacts(page, shown);
-    transport.describe(shown?.motion);
-    family?.describe(shown, mirrored);
+    const shown = ways[way], moving = !store.get().folded;
+    showFacts(page, shown, folded.endOf(way));
+    transport.describe(moving ? shown?.motion : null, Boolean(shown && layersOf(shown)));
+    family?.describe(moving ? shown : null, mirrored);
+    byId("flat").hidden = !page.folded?.sheets.length;
+    byId("flat").setAttribute("aria-pressed", String(!moving));  // the sheet folded flat is shown instead
+    byId("stage").parentElement.hidden = !moving;
+    for (const id of ["beside", "home", "gif", "mp4"]) byId(id).classList.toggle("away", !moving);
+    byId("mirror").classList.toggle("away", !moving && !folded.ending());
+    pattern.letters(folded.letters());
     for (const id of ["mirror", "download", "beside"]) byId(id).disabled = !shown;
     byId("mirror").setAttribute("aria-pressed", String(mirrored));
     const waiting = server && shown && !shown.motion && !shown.why;
-    byId("empty").hidden = Boolean(shown?.motion);
+    byId("empty").hidden = Boolean(shown?.motion) || !moving;
     byId("empty").textContent = !shown ? nothingMoves() : waiting ? "Following the motion …" : sentence(`no motion is drawn: ${shown.why}`);
     if (waiting && !page.busy) follow(way);
   }
@@ -123,6 +144,14 @@ export function createView(page, { server, signal, begin = {}, moves = null, cha
     positions.set(chosen);
     scene?.show(positions);
     transport.angle(largest());
+  }
+
+  // Flat-folded states, and the ways that end in them, which the server has found.
+  function foldedFlat(found) {
+    page.folded = found.sheets ? found : { ...page.folded, ends: [...page.folded.ends, found] };
+    describe();
+    folded.refresh();
+    paintSheet();
   }
 
   // A motion that the server has found.
@@ -227,6 +256,7 @@ export function createView(page, { server, signal, begin = {}, moves = null, cha
     poppable: (at) => server !== null || popped(store.get().ways, store.get().way, store.get().mirrored, at) !== null,
   });
   const list = createList(page, store, { onAsk: ask });
+  const folded = createFolded(byId("folded"), page, sheet, store);
   const family = createFamily(byId("family"), sheet, store, { positions: () => positions, pose, say });
   try {
     scene = createScene(byId("canvas"), sheet, flat, radius, signal);
@@ -248,15 +278,17 @@ export function createView(page, { server, signal, begin = {}, moves = null, cha
   }
 
   store.on(["way", "mirrored", "time", "ways"], paintSheet);
-  store.on(["way", "mirrored", "ways"], describe);
+  store.on(["way", "mirrored", "ways", "folded"], describe);
   store.on(["beside"], besides);
-  if (changed) store.on(["way", "mirrored", "time", "asks", "search", "playing"], changed);
+  if (changed) store.on(["way", "mirrored", "folded", "time", "asks", "search", "playing"], changed);
   describe();
+  folded.refresh();
   scene?.fit(shapesOf(store.get().ways[store.get().way]));
   if (begin.time === undefined && framesOf(store.get().ways[store.get().way])) store.set({ time: OPENING });
   paintSheet();
 
   byId("mirror").addEventListener("click", () => store.set({ mirrored: !store.get().mirrored }));
+  byId("flat").addEventListener("click", () => (store.get().folded ? folded.close() : folded.open()));
   byId("home").addEventListener("click", () => (scene?.home(), second?.home()));
   byId("beside").addEventListener("click", () => {
     const { beside, way, mirrored } = store.get();
@@ -307,10 +339,12 @@ export function createView(page, { server, signal, begin = {}, moves = null, cha
     const { time, mirrored, ways } = store.get();
     if (typing || (pressing && (event.key === " " || event.key === "Enter"))) return;
     if (event.key === " ") transport.toggle();
+    else if (event.key === "f" && page.folded?.sheets.length) byId("flat").click();
     else if (event.key === "m" && ways.length) store.set({ mirrored: !mirrored });
     else if (event.key === "0") scene?.home();
     else if (sliding) return;
     else if (event.key === "ArrowDown" || event.key === "ArrowUp") list.step(event.key === "ArrowDown" ? 1 : -1);
+    else if (store.get().folded && (event.key === "ArrowRight" || event.key === "ArrowLeft")) folded.step(event.key === "ArrowRight" ? 1 : -1);
     else if (event.key === "ArrowRight" || event.key === "ArrowLeft") store.set({ playing: false, time: Math.min(Math.max(time + (event.key === "ArrowRight" ? 0.02 : -0.02), 0), 1) });
     else return;
     event.preventDefault();
@@ -340,7 +374,7 @@ export function createView(page, { server, signal, begin = {}, moves = null, cha
   }
 
   return {
-    page, sheet, store, pattern, arrived, picture, repaint: paintSheet, describe,
+    page, sheet, store, pattern, arrived, foldedFlat, picture, folded, repaint: paintSheet, describe,
     drawable: () => scene !== null,
     positions: () => Array.from(positions), angles: () => foldAngles(sheet, positions), drawn: () => scene?.drawn() ?? 0,
     foldFile: () => foldFile(page, sheet, store.get().ways[store.get().way], store.get().mirrored),

@@ -28,10 +28,10 @@ from exactfold.pattern.drawing.formats.fold_json import (
 from exactfold.pattern.drawing.formats.fold_surds import surd_points
 from exactfold.pattern.drawing.formats.unfolding import unfolded
 
-_HINT: Final = (
-    "give its crease pattern: the unfolded sheet (in Origami Simulator: save at Fold Percent 0), "
-    "or a frame with flat coordinates"
+UNFOLD: Final = (
+    "give its crease pattern: the unfolded sheet (in Origami Simulator: save at Fold Percent 0)"
 )
+_HINT: Final = f"{UNFOLD}, or a frame with flat coordinates"
 _UNFOLDED: Final = "vertices_flatUnfoldCoords"
 """The key in which `fold-convert --flat-fold` keeps the coordinates of the crease pattern."""
 _FLAT: Final = Fraction(1, 10**9)
@@ -187,11 +187,12 @@ def _drawing(frame: Mapping[str, Any], source: str, *, unfold: bool = False) -> 
 
 
 def flattened(
-    places: Sequence[tuple[Fraction, Fraction, Fraction]],
+    places: Sequence[tuple[Fraction, Fraction, Fraction]], hint: str = _HINT
 ) -> tuple[list[tuple[Fraction, Fraction]], str, list[str]]:
     """The points in their plane z, y or x = constant, with a text and remarks.
 
     The text names the plane if it is not z = constant. A remark says how far the points leave it.
+    Raises `FoldedStateError`, whose message ends with the hint, for points in no such plane.
     """
     bounds = [(min(column), max(column)) for column in zip(*places, strict=True)]
     size = max(high - low for low, high in bounds)
@@ -212,7 +213,7 @@ def flattened(
     low, high = (places.index(find(places, key=lambda p: p[2])) for find in (min, max))
     raise FoldedStateError(
         f"this is a folded state: the vertices fill a box of {extent} (vertex {low} has the least "
-        f"z, vertex {high} the largest); {_HINT}"
+        f"z, vertex {high} the largest); {hint}"
     )
 
 
@@ -220,8 +221,9 @@ def check_unfolded(
     frame: Mapping[str, Any],
     points: Sequence[tuple[Fraction, Fraction]],
     faces: Sequence[tuple[int, ...]],
+    hint: str = _HINT,
 ) -> None:
-    """Raises `FoldedStateError` for a flat folded state.
+    """Raises `FoldedStateError`, whose message ends with the hint, for a flat folded state.
 
     There, faces lie on the same side of an edge that they share, or a frame that calls itself
     `foldedForm` has no faces, or has faces of both orientations.
@@ -233,14 +235,14 @@ def check_unfolded(
         involved = {face for pair in over for face in pair[:2]}
         raise FoldedStateError(
             f"this is a folded state: {counted(len(involved), 'face')} of {len(faces)} overlap, "
-            f"such as faces {a} and {b}, which lie on the same side of edge {i}-{j}; {_HINT}"
+            f"such as faces {a} and {b}, which lie on the same side of edge {i}-{j}; {hint}"
         )
     if "foldedForm" not in list_at(frame, "frame_classes") or _UNFOLDED in frame:
         return
     if not areas or min(areas) < 0 < max(areas):
         raise FoldedStateError(
             "this is a folded state (the frame is a `foldedForm`, and "
-            f"{'some of its faces lie upside down' if areas else 'it has no faces'}); {_HINT}"
+            f"{'some of its faces lie upside down' if areas else 'it has no faces'}); {hint}"
         )
 
 

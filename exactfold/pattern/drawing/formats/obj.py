@@ -11,7 +11,7 @@ from exactfold._support.plurals import counted
 from exactfold.errors import MalformedDrawingError, NumberError
 from exactfold.exact.numbers import parse_rational, parse_whole, shown
 from exactfold.pattern.drawing.drawing import Drawing
-from exactfold.pattern.drawing.formats.fold_drawing import check_unfolded, flattened
+from exactfold.pattern.drawing.formats.fold_drawing import UNFOLD, check_unfolded, flattened
 from exactfold.pattern.drawing.segments import Segment, drawing_of
 
 _COLOURS: Final = {"1": "B", "2": "M", "3": "V"}
@@ -62,8 +62,8 @@ def read_obj(text: str) -> Drawing:
             raise MalformedDrawingError(f"row {number}: {error}") from None
     if not places:
         raise MalformedDrawingError("the OBJ file has no vertices")
-    points, plane, remarks = flattened(places)
-    check_unfolded({}, points, faces)
+    points, plane, remarks = flattened(places, UNFOLD)
+    check_unfolded({}, points, faces, UNFOLD)
     sides: Counter[tuple[int, int]] = Counter()
     for face in faces:
         for i, j in zip(face, [*face[1:], *face[:1]], strict=True):

@@ -6,6 +6,7 @@ import io
 import re
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from decimal import Decimal, Inexact, localcontext
 from fractions import Fraction
 from typing import Any, Final
@@ -124,7 +125,7 @@ def read_svg(text: str, reading: SvgReading | None = None) -> Drawing:
     angled = sum(stroke.faint and letter in "MV" for stroke, letter in drawn)
     if angled:
         remarks.append(f"did not read the opacity of {counted(angled, 'element')} as fold angles")
-    return drawing_of(segments, "SVG", remarks)
+    return replace(drawing_of(segments, "SVG", remarks), coloured=True)
 
 
 def _curves(strokes: Sequence[Stroke], chords: int | None) -> list[str]:

@@ -79,6 +79,7 @@ def test_modes_that_are_not_linear_close_one_by_one() -> None:
     stopped(closing(given("bent"), _EARLY >> 2), "the folds are not proved to close together")
 
 
+@pytest.mark.slow
 def test_flaps_that_pass_through_each_other() -> None:
     """Flaps of length 2 over a panel of length 3 overlap at the end; they cross on the way."""
     document = closing(json.loads(json.dumps(prove_panels(flaps(3)).certificate())), _EARLY)

@@ -8,6 +8,7 @@ from functools import cache
 import pytest
 from forge import Document, beyond, refused, stopped, verified, with_one_key_more
 from forge_panel_motions import strip
+from sampling import slow_after
 
 import exactfold
 from exactfold import checker
@@ -60,7 +61,7 @@ def bits_of(document: Document, count: int) -> list[bool]:
     return [bit == "1" for digit in order for bit in f"{int(digit, 16):04b}"][:count]
 
 
-@pytest.mark.parametrize(("name", "way"), WAYS)
+@pytest.mark.parametrize(("name", "way"), slow_after(1, WAYS))
 def test_the_order_has_no_crossing_and_the_letters_of_the_motion(name: str, way: int) -> None:
     """Two ways: heights to first order, and all places where layers could cross."""
     document = whole(name, way)

@@ -55,6 +55,15 @@ def test_a_sum_of_kawasaki(height, defects):
     assert [relation.defect for relation in near] == pytest.approx(defects, rel=1e-6)
 
 
+@pytest.mark.parametrize(("off", "number"), [(0, 0), ("1e-11", 1)])
+def test_a_sum_of_kawasaki_at_six_folds(off, number):
+    """No two folds are opposite, but every other sector adds up to 180 degrees."""
+    ends = [(-3, -1), (-1, -2), (2, -3 + Fraction(off)), (1, 3), (-3, 2), (-2, 1)]
+    edges = [(k, 6) for k in range(6)] + [(k, k + 1) for k in range(5)] + [(0, 5)]
+    near = left_relations(PanelPattern([*ends, (0, 0)], edges))
+    assert [relation.name for relation in near] == ["kawasaki@6"] * number
+
+
 def test_few_random_sheets_have_near_relations():
     """At most 0.05 are expected for each sheet, and this seed has fewer."""
     rng, near = random.Random(1), 0
