@@ -17,6 +17,7 @@ from .branches.branch import BRANCH
 from .branches.compact import COMPACT
 from .branches.connected_components import PIECES
 from .branches.listing import LISTING
+from .branches.torques import BRANCH_TORQUES
 from .core.kinds import DocumentKind, LineKind, Verified
 from .core.limits import MOST_BYTES, MOST_LINE
 from .core.lines import lines, read_object
@@ -58,6 +59,7 @@ DOCUMENTS: tuple[DocumentKind[Any], ...] = (
     PANEL_ASSIGNMENTS,
     PANEL_FREEDOM,
     PANEL_TORQUES,
+    BRANCH_TORQUES,
     MOTION,
     PANEL_MOTION,
     MEANT,
