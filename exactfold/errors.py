@@ -225,6 +225,13 @@ class DisconnectedError(NotADiskError):
     """There are two or more separate sheets."""
 
 
+class NotPeriodicError(PatternError):
+    """The faces of a cell and their translates do not cover the plane, each point once.
+
+    The lattice vectors are parallel, an edge does not have one face on each side, or faces overlap.
+    """
+
+
 class NotApplicableError(ExactfoldError):
     """A construction or method does not apply to this pattern; the message says why."""
 

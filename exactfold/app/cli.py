@@ -323,6 +323,10 @@ def random_(
         number("Seed; the same seed gives the same pattern.", "S", least=None),
     ],
     denominator: Annotated[int, number("Coordinates are multiples of 1/D.", "D", least=2)] = 1024,
+    torus: Annotated[
+        bool,
+        flag("--torus", text="Sample the cell of a periodic sheet, with N vertices, instead."),
+    ] = False,
     redraw: Annotated[
         bool,
         flag(
@@ -336,9 +340,12 @@ def random_(
     ] = None,
 ) -> None:
     """Sample the paper's random squares: a Delaunay triangulation of random points."""
-    from exactfold.app.commands.examples import write_random_square
+    from exactfold.app.commands.examples import write_random_cell, write_random_square
 
-    write_random_square(interior, seed, denominator, redraw, output)
+    if torus:
+        write_random_cell(interior, seed, denominator, redraw, output)
+    else:
+        write_random_square(interior, seed, denominator, redraw, output)
 
 
 @app.command(cls=Command, rich_help_panel="Ask")

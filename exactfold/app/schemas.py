@@ -45,6 +45,10 @@ DOCUMENTS: Final = {
         "branches.values.count_document:StreamedUndecided",
     ),
     "shapes": ("exactfold count --curvature --json", "branches.counting.shapes:ShapesDocument"),
+    "periodic": (
+        "exactfold count CELL --direction X,Y --json",
+        "branches.periodic.result:PeriodicDocument",
+    ),
     "branch": (
         "exactfold branch --json, and each line of it",
         "branches.values.branch:BranchDocument",

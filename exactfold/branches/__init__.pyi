@@ -34,6 +34,12 @@ from exactfold.branches.counting.stream import StreamedCount as StreamedCount
 from exactfold.branches.counting.stream import stream_branches as stream_branches
 from exactfold.branches.counting.ways import count_opened as count_opened
 from exactfold.branches.counting.ways import count_ways as count_ways
+from exactfold.branches.periodic.certificate import periodic_certificate as periodic_certificate
+from exactfold.branches.periodic.counting import count_periodic as count_periodic
+from exactfold.branches.periodic.result import AlgebraicLine as AlgebraicLine
+from exactfold.branches.periodic.result import HeightSpace as HeightSpace
+from exactfold.branches.periodic.result import PeriodicBranch as PeriodicBranch
+from exactfold.branches.periodic.result import PeriodicCount as PeriodicCount
 from exactfold.branches.values.angles import FoldAngles as FoldAngles
 from exactfold.branches.values.angles import fold_angles as fold_angles
 from exactfold.branches.values.branch import Branch as Branch

@@ -14,12 +14,13 @@ if a worker process died, memory is short, or this program has a defect. After 7
 of the file.
 
 A kind of certificate is one `Kind`, which stands beside the theory that checks it. `command` has
-the table of the eleven kinds:
+the table of the kinds:
 
   branches   all branches in one object (`listing`, docs/certificate.md); all branches line by line
              (`compact`, docs/certificate.md); one branch (`branch`, docs/branch.md), which
              is checked by formulas of its own; the pieces of a sheet with more than four corners
-             (`connected_components`, docs/any_border.md);
+             (`connected_components`, docs/any_border.md); all branches and pleats of a periodic
+             sheet (`periodic`, docs/tessellations.md);
   panels     all motions of a sheet of rigid panels (docs/certificate.md);
   letters    all rays with given mountains and valleys (`letters`), and whether rigid panels start
              to fold with given letters (`panels`), both in docs/assignment.md; all assignments of

@@ -17,6 +17,7 @@ from .branches.branch import BRANCH
 from .branches.compact import COMPACT
 from .branches.connected_components import PIECES
 from .branches.listing import LISTING
+from .branches.periodic import PERIODIC
 from .branches.torques import BRANCH_TORQUES
 from .core.kinds import DocumentKind, LineKind, Verified
 from .core.limits import MOST_BYTES, MOST_LINE
@@ -52,6 +53,7 @@ DOCUMENTS: tuple[DocumentKind[Any], ...] = (
     LISTING,
     BRANCH,
     PIECES,
+    PERIODIC,
     PANELS,
     LETTERS,
     ASSIGNMENTS,

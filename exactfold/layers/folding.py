@@ -73,7 +73,7 @@ def fold_flat(
     >>> fold_flat("miura")
     <FlatStates: proved, 1 state, <PanelPattern: 9 interior vertices, 24 folds, 16 panels>>
     >>> fold_flat("map-fold", "any").count
-    56
+    320
     """
     start = time.perf_counter()
     clock = Clock(limit)
@@ -194,7 +194,10 @@ def _depends(near: Near, count: int | None) -> str:
     states = "it is not known how many states there are"
     if near.states is not None:
         states = f"there {agreeing(near.states, 'is')} {counted(near.states, 'state')}"
-    return f"{near.text}; if all that nearly meets is taken to meet, {states}"
+    return (
+        f"{near.text}; if all that nearly meets is taken to meet, {states}: --snap exact takes the "
+        "digits as they are"
+    )
 
 
 def _moved(
@@ -271,7 +274,10 @@ def _letters(
 def _components(orders: Orders) -> tuple[Component, ...]:
     return tuple(
         Component(
-            tuple(one.pairs.tolist()), one.count, tuple(tuple(row) for row in one.states.tolist())
+            tuple(one.pairs.tolist()),
+            one.count,
+            tuple(tuple(row) for row in one.states.tolist()),
+            one.least,
         )
         for one in orders.components
     )

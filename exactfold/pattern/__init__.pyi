@@ -2,6 +2,7 @@ from exactfold.pattern import degenerate as degenerate
 from exactfold.pattern import families as families
 from exactfold.pattern.crease_pattern import CreasePattern as CreasePattern
 from exactfold.pattern.data import BY_OTHERS as BY_OTHERS
+from exactfold.pattern.data import CELLS as CELLS
 from exactfold.pattern.data import DRAWINGS as DRAWINGS
 from exactfold.pattern.data import EXAMPLES as EXAMPLES
 from exactfold.pattern.data import SHEETS as SHEETS
@@ -29,6 +30,10 @@ from exactfold.pattern.opening import Opened as Opened
 from exactfold.pattern.opening import from_drawing as from_drawing
 from exactfold.pattern.opening import open_pattern as open_pattern
 from exactfold.pattern.panel_pattern import PanelPattern as PanelPattern
+from exactfold.pattern.periodic.cell_files import cell_document as cell_document
+from exactfold.pattern.periodic.cell_files import read_cell as read_cell
+from exactfold.pattern.periodic.periodic_pattern import PeriodicPattern as PeriodicPattern
+from exactfold.pattern.periodic.random_cells import random_cell as random_cell
 from exactfold.pattern.triangulating.delaunay_sheets import delaunay as delaunay
 from exactfold.pattern.triangulating.panels import triangulating_edges as triangulating_edges
 from exactfold.pattern.triangulating.random_squares import RandomSquare as RandomSquare

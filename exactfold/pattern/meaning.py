@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
@@ -12,6 +12,7 @@ from exactfold.errors import FoldError, PatternError, TooLargeError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.drawing.drawing import Drawing, Line
 from exactfold.pattern.drawing.meant.left import left_relations, off_by
+from exactfold.pattern.drawing.meant.levels import loop_levels
 from exactfold.pattern.opened import Opened, panels, triangulated
 
 if TYPE_CHECKING:  # sheets with exact digits do without them
@@ -153,16 +154,22 @@ def recognised(found: Opened) -> Opened | None:
     )
 
 
-def proposals(found: Opened, seconds: float) -> list[tuple[float, Opened]]:
+def proposals(
+    found: Opened, seconds: float, loops: Sequence[float] = ()
+) -> list[tuple[float, Opened]]:
     """Exact sheets near a drawing without a clear noise level, each with a level that gives it.
 
     The levels are those at the widest gaps between the relations that the drawing misses, the
-    widest first. A sheet that still nearly has relations is left out, and so is one that is far
-    from the drawing for what this misses. After `seconds` no other level is tried. The list is
-    empty if the sheet that was meant is known, or if something was said about it.
+    widest first. If it misses none narrowly, but loops of folds nearly close, off by `loops`, they
+    are parts of the largest of these. A sheet that still nearly has relations is left out, and so
+    is one that is far from the drawing for what this misses, or has the relations of one before.
+    After `seconds` no other level is tried. The list is empty if the sheet that was meant is known,
+    or if something was said about it.
     """
     reading = found.reading
-    if not found.doubt or found.again is None or reading.overrules or reading.snap == "exact":
+    if not (found.doubt or loops) or reading.overrules or reading.snap == "exact":
+        return []
+    if found.again is None or (found.meant is not None and found.meant.inferred):
         return []
     if isinstance(reading.snap, int) or len(found.sheet.edges) > _MOST_EDGES:
         return []
@@ -172,13 +179,19 @@ def proposals(found: Opened, seconds: float) -> list[tuple[float, Opened]]:
     except (FoldError, PatternError):
         return []
     made: list[tuple[float, Opened]] = []
-    for level in _levels(panels(raw.sheet) if isinstance(raw.sheet, CreasePattern) else raw.sheet):
+    drawn = panels(raw.sheet) if isinstance(raw.sheet, CreasePattern) else raw.sheet
+    for level in _levels(drawn) if found.doubt else loop_levels(max(loops)):
         if time.monotonic() > end:
             break
         opened = found.again(replace(reading, noise=level))
         meant = opened.meant
         if meant is None or not meant.inferred or opened.doubt:
             continue
+        names = {relation.name for relation in meant.relations}
+        if any(
+            other.meant and names == {r.name for r in other.meant.relations} for _, other in made
+        ):
+            continue  # the same sheet but for free angles
         missed = max(relation.defect for relation in meant.relations)
         if opened.largest_move <= _TIMES_MISSED * missed:
             made.append((level, opened))

@@ -16,6 +16,7 @@ from exactfold.pattern.drawing.bounds import check_common_denominator
 from exactfold.pattern.drawing.meant.left import left_relations
 from exactfold.pattern.drawing.meant.values import Relation
 from exactfold.pattern.reading import PLAIN, Reading
+from exactfold.pattern.remembered import REMEMBERED
 
 # Drawings need libraries that take long to load; triangulated sheets are read without them.
 if TYPE_CHECKING:
@@ -64,6 +65,10 @@ class Opened(Picture):
     meant: Meant | None = None
     reading: Reading = field(default=PLAIN, repr=False, compare=False)
     again: Callable[[Reading], Opened] | None = field(default=None, repr=False, compare=False)
+
+    def __getstate__(self) -> dict[str, object]:
+        """All but the values that are `remembered`."""
+        return {name: value for name, value in vars(self).items() if name != REMEMBERED}
 
     def __repr__(self) -> str:
         return f"<Opened: {self.sheet!r}, in {self.field_name}>"

@@ -26,13 +26,14 @@ from exactfold.errors import (
 )
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.drawing.bounds import read_bytes
-from exactfold.pattern.drawing.drawing import Drawing, Snap
+from exactfold.pattern.drawing.drawing import Drawing, Loud, Snap
 from exactfold.pattern.fold import FoldFile, parse_bytes
 from exactfold.pattern.meaning import meaning, recognised
 from exactfold.pattern.opened import Opened as Opened
 from exactfold.pattern.opened import ReadDocument as ReadDocument
 from exactfold.pattern.opened import panels as panels
 from exactfold.pattern.opened import triangulated as triangulated
+from exactfold.pattern.periodic.formats import is_cell
 from exactfold.pattern.reading import PLAIN, Reading
 
 # Drawings need libraries that take long to load; triangulated sheets are read without them.
@@ -43,8 +44,10 @@ if TYPE_CHECKING:
 _FINAL = (NumberError, StaleExactCoordinatesError)
 _OF_EDGES = (MalformedPatternError, DisconnectedError)
 """For these errors of the strict reader, the error of the reader of drawings is raised instead."""
+_HEAD = 1 << 20
+"""A cell says what it is within so many bytes."""
 _BOX = "`--box`, which takes the rectangle round the drawing for the edge of the paper, reads it"
-_IN_A_BOX = (
+_IN_A_BOX = Loud(
     "the drawing has no edge of the paper, so the rectangle round it is taken, as with --box; if "
     "the paper is another, draw its edge as a closed line"
 )
@@ -81,8 +84,22 @@ def open_pattern(
         raise
 
 
+def is_cell_file(path: str | PathLike[str]) -> bool:
+    """Whether a file is the cell of a periodic sheet; False for one that cannot be read."""
+    try:
+        with open(path, "rb") as stream:
+            return is_cell(stream.read(_HEAD))
+    except (OSError, ValueError):
+        return False
+
+
 def opened(raw: bytes, name: str, reading: Reading = PLAIN) -> Opened:
     """Reads the bytes of a file like `open_pattern`; messages do not begin with its name."""
+    if is_cell(raw):
+        raise FoldError(
+            "this is the cell of a periodic sheet, which only `exactfold count --direction X,Y` "
+            "(`count` with `direction` in Python) takes"
+        )
     strict: InputError | None = None
     snap = reading.snap
     if snap != "auto" and not reading.repairs and reading.number in (None, 1):

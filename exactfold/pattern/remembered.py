@@ -1,21 +1,23 @@
-"""Keeps values that were computed from a pattern in the pattern itself."""
+"""Keeps values that were computed from a pattern, or from a sheet that was read, in it."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import wraps
-from typing import Concatenate, ParamSpec, TypeVar
+from typing import Concatenate, Final, ParamSpec, TypeVar
 
-from exactfold.pattern.crease_pattern import CreasePattern
+REMEMBERED: Final = "_remembered"
+"""The attribute that holds these values."""
 
+S = TypeVar("S", bound=object)
 P = ParamSpec("P")
 R = TypeVar("R")
 
 
 def remembered(
-    function: Callable[Concatenate[CreasePattern, P], R],
-) -> Callable[Concatenate[CreasePattern, P], R]:
-    """A function of a pattern that computes each value once for each pattern object.
+    function: Callable[Concatenate[S, P], R],
+) -> Callable[Concatenate[S, P], R]:
+    """A function of a pattern, or of another fixed object, that computes each value once for it.
 
     Solvers, certifiers and signs need the same forms. A pattern does not change, so the values are
     stored in the pattern object like its cached properties, and disappear with it. They are not
@@ -29,8 +31,8 @@ def remembered(
     """
 
     @wraps(function)
-    def wrapped(pattern: CreasePattern, /, *args: P.args, **kwargs: P.kwargs) -> R:
-        known = vars(pattern).setdefault("_remembered", {})
+    def wrapped(pattern: S, /, *args: P.args, **kwargs: P.kwargs) -> R:
+        known = vars(pattern).setdefault(REMEMBERED, {})
         key = (function, args, tuple(kwargs.items()))
         if key not in known:
             known[key] = function(pattern, *args, **kwargs)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
+from typing import Any
 
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
-from exactfold.pattern.validate import orientation
+from exactfold.pattern.validate import AnyPoint, orientation
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.timelike import round_cone
 
@@ -30,13 +32,23 @@ def fold_functional(pattern: CreasePattern, fold: Edge) -> dict[int, int]:
     left, right = pattern.opposite(fold)
     points, _ = pattern.integer_vertices
     corners = (i, j, left, right)
+    weights = bend_weights([points[v] for v in corners])
+    return dict(zip(corners, map(int, weights), strict=True))
 
-    def area(a: int, b: int, c: int) -> int:
-        return int(orientation(points[a], points[b], points[c]))
 
+def bend_weights(points: Sequence[AnyPoint]) -> tuple[Any, Any, Any, Any]:
+    """The bend across a fold ij as coefficients of the heights at i, j, left and right.
+
+    `points` are these four points. The two faces are counter-clockwise.
+    """
+    i, j, left, right = points
     # Cramer: sum_k (-1)^k det(the other three) h_k vanishes on affine functions.
-    weights = (-area(j, left, right), area(i, left, right), -area(i, j, right), area(i, j, left))
-    return dict(zip(corners, weights, strict=True))
+    return (
+        -orientation(j, left, right),
+        orientation(i, left, right),
+        -orientation(i, j, right),
+        orientation(i, j, left),
+    )
 
 
 def saddle_functional(pattern: CreasePattern) -> dict[int, Fraction]:

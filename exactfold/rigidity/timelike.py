@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from math import isqrt
 
@@ -31,10 +32,23 @@ def round_cone(pattern: CreasePattern, vertex: int, bits: int = 16) -> dict[int,
 def _round_cone(pattern: CreasePattern, vertex: int, bits: int) -> dict[int, Fraction]:
     form = curvature_form(pattern, vertex)
     ring, d, unit = integer_spokes(pattern, vertex)
+    squares = [Fraction(x * x + y * y, unit * unit) for x, y in d]
+
+    def cone(slopes: Sequence[Fraction]) -> dict[int, Fraction]:
+        return {vertex: Fraction(0), **dict(zip(ring, slopes, strict=True))}
+
+    return cone(round_slopes(squares, lambda slopes: form(cone(slopes)) > 0, bits))
+
+
+def round_slopes(
+    squares: Sequence[Fraction], is_timelike: Callable[[Sequence[Fraction]], bool], bits: int = 16
+) -> list[Fraction]:
+    """Rationals near -L_j for squared lengths L_j^2, close enough to pass the exact test.
+
+    The precision is doubled until they do. The round cone has a positive form, so it ends.
+    """
     while True:
-        cone = {vertex: Fraction(0)}
-        for j, (x, y) in zip(ring, d, strict=True):
-            cone[j] = -sqrt_approximation(Fraction(x * x + y * y, unit * unit), bits)
-        if form(cone) > 0:
-            return cone
+        slopes = [-sqrt_approximation(square, bits) for square in squares]
+        if is_timelike(slopes):
+            return slopes
         bits *= 2

@@ -23,7 +23,7 @@ from exactfold.motion.loops.rays import Ray
 from exactfold.motion.proving import MotionProof, prove
 from exactfold.motion.tubes.arclength import in_floats
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.solve.numeric.dense_newton import sign_vectors
+from exactfold.solve.numeric.nappe_newton import sign_vectors
 from exactfold.studies.fans import fan
 from exactfold.studies.running.squares import square_of, square_recipes
 from exactfold.studies.running.statistics import percent

@@ -10,7 +10,8 @@ from exactfold.branches.certificates.check import check_compact
 from exactfold.branches.counting.stream import stream_branches
 from exactfold.rigidity.equations.branch_system import chamber_chart
 from exactfold.solve.certify.float_krawczyk import FloatKrawczyk
-from exactfold.solve.numeric.dense_newton import NappeSystem, sign_vectors
+from exactfold.solve.numeric.dense_newton import NappeSystem
+from exactfold.solve.numeric.nappe_newton import sign_vectors
 
 SIZES = [4, 8]
 

@@ -57,6 +57,9 @@ BENT = {  # the path 0-4-2 is straight but for the last digits
     ],
     "faces_vertices": [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]],
 }
+CELL = exactfold.pattern.read_cell("yoshimura-cell")
+ROLLED = exactfold.branches.count_periodic(CELL, (1, 2))
+LINE = exactfold.branches.AlgebraicLine((-2, 0, 1), (Fraction(1), Fraction(2)), ((Fraction(0),),))
 OPENED = exactfold.pattern.open_pattern(exactfold.pattern.data.example_path("zigzags"))
 PIECES = exactfold.branches.find_connected_components(
     exactfold.CreasePattern(
@@ -144,6 +147,11 @@ VALUES = {
     **STUDIES,
     **LAYERS,
     "pattern": PATTERN,
+    "cell": CELL,
+    "periodic count": ROLLED,
+    "periodic branch": ROLLED[0],
+    "space of heights": ROLLED.pleats[0],
+    "algebraic line": LINE,
     "pattern with long coordinates": exactfold.CreasePattern(
         [(0, 0), (10**5000, 0), (0, "1/7"), (1, "1/50")], [(0, 1, 3), (1, 2, 3), (2, 0, 3)]
     ),

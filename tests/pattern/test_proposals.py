@@ -8,10 +8,11 @@ from pathlib import Path
 
 import pytest
 from jsonschema import Draft202012Validator
+from noise_put_back import SHEETS, noisy, turned
 from typer.testing import CliRunner
 
 import exactfold
-from exactfold._support.verdict import UNDECIDED
+from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.app.cli import app
 from exactfold.app.schemas import schema
 from exactfold.panels.result import Decomposition
@@ -115,3 +116,17 @@ def test_a_level_cuts_the_defects_at_a_gap(seed: int) -> None:
 def test_no_level_is_proposed_without_near_relations() -> None:
     assert proposed_levels([], 1e-2) == []
     assert proposed_levels([0.0, 1e-6, 2e-6], 1e-2) == []
+
+
+def test_a_loop_that_nearly_closes_gives_a_noise_level() -> None:
+    """Nothing else about this sheet nearly holds; its loops close because of lengths on a grid."""
+    result = exactfold.count(turned(noisy(SHEETS["tiling"], 1e-9)))
+    assert isinstance(result, Decomposition)
+    assert (result.status, result.known.rigid) == (UNDECIDED, PROVED)
+    proposal = result.proposal
+    assert proposal is not None
+    assert proposal.noise == pytest.approx(3e-9)
+    assert proposal.distance < 1e-8
+    assert isinstance(proposal.answer, Decomposition)
+    assert proposal.answer.true == {1: 2}
+    assert proposal.others == ()

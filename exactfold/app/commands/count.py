@@ -13,14 +13,15 @@ from exactfold.app import report
 from exactfold.app.commands.stream import Streaming, advice
 from exactfold.app.options.patterns import CountOptions
 from exactfold.app.shell.given import Given
-from exactfold.app.shell.patterns import read, read_any
+from exactfold.app.shell.patterns import located, read, read_any
 from exactfold.app.shell.shell import EXIT, STDIN, Bar, apart, name_of, say
 from exactfold.app.verbs.counting import counted_with_letters
 from exactfold.branches.values.result import BranchCount
 from exactfold.certificates.entries import write_certificate
 from exactfold.errors import NotApplicableError, SeveralSheetsError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.opening import Opened
+from exactfold.pattern.drawing.bounds import read_bytes
+from exactfold.pattern.opening import Opened, is_cell_file
 
 if TYPE_CHECKING:  # counting branches does not need it
     from exactfold.branches.counting.stream import StreamedCount
@@ -47,6 +48,8 @@ class Asked(CountOptions):
         """
         apart(self.certificate, self.pattern, self.stream)
         apart(self._components, self.pattern, self.stream)
+        if self.direction is not None or is_cell_file(located(self.pattern)):
+            return self._periodic()
         if self.given:
             return self._shapes()
         streamed = None if self.stream is None else self._streamed(self.stream)
@@ -141,6 +144,41 @@ class Asked(CountOptions):
             print(json.dumps(result.to_dict(name_of(self.pattern))))
         else:
             report.show(report.shapes_report(result, everything=self.everything))
+        return EXIT[result.status]
+
+    def _periodic(self) -> int:
+        """Count the branches of a periodic sheet for one direction."""
+        from exactfold.branches.periodic.certificate import periodic_certificate
+        from exactfold.branches.periodic.counting import count_periodic
+        from exactfold.pattern.periodic.cell_files import parse_cell_bytes
+
+        if self.direction is None:
+            raise UsageError(
+                f"{self.pattern} is the cell of a periodic sheet: give the direction in which it "
+                "rolls up, as in --direction 3,4"
+            )
+        for option, value in (
+            ("--stream", self.stream),
+            ("--method", None if self.method == "auto" else self.method),
+            ("--curvature", self.curvature),
+            ("--boundary-heights", self.boundary_heights),
+        ):
+            if value is not None:
+                raise UsageError(f"{option} does not go with --direction")
+        with Bar("reading") as bar:
+            cell = parse_cell_bytes(read_bytes(located(self.pattern)), name_of(self.pattern))
+            result = count_periodic(cell, self.direction, progress=bar)
+        written = None
+        if self.certificate is not None:
+            try:
+                write_certificate(periodic_certificate(result), self.certificate)
+                written = str(self.certificate)
+            except NotApplicableError as error:
+                say(f"no certificate was written: {error}")
+        if self.as_json:
+            print(json.dumps(result.to_dict(written, name_of(self.pattern))))
+        else:
+            report.show(report.periodic_report(result, written, everything=self.everything))
         return EXIT[result.status]
 
     def _streamed(self, file: Path) -> StreamedCount:

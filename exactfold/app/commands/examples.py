@@ -8,10 +8,14 @@ from pathlib import Path
 from typing import Literal, TypedDict
 
 from exactfold._support.documents import Several
+from exactfold._support.plurals import counted
 from exactfold.app import report
 from exactfold.app.shell.shell import Bar, sheet_written, wrote
+from exactfold.errors import UsageError
 from exactfold.pattern.data import example_path
 from exactfold.pattern.data import examples as described
+from exactfold.pattern.periodic.cell_files import cell_text
+from exactfold.pattern.periodic.random_cells import random_cell
 from exactfold.pattern.triangulating.random_squares import sample_random_square
 from exactfold.pattern.writing.fold_writing import checked_target, fold_text, write_text
 
@@ -64,3 +68,21 @@ def write_random_square(
     else:
         write_text(output, text)
         wrote(output, sheet_written(sample.pattern))
+
+
+def write_random_cell(
+    vertices: int, seed: int, denominator: int, redraw: bool, output: Path | None
+) -> None:
+    """Write a random cell of a periodic sheet as plain JSON, or to standard output."""
+    if redraw:
+        raise UsageError("--redraw does not go with --torus: no cell is drawn anew for degree 3")
+    if output is not None and str(output) != "-":
+        checked_target(output, (".json",), "a cell")
+    title = f"random cell, {vertices} vertices, seed {seed}, denominator {denominator}"
+    cell = random_cell(vertices, seed, denominator)
+    text = cell_text(cell, title)
+    if output is None or str(output) == "-":
+        sys.stdout.write(text)
+    else:
+        write_text(output, text)
+        wrote(output, f"a periodic sheet: {counted(cell.V, 'vertex')} in the cell")

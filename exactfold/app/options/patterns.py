@@ -18,6 +18,7 @@ from exactfold.app.shell.parameters import (
     Patterns,
     Resume,
     complete_method,
+    direction_vector,
     distance,
     flag,
     method_name,
@@ -86,6 +87,15 @@ class CountOptions(ReadingOptions):
             "scheduler; `local` starts one here.",
         ),
     ] = None
+    direction: Annotated[
+        tuple[Fraction, Fraction] | None,
+        typer.Option(
+            parser=direction_vector,
+            metavar="X,Y",
+            help="For the cell of a periodic sheet: the vector at right angles to the axis of the "
+            "cylinder on which the sheet rolls up, as in 3,4.",
+        ),
+    ] = None
     curvature: Curvature = None
     boundary_heights: BoundaryHeights = None
     as_json: Json = False
@@ -112,11 +122,12 @@ class CountOptions(ReadingOptions):
             self.workers,
             self.curvature,
             self.boundary_heights,
+            self.direction,
         )
         if self.resume or any(value is not None for value in single):
             raise UsageError(
-                "--certificate, --stream, --resume, --workers, --curvature and --boundary-heights "
-                "go with one pattern, without --jsonl and without --sheet all"
+                "--certificate, --stream, --resume, --workers, --direction, --curvature and "
+                "--boundary-heights go with one pattern, without --jsonl and without --sheet all"
             )
 
 

@@ -154,6 +154,17 @@ def distance(text: object) -> Fraction:
     return value
 
 
+def direction_vector(text: object) -> tuple[Fraction, Fraction]:
+    """The two rational coordinates of a direction, such as 3,4 or 1/2,-1."""
+    try:
+        x, y = (parse_rational(part) for part in str(text).split(","))
+    except ValueError:  # also NumberError, which is one
+        raise typer.BadParameter(f"{str(text)!r} is not a direction such as 3,4") from None
+    if x == 0 == y:
+        raise typer.BadParameter("0,0 is no direction")
+    return x, y
+
+
 def noise_level(text: object) -> Fraction:
     """A noise level, which is positive; 0 is what --snap exact asks for."""
     try:

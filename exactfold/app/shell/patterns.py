@@ -12,7 +12,7 @@ from exactfold._support.verdict import UNDECIDED, Verdict
 from exactfold.app.shell.shell import STDIN, said, say, tell
 from exactfold.errors import UnreadableFileError
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.data import EXAMPLES, example_path
+from exactfold.pattern.data import CELLS, EXAMPLES, cell_path, example_path
 from exactfold.pattern.near_degeneracy import near_degenerate
 from exactfold.pattern.opening import Opened, open_pattern, triangles
 from exactfold.pattern.reading import PLAIN, Reading
@@ -37,9 +37,11 @@ def located(path: Path) -> Path:
     name = str(path)
     if name in EXAMPLES:
         return example_path(name)
+    if name in CELLS:
+        return cell_path(name)
     if path == STDIN or path.exists() or path.suffix or len(path.parts) != 1:
         return path  # reading raises an error that says what is wrong
-    near = get_close_matches(name.lower(), EXAMPLES, cutoff=_NEAR)
+    near = get_close_matches(name.lower(), (*EXAMPLES, *CELLS), cutoff=_NEAR)
     known = f"did you mean {either(near)}?" if near else f"shipped are {', '.join(EXAMPLES)}"
     raise UnreadableFileError(
         f"{name} is neither a file nor a shipped pattern: {known} (see `exactfold examples`)"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from os import PathLike
@@ -20,6 +20,7 @@ from exactfold.pattern.drawing.drawing import Drawing, Snap, Steps
 from exactfold.pattern.fold import FoldFile
 from exactfold.pattern.loading import PatternLike, open_sheet
 from exactfold.pattern.opening import Opened
+from exactfold.pattern.periodic.periodic_pattern import PeriodicPattern
 from exactfold.pattern.reading import Reading
 
 _PROPOSING: Final = 5.0
@@ -28,8 +29,10 @@ if TYPE_CHECKING:  # counting one sheet does not need them
     from typing import TypeAlias
 
     from exactfold.branches.counting.find import BoundaryHeights, Deficits, Signs
+    from exactfold.branches.periodic.result import PeriodicCount
     from exactfold.branches.values.branch import Branch
     from exactfold.branches.values.result import BranchCount
+    from exactfold.exact.numbers import RationalLike
     from exactfold.panels.result import Decomposition
     from exactfold.pattern.crease_pattern import Edge
 
@@ -114,6 +117,13 @@ def count(  # type: ignore[overload-overlap]  # text is one sheet, not a list of
 ) -> BranchCount | Decomposition: ...
 @overload
 def count(
+    sheet: PeriodicPattern | PatternLike,
+    *,
+    direction: Sequence[RationalLike],
+    progress: Progress | None = ...,
+) -> PeriodicCount: ...
+@overload
+def count(
     sheet: Iterable[PatternLike],
     *,
     method: str = ...,
@@ -125,8 +135,9 @@ def count(
     progress: Progress | None = ...,
 ) -> Many: ...
 def count(
-    sheet: PatternLike | Iterable[PatternLike],
+    sheet: PeriodicPattern | PatternLike | Iterable[PatternLike],
     *,
+    direction: Sequence[RationalLike] | None = None,
     method: str = "auto",
     seed: int = 0,
     snap: Snap | None = None,
@@ -134,7 +145,7 @@ def count(
     workers: int = 1,
     limit: float | None = LIMIT,
     progress: Progress | None = None,
-) -> BranchCount | Decomposition | Many:
+) -> BranchCount | Decomposition | PeriodicCount | Many:
     """Count the ways in which a sheet, or each of many sheets, starts to fold, with proof.
 
     The type of the result says what a way is. A `BranchCount` lists the branches of a triangulated
@@ -150,19 +161,34 @@ def count(
     in the order in which the counts are ready. `workers` processes share these sheets. If one sheet
     raises an error, the error is its result, and the others go on.
 
-    Raises `InputError` for anything that is not a sheet, `UsageError` for an unknown method or for
-    several workers for one sheet. UNDECIDED does not mean that there are no other ways.
+    A periodic sheet (`PeriodicPattern`, or anything that `read_cell` takes) is counted for one
+    `direction`, and the result is a `PeriodicCount`; of the other arguments only `progress` goes
+    with it.
+
+    Raises `InputError` for anything that is not a sheet, `UsageError` for an unknown method, for
+    several workers for one sheet, and for a periodic sheet without a direction. UNDECIDED does not
+    mean that there are no other ways.
 
     >>> import exactfold
     >>> exactfold.count("two-vertex")
     <BranchCount: proved, 4 branches, <CreasePattern: 2 interior and 4 boundary vertices>>
     >>> exactfold.count("zigzags")
     <Decomposition: proved, {1: 3, 2: 1}, <PanelPattern: 4 interior vertices, 12 folds, 9 panels>>
+    >>> exactfold.count("waterbomb-cell", direction=(3, 4)).with_multiplicity
+    4
     >>> for name, result in exactfold.count(["two-vertex", "flat-vertex"]):
     ...     print(name, len(result))
     two-vertex 4
     flat-vertex 3
     """
+    if direction is not None or isinstance(sheet, PeriodicPattern):
+        if direction is None:
+            raise UsageError("a periodic sheet is counted for one `direction`, such as (3, 4)")
+        if (method, seed, snap, number, workers, limit) != ("auto", 0, None, None, 1, LIMIT):
+            raise UsageError("only `progress` goes with `direction`")
+        from exactfold.branches.periodic.counting import count_periodic
+
+        return count_periodic(sheet, direction, progress=progress)
     if _is_one(sheet):
         if workers != 1:
             raise UsageError(
@@ -215,7 +241,7 @@ def counted_with_letters(
     from exactfold.design.panels.drawn import with_drawn
 
     known = with_drawn(result, opened, progress=progress, clock=clock.share(5 / 6))
-    if opened.doubt:
+    if result.doubt:
         known = _with_proposal(known, opened, clock)
     return replace(known, seconds=time.perf_counter() - start)
 
@@ -228,11 +254,14 @@ def _with_proposal(result: Decomposition, opened: Opened, clock: Clock) -> Decom
     from exactfold.panels.result import Proposal
     from exactfold.pattern.meaning import proposals
 
-    made = proposals(opened, _PROPOSING)
+    loops = [miss.off for miss in result.known.nearly_closing]
+    made = proposals(opened, _PROPOSING, loops)
     if not made or clock.passed:
         return result
     (noise, sheet), *rest = made
     answer = counted_with_letters(sheet, "auto", 0, clock.at_most(_PROPOSING))
+    if answer.doubt:
+        return result
     relations = () if sheet.meant is None else sheet.meant.relations
     missed = max((relation.defect for relation in relations), default=0.0)
     others = tuple(level for level, _ in rest)

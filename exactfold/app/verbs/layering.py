@@ -37,7 +37,7 @@ def flat(
 
     >>> import exactfold
     >>> exactfold.flat("map-fold").count, exactfold.flat("map-fold", "any").count
-    (1, 56)
+    (1, 320)
     >>> exactfold.flat("zigzags").status
     <Verdict.REFUTED: 'refuted'>
     """

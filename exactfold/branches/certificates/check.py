@@ -18,7 +18,7 @@ from exactfold.checker.core.reading import CertificateError, FormatError, plain,
 from exactfold.errors import CertificateFormatError, UnreadableFileError, WorkerDiedError
 from exactfold.rigidity.equations.quadratic import QuadraticSystem
 from exactfold.solve.certify.float_krawczyk import UNPROVED, FloatBoxes, FloatKrawczyk, FloatSigns
-from exactfold.solve.numeric.dense_newton import sign_vectors
+from exactfold.solve.numeric.nappe_newton import sign_vectors
 
 LEAST = 32
 """A worker process is worth starting if it gets at least this many blocks."""

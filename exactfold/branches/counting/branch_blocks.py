@@ -30,7 +30,8 @@ from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.rigidity.equations.problem import Problem
 from exactfold.solve.certify.box import IsolatingBox
 from exactfold.solve.certify.float_krawczyk import UNPROVED, FloatBoxes, FloatKrawczyk, FloatSigns
-from exactfold.solve.numeric.dense_newton import NappeSystem, SweptPoints, sign_vectors
+from exactfold.solve.numeric.dense_newton import NappeSystem, SweptPoints
+from exactfold.solve.numeric.nappe_newton import sign_vectors
 
 BLOCK = 1024
 """Sign vectors in a block. An interruption loses at most one block."""

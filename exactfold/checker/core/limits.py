@@ -62,6 +62,7 @@ MOST_ASSIGNMENTS = 1 << 18  # assignments of a part of a sheet of rigid panels
 LETTER_STEPS = 1 << 20  # letters of a vertex, or forcing sets, that are tried fold by fold
 ASSIGNED_VERTICES = 8  # vertices that can pop, of a sheet whose assignments are listed
 PIECE_VERTICES = 16  # vertices that can pop, of a sheet whose pieces are counted
+PERIODIC_VERTICES = 20  # vertices of a cell whose sign vectors are counted one by one
 PIECE_UNKNOWNS = 9  # unknowns of a system for solutions with flat vertices
 MOST_MONOMIALS = 500  # monomials in the proof that a system has no zero
 

@@ -10,7 +10,16 @@ from typing import Final
 
 from exactfold.errors import UsageError
 
-__all__ = ["BY_OTHERS", "DRAWINGS", "EXAMPLES", "SHEETS", "example_path", "examples"]
+__all__ = [
+    "BY_OTHERS",
+    "CELLS",
+    "DRAWINGS",
+    "EXAMPLES",
+    "SHEETS",
+    "cell_path",
+    "example_path",
+    "examples",
+]
 
 SHEETS: Final = (
     "two-vertex",
@@ -84,3 +93,26 @@ def _described(path: Path) -> str:
     if path.suffix == ".fold":
         return str(json.loads(text)["file_description"])
     return str(re.findall(r"<desc>(.*?)</desc>", text)[0])
+
+
+CELLS: Final = (
+    "waterbomb-cell",
+    "yoshimura-cell",
+    "kisrhombille-cell",
+    "miura-cell",
+    "herringbone-cell",
+    "resch-cell",
+    "square-twist-cell",
+)
+"""Cells of periodic sheets; `read_cell` accepts these names."""
+
+
+def cell_path(name: str) -> Path:
+    """The path of a shipped cell; raises `UsageError` for a name not in `CELLS`.
+
+    >>> cell_path("miura-cell").name
+    'miura-cell.json'
+    """
+    if name not in CELLS:
+        raise UsageError(f"there is no cell {name!r}; the cells are: {', '.join(CELLS)}")
+    return Path(__file__).parent / f"{name}.json"

@@ -32,18 +32,11 @@ from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.equations.branch_system import Chart
 from exactfold.rigidity.equations.gauge import Gauge
 from exactfold.rigidity.timelike import round_cone
-from exactfold.solve.numeric.linear_start import start_size
+from exactfold.solve.numeric.nappe_newton import NappeNewton, sign_vectors
 
 Row = tuple[Fraction, ...]
 
-_ITERATIONS = 100
-_HALVINGS = 40
-_DECREASE = 0.1
-_CONVERGED = 1e-13
-_NOISE, _RESIDUAL = 1e-14, 1e-15
 _FLAT = 1e-10
-_COLD = 64
-_CHUNK = 256
 
 
 @dataclass(frozen=True)
@@ -110,16 +103,6 @@ class Nappe:
         return matrix
 
 
-def sign_vectors(first: int, count: int, size: int) -> FloatArray:
-    """The sign vectors number `first`, ...: sign k is -1 if bit k of the number is set.
-
-    >>> sign_vectors(1, 2, 2).tolist()
-    [[-1.0, 1.0], [1.0, -1.0]]
-    """
-    bits = (np.arange(first, first + count)[:, None] >> np.arange(size)) & 1
-    return np.where(bits == 0, 1.0, -1.0)
-
-
 @dataclass(frozen=True)
 class NappeSystem:
     """The equations g = 0 of a pattern with four boundary vertices, for all sign vectors.
@@ -173,24 +156,24 @@ class NappeSystem:
         return tuple(nappes)
 
     @cached_property
+    def newton(self) -> NappeNewton:
+        """Newton's method on the equations g = 0."""
+        roots = [np.array(nappe.float_root) for nappe in self.nappes]
+        return NappeNewton(np.array([nappe.float_line for nappe in self.nappes]), tuple(roots))
+
+    @property
     def lines(self) -> FloatArray:
         """The functionals l_v on (x, 1), one row for each."""
-        return np.array([nappe.float_line for nappe in self.nappes])
+        return self.newton.lines
 
-    @cached_property
-    def _roots(self) -> list[FloatArray]:
-        """The matrix A_v for every v, with one row for each square."""
-        return [np.array(nappe.float_root) for nappe in self.nappes]
+    @property
+    def rest(self) -> FloatArray:
+        """The heights at which all l_v are 0, from which the linear start is made."""
+        return self.newton.rest
 
-    @cached_property
-    def _stacked(self) -> FloatArray:
-        """The matrices A_v below each other."""
-        return np.vstack(self._roots)
-
-    @cached_property
-    def _owners(self) -> FloatArray:
-        """One column for every v, which is 1 at the squares of v."""
-        return np.repeat(np.eye(len(self.nappes)), [len(a) for a in self._roots], axis=0)
+    def unknowns(self, e: FloatArray) -> tuple[FloatArray, BoolArray, int]:
+        """Like `ends`, but before scaling to the chart, and for signs of all unknowns."""
+        return self.newton.ends(e)
 
     def full_signs(self, signs: FloatArray) -> FloatArray:
         """The signs of all unknowns; a reflex corner pops up."""
@@ -216,28 +199,10 @@ class NappeSystem:
     def ends_of_block(self, first: int, count: int) -> SweptPoints:
         """The zeros for the sign vectors number `first` to `first + count - 1`, in fewer steps.
 
-        `count` is a power of two and divides `first`. The zeros of the first few sign vectors are
-        found from the linear start. Write x(r) for the zero of row r, and let `bit` be a power of
-        two above r. Row r + bit starts from x(r), moved as `bit` moved the zero of an earlier row:
-        from x(r) + x(q + bit) - x(q), where q is r without its top bit.
+        `count` is a power of two and divides `first`.
         """
         e = self.full_signs(sign_vectors(first, count, self.chart.system.size))
-        x, converged = np.empty_like(e), np.zeros(count, dtype=bool)
-        bit = min(_COLD, count)
-        x[:bit], converged[:bit], steps = self.unknowns(e[:bit])
-        while bit < count:
-            low = 0
-            while low < bit:
-                high = min(low + _CHUNK, max(2 * low, _COLD), bit)
-                start = x[low:high].copy()
-                if low:
-                    top = 1 << (low.bit_length() - 1)
-                    start += x[bit + low - top : bit + high - top] - x[low - top : high - top]
-                rows = slice(bit + low, bit + high)
-                x[rows], converged[rows], more = self._newton(start, e[rows])
-                steps, low = steps + more, high
-            bit *= 2
-        return self._ends(x, converged, steps)
+        return self._ends(*self.newton.swept(e))
 
     def _ends(self, x: FloatArray, converged: BoolArray, steps: int) -> SweptPoints:
         with np.errstate(all="ignore"):
@@ -247,77 +212,9 @@ class NappeSystem:
     def flat_at_end(self, signs: Sequence[int]) -> tuple[int, ...]:
         """The places in `signs` of the vertices whose stars look flat, in doubles, at the zero."""
         e = self.full_signs(np.array([signs], dtype=np.float64))
-        x, _, _ = self.unknowns(e)
-        small = self._values(x, e)[2][0] < _FLAT * (1.0 + np.abs(x).max())
+        x, _, _ = self.newton.ends(e)
+        small = self.newton.values(x, e)[2][0] < _FLAT * (1.0 + np.abs(x).max())
         return tuple(np.flatnonzero(small).tolist())
-
-    @cached_property
-    def rest(self) -> FloatArray:
-        """The heights at which all l_v are 0, from which the linear start is made."""
-        n = len(self.lines)
-        return np.asarray(np.linalg.solve(self.lines[:, :n], -self.lines[:, n]))
-
-    def unknowns(self, e: FloatArray) -> tuple[FloatArray, BoolArray, int]:
-        """Like `ends`, but before scaling to the chart, and for signs of all unknowns."""
-        n = e.shape[1]
-        lines = self.lines
-        right = e * start_size(self.rest) - lines[:, n]
-        start = np.linalg.solve(lines[:, :n], right.T).T
-        return self._newton(np.array(start, dtype=np.float64), e)
-
-    def _newton(self, x: FloatArray, e: FloatArray) -> tuple[FloatArray, BoolArray, int]:
-        """Damped Newton steps from given points, which are overwritten."""
-        converged, steps = np.zeros(len(x), dtype=bool), 0
-        live = np.arange(len(x))
-        with np.errstate(all="ignore"):
-            for _ in range(_ITERATIONS):
-                steps += live.size
-                x[live], done, stuck = self._step(x[live], e[live])
-                converged[live[done]] = True
-                live = live[~done & ~stuck]
-                if not live.size:
-                    break
-        return x, converged, steps
-
-    def _values(self, x: FloatArray, e: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """g, the products A h, and the norms |A_v h|."""
-        z = np.hstack([x, np.ones((len(x), 1))])
-        products = z @ self._stacked.T
-        norms = np.sqrt((products * products) @ self._owners)
-        return z @ self.lines.T - e * norms, products, norms
-
-    def _step(self, x: FloatArray, e: FloatArray) -> tuple[FloatArray, BoolArray, BoolArray]:
-        """One damped step of every row: the new points, which rows converged, which are stuck."""
-        n = x.shape[1]
-        g, products, norms = self._values(x, e)
-        weights = products * ((-e / np.maximum(norms, 1e-300)) @ self._owners.T)
-        jacobian = np.empty((n, len(x), n))  # vertex first, so that each vertex is written at once
-        column = 0
-        for v, root in enumerate(self._roots):
-            np.matmul(weights[:, column : column + len(root)], root[:, :n], out=jacobian[v])
-            jacobian[v] += self.lines[v, :n]
-            column += len(root)
-        change = solve_each(jacobian.transpose(1, 0, 2), g)
-        before = np.abs(g).max(axis=1)
-        length = np.ones(len(x))
-        moved = x - change
-        after = np.abs(self._values(moved, e)[0]).max(axis=1)
-        size = 1.0 + np.abs(x).max(axis=1)
-        noise = _NOISE * size
-        bad = np.flatnonzero(~(after <= (1 - _DECREASE) * before) & ~(after <= noise))
-        for _ in range(_HALVINGS):
-            if not bad.size:
-                break
-            length[bad] /= 2
-            moved[bad] = x[bad] - length[bad, None] * change[bad]
-            after[bad] = np.abs(self._values(moved[bad], e[bad])[0]).max(axis=1)
-            enough = after[bad] <= (1 - _DECREASE * length[bad]) * before[bad]
-            bad = bad[~enough & ~(after[bad] <= noise[bad])]
-        stuck = np.zeros(len(x), dtype=bool)
-        stuck[bad] = True
-        moved[bad] = x[bad]
-        small = np.abs(change).max(axis=1) <= _CONVERGED * size
-        return moved, (length == 1.0) & (small | (after <= _RESIDUAL * size)) & ~stuck, stuck
 
     def in_chart(self, x: FloatArray) -> FloatArray:
         """The points in the chart; with a reflex corner, heights are scaled to its functional."""
@@ -325,19 +222,6 @@ class NappeSystem:
             return x
         weights = np.array([float(self.chart.functional.get(v, 0)) for v in self.gauge.unknowns])
         return np.asarray((x / (x @ weights)[:, None])[:, :-1])
-
-
-def solve_each(matrices: FloatArray, right: FloatArray) -> FloatArray:
-    """The solutions of m systems of shape (m, n, n), (m, n); not finite for a singular system."""
-    try:
-        return np.asarray(np.linalg.solve(matrices, right[:, :, None])[:, :, 0])
-    except np.linalg.LinAlgError:
-        if len(matrices) == 1:
-            return np.full_like(right, np.nan)
-        half = len(matrices) // 2
-        return np.concatenate(
-            [solve_each(matrices[:half], right[:half]), solve_each(matrices[half:], right[half:])]
-        )
 
 
 def _lifted(

@@ -11,7 +11,8 @@ from exactfold._support.progress import Steps
 from exactfold.rigidity.equations.branch_system import Chart, chamber_chart
 from exactfold.rigidity.equations.chart_change import between
 from exactfold.solve.numeric.candidates import Candidates
-from exactfold.solve.numeric.dense_newton import NappeSystem, SweptPoints, sign_vectors
+from exactfold.solve.numeric.dense_newton import NappeSystem, SweptPoints
+from exactfold.solve.numeric.nappe_newton import sign_vectors
 
 _BLOCK = 1024
 

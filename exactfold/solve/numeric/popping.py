@@ -12,8 +12,9 @@ from exactfold._support.progress import Steps
 from exactfold.rigidity.equations.branch_system import Chart, chamber_chart
 from exactfold.rigidity.equations.chart_change import between
 from exactfold.solve.numeric.candidates import Candidates
-from exactfold.solve.numeric.dense_newton import NappeSystem, sign_vectors
+from exactfold.solve.numeric.dense_newton import NappeSystem
 from exactfold.solve.numeric.linear_start import start_size
+from exactfold.solve.numeric.nappe_newton import sign_vectors
 
 _ORDER = 8
 _BLOCK = 4096

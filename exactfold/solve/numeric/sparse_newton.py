@@ -24,6 +24,16 @@ _EXCESS = 2.0**-70
 
 Steps towards a flat star would gain one bit each. The enclosure aims at an excess, too.
 """
+_MANY = 1000
+"""Sheets with more unknowns are smoothed at first; on small ones, no vertex shortens many steps."""
+_SMOOTHING = 30.0
+"""The smoothing of the first step, as a share of the l_v at the start: this, divided by n.
+
+The l_v on a branch shrink like the area of a star.
+"""
+_HALVED = 0.5
+_QUICK = 0.05
+_SHARPER = 0.01
 _FAST = 0.75
 _SMALL = 0.05
 _RINGS = 4
@@ -51,7 +61,10 @@ class End:
 
 @dataclass(frozen=True)
 class Point:
-    """The values omega_e, l_v and K_v - k_v, less `_EXCESS`, at heights x of the unknowns."""
+    """The values omega_e, l_v and K_v - k_v, less `_EXCESS`, at heights x of the unknowns.
+
+    `excess` is less by the square of the smoothing, too.
+    """
 
     x: FloatArray
     omega: FloatArray
@@ -59,12 +72,13 @@ class Point:
     excess: FloatArray
 
     @classmethod
-    def at(cls, sheet: FloatSheet, x: FloatArray) -> Point:
+    def at(cls, sheet: FloatSheet, x: FloatArray, smoothing: float = 0.0) -> Point:
         """All values at x."""
         h = sheet.heights(x)
         omega = sheet.bends(h)
         forms = sheet.forms(omega * sheet.differences(h))
-        return cls(x, omega, sheet.lines(omega), forms - sheet.target - _EXCESS * sheet.scale)
+        aim = sheet.target + _EXCESS * sheet.scale + smoothing * smoothing
+        return cls(x, omega, sheet.lines(omega), forms - aim)
 
 
 def equations(
@@ -105,25 +119,56 @@ def solve(
     decreases with every step. The largest |g_v| is no such measure on a large sheet, as one place
     would then shorten the steps everywhere. Where a step leaves a few large |g_v|, steps in small
     patches around them follow, each patch with its own length.
+
+    Next to a flat star g has a kink, at which a few vertices would shorten the steps of all. So the
+    curvatures aimed at are larger by a square at first, which rounds all kinks (the path of
+    docs/branch.md, Theorem 5 (b)). From the second step on this square shrinks with each full step
+    that halves the sum, and fast as soon as the sum does. It is 0 in the end. If that finds no
+    zero, and on sheets with at most 1000 unknowns, all steps are plain.
     """
+    if start is None and sheet.n > _MANY:
+        end = _solve(sheet, signs, None, _SMOOTHING / sheet.n, progress)
+        if not end.failure:
+            return end
+    return _solve(sheet, signs, start, 0.0, progress)
+
+
+def _solve(
+    sheet: FloatSheet,
+    signs: FloatArray,
+    start: FloatArray | None,
+    smoothing: float,
+    progress: Callable[[int], None] | None,
+) -> End:
+    """`solve` with a smoothing that begins with this share of the l_v at the start."""
     try:
-        point = Point.at(sheet, _start(sheet, signs) if start is None else start)
+        x = _start(sheet, signs) if start is None else start
+        smoothing *= float(np.abs(Point.at(sheet, x).lines).max(initial=0.0))
         for step in range(1, _ITERATIONS + 1):
             if progress is not None:
                 progress(step)
-            point, change, length = _step(sheet, point, signs)
-            size = 1.0 + np.abs(point.x).max()
+            point, change, length, gain = _step(
+                sheet, Point.at(sheet, x, smoothing), signs, smoothing
+            )
+            x = point.x
+            size = 1.0 + np.abs(x).max()
+            if smoothing:
+                if length == 0.0 or change <= _NOISE * size:
+                    smoothing = 0.0
+                elif step > 1 and length == 1.0 and gain <= _HALVED:
+                    smoothing *= _SHARPER if gain <= _QUICK else _HALVED
+                continue
             if length == 1.0 and change <= _CONVERGED * size:
-                return End(point.x, step, "")
+                return End(x, step, "")
             if length < 1.0 and change <= _NOISE * size:  # the rest is rounding errors
-                return End(point.x, step, "")
+                return End(x, step, "")
             if length == 0.0:
                 worst = _worst(sheet, point, signs)
-                return End(point.x, step, "Newton's method makes no more progress", worst)
+                return End(x, step, "Newton's method makes no more progress", worst)
     except SingularError as error:
         return End(np.zeros(sheet.n), 0, f"a factorisation failed: {error}")
     failure = f"Newton's method did not converge in {_ITERATIONS} steps"
-    return End(point.x, _ITERATIONS, failure, _worst(sheet, point, signs))
+    return End(x, _ITERATIONS, failure, _worst(sheet, Point.at(sheet, x), signs))
 
 
 def _start(sheet: FloatSheet, signs: FloatArray) -> FloatArray:
@@ -138,28 +183,32 @@ def _worst(sheet: FloatSheet, point: Point, signs: FloatArray) -> int:
     return int(np.abs(equations(sheet, point, signs)[0]).argmax())
 
 
-def _step(sheet: FloatSheet, point: Point, signs: FloatArray) -> tuple[Point, float, float]:
-    """One damped step: the new point, the size of the full step, and the share of it taken."""
+def _step(
+    sheet: FloatSheet, point: Point, signs: FloatArray, smoothing: float
+) -> tuple[Point, float, float, float]:
+    """One damped step: the new point, the size of the full step, the share of it taken, and the
+    factor by which the sum of all |g_v| changed.
+    """
     value, of_lines, of_forms = equations(sheet, point, signs)
     change = sheet.solve(point.omega, of_lines, of_forms, value)
     full = float(np.abs(change).max())
     before = np.abs(value).sum()
     length = 1.0
     for _ in range(_HALVINGS):
-        trial = Point.at(sheet, point.x - length * change)
+        trial = Point.at(sheet, point.x - length * change, smoothing)
         after = np.abs(equations(sheet, trial, signs)[0])
         if after.sum() > _FAST * before:
-            mended = _mended(sheet, trial, signs, after)
+            mended = _mended(sheet, trial, signs, after, smoothing)
             if mended is not None:
                 trial, after = mended
         if after.sum() <= (1.0 - _DECREASE * length) * before:
-            return trial, full, length
+            return trial, full, length, float(after.sum() / before) if before else 0.0
         length /= 2.0
-    return point, full, 0.0
+    return point, full, 0.0, 1.0
 
 
 def _mended(
-    sheet: FloatSheet, point: Point, signs: FloatArray, values: FloatArray
+    sheet: FloatSheet, point: Point, signs: FloatArray, values: FloatArray, smoothing: float
 ) -> tuple[Point, FloatArray] | None:
     """The point after steps in patches where |g_v| is large, and its |g_v|, given as `values`.
 
@@ -172,16 +221,16 @@ def _mended(
         return None
     part = sheet.part(chosen, point.x)
     x = point.x.copy()
-    x[chosen] = _patched(part, x[chosen], signs[chosen])
-    mended = Point.at(sheet, x)
+    x[chosen] = _patched(part, x[chosen], signs[chosen], smoothing)
+    mended = Point.at(sheet, x, smoothing)
     after = np.abs(equations(sheet, mended, signs)[0])
     return (mended, after) if after.sum() < values.sum() else None
 
 
-def _patched(sheet: FloatSheet, x: FloatArray, signs: FloatArray) -> FloatArray:
+def _patched(sheet: FloatSheet, x: FloatArray, signs: FloatArray, smoothing: float) -> FloatArray:
     """Damped steps on a sheet of several patches; each patch has its own length of a step."""
     count, patch = sheet.patches
-    point = Point.at(sheet, x)
+    point = Point.at(sheet, x, smoothing)
     value, of_lines, of_forms = equations(sheet, point, signs)
     first = before = np.bincount(patch, np.abs(value), count)
     for _ in range(_PATCH_STEPS):
@@ -192,7 +241,7 @@ def _patched(sheet: FloatSheet, x: FloatArray, signs: FloatArray) -> FloatArray:
         length = np.where(np.bincount(patch, ~np.isfinite(change), count) > 0, 0.0, 1.0)
         change = np.nan_to_num(change, posinf=0.0, neginf=0.0)
         for halving in range(_PATCH_HALVINGS + 1):
-            trial = Point.at(sheet, point.x - length[patch] * change)
+            trial = Point.at(sheet, point.x - length[patch] * change, smoothing)
             value, of_lines, of_forms = equations(sheet, trial, signs)
             after = np.bincount(patch, np.abs(value), count)
             failed = ~(after <= (1.0 - _DECREASE * length) * before)

@@ -25,7 +25,7 @@ from exactfold.rigidity.equations.problem import Problem
 from exactfold.rigidity.functionals import fold_functional
 from exactfold.solve.certify.box import IsolatingBox
 from exactfold.solve.certify.float_krawczyk import FloatBoxes
-from exactfold.solve.numeric.dense_newton import sign_vectors
+from exactfold.solve.numeric.nappe_newton import sign_vectors
 
 SignArray = npt.NDArray[np.int8]
 

@@ -127,22 +127,43 @@ def test_redrawing_in_place_is_triangulating_anew(interior, denominator, seed, m
     )
 
 
-def test_a_hopeless_draw_is_given_up_at_once(monkeypatch):
-    drawn = []
+@pytest.fixture
+def drawn(monkeypatch):
+    """The numbers of points of the samples that are drawn."""
+    numbers = []
     monkeypatch.setattr(
         random_squares,
         "delaunay_triangles",
-        lambda points: drawn.append(len(points)) or delaunay_sheets.delaunay_triangles(points),
+        lambda points: numbers.append(len(points)) or delaunay_sheets.delaunay_triangles(points),
     )
+    return numbers
+
+
+def test_a_hopeless_draw_is_given_up_before_the_first_sample(drawn):
     with pytest.raises(
         NotApplicableError,
-        match=r"hopeless: 20 samples had 283 points .*14\.2 in "
-        r"the mean, .* one sample in 1,000,000 has none.*--redraw",
+        match=r"hopeless: samples of 1000 points have points of degree 3, 12\.7 in the mean, "
+        r".* one sample in 300,000 has none.*--redraw",
     ):
         sample_random_square(1000, 3)
-    assert len(drawn) == 20
-    with pytest.raises(NotApplicableError, match=r"1 sample had .* one sample in 10\^\d+ has none"):
+    with pytest.raises(NotApplicableError, match=r"about one sample in 10\^\d+ has none"):
         sample_random_square(3000, 3)
+    assert drawn == []
+
+
+def test_more_attempts_may_make_a_draw_hopeful(drawn):
+    with pytest.raises(NotApplicableError, match="samples of 300 points"):
+        sample_random_square(300, 2, max_attempts=1)
+    assert drawn == []
+    with pytest.raises(NotApplicableError, match="all 8 samples"):
+        sample_random_square(300, 2, max_attempts=8)
+    assert len(drawn) == 8
+
+
+def test_samples_on_a_crowded_grid_show_that_the_draw_is_hopeless(drawn):
+    with pytest.raises(NotApplicableError, match=r"hopeless: \d+ samples? had .*--redraw"):
+        sample_random_square(3000, 3, denominator=500)
+    assert 0 < len(drawn) <= 3
 
 
 @pytest.mark.slow

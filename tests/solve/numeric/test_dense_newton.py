@@ -14,12 +14,8 @@ from exactfold.pattern.data import example_path
 from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.equations.branch_system import chamber_chart
 from exactfold.rigidity.timelike import round_cone
-from exactfold.solve.numeric.dense_newton import (
-    NappeSystem,
-    SweptPoints,
-    sign_vectors,
-    solve_each,
-)
+from exactfold.solve.numeric.dense_newton import NappeSystem, SweptPoints
+from exactfold.solve.numeric.nappe_newton import sign_vectors, solve_each
 from exactfold.solve.numeric.popping import popping
 from exactfold.solve.numeric.refined_newton import refined_end
 

@@ -33,6 +33,7 @@ from exactfold.pattern.loading import PatternLike, open_sheet
 from exactfold.pattern.meant import Meant, MeantDocument
 from exactfold.pattern.opening import Opened, panels
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
+from exactfold.pattern.remembered import remembered
 
 _OTHER: Final = {"M": "V", "V": "M"}
 
@@ -361,11 +362,16 @@ def vertices(pattern: PatternLike, letters: Mapping[Edge, str] | str | None = No
     >>> found.starts, found.facts[0].flips
     (<Verdict.REFUTED: 'refuted'>, (((9, 13),),))
     """
-    start = time.perf_counter()
     opened = open_sheet(pattern)
-    sheet = panels(opened.sheet) if isinstance(opened.sheet, CreasePattern) else opened.sheet
     given = opened.letters if letters is None else letters
-    asked = by_fold(sheet.folds, given)
+    return _vertices(opened, tuple(by_fold(opened.sheet.folds, given).items()))
+
+
+@remembered
+def _vertices(opened: Opened, letters: tuple[tuple[Edge, str], ...]) -> Vertices:
+    start = time.perf_counter()
+    asked = dict(letters)
+    sheet = panels(opened.sheet) if isinstance(opened.sheet, CreasePattern) else opened.sheet
     exactly = opened.reading.snap == "exact"
     facts = vertex_facts(sheet, asked, exactly=exactly, box=box_of(opened))
     return Vertices(sheet, asked, facts, opened.meant, time.perf_counter() - start)

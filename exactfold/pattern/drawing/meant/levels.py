@@ -20,6 +20,7 @@ _MOST: Final = 4
 _VAST: Final = 10.0
 """In a gap wider than this a second level is proposed, near its upper end."""
 _UPPER: Final = 0.7
+_TIMES_NOISE: Final = (10, 100)
 
 
 def proposed_levels(defects: Sequence[float], beyond: float) -> list[float]:
@@ -42,6 +43,18 @@ def proposed_levels(defects: Sequence[float], beyond: float) -> list[float]:
         if quotient > _VAST:
             levels.append(_level(below, above, _UPPER * above))
     return levels
+
+
+def loop_levels(off: float) -> list[float]:
+    """Noise levels, for `--noise`, that may explain that a loop of folds nearly closes.
+
+    The product of its gains misses 1 by `off`. That is the noise, times a factor that is larger the
+    shorter the folds are.
+
+    >>> loop_levels(2.6e-8)
+    [3e-09, 3e-10]
+    """
+    return [float(decimal_near(Fraction(off / times), 1)) for times in _TIMES_NOISE]
 
 
 def _level(below: float, above: float, wanted: float) -> float:

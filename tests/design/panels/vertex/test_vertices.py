@@ -20,6 +20,7 @@ from exactfold.exact.surds import RATIONALS
 from exactfold.panels.vertex.stars import star_at
 from exactfold.panels.vertex.vertex_motions import vertex_motion
 from exactfold.pattern.drawing.meant.values import Relation
+from exactfold.pattern.loading import open_sheet
 from exactfold.pattern.meant import Meant
 from exactfold.pattern.opening import Opened
 from exactfold.pattern.panel_pattern import PanelPattern, Point
@@ -343,3 +344,13 @@ def test_results_pickle_and_compare() -> None:
     found.flips(found.facts[0])
     assert pickle.loads(pickle.dumps(found)) == found
     assert repr(found) == "<Vertices: 4 vertices, starts refuted, 4 refuted>"
+
+
+def test_the_vertices_of_an_open_sheet_are_computed_once() -> None:
+    opened = open_sheet("bird-base")
+    found = vertices(opened)
+    assert vertices(opened) is found
+    assert vertices(opened, "U" * len(opened.sheet.folds)) is not found
+    again = pickle.loads(pickle.dumps(opened))
+    assert again == opened
+    assert vertices(again) == found

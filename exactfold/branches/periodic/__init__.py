@@ -1,0 +1,1 @@
+"""Periodic sheets: all branches, and linear spaces of pleats, for one direction."""

@@ -1,0 +1,152 @@
+"""`count_periodic`: finds, proves and counts all branches of a periodic sheet for one direction."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from exactfold._support.plurals import agreeing
+from exactfold._support.progress import Progress
+from exactfold._support.verdict import PROVED, UNDECIDED
+from exactfold.branches.periodic.exactly import ExactRay, exact_rays
+from exactfold.branches.periodic.rays import Ray, prove_rays
+from exactfold.branches.periodic.result import Evidence, PeriodicCount
+from exactfold.branches.periodic.shown import Shown, sorted_branches
+from exactfold.branches.periodic.spaces import Cover, Space, Spaces, combined, echelon
+from exactfold.errors import NotCountedError
+from exactfold.exact.linalg import nullspace
+from exactfold.exact.numbers import RationalLike
+from exactfold.pattern.periodic.cell_files import as_cell
+from exactfold.rigidity.equations.periodic import PeriodicProblem, Row
+from exactfold.solve.numeric.periodic_rays import PeriodicRays
+
+MOST = 20
+"""The most vertices, outside triangulated triangles, of a cell that is counted."""
+_MOST_OPEN = 1000
+
+
+def count_periodic(
+    cell: object, direction: Sequence[RationalLike], *, progress: Progress | None = None
+) -> PeriodicCount:
+    """The proved branches of a periodic sheet that rolls up across one direction, and its pleats.
+
+    `cell` is a `PeriodicPattern`, or what `read_cell` reads. `direction` is the vector n at right
+    angles to the axis of the cylinder, in the coordinates of the points; only its direction counts.
+    All solutions of second order with heights w + (b/2) (n . x)^2 are real and form linear spaces.
+    Without pleats there are 2^(V - 1) with multiplicity, one for each pair of opposite vertex sign
+    vectors, each 2^(number of flat vertices) times (docs/tessellations.md, Theorem 16).
+    Newton's method proposes a ray for each sign vector, and Krawczyk's test, or linear algebra over
+    Q, proves it.
+
+    Raises the errors of `read_cell`, `UsageError` for a bad direction, and `NotCountedError` for a
+    cell of more than 20 vertices. UNDECIDED does not mean that the count is unusual.
+
+    >>> result = count_periodic("resch-cell", (3, 4))
+    >>> result.status, result.distinct, result.with_multiplicity, result.pleats
+    (<Verdict.PROVED: 'proved'>, 8, 8, ())
+    """
+    start = time.perf_counter()
+    problem = PeriodicProblem.of(as_cell(cell), direction)
+    if problem.sheet.V > MOST:
+        raise NotCountedError(
+            f"the cell has {problem.sheet.V} vertices outside triangulated triangles: 2^"
+            f"{problem.size} branches are too many to list, at most {MOST} vertices are counted"
+        )
+    if progress is not None:
+        progress("solving", 0, 0)
+    rays = PeriodicRays(problem)
+    proved = prove_rays(problem, rays.rays(), rays.signs)
+    missing = sorted(set(range(len(rays.signs))) - proved.keys())
+    covers = _covered(problem, rays, missing) if missing else []
+    result = _result(problem, rays, proved, covers)
+    if result.status is not PROVED:
+        exact = exact_rays(problem)
+        if exact is not None:
+            result = _of_exact(problem, exact)
+    return replace(result, seconds=time.perf_counter() - start)
+
+
+def _covered(problem: PeriodicProblem, rays: PeriodicRays, missing: Sequence[int]) -> list[Cover]:
+    """Spaces that hold the cones of the missing sign vectors, as far as they are found."""
+    spaces = Spaces(problem)
+    covers: list[Cover] = []
+    with np.errstate(all="ignore"):
+        limits = rays.limits(np.array(missing))
+        for row, ray in zip(missing, limits, strict=True):
+            if any(covers_signs(cover, rays.signs[row].tolist()) for cover in covers):
+                continue
+            cover = spaces.cover(ray) if np.isfinite(ray).all() else None
+            if cover is not None and covers_signs(cover, rays.signs[row].tolist()):
+                covers.append(cover)
+    return covers
+
+
+def covers_signs(cover: Cover, signs: Sequence[float]) -> bool:
+    """Whether a sign vector, or its opposite, agrees with a cover off the flat vertices."""
+    pairs = [(s, e) for s, e in zip(cover.signs, signs, strict=True) if s]
+    return all(s == e for s, e in pairs) or all(s == -e for s, e in pairs)
+
+
+def _result(
+    problem: PeriodicProblem, rays: PeriodicRays, proved: dict[int, Ray], covers: list[Cover]
+) -> PeriodicCount:
+    shown = Shown(problem)
+    branches = [shown.branch(ray.signs, ray.b, ray.letters) for ray in proved.values()]
+    spaces = list(dict.fromkeys(cover.space for cover in covers))
+    lines = [space for space in spaces if space.is_ray]
+    branches += [shown.exact_branch(space.basis[0]) for space in lines]
+    wide = [space for space in spaces if space.dimension > 1 and space.bends]
+    left = [
+        shown.signs(signs)
+        for row in range(len(rays.signs))
+        if row not in proved
+        for signs in [rays.signs[row].astype(int).tolist()]
+        if not any(covers_signs(cover, signs) for cover in covers)
+    ]
+    number = len(rays.signs)
+    total = f"{number} {agreeing(number, 'pair')} of opposite sign vectors"
+    return PeriodicCount(
+        problem.pattern,
+        problem.direction,
+        UNDECIDED if left else PROVED,
+        f"{len(left)} of {total} undecided"
+        if left
+        else f"{total}: each leads to a listed solution, and these are all by theorem",
+        sorted_branches(branches),
+        tuple(shown.space(basis) for basis in pleat_spaces(spaces)),
+        tuple(shown.space(space.basis) for space in wide),
+        tuple(left[:_MOST_OPEN]),
+        evidence=Evidence(problem, tuple(proved.values()), tuple(covers)),
+    )
+
+
+def _of_exact(problem: PeriodicProblem, rays: Sequence[ExactRay]) -> PeriodicCount:
+    """The count of a sheet of which all rays are known as algebraic numbers."""
+    shown = Shown(problem)
+    number = 1 << problem.size
+    return PeriodicCount(
+        problem.pattern,
+        problem.direction,
+        PROVED,
+        f"a Groebner basis has {number} solutions with multiplicity, which are all",
+        sorted_branches(shown.branch(ray.signs, ray.b, ray.letters) for ray in rays if ray.b),
+        tuple(shown.algebraic(ray) for ray in rays if not ray.b),
+    )
+
+
+def pleat_spaces(spaces: Iterable[Space]) -> list[tuple[Row, ...]]:
+    """The maximal spaces of solutions with b = 0, each with a reduced echelon basis."""
+    level = [
+        echelon([combined(w, s.basis) for w in nullspace([[row[-1] for row in s.basis]])])
+        for s in spaces
+    ]
+    kept = list(dict.fromkeys(basis for basis in level if basis))
+    return [basis for basis in kept if not any(_holds(other, basis) for other in kept)]
+
+
+def _holds(space: tuple[Row, ...], other: tuple[Row, ...]) -> bool:
+    """Whether a space holds another one, and more."""
+    return len(space) > len(other) and len(echelon([*space, *other])) == len(space)

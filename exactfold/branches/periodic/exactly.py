@@ -1,0 +1,95 @@
+"""All rays of a small periodic sheet as algebraic numbers, by the exact engine."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Final, cast
+
+from exactfold.branches.values.letters import LETTERS
+from exactfold.branches.values.roots import AlgebraicRoot
+from exactfold.exact.linalg import from_fmpq, to_flint
+from exactfold.exact.numbers import integer_row
+from exactfold.rigidity.equations.periodic import PeriodicProblem
+from exactfold.rigidity.equations.quadratic import QuadraticSystem
+
+MOST_UNKNOWNS: Final = 6
+"""The most unknowns for which the exact engine is run."""
+_FORMS: Final = ((2, 3, 5, 7, 11, 13), (3, -5, 7, -2, 17, -11), (5, 1, -13, 3, 2, 19))
+"""Coefficients of linear forms that are 1 in the chart, tried until none vanishes at a solution."""
+
+
+@dataclass(frozen=True)
+class ExactRay:
+    """A ray as an algebraic number: its signs, letters, and the exact place on z.
+
+    `entries` are polynomials in the root of `root`, constant term first, one for each entry of z.
+    """
+
+    root: AlgebraicRoot
+    signs: tuple[int, ...]
+    b: int
+    letters: str
+    entries: tuple[tuple[Fraction, ...], ...]
+
+
+def exact_rays(problem: PeriodicProblem) -> list[ExactRay] | None:
+    """All rays, by a Groebner basis in a chart without solutions at infinity.
+
+    None if there are more than `MOST_UNKNOWNS` unknowns, if a space has more dimensions than one,
+    or if every chart that is tried has solutions at infinity. The number of rays with multiplicity,
+    2^(V - 1), proves that they are all.
+    """
+    size = problem.size
+    if not 0 < size <= MOST_UNKNOWNS:
+        return None
+    from exactfold.solve.algebraic.groebner_bases import groebner  # few of these sheets need it
+
+    for weights in _FORMS:
+        # z = T y: the last entry of y is z_last + sum_k weights_k z_k, and 1 in the chart.
+        lift = [[Fraction(int(i == j)) for j in range(size + 1)] for i in range(size)]
+        lift.append([*(Fraction(-c) for c in weights[:size]), Fraction(1)])
+        matrix = to_flint(lift)
+        forms = [
+            (matrix.transpose() * to_flint(star.form) * matrix).tolist()
+            for star in problem.stars[1:]
+        ]
+        system = QuadraticSystem.from_rational(
+            [[[from_fmpq(x) for x in row] for row in form] for form in forms]
+        )
+        solution = groebner(system)
+        if solution.dimension is None:
+            return None
+        if solution.dimension == 1 << size:
+            return [
+                _ray(problem, AlgebraicRoot(root_class, index), lift)
+                for root_class in solution.classes
+                for index in range(root_class.degree)
+            ]
+    return None
+
+
+def _ray(problem: PeriodicProblem, root: AlgebraicRoot, lift: list[list[Fraction]]) -> ExactRay:
+    def sign(row: tuple[int, ...]) -> int:
+        on_y = [_dot([*map(Fraction, row)], column) for column in zip(*lift, strict=True)]
+        return cast("int", root.sign(integer_row(on_y)))  # of an algebraic number, it is known
+
+    known = root.root_class
+    slope = [k * Fraction(c) for k, c in enumerate(known.polynomial)][1:]
+    entries = [*known.numerators, tuple(slope)]
+    length = max(map(len, entries))
+    padded = [[*entry, *[Fraction(0)] * (length - len(entry))] for entry in entries]
+    return ExactRay(
+        root,
+        tuple(map(sign, problem.vertices.values())),
+        sign(problem.bend),
+        "".join(LETTERS[sign(row)] for row in problem.folds.values()),
+        tuple(
+            tuple(_dot(row, [entry[k] for entry in padded]) for k in range(length)) for row in lift
+        ),
+    )
+
+
+def _dot(a: Sequence[Fraction], b: Sequence[Fraction]) -> Fraction:
+    return sum((x * y for x, y in zip(a, b, strict=True)), Fraction(0))

@@ -1,0 +1,159 @@
+"""Counts of periodic sheets against theorems, and against Groebner bases of other forms."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import product
+
+import pytest
+
+from exactfold import PROVED, checker
+from exactfold.branches import AlgebraicLine, HeightSpace, count_periodic, periodic_certificate
+from exactfold.branches.periodic import counting
+from exactfold.branches.periodic.spaces import Spaces
+from exactfold.checker.sheets.cell import CellForms
+from exactfold.checker.sheets.cell import read_cell as read_checked
+from exactfold.errors import NotApplicableError, NotCountedError, UsageError
+from exactfold.pattern import CELLS, PeriodicPattern, cell_document, random_cell, read_cell
+from exactfold.rigidity.equations.periodic import PeriodicProblem
+from exactfold.rigidity.equations.quadratic import QuadraticSystem
+from exactfold.solve.algebraic.groebner_bases import groebner
+
+EXPECTED = {
+    "waterbomb-cell": (4, 4, 0),
+    "yoshimura-cell": (1, 1, 1),
+    "kisrhombille-cell": (29, 32, 0),
+    "miura-cell": (5, 5, 3),
+    "herringbone-cell": (6, 6, 2),
+    "resch-cell": (8, 8, 0),
+    "square-twist-cell": (6, 6, 2),
+}
+"""Isolated solutions for the direction (1, 2), the same with multiplicity, and lines of pleats."""
+
+
+@pytest.mark.parametrize("name", CELLS)
+def test_shipped_cells(name: str) -> None:
+    result = count_periodic(name, (1, 2))
+    assert result.status is PROVED
+    found = (result.distinct, result.with_multiplicity, len(result.pleats))
+    assert found == EXPECTED[name]
+    cell = read_cell(name)
+    assert EXPECTED[name][1] + EXPECTED[name][2] == 2 ** (cell.V - 1)  # no pleat has a flat vertex
+    assert result.families == ()
+
+
+def independent(cell: PeriodicPattern, direction: tuple[int, int]) -> tuple[int, int, int]:
+    """Solutions with b = 1 by a Groebner basis of the checker's forms.
+
+    Their number, the number of real ones, and their number with multiplicity.
+    """
+    document = cell_document(cell)
+    known = {"lattice": document["lattice"], "vertices": document["points"]}
+    forms = CellForms(read_checked({**known, "faces": document["faces"]}), direction, Fraction(1))
+    matrices = list(forms.forms.values())
+    assert not any(sum(m[i][j] for m in matrices) for i in range(cell.V) for j in range(cell.V))
+    solution = groebner(QuadraticSystem.from_rational(matrices[:-1]))
+    real = sum(len(c.real_roots(20)) for c in solution.classes)
+    total = sum(c.degree * c.multiplicity for c in solution.classes)
+    return solution.distinct, real, total
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("vertices", [2, 3, 4])
+def test_random_cells_against_groebner_bases(vertices: int, seed: int) -> None:
+    cell = random_cell(vertices, seed, 16, flips=seed)
+    result = count_periodic(cell, (2, 1))
+    expected = independent(cell, (2, 1))
+    assert (result.distinct, result.real, result.with_multiplicity) == (expected[0], *expected[1:])
+    pleats = 2 ** (vertices - 1) - expected[2]
+    assert (pleats > 0) == bool(result.pleats)
+
+
+def test_one_vertex_rolls_up_in_one_way() -> None:
+    result = count_periodic(random_cell(1, 0), (1, 1))
+    (branch,) = result
+    assert (branch.vertex_signs, branch.b, branch.multiplicity) == ("+", -1, 1)
+    assert result.pleats == ()
+
+
+def test_a_vertex_of_degree_three_is_flat_on_every_branch() -> None:
+    cell = random_cell(4, 14, 16)
+    assert [cell.degree(v) for v in range(4)] == [6, 9, 3, 6]
+    result = count_periodic(cell, (2, 1))
+    assert (result.distinct, result.with_multiplicity) == (4, 8)
+    assert {(branch.vertex_signs[2], branch.multiplicity) for branch in result} == {("0", 2)}
+
+
+def test_each_sign_vector_occurs_once_and_all_up_rolls_down() -> None:
+    result = count_periodic(random_cell(6, 3), (3, -2))
+    signs = [branch.vertex_signs for branch in result]
+    assert signs == ["+" + "".join(rest) for rest in product("-+", repeat=5)]
+    assert result[-1].b == -1
+
+
+def test_parallel_loops_at_two_vertices_make_a_pleat() -> None:
+    """Theorem: two classes of parallel straight crease lines make (H) fail."""
+    result = count_periodic("yoshimura-cell", (2, 7))
+    assert result.pleats == (HeightSpace(((Fraction(0), Fraction(1), Fraction(0)),)),)
+    across = count_periodic("yoshimura-cell", (0, 1))
+    assert (len(across), len(across.families)) == (0, 1)
+    assert across.families[0].dimension == 2
+
+
+def test_pleats_do_not_depend_on_the_direction() -> None:
+    known = {frozenset(count_periodic("miura-cell", n).pleats) for n in ((3, 4), (1, 0), (0, 1))}
+    assert len(known) == 1
+
+
+def test_the_pleats_of_a_square_twist_are_over_the_field_of_root_five() -> None:
+    result = count_periodic("square-twist-cell", (1, 2))
+    for line in result.pleats:
+        assert isinstance(line, AlgebraicLine)
+        c, b, a = line.polynomial
+        assert (b * b - 4 * a * c) % 5 == 0
+        square = Fraction(b * b - 4 * a * c, 5)
+        assert int(square**0.5) ** 2 == square
+    with pytest.raises(NotApplicableError, match="Groebner"):
+        periodic_certificate(result)
+
+
+def test_the_waterbomb_has_the_square_root_of_its_direction() -> None:
+    """w = (0, 0, (|n|^2 +- n_1 sqrt(n_1^2 + 4 n_2^2)) / 2) at b = 1, and signs by the theorem."""
+    cell = read_cell("waterbomb-cell")
+    result = count_periodic(cell, (3, 2))  # the square root is that of 25
+    problem = PeriodicProblem.of(cell, (3, 2))
+    signs = set()
+    for side in (1, -1):
+        w = [Fraction(0), Fraction(13 + side * 15, 2), 1 / problem.unit]
+        assert Spaces(problem).solves([tuple(w)])
+        found = Spaces(problem).values(w)
+        signs.add("".join("+-"[s != found[0]] for s in found))
+    assert signs < {branch.vertex_signs for branch in result}
+    assert len(signs) == 2
+
+
+def test_simple_branches_that_a_box_proves_have_a_certificate() -> None:
+    result = count_periodic(random_cell(4, 14, 16), (2, 1))
+    claims = checker.check(periodic_certificate(result))
+    assert claims["with_multiplicity"] == 8
+    assert claims["sha256"] == result.pattern.sha256
+
+
+def test_what_is_not_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    with pytest.raises(UsageError, match="is no direction"):
+        count_periodic("miura-cell", (0, 0))
+    with pytest.raises(UsageError, match="two coordinates, not 3"):
+        count_periodic("miura-cell", (0, 0, 1))
+    monkeypatch.setattr(counting, "MOST", 3)
+    with pytest.raises(NotCountedError, match=r"2\^3 branches are too many"):
+        count_periodic("miura-cell", (1, 2))
+
+
+def test_what_is_open_is_undecided(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(counting, "exact_rays", lambda problem: None)
+    result = count_periodic("square-twist-cell", (1, 2))
+    assert str(result.status) == "undecided"
+    assert (len(result.branches), result.distinct, len(result.open)) == (6, None, 2)
+    assert result.to_dict()["real"] is None
+    with pytest.raises(NotApplicableError, match="not proved"):
+        periodic_certificate(result)
