@@ -1,7 +1,7 @@
 """Certificates of torques that drive rigid panels along one way (docs/actuation.md, 7 and 8).
 
-The claims are about a sheet of which all ways are known, with at most four folds at each vertex, and
-with no fold held flat:
+The claims are about a sheet of which all ways are known, with at most four folds at each vertex
+and no fold held flat:
 
 - `sha256`: the digest of the pattern; `ways`: how many ways there are;
 - `way`: the motions of the way that is driven, each as [k, choice] for a mode of support k in the

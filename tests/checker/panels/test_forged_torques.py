@@ -110,7 +110,7 @@ def test_no_way_is_lost_because_folds_are_held_flat() -> None:
     """With one fold held, the sheet has two ways, and rivals of the first are no ways of it."""
     sheet = miura(2, 2)
     held = actuate_panels(decompose(sheet, flat=[(4, 5)]), 1)
-    with pytest.raises(NotApplicableError, match="about the sheet with no fold held flat"):
+    with pytest.raises(NotApplicableError, match="about sheets with no fold held flat"):
         held.certificate()
     hidden = replace(held, decomposition=replace(held.decomposition, held=Unsaid([(4, 5)])))
     document = json.loads(json.dumps(hidden.certificate()))
