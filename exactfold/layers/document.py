@@ -102,6 +102,8 @@ class FlatDocument(TypedDict):
     """Whether each vertex satisfies the conditions of Kawasaki and Maekawa."""
     states: Natural | None
     """The number of states; null if it is not known."""
+    at_least: Natural
+    """A lower bound of the number of states, which is the number if this is known."""
     components: list[Natural | None]
     """Numbers whose product is the number of states: those of independent components."""
     letters: Assignment

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, TypeAlias
+from typing import Any, Final, TypeAlias
 
 from exactfold.errors import NotApplicableError
 from exactfold.exact.surds import sign
@@ -16,16 +16,20 @@ from exactfold.pattern.writing.panel_writing import converted
 
 Pair: TypeAlias = tuple[int, int]
 
+_SHARED: Final = ("edges_vertices", "edges_assignment", "edges_foldAngle", "faces_vertices")
+"""What both frames have."""
+
 
 def state_document(state: State, title: str = "", number: int = 0) -> dict[str, Any]:
     """The FOLD 1.2 object of a flat-folded state, ready for `json.dumps`.
 
     The first frame is the crease pattern with the letters of the state, as `Converted.document`
-    writes it. Programs that fold by themselves, such as Flat-Folder, read this one. Frame 1 is the
-    folded form. It inherits everything else, and has the places of the vertices, rounded to floats,
-    and `faceOrders`: [f, g, 1] for panels that overlap if f lies on the side of g to which the
-    normal of g points, in the folded form, and [f, g, -1] if it lies on the other side. Panel 0
-    keeps its place and faces up.
+    writes it. Programs that fold by themselves, such as Flat-Folder and Oriedita, read this one.
+    Frame 1 is the folded form: the same edges and faces, the places of the vertices, rounded to
+    floats, and `faceOrders`: [f, g, 1] for panels that overlap if f lies on the side of g to which
+    the normal of g points, in the folded form, and [f, g, -1] if it lies on the other side. Panel 0
+    keeps its place and faces up. Frame 1 inherits nothing, because Oriedita reads no file with a
+    frame that does (commit 8c2935d1, fold 1.1.0).
 
     Raises `NotApplicableError` if a panel that is not convex lies partly above and partly below
     another one, because FOLD has one order for two faces.
@@ -47,8 +51,7 @@ def state_document(state: State, title: str = "", number: int = 0) -> dict[str, 
                 "frame_title": f"flat-folded state {number}",
                 "frame_classes": ["foldedForm"],
                 "frame_attributes": ["2D"],
-                "frame_parent": 0,
-                "frame_inherit": True,
+                **{key: flat[key] for key in _SHARED},
                 "vertices_coords": [list(place) for place in images.places],
                 "faceOrders": [
                     [f, g, 1 if above != flipped[g] else -1]

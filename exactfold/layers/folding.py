@@ -274,7 +274,10 @@ def _letters(
 def _components(orders: Orders) -> tuple[Component, ...]:
     return tuple(
         Component(
-            tuple(one.pairs.tolist()), one.count, tuple(tuple(row) for row in one.states.tolist())
+            tuple(one.pairs.tolist()),
+            one.count,
+            tuple(tuple(row) for row in one.states.tolist()),
+            one.least,
         )
         for one in orders.components
     )

@@ -37,12 +37,13 @@ class Component:
 
     `pairs` are indices of overlapping pairs. Each row of `states` has 1 for a pair whose second
     piece lies above the first, else -1. `count` is the number of all states, None if it is not
-    known; `states` has the first of them.
+    known; `least` of them were found, and `states` has the first ones.
     """
 
     pairs: Indices
     states: Values
     count: int | None
+    least: int
 
 
 @dataclass(frozen=True)
@@ -350,7 +351,7 @@ class Search:
         if not count and not stopped:
             raise ContradictionError
         states = np.array(kept, dtype=np.int8).reshape(len(kept), len(pairs))
-        return Component(pairs, states, None if stopped else count), stopped
+        return Component(pairs, states, None if stopped else count, count), stopped
 
 
 def models(

@@ -29,13 +29,14 @@ class Component:
     """Overlapping pairs whose orders depend on each other, and on no other pair.
 
     `pairs` are indices of `FlatStates.pairs`. `count` is the number of ways to order them, None if
-    it is not known. `states` has the first of these ways: 1 for each pair whose second piece lies
-    above the first, else -1.
+    it is not known; there are at least `least`. `states` has the first of these ways: 1 for each
+    pair whose second piece lies above the first, else -1.
     """
 
     pairs: tuple[int, ...] = field(repr=False)
     count: int | None
     states: tuple[tuple[int, ...], ...] = field(repr=False)
+    least: int = 0
 
 
 @dataclass(frozen=True)
@@ -178,6 +179,13 @@ class FlatStates:
         return prod(count for count in counts if count is not None)
 
     @property
+    def at_least(self) -> int:
+        """A lower bound of the number of states, which is `count` if this is known."""
+        if self.as_written is not PROVED:
+            return 0
+        return prod(component.least for component in self.components)
+
+    @property
     def listed(self) -> int:
         """The number of states that `state` makes."""
         if self.as_written is not PROVED:
@@ -271,6 +279,7 @@ def _document(found: FlatStates, name: str | None) -> FlatDocument:
         "status": str(found.status),
         "locally_flat": str(found.locally_flat),
         "states": None if doubted else found.count,
+        "at_least": 0 if doubted else found.at_least,
         "components": [] if doubted else [one.count for one in found.components],
         "letters": {_name(fold): letter for fold, letter in found.letters.items()},
         "letters_used": found.letters_used,

@@ -15,6 +15,19 @@ from exactfold.layers.fold_frames import panel_orders, state_document
 from exactfold.pattern.panel_pattern import PanelPattern
 from exactfold.pattern.writing.fold_writing import document_text
 
+KEYS = [
+    "frame_title",
+    "frame_classes",
+    "frame_attributes",
+    "vertices_coords",
+    "edges_vertices",
+    "edges_assignment",
+    "edges_foldAngle",
+    "faces_vertices",
+    "faceOrders",
+]
+"""Keys that the reader of Oriedita takes in frames after the first, among others (fold 1.1.0)."""
+
 
 def arms() -> PanelPattern:
     """A comb with three teeth, and a bar at the end of the middle one, which folds over all."""
@@ -43,8 +56,10 @@ def test_the_orders_of_faces_are_those_of_the_layers(sheet, letters):
     for state in exactfold.flat(sheet, letters):
         document = json.loads(document_text(state_document(state)))
         (frame,) = document["file_frames"]
+        assert not {key for key in frame if key not in KEYS}  # Oriedita refuses any other
         places = np.array(frame["vertices_coords"])
-        faces = [places[face] for face in document["faces_vertices"]]
+        assert all(document[key] == frame[key] for key in ("edges_vertices", "faces_vertices"))
+        faces = [places[face] for face in frame["faces_vertices"]]
         small = 1e-9 * np.ptp(places) ** 2
         pieces = corners_of(state)
         orders = {(f, g): s for f, g, s in frame["faceOrders"]}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from itertools import combinations
 
@@ -18,6 +19,7 @@ from exactfold.exact.surds import RATIONALS
 from exactfold.layers.common import Common
 from exactfold.layers.conflicts import ConflictSearch
 from exactfold.layers.constraints import Constraints
+from exactfold.layers.folding import _components
 from exactfold.layers.images import Images, Isometry, images_of
 from exactfold.layers.orders import Search, models, solver
 from exactfold.layers.overlaps import Overlaps
@@ -53,7 +55,32 @@ def test_states_have_numbers_and_others_are_refused():
 
 def test_more_states_are_counted_than_listed():
     found = flat(folded_map(1, 6), most=10)
-    assert (found.count, found.listed) == (144, 10)
+    assert (found.count, found.at_least, found.listed) == (144, 144, 10)
+
+
+class AfterChecks:
+    """A clock that passes when it has been asked so many times."""
+
+    def __init__(self, checks):
+        self.checks = checks
+
+    def check(self):
+        self.checks -= 1
+        if self.checks < 0:
+            raise TooManyModesError("the time is over")
+
+
+def test_a_search_that_is_stopped_has_a_lower_bound():
+    pattern = folded_map(1, 7)
+    overlaps = Overlaps(images_of(pieces_of(pattern, dict.fromkeys(pattern.folds, "U"))))
+    orders = Search(Constraints(overlaps), AfterChecks(300), None, 10).run()
+    [component] = orders.components
+    assert component.count is None
+    assert len(component.states) == 10 < component.least < 462
+    assert orders.stopped == "the time is over"
+    found = replace(flat(pattern, "any"), components=_components(orders))
+    assert (found.count, found.at_least, found.status) == (None, component.least, PROVED)
+    assert found.to_dict()["at_least"] == component.least
 
 
 def test_an_image_is_an_isometry_that_agrees_on_creases():

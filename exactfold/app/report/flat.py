@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import prod
 from typing import TYPE_CHECKING, Any, Final
 
 from rich.console import Group
@@ -122,8 +121,8 @@ def _answer(found: FlatStates, letters: str) -> str:
     if found.as_written is UNDECIDED:
         return f"whether the sheet folds flat {letters} is open"
     if found.count is None:
-        known = prod(max(len(one.states), one.count or 0) for one in found.components)
-        return f"at least {counted(known, 'flat-folded state')} {letters}, not all counted"
+        known = counted(found.at_least, "flat-folded state")
+        return f"at least {known} {letters}, not all counted"
     return f"{counted(found.count, 'flat-folded state')} {letters}"
 
 

@@ -23,8 +23,8 @@ def panel_torques_certificate(found: PanelActuation) -> Document:
 
     It contains the count of all ways, what the torques do, a bound of the margin of all torques,
     and whether the way is self-foldable (docs/actuation.md, 10). Raises `NotApplicableError` if
-    the margin is not proved to be positive against all ways, if folds are held flat, and for sheets on
-    which more than four folds of a vertex may fold.
+    the margin is not proved to be positive against all ways, if folds are held flat, and for sheets
+    on which more than four folds of a vertex may fold.
 
     >>> from exactfold import checker
     >>> from exactfold.branches.counting.ways import count_ways
