@@ -165,7 +165,7 @@ class ActuateOptions(WayOptions):
     ] = None
     certificate: Annotated[
         Path | None,
-        written("Write the evidence for `exactfold check`; of rigid panels only.", "OUT.json"),
+        written("Write the evidence for `exactfold check`.", "OUT.json"),
     ] = None
     as_json: Json = False
     everything: Annotated[bool, flag("--all", text="List every branch in the ranking.")] = False

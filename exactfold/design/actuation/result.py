@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal, TypedDict
+from typing import TYPE_CHECKING, ClassVar, Literal, TypedDict
 
 import numpy as np
 
@@ -23,6 +23,7 @@ from exactfold._support.documents import (
     VerdictText,
     VertexSigns,
 )
+from exactfold._support.results import Certified
 from exactfold._support.verdict import PROVED, REFUTED, Verdict
 from exactfold.branches.values.branch import Branch
 from exactfold.design.actuation.directions import Directions
@@ -169,7 +170,7 @@ class Ranked:
 
 
 @dataclass(frozen=True, repr=False)
-class Actuation:
+class Actuation(Certified):
     """Torques that drive a sheet along one ray of one branch, and all that is proved of them.
 
     The power of torques tau along a ray with unit vector u of fold angles is tau . u. The margin is
@@ -206,6 +207,8 @@ class Actuation:
     place: int
     signs: tuple[str, ...]
     seconds: float = field(default=0.0, compare=False)
+
+    WRITER: ClassVar = "exactfold.design.actuation.certificate:torques_certificate"
 
     @cached_property
     def driven(self) -> tuple[Edge, ...]:

@@ -224,7 +224,6 @@ def test_a_certificate_of_torques_for_panels_is_checked(tmp_path):
     checked = run("check", path)
     assert checked.exit_code == PROVED
     assert "the way is self-foldable" in " ".join(checked.stdout.split())
-    refused = run("actuate", "two-vertex", "--signs", "+-", "--certificate", tmp_path / "b.json")
-    assert refused.exit_code == USAGE
-    assert "torques for a branch have no certificate yet" in refused.stderr
-    assert not (tmp_path / "b.json").exists()
+    branch = tmp_path / "b.json"
+    assert run("actuate", "two-vertex", "--up", 4, "--certificate", branch).exit_code == PROVED
+    assert "the branch is not self-foldable" in " ".join(run("check", branch).stdout.split())
