@@ -9,12 +9,13 @@ from __future__ import annotations
 import random
 from fractions import Fraction
 from itertools import combinations, permutations, product
+from math import isqrt
 from types import SimpleNamespace
 
 import pytest
 
-from exactfold.checker.core.towers import Tower
-from exactfold.checker.layers.plane import Plane
+from exactfold.checker.core.towers import Number, Tower
+from exactfold.checker.layers.plane import Plane, rounded
 
 
 def points_of(seed, size=11, unit=Fraction(1)):
@@ -127,3 +128,15 @@ def test_half_planes_whose_lines_have_one_point_miss_each_other():
         missing.append(plane.misses(lines, inner))
         assert missing[-1] is not meet(planes)
     assert missing.count(True) == 2
+
+
+@pytest.mark.parametrize("large", [1, 10**12, 10**40])
+def test_roots_are_rounded_to_within_two(large):
+    """Large multiples of a root that nearly cancel are enclosed only with more bits."""
+    tower = Tower(((Fraction(2),),))
+    near = isqrt(2 * large**2)
+    number = Number(tower, (Fraction(-near), Fraction(large)))  # large sqrt 2 - near
+    for bits in (8, 64):
+        m = rounded(number, bits)
+        below = isqrt(2 * (large << bits) ** 2) - (near << bits)  # |2^bits z - below| < 1
+        assert abs(m - below) <= 3
