@@ -26,7 +26,7 @@ from exactfold.errors import (
 )
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.drawing.bounds import read_bytes
-from exactfold.pattern.drawing.drawing import Drawing, Snap
+from exactfold.pattern.drawing.drawing import Drawing, Loud, Snap
 from exactfold.pattern.fold import FoldFile, parse_bytes
 from exactfold.pattern.meaning import meaning, recognised
 from exactfold.pattern.opened import Opened as Opened
@@ -47,7 +47,7 @@ _OF_EDGES = (MalformedPatternError, DisconnectedError)
 _HEAD = 1 << 20
 """A cell says what it is within so many bytes."""
 _BOX = "`--box`, which takes the rectangle round the drawing for the edge of the paper, reads it"
-_IN_A_BOX = (
+_IN_A_BOX = Loud(
     "the drawing has no edge of the paper, so the rectangle round it is taken, as with --box; if "
     "the paper is another, draw its edge as a closed line"
 )

@@ -24,10 +24,16 @@ _EXCESS = 2.0**-70
 
 Steps towards a flat star would gain one bit each. The enclosure aims at an excess, too.
 """
-_SMOOTHING = 1e-4
-"""The smoothing of the first step, as a share of the l_v at the start."""
-_SHARPER = 0.3
+_MANY = 1000
+"""Sheets with more unknowns are smoothed at first; on small ones, no vertex shortens many steps."""
+_SMOOTHING = 30.0
+"""The smoothing of the first step, as a share of the l_v at the start: this, divided by n.
+
+The l_v on a branch shrink like the area of a star.
+"""
 _HALVED = 0.5
+_QUICK = 0.05
+_SHARPER = 0.01
 _FAST = 0.75
 _SMALL = 0.05
 _RINGS = 4
@@ -116,14 +122,28 @@ def solve(
 
     Next to a flat star g has a kink, at which a few vertices would shorten the steps of all. So the
     curvatures aimed at are larger by a square at first, which rounds all kinks (the path of
-    docs/branch.md, Theorem 5 (b)). It shrinks after each full step that halves the sum, and is 0 in
-    the end. If the smoothed steps stop, plain ones go on.
+    docs/branch.md, Theorem 5 (b)). From the second step on this square shrinks with each full step
+    that halves the sum, and fast as soon as the sum does. It is 0 in the end. If that finds no
+    zero, and on sheets with at most 1000 unknowns, all steps are plain.
     """
-    smoothing = 0.0
+    if start is None and sheet.n > _MANY:
+        end = _solve(sheet, signs, None, _SMOOTHING / sheet.n, progress)
+        if not end.failure:
+            return end
+    return _solve(sheet, signs, start, 0.0, progress)
+
+
+def _solve(
+    sheet: FloatSheet,
+    signs: FloatArray,
+    start: FloatArray | None,
+    smoothing: float,
+    progress: Callable[[int], None] | None,
+) -> End:
+    """`solve` with a smoothing that begins with this share of the l_v at the start."""
     try:
         x = _start(sheet, signs) if start is None else start
-        if start is None:
-            smoothing = _SMOOTHING * float(np.abs(Point.at(sheet, x).lines).max(initial=0.0))
+        smoothing *= float(np.abs(Point.at(sheet, x).lines).max(initial=0.0))
         for step in range(1, _ITERATIONS + 1):
             if progress is not None:
                 progress(step)
@@ -135,8 +155,8 @@ def solve(
             if smoothing:
                 if length == 0.0 or change <= _NOISE * size:
                     smoothing = 0.0
-                elif length == 1.0 and gain <= _HALVED:
-                    smoothing *= _SHARPER
+                elif step > 1 and length == 1.0 and gain <= _HALVED:
+                    smoothing *= _SHARPER if gain <= _QUICK else _HALVED
                 continue
             if length == 1.0 and change <= _CONVERGED * size:
                 return End(x, step, "")

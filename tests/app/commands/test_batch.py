@@ -464,3 +464,11 @@ def test_what_went_wrong_does_not_repeat_the_folders_of_a_file(tmp_path: Path) -
     lines = result.stdout.splitlines()
     assert f"{missing}:" in lines
     assert "  cannot read missing.svg: No such file or directory" in lines
+
+
+def test_an_edge_of_the_paper_that_is_not_drawn_is_said_in_a_table_too(tmp_path: Path) -> None:
+    (tmp_path / "open.cp").write_text("2 0 0 3 2\n3 3 0 0 2\n2 1 0 1 2\n")
+    result = run("count", tmp_path / "open.cp", "two-vertex", "--jobs", 1)
+    assert result.exit_code == 0
+    said = " ".join(result.stdout.split())
+    assert "the drawing has no edge of the paper, so the rectangle round it is taken" in said

@@ -3,7 +3,12 @@
 import numpy as np
 import pytest
 
-from exactfold.solve.numeric.sparse_newton import Point, equations
+from exactfold._support.verdict import PROVED
+from exactfold.branches.counting.find import BranchFinder, find_branch
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.triangulating.random_squares import random_square, sample_random_square
+from exactfold.solve.numeric import sparse_newton
+from exactfold.solve.numeric.sparse_newton import Point, equations, solve
 
 
 def test_on_a_regular_cone_a_row_is_that_of_its_line() -> None:
@@ -14,3 +19,26 @@ def test_on_a_regular_cone_a_row_is_that_of_its_line() -> None:
     value, of_lines, of_forms = equations(None, point, np.ones(3))  # type: ignore[arg-type]
     assert value == pytest.approx(lines, rel=1e-6)
     assert (of_lines.tolist(), of_forms.tolist()) == ([1] * 3, [0] * 3)
+
+
+def test_smoothed_and_plain_steps_end_at_the_same_zero(monkeypatch) -> None:
+    pattern = sample_random_square(1100, 5, redraw=True).pattern
+    sheet = BranchFinder(pattern)._floats
+    signs = np.where(np.arange(sheet.n) % 3 == 0, 1.0, -1.0)
+    smoothed = solve(sheet, signs)
+    monkeypatch.setattr(sparse_newton, "_MANY", sheet.n)
+    plain = solve(sheet, signs)
+    assert (smoothed.failure, plain.failure) == ("", "")
+    assert not np.array_equal(smoothed.x, plain.x)  # they came along different ways
+    assert np.abs(smoothed.x - plain.x).max() < 1e-8
+
+
+def test_plain_steps_follow_where_smoothed_ones_fail(monkeypatch) -> None:
+    monkeypatch.setattr(sparse_newton, "_MANY", 0)
+    pattern = random_square(6, seed=3)
+    points = [(x * 10**140 + y, y) for x, y in pattern.vertices]
+    long = BranchFinder(CreasePattern(points, pattern.triangles))
+    signs = np.array([1.0, -1.0] * 3)
+    with np.errstate(all="ignore"):
+        assert sparse_newton._solve(long._floats, signs, None, 5.0, None).failure
+    assert find_branch(long.pattern, "+-+-+-").status is PROVED

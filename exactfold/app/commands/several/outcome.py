@@ -14,6 +14,7 @@ from exactfold.app.shell.shell import EXIT, error_document, exit_code
 from exactfold.app.verbs.counting import counted_with_letters
 from exactfold.branches.counting.batch import Job, count_job
 from exactfold.branches.values.result import BranchCount
+from exactfold.pattern.drawing.drawing import Loud
 
 if TYPE_CHECKING:
     from exactfold.app.commands.several.document import (
@@ -96,9 +97,14 @@ def line_for(job: Job, result: BranchCount | Decomposition | Exception) -> Line:
             panels = None if isinstance(result, BranchCount) else result
             second = panels is not None and panels.true is None and panels.graphs is None
             message = "to second order" if second else ""
+        loud = (
+            [] if result.read is None else [s for s in result.read["lines"] if isinstance(s, Loud)]
+        )
+        said = [message, *loud] if message else loud
         if (warning := result.warning) is not None and warning not in message:
-            message = f"{message}{'; ' if message else ''}warning: {warning}"
-        warned = warning is not None
+            said = [*said, f"warning: {warning}"]
+        message = "; ".join(said)
+        warned = warning is not None or bool(loud)
         ways = _ways(result)
         text = json.dumps(document)
         return Line(job.name, status, code, text, ways, message, warned, in_part=bool(known))

@@ -6,6 +6,7 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from typing import Any, Final
 
 from exactfold._support.plurals import agreeing, counted
@@ -29,6 +30,9 @@ FIELD_KEY: Final = "frame_exactfold:field"
 _PREFIXES: Final = ("file_", "frame_", "vertices_", "edges_", "faces_")
 AGREEMENT: Final = Fraction(1, 10**9)
 """Exact coordinates and floats must agree up to this share of the largest float."""
+
+_parsed = lru_cache(maxsize=2048)(parse_rational)
+"""Sheets on a grid write the same few numbers many times."""
 
 
 @dataclass(frozen=True)
@@ -144,7 +148,7 @@ def components(vertex: int, row: object) -> tuple[Fraction, Fraction, Fraction]:
 
 def _number(value: object) -> Fraction:
     if isinstance(value, _Literal):
-        return parse_rational(value.text)
+        return _parsed(value.text)
     if isinstance(value, int) and not isinstance(value, bool):
         return Fraction(value)
     raise NumberError(f"{shown(value)} is not a JSON number")
@@ -172,10 +176,11 @@ def exact_points(
         if not isinstance(row, list) or len(row) != 2 or not all(isinstance(c, str) for c in row):
             raise NumberError(f'vertex {v}: {shown(row)} in `{EXACT_KEY}` is not ["p/q", "p/q"]')
         try:
-            x, y = parse_rational(row[0]), parse_rational(row[1])
+            x, y = _parsed(row[0]), _parsed(row[1])
         except NumberError as error:
             raise NumberError(f"vertex {v} in `{EXACT_KEY}`: {error}") from None
-        if max(abs(x - stated[v][0]), abs(y - stated[v][1])) > tolerance:
+        near_x, near_y = stated[v][:2]
+        if (x != near_x or y != near_y) and max(abs(x - near_x), abs(y - near_y)) > tolerance:
             raise StaleExactCoordinatesError(
                 f"vertex {v}: `{EXACT_KEY}` and `vertices_coords` disagree; delete `{EXACT_KEY}` "
                 "if another program moved the vertex"

@@ -74,11 +74,15 @@ def left_relations(sheet: Sheet) -> tuple[Relation, ...]:
     # So many are expected below a defect of 1.
     expected = sum(float((2 * size / (pi * test.shortest)).sum()) for test in tests)
     near: list[tuple[float, int, int, int]] = []
+    # Integers, where the sheet has them: a common factor does not turn the vectors.
+    points: Sequence[tuple[Number, Number]]
+    points, *_ = getattr(sheet, "integer_vertices", (sheet.vertices,))
+    directions: Mapping[Edge, tuple[Number, Number]] = getattr(sheet, "directions", {})
     for k, test in enumerate(tests):
         defects = test.off * test.shortest / size
         chosen = np.flatnonzero(defects < NEAREST)
         for row in chosen[test.off[chosen] < _TRUST].tolist():
-            defects[row] = _exact(sheet, test.terms(row)) * test.shortest[row] / size
+            defects[row] = _exact(points, directions, test.terms(row)) * test.shortest[row] / size
         chosen = chosen[defects[chosen] > 0]
         places_in_order = test.order[chosen].tolist()
         near += zip(defects[chosen].tolist(), places_in_order, repeat(k), chosen.tolist())
@@ -221,17 +225,20 @@ def _tests(sheet: Sheet, places: FloatArray) -> Iterator[_Tests]:
             yield _Tests.of("kawasaki", places, hubs, ends, first + len(i))
 
 
-def _exact(sheet: Sheet, terms: _Terms) -> float:
+def _exact(
+    points: Sequence[tuple[Number, Number]],
+    directions: Mapping[Edge, tuple[Number, Number]],
+    terms: _Terms,
+) -> float:
     """The angle by which a sum misses a multiple of pi, from exact vectors; 0 if it does not.
 
     The product of the directions, conjugated where the sign is negative, is real if the sum is a
     multiple of pi.
     """
-    directions: Mapping[Edge, tuple[Number, Number]] = getattr(sheet, "directions", {})
     x: Number = 1
     y: Number = 0
     for edge, sign in terms:
-        (ax, ay), (bx, by) = (sheet.vertices[v] for v in edge)
+        (ax, ay), (bx, by) = points[edge[0]], points[edge[1]]
         u, w = directions.get(edge, (bx - ax, by - ay))
         w = w * sign
         x, y = x * u - y * w, x * w + y * u
