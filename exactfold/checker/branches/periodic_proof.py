@@ -57,6 +57,7 @@ class PeriodicProof:
         at_most(number, PERIODIC_VERTICES, "the vertices of the cell", "PERIODIC_VERTICES")
         self.forms = CellForms(sheet, direction, unit)
         self.covered: set[tuple[int, ...]] = set()
+        self.simple: set[tuple[int, ...]] = set()  # the sign vectors of rays
         self.branches: list[PeriodicBranchClaim] = []
         self.pleats: list[list[Row]] = []
         self.families: list[list[Row]] = []
@@ -95,14 +96,18 @@ class PeriodicProof:
             b = box.sign(integers(bend))
             require(b, "the sign of b of a ray is open")
             letters = [_LETTERS[box.sign(integers(row))] for row in forms.folds]
-            self._cover([s or 0 for s in signs], "ray")
+            self.simple.add(self._cover([s or 0 for s in signs]))
             self._branch([s or 0 for s in signs], b or 0, letters)
 
-    def _cover(self, signs: Sequence[int], what: str, *, again: bool = False) -> None:
-        """Enter a sign vector, without zeros, as that of its pair with + at the first vertex."""
+    def _cover(self, signs: Sequence[int]) -> tuple[int, ...]:
+        """Enter a sign vector, without zeros, as that of its pair with + at the first vertex.
+
+        The cone of the signs of a ray is this ray. Another entry would be the same branch again.
+        """
         pair = tuple(signs[0] * s for s in signs)
-        require(again or pair not in self.covered, f"two {what}s have the same signs")
+        require(pair not in self.simple, "another ray has these signs")
         self.covered.add(pair)
+        return pair
 
     def _branch(self, signs: Sequence[int], b: int, letters: Sequence[str]) -> None:
         sheet, places = self.forms.cell, dict(zip(self.forms.labels, signs, strict=True))
@@ -165,7 +170,7 @@ class PeriodicProof:
         require(_canonical(radical) == space, "a point of a space lies in a larger one")
         signs = [_sign(_dot(row, point)) for row in forms.vertices.values()]
         for completed in product(*((s,) if s else (1, -1) for s in signs)):
-            self._cover(completed, "point", again=True)
+            self._cover(completed)
 
     def _line(self, ray: Row) -> None:
         signs = [_sign(_dot(row, ray)) for row in self.forms.vertices.values()]
