@@ -61,6 +61,7 @@ class PeriodicProof:
             for edge, row in zip(sheet.edges, self.forms.folds, strict=True)
         ]
         self.covered: set[tuple[int, ...]] = set()
+        self.simple: set[tuple[int, ...]] = set()  # the sign vectors of rays
         self.branches: list[PeriodicBranchClaim] = []
         self.pleats: list[list[Row]] = []
         self.families: list[list[Row]] = []
@@ -99,7 +100,7 @@ class PeriodicProof:
             b = box.sign(integers(bend))
             require(b, "the sign of b of a ray is open")
             letters = [self._letter(box, integers, k) for k in range(len(forms.folds))]
-            self._cover([s or 0 for s in signs], "ray")
+            self.simple.add(self._cover([s or 0 for s in signs]))
             self._branch([s or 0 for s in signs], b or 0, letters)
 
     def _letter(self, box: Box, integers: Callable[[Row], list[int]], fold: int) -> str:
@@ -109,11 +110,15 @@ class PeriodicProof:
             sign = 0
         return _LETTERS[sign]
 
-    def _cover(self, signs: Sequence[int], what: str, *, again: bool = False) -> None:
-        """Enter a sign vector, without zeros, as that of its pair with + at the first vertex."""
+    def _cover(self, signs: Sequence[int]) -> tuple[int, ...]:
+        """Enter a sign vector, without zeros, as that of its pair with + at the first vertex.
+
+        The cone of the signs of a ray is this ray. Another entry would be the same branch again.
+        """
         pair = tuple(signs[0] * s for s in signs)
-        require(again or pair not in self.covered, f"two {what}s have the same signs")
+        require(pair not in self.simple, "another ray has these signs")
         self.covered.add(pair)
+        return pair
 
     def _branch(self, signs: Sequence[int], b: int, letters: Sequence[str]) -> None:
         sheet, places = self.forms.cell, dict(zip(self.forms.labels, signs, strict=True))
@@ -176,7 +181,7 @@ class PeriodicProof:
         require(_canonical(radical) == space, "a point of a space lies in a larger one")
         signs = [_sign(_dot(row, point)) for row in forms.vertices.values()]
         for completed in product(*((s,) if s else (1, -1) for s in signs)):
-            self._cover(completed, "point", again=True)
+            self._cover(completed)
 
     def _line(self, ray: Row) -> None:
         signs = [_sign(_dot(row, ray)) for row in self.forms.vertices.values()]
