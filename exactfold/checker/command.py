@@ -18,6 +18,7 @@ from .branches.compact import COMPACT
 from .branches.connected_components import PIECES
 from .branches.listing import LISTING
 from .branches.periodic import PERIODIC
+from .branches.torques import BRANCH_TORQUES
 from .core.kinds import DocumentKind, LineKind, Verified
 from .core.limits import MOST_BYTES, MOST_LINE
 from .core.lines import lines, read_object
@@ -60,6 +61,7 @@ DOCUMENTS: tuple[DocumentKind[Any], ...] = (
     PANEL_ASSIGNMENTS,
     PANEL_FREEDOM,
     PANEL_TORQUES,
+    BRANCH_TORQUES,
     MOTION,
     PANEL_MOTION,
     MEANT,

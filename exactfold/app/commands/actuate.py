@@ -7,15 +7,16 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from exactfold._support.verdict import UNDECIDED
 from exactfold.app.options.choosing import choice_of
 from exactfold.app.options.motions import ActuateOptions
 from exactfold.app.shell.json_numbers import numbers_by_name
 from exactfold.app.shell.patterns import in_doubt, read_any, tell_doubt, verdict
 from exactfold.app.shell.shell import EXIT, Bar, name_of
 from exactfold.app.verbs.actuating import Actuated, actuate_opened
-from exactfold.certificates.entries import write_certificate
+from exactfold.certificates.entries import Document, write_certificate
 from exactfold.design.actuation.result import Actuation
-from exactfold.errors import InputError, NotApplicableError, NumberError
+from exactfold.errors import InputError, NumberError
 from exactfold.exact.numbers import as_rational
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.writing.fold_writing import checked_target, require_folder, write_text
@@ -47,8 +48,10 @@ class Driven(ActuateOptions):
             )
             self._write(found)
         if self.as_json:
-            document = found.to_dict(name_of(self.file), self._certificate)
-            print(json.dumps(in_doubt(opened, document)))
+            document = in_doubt(opened, found.to_dict(name_of(self.file), self._certificate))
+            if opened.doubt:
+                document = {**document, "self_foldable": str(UNDECIDED)}
+            print(json.dumps(document))
         else:
             from exactfold.app import report
 
@@ -63,16 +66,20 @@ class Driven(ActuateOptions):
     def _write(self, found: Actuated) -> None:
         """Write the certificate and the torques in N mm, if they are asked for."""
         if self.certificate is not None:
-            if isinstance(found, Actuation):
-                raise NotApplicableError(
-                    "torques for a branch have no certificate yet; those for rigid panels have one"
-                )
-            from exactfold.design.actuation.panels.certificate import panel_torques_certificate
-
-            write_certificate(panel_torques_certificate(found), self.certificate)
+            write_certificate(_certificate_of(found), self.certificate)
         if self.output is not None and self.hinges is not None:
             letters = found.branch.assignment if isinstance(found, Actuation) else found.assignment
             write_text(self.output, self.hinges.table(found.pattern, found.torques, letters))
+
+
+def _certificate_of(found: Actuated) -> Document:
+    if isinstance(found, Actuation):
+        from exactfold.design.actuation.certificate import torques_certificate
+
+        return torques_certificate(found)
+    from exactfold.design.actuation.panels.certificate import panel_torques_certificate
+
+    return panel_torques_certificate(found)
 
 
 def torques_in(path: Path, pattern: CreasePattern | PanelPattern) -> dict[Edge, Fraction]:

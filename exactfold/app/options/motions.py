@@ -147,8 +147,8 @@ class ActuateOptions(WayOptions):
         typer.Option(
             parser=exact_number,
             metavar="NUMBER",
-            help="Give torques in N mm: the stiffness of 1 mm of hinge, in N mm / rad. For rigid "
-            "panels, with --width.",
+            help="Give torques in N mm: the stiffness of 1 mm of hinge, in N mm / rad. With "
+            "--width.",
         ),
     ] = None
     width: Annotated[
@@ -165,7 +165,7 @@ class ActuateOptions(WayOptions):
     ] = None
     certificate: Annotated[
         Path | None,
-        written("Write the evidence for `exactfold check`; of rigid panels only.", "OUT.json"),
+        written("Write the evidence for `exactfold check`.", "OUT.json"),
     ] = None
     as_json: Json = False
     everything: Annotated[bool, flag("--all", text="List every branch in the ranking.")] = False

@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from exactfold.app.shell.parameters import Dask, Json, flag, number, sizes, written
+from exactfold.errors import UsageError
 
 
 def _complete(incomplete: str) -> list[str]:
@@ -60,6 +61,10 @@ class StudyOptions:
             show_default=False,
         ),
     ] = None
+    panels: Annotated[
+        bool,
+        flag("--panels", text="Run the study of rigid panels: `selffold --panels`."),
+    ] = False
     seed: Annotated[
         int,
         number(
@@ -125,3 +130,14 @@ class StudyOptions:
         ),
     ] = None
     as_json: Json = False
+
+    def __post_init__(self) -> None:
+        if not self.panels:
+            return
+        from exactfold.studies.running.registry import MODULES
+
+        name = f"{self.name}-panels"
+        if name not in MODULES:
+            others = [one.removesuffix("-panels") for one in MODULES if one.endswith("-panels")]
+            raise UsageError(f"--panels goes with {' and '.join(others)}")
+        object.__setattr__(self, "name", name)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from itertools import product
 from typing import Any, TypedDict
@@ -19,7 +19,7 @@ from ..core.reading import (
     parse_rational,
     require,
 )
-from ..sheets.boxes import read_box
+from ..sheets.boxes import Box, read_box
 from ..sheets.cell import Cell, CellChart, CellForms, Corner, Row, read_corners
 from ..sheets.sheet import turn
 from .listing import UPSIDE_DOWN
@@ -56,7 +56,12 @@ class PeriodicProof:
         number = len(sheet.points)
         at_most(number, PERIODIC_VERTICES, "the vertices of the cell", "PERIODIC_VERTICES")
         self.forms = CellForms(sheet, direction, unit)
+        self.partners = [
+            self.forms.partners(edge, row)
+            for edge, row in zip(sheet.edges, self.forms.folds, strict=True)
+        ]
         self.covered: set[tuple[int, ...]] = set()
+        self.simple: set[tuple[int, ...]] = set()  # the sign vectors of rays
         self.branches: list[PeriodicBranchClaim] = []
         self.pleats: list[list[Row]] = []
         self.families: list[list[Row]] = []
@@ -94,15 +99,26 @@ class PeriodicProof:
             require(all(signs), "a vertex of a simple ray has no sign")
             b = box.sign(integers(bend))
             require(b, "the sign of b of a ray is open")
-            letters = [_LETTERS[box.sign(integers(row))] for row in forms.folds]
-            self._cover([s or 0 for s in signs], "ray")
+            letters = [self._letter(box, integers, k) for k in range(len(forms.folds))]
+            self.simple.add(self._cover([s or 0 for s in signs]))
             self._branch([s or 0 for s in signs], b or 0, letters)
 
-    def _cover(self, signs: Sequence[int], what: str, *, again: bool = False) -> None:
-        """Enter a sign vector, without zeros, as that of its pair with + at the first vertex."""
+    def _letter(self, box: Box, integers: Callable[[Row], list[int]], fold: int) -> str:
+        """The letter of a fold; it is flat if another factor of a form is not 0."""
+        sign = box.sign(integers(self.forms.folds[fold]))
+        if sign is None and any(box.sign(integers(m)) for m in self.partners[fold]):
+            sign = 0
+        return _LETTERS[sign]
+
+    def _cover(self, signs: Sequence[int]) -> tuple[int, ...]:
+        """Enter a sign vector, without zeros, as that of its pair with + at the first vertex.
+
+        The cone of the signs of a ray is this ray. Another entry would be the same branch again.
+        """
         pair = tuple(signs[0] * s for s in signs)
-        require(again or pair not in self.covered, f"two {what}s have the same signs")
+        require(pair not in self.simple, "another ray has these signs")
         self.covered.add(pair)
+        return pair
 
     def _branch(self, signs: Sequence[int], b: int, letters: Sequence[str]) -> None:
         sheet, places = self.forms.cell, dict(zip(self.forms.labels, signs, strict=True))
@@ -165,7 +181,7 @@ class PeriodicProof:
         require(_canonical(radical) == space, "a point of a space lies in a larger one")
         signs = [_sign(_dot(row, point)) for row in forms.vertices.values()]
         for completed in product(*((s,) if s else (1, -1) for s in signs)):
-            self._cover(completed, "point", again=True)
+            self._cover(completed)
 
     def _line(self, ray: Row) -> None:
         signs = [_sign(_dot(row, ray)) for row in self.forms.vertices.values()]

@@ -155,6 +155,8 @@ class Number:
 
     def __add__(self, other: Number) -> Number:
         tower, a, b = self._both(other)
+        if len(a) == 1:
+            return Number(tower, (a[0] + b[0],))
         return Number(tower, _plus(a, b))
 
     def __sub__(self, other: Number) -> Number:
@@ -163,6 +165,8 @@ class Number:
 
     def __mul__(self, other: Number) -> Number:
         tower, a, b = self._both(other)
+        if len(a) == 1:
+            return Number(tower, (a[0] * b[0],))
         return Number(tower, tower.times(a, b))
 
     def __truediv__(self, other: Number) -> Number:

@@ -11,7 +11,7 @@ from typing import Any
 
 from ..core.towers import Number, Tower
 from ..sheets.panels import Edge, PanelSheet, cross, pair
-from .reduction import Vector, Work, zero
+from .reduction import Vector, Work, enclosed, reduced, zero
 
 Motion = dict[Edge, Number]
 """A motion, as the densities of the folds; densities that are 0 are left out."""
@@ -44,6 +44,8 @@ class Forms:
     ) -> None:
         self.sheet, self.near, self.work = sheet, near, work or Work()
         self._found: dict[tuple[int, ...], tuple[Space, Squares]] = {}
+        self._alone: dict[int, tuple[list[Edge], Squares]] = {}
+        self._whole: dict[tuple[int, ...], tuple[Space, bool]] = {}
         self._known: dict[tuple[int, int | None], list[tuple[Edge, Edge, Any]]] = {}
         self.first_order = self._first_order()
 
@@ -139,14 +141,24 @@ class Forms:
         return motion_sum
 
     def squares(self, v: int, space: Space) -> Squares:
-        """The form of a vertex as sum d_k l_k^2; each l_k is given by its values on the basis."""
-        folds = [pair(v, u) for u in self.near[v]]
-        touching = [k for k, motion in enumerate(space) if any(fold in motion for fold in folds)]
-        motions = [space[k] for k in touching]
-        key = v, *map(id, motions)
+        """The form of a vertex as sum d_k l_k^2; each l_k is given by its values on the basis.
+
+        If the space has all local motions of the vertex, the squares are those of the vertex by
+        itself, in the densities of some of its folds.
+        """
+        touching, motions, key = self._touching(v, space)
         if key not in self._found:  # the motions are kept, so that no others get their numbers
-            local = [{fold: motion[fold] for fold in folds if fold in motion} for motion in motions]
-            self._found[key] = motions, self._local_squares(v, local)
+            if self._has_all(v, motions, key):
+                leads, form = self._alone[v]
+                weighted = [(d, dict(zip(leads, values, strict=True))) for d, values in form]
+                found = [
+                    (d, [self._value(row, motion) for motion in motions]) for d, row in weighted
+                ]
+            else:
+                folds = [pair(v, u) for u in self.near[v]]
+                local = [{fold: m[fold] for fold in folds if fold in m} for m in motions]
+                found = self._local_squares(v, local)
+            self._found[key] = motions, found
         nothing = self.sheet.tower.number(0)
         result: Squares = []
         for d, values in self._found[key][1]:
@@ -155,6 +167,54 @@ class Forms:
                 all_values[k] = x
             result.append((d, all_values))
         return result
+
+    def is_cone(self, v: int, space: Space) -> bool:
+        """Whether the space has all local motions of a vertex, whose form has both signs and a rank
+        of 3 or more; False decides nothing.
+        """
+        _, motions, key = self._touching(v, space)
+        if len(self.near[v]) < 5 or not self._has_all(v, motions, key):
+            return False
+        _, form = self._alone[v]
+        return len(form) > 2 and len({d.sign() for d, _ in form}) == 2
+
+    def _touching(self, v: int, space: Space) -> tuple[list[int], Space, tuple[int, ...]]:
+        """The places of the motions that move a fold of a vertex, these motions, and a key."""
+        folds = [pair(v, u) for u in self.near[v]]
+        touching = [k for k, motion in enumerate(space) if any(fold in motion for fold in folds)]
+        motions = [space[k] for k in touching]
+        return touching, motions, (v, *map(id, motions))
+
+    def _has_all(self, v: int, motions: Space, key: tuple[int, ...]) -> bool:
+        """Whether intervals show that motions have all local motions of a vertex.
+
+        The vertex has at least four folds; of others this is not asked.
+        """
+        if len(self.near[v]) < 4:
+            return False
+        if v not in self._alone:
+            self._alone[v] = self._by_itself(v)
+        if key not in self._whole:
+            leads, _ = self._alone[v]
+            some = [enclosed({fold: m[fold] for fold in leads if fold in m}) for m in motions]
+            self._whole[key] = motions, len(reduced(some, self.work)) == len(leads)
+        return self._whole[key][1]
+
+    def _by_itself(self, v: int) -> tuple[list[Edge], Squares]:
+        """Folds whose densities are coordinates of all local motions of a vertex, and its form.
+
+        The densities of the two other folds, p and q, follow from the condition of first order.
+        """
+        d = {pair(v, u): self.sheet.vector(v, u) for u in self.near[v]}
+        p, *others = d
+        q = next(fold for fold in others if cross(d[p], d[fold]).sign())
+        minor, one = cross(d[p], d[q]), self.sheet.tower.number(1)
+        leads = [fold for fold in others if fold != q]
+        motions: list[Motion] = []
+        for fold in leads:
+            ends = {p: cross(d[q], d[fold]) / minor, q: cross(d[fold], d[p]) / minor}
+            motions.append({fold: one, **{end: x for end, x in ends.items() if not zero(x)}})
+        return leads, self._local_squares(v, motions)
 
     def _local_squares(self, v: int, local: Sequence[Motion]) -> Squares:
         """The form of a vertex on motions of its folds.
@@ -274,3 +334,27 @@ class Forms:
             [x + r * y for x, y in zip(first, second, strict=True)] for r in (root, -root)
         )
         return v, one, other
+
+    def other_factor(self, form: Squares, row: Sequence[Number]) -> list[Number] | None:
+        """The second factor of d l^2 + e m^2 if a row is a multiple of one of the two, else None.
+
+        A row x l + y m is if d y^2 + e x^2 = 0, and the other factor is x l - y m. All functions
+        are given by their values on a basis; l and m are independent.
+        """
+        (d, first), (e, second) = form
+        for a, b, c in zip(first, second, row, strict=True):
+            if not zero(c) if zero(a) and zero(b) else zero(c) and (zero(a) or zero(b)):
+                return None  # x and y are not 0
+        places = range(len(row))
+        i = next(k for k in places if not zero(first[k]))
+        minors = ((k, first[i] * second[k] - first[k] * second[i]) for k in places)
+        j, minor = next((k, x) for k, x in minors if not zero(x))
+        x = (row[i] * second[j] - row[j] * second[i]) / minor
+        y = (first[i] * row[j] - first[j] * row[i]) / minor
+        self.work.count(2 * len(row), minor)
+        if not zero(d * y * y + e * x * x):
+            return None
+        both = [(x * a, y * b) for a, b in zip(first, second, strict=True)]
+        if any(not zero(a + b - c) for (a, b), c in zip(both, row, strict=True)):
+            return None
+        return [a - b for a, b in both]

@@ -21,7 +21,7 @@ from .reduction import MOST_STEPS, Rows, inside, reduced, rest_of, zero
 from .together import narrowing_sum, vanish_only_at_zero
 
 MOST_LEAVES = limits.SPACE_LEAVES
-FIRST_TURN, GROWTH = 1 << 17, 8
+FIRST_TURN, GROWTH = 1 << 17, 16
 
 
 @dataclass
@@ -134,11 +134,19 @@ class Spaces(Forms):
 
         The zeros of the second factor of a form are wanted only where the first does not vanish,
         because the others are zeros of the first. So the values of the first factor are kept as
-        densities of a fold (v, -n), which is not in the sheet.
+        densities of a fold (v, -n), which is not in the sheet. If a kept factor divides the form of
+        another vertex, the other factor of that form vanishes.
         """
         kernel, products, left, settled = self._forms(space, settled, every=True)
         if kernel:
             return self._within(space, kernel, settled)
+        nothing = self.sheet.tower.number(0)
+        rows = [[motion.get(key, nothing) for motion in space] for key in sorted(_kept(space))]
+        for v, form in products.items():
+            for row in rows:
+                other = self.other_factor(form, row)
+                if other is not None:
+                    return self._within(space, [other], settled | {v})
         forms = {v: self.squares(v, space) for v in left if not products}
         total = narrowing_sum(self, forms, len(space))
         if len({d.sign() for d, _ in total}) == 1:
@@ -206,6 +214,9 @@ class Spaces(Forms):
         left: list[int] = []
         touched = {v for fold in folds_of(part) for v in fold if v in self.near}
         for v in sorted(touched - settled):
+            if self.is_cone(v, part):
+                left.append(v)
+                continue
             squares = self.squares(v, part)
             signs = [d.sign() for d, _ in squares]
             if abs(sum(signs)) == len(signs):

@@ -1,6 +1,7 @@
 """Certificates of torques that drive rigid panels along one way (docs/actuation.md, 7 and 8).
 
-The claims are about a sheet of which all ways are known, with at most four folds at each vertex:
+The claims are about a sheet of which all ways are known, with at most four folds at each vertex
+and no fold held flat:
 
 - `sha256`: the digest of the pattern; `ways`: how many ways there are;
 - `way`: the motions of the way that is driven, each as [k, choice] for a mode of support k in the
@@ -101,6 +102,7 @@ def check(data: dict[str, Any]) -> TorqueClaims:
     facts = certificate.check(counted_ways)
     require(facts["true"] is not None, "it is not known which ways truly fold")
     require(facts["modes"] is not None, "the ways are not all spanned by modes")
+    require(not facts["held"], "folds are held flat: the ways are not those of the sheet")
     require(claims["springs"] in (EQUAL, BY_LENGTH), "the springs are of no kind that is known")
     sheet, digest = read_panels(data["pattern"])
     require(claims["sha256"] == digest, f"the digest of the pattern is {digest}")

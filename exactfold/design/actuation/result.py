@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal, TypedDict
+from typing import TYPE_CHECKING, ClassVar, Literal, TypedDict
 
 import numpy as np
 
@@ -23,6 +23,7 @@ from exactfold._support.documents import (
     VerdictText,
     VertexSigns,
 )
+from exactfold._support.results import Certified
 from exactfold._support.verdict import PROVED, REFUTED, Verdict
 from exactfold.branches.values.branch import Branch
 from exactfold.design.actuation.directions import Directions
@@ -91,6 +92,7 @@ class HingesDocument(TypedDict):
     """Torques in N mm, in floating point."""
 
     model: str
+    """What the numbers assume."""
     stiffness: Rational
     """Of 1 mm of hinge, in N mm / rad."""
     width: Rational
@@ -137,6 +139,9 @@ class ActuationDocument(TypedDict):
     """Other branches that are proved to be linearly independent, by their vertex signs."""
     orthogonal: OrthogonalDocument | None
     ranking: list[RankedDocument]
+    springs: Literal["equal", "by length"]
+    """The stiffness of the springs that power is measured with."""
+    hinges: HingesDocument | None
     warnings: list[WarningDocument]
     certificate: str | None
     """The file with the evidence, if one was written."""
@@ -169,7 +174,7 @@ class Ranked:
 
 
 @dataclass(frozen=True, repr=False)
-class Actuation:
+class Actuation(Certified):
     """Torques that drive a sheet along one ray of one branch, and all that is proved of them.
 
     The power of torques tau along a ray with unit vector u of fold angles is tau . u. The margin is
@@ -184,6 +189,9 @@ class Actuation:
     on any other branch, modulo the torques that do no work on any motion. `independent` are other
     branches whose fold angles are proved to be linearly independent. If the dimension is proved to
     be positive, `orthogonal` is an example of such torques.
+
+    With `hinges`, power is measured with springs whose stiffness is in proportion to the lengths of
+    the folds, and torques are rest angles in radians.
 
     `status` is PROVED if the margin is proved to be positive, and REFUTED if it is proved not to
     be.
@@ -205,7 +213,10 @@ class Actuation:
     directions: Directions
     place: int
     signs: tuple[str, ...]
+    hinges: Hinges | None = None
     seconds: float = field(default=0.0, compare=False)
+
+    WRITER: ClassVar = "exactfold.design.actuation.certificate:torques_certificate"
 
     @cached_property
     def driven(self) -> tuple[Edge, ...]:
@@ -282,6 +293,10 @@ class Actuation:
             "independent": list(self.independent),
             "orthogonal": None if orthogonal is None else orthogonal_document(orthogonal),
             "ranking": [row.to_dict() for row in self.ranking()],
+            "springs": "equal" if self.hinges is None else "by length",
+            "hinges": None
+            if self.hinges is None
+            else hinges_document(self.hinges, self.pattern, self.torques),
             "warnings": warnings(self.pattern),
             "certificate": certificate,
             "seconds": round(self.seconds, 3),

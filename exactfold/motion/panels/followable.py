@@ -128,11 +128,18 @@ def panel_modes(result: Decomposition) -> tuple[PanelMode, ...]:
     """
     moving = stars(result.pattern, result.held)
     modes: list[PanelMode] = []
+    narrowed: dict[tuple[int, tuple[Edge, ...]], Star] = {}
+
+    def star_of(mode: LocalMode) -> Star:
+        key = mode.vertex, mode.folds
+        if key not in narrowed:
+            narrowed[key] = moving[mode.vertex].only(mode.folds)
+        return narrowed[key]
 
     def add(
         choice: Sequence[LocalMode], letters: Mapping[Edge, str], extends: Extension
     ) -> PanelMode:
-        around = tuple(moving[mode.vertex].only(mode.folds) for mode in choice)
+        around = tuple(star_of(mode) for mode in choice)
         number = len(modes) + 1
         return PanelMode(result.pattern, number, around, tuple(choice), dict(letters), extends)
 

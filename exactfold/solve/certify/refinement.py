@@ -19,6 +19,8 @@ from exactfold.solve.numeric.sparse_sheet import FloatSheet, SingularError, rati
 
 _ITERATIONS = 40
 _SPARE = 16
+_RUNAWAY = 20
+"""Steps whose residuals have grown by so many bits are given up."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +50,24 @@ def refine(
     Residuals are exact. A step solves, in floats, a linear system whose entries are floats of exact
     bends; so each step gains as many digits as a float has. In the result, K_v - k_v is between one
     half and three halves of 2^-level. The result is None if that was not reached.
+
+    Next to flat stars a Jacobian may need pivots off its diagonal. So the steps are tried without
+    such pivots first, which is quicker, and then with them.
     """
+    quick = _refined(sheet, floats, signs, start, level, pivots=False)
+    return quick or _refined(sheet, floats, signs, start, level, pivots=True)
+
+
+def _refined(
+    sheet: VertexEquations,
+    floats: FloatSheet,
+    signs: FloatArray,
+    start: Heights,
+    level: int,
+    *,
+    pivots: bool,
+) -> Heights | None:
+    """`refine` with or without pivots off the diagonal."""
     inner, areas = floats.unknowns, sheet.folds.left * sheet.folds.right
     square = sheet.size**2
     omega = ratio(sheet.folds.bends(start.values) * square, areas * start.denominator)
@@ -65,18 +84,23 @@ def refine(
     for k, v in enumerate(inner.tolist()):
         if v in sheet.targets:
             wanted[k] += int(unit * sheet.targets[v])
+    least: int | None = None
     for _ in range(_ITERATIONS):
         curvature = curvatures(sheet, at.values, bits)
         rest = curvature.low[inner] - wanted
         if (2 * abs(rest) <= excess).all():
             return Heights(at.values, q, bits)
+        largest = int(abs(rest).max())
+        least = largest if least is None else min(least, largest)
+        if not pivots and largest > least << _RUNAWAY:
+            return None
         omega = ratio(curvature.bends * square, areas * q)
         point = Point(
             np.zeros(0), omega, floats.lines(omega), floats.scale * ratio(rest * square, unit)
         )
         value, of_lines, of_forms = equations(floats, point, signs)
         try:
-            step = floats.solve(omega, of_lines, of_forms, value)
+            step = floats.solve(omega, of_lines, of_forms, value, pivots=pivots)
         except SingularError:
             return None
         if not np.isfinite(step).all():

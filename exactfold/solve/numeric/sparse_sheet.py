@@ -144,14 +144,20 @@ class FloatSheet:
         return data
 
     def solve(
-        self, omega: FloatArray, of_lines: FloatArray, of_forms: FloatArray, right: FloatArray
+        self,
+        omega: FloatArray,
+        of_lines: FloatArray,
+        of_forms: FloatArray,
+        right: FloatArray,
+        *,
+        pivots: bool = False,
     ) -> FloatArray:
         """The x with J x = right; J has the rows of_lines_v dl_v/dx + of_forms_v dK_v/dx, scaled.
 
         The scale is that of K_v. J has the pattern of a planar graph. It is factored by sparse LU
         in minimum-degree order, with pivots on the diagonal unless they vanish, as another order
-        costs much more. Newton's method tolerates the accuracy that this loses. Small sheets use
-        dense matrices. Raises `SingularError`.
+        costs more. Newton's method mostly tolerates the accuracy that this loses. `pivots` asks for
+        full partial pivoting. Small sheets use dense matrices. Raises `SingularError`.
         """
         data = self.jacobian(omega, of_lines, of_forms)
         if not np.isfinite(data).all():
@@ -164,6 +170,8 @@ class FloatSheet:
                 return np.asarray(np.linalg.solve(matrix, right))
             except np.linalg.LinAlgError as error:
                 raise SingularError(str(error)) from None
+        if pivots:
+            return np.asarray(_factors(data, p.rows, p.pointers, "COLAMD").solve(right))
         order, places = self._elimination
         factors = _factors(data[places.entries], places.rows, places.pointers, "NATURAL")
         x = np.empty_like(right)
@@ -255,13 +263,18 @@ def _cone_curvature(sheet: VertexEquations) -> FloatArray:
 
 
 def _factors(data: FloatArray, rows: IndexArray, pointers: IndexArray, order: str) -> Any:
-    """The sparse LU factors of a matrix in compressed columns, by SuperLU."""
+    """The sparse LU factors of a matrix in compressed columns, by SuperLU.
+
+    In an order for symmetric patterns, pivots lie on the diagonal unless they vanish.
+    """
     from scipy.sparse import csc_matrix  # here: it takes a while to load
     from scipy.sparse.linalg import splu
 
     n = len(pointers) - 1
     matrix = csc_matrix((data, rows, pointers), shape=(n, n), copy=False)
     try:
+        if order == "COLAMD":
+            return splu(matrix, permc_spec=order)
         return splu(
             matrix,
             permc_spec=order,

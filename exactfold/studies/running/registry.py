@@ -14,6 +14,7 @@ MODULES = {
     "mv": "exactfold.studies.mv",
     "perturbed": "exactfold.studies.perturbed",
     "selffold": "exactfold.studies.selffold",
+    "selffold-panels": "exactfold.studies.selffold_panels",
     "flat": "exactfold.studies.flat",
     "motions": "exactfold.studies.loops",
     "figures": "exactfold.studies.figures",

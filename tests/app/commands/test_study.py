@@ -236,3 +236,13 @@ def test_sizes_that_are_none_are_refused(here, sizes):
 def test_columns_of_words_are_known():
     table = StudyTable("t", "T", ("a", "b", "c"), (("x", 1, "0 %"), ("y", 2, "5 %")))
     assert table.words == (True, False, False)
+
+
+def test_the_study_of_panels_is_named_by_an_option(here):
+    command = ("study", "selffold", "--panels", "--sizes", 2, "--number", 1, "--workers", 1)
+    result = run(*command)
+    assert result.exit_code == PROVED
+    assert "1 row of seed 0, 1 computed now; rows in selffold-panels.sqlite" in result.stdout
+    refused = run("study", "table1", "--panels")
+    assert refused.exit_code == USAGE
+    assert "--panels goes with selffold" in refused.stderr

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import json
 from fractions import Fraction
 from typing import Any
 
 import pytest
 from forge import Document, beyond, given, refused, stopped, verified, with_one_key_more, without
 
+from exactfold.branches.periodic.counting import count_periodic
 from exactfold.checker.branches import periodic, periodic_proof
 from exactfold.checker.core.limits import PERIODIC_VERTICES
+from exactfold.pattern.periodic.cell_files import parse_cell
 
 
 def periodic_file(name: str) -> Document:
@@ -125,7 +128,25 @@ def test_a_ray_that_is_missing_leaves_signs_open() -> None:
 def test_a_ray_that_is_listed_twice_would_be_two_branches() -> None:
     document = periodic_file("waterbomb")
     rays(document).append(rays(document)[0])
-    false(document, "two rays have the same signs")
+    false(document, "another ray has these signs")
+
+
+def test_a_ray_that_is_a_space_again_would_be_two_branches() -> None:
+    """The only solution of one vertex is rational, so that it is a ray and a line over Q."""
+    cell = parse_cell(
+        json.dumps(
+            {
+                "format": "exactfold periodic pattern",
+                "lattice": [["1", "0"], ["0", "1"]],
+                "points": [["0", "0"]],
+                "faces": [[[0, 0, 0], [0, 1, 0], [0, 1, 1]], [[0, 0, 0], [0, 1, 1], [0, 0, 1]]],
+            }
+        )
+    )
+    document = json.loads(json.dumps(count_periodic(cell, (1, 2)).certificate()))
+    assert verified(document)["distinct"] == 1
+    spaces(document).append({"basis": [["1"]], "points": [["1"]]})
+    false(document, "another ray has these signs")
 
 
 def test_a_pleat_is_no_ray() -> None:

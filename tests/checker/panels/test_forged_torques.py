@@ -99,6 +99,24 @@ def test_the_count_is_verified_and_complete() -> None:
     stopped(document, "it is not known which ways truly fold")
 
 
+class Unsaid(tuple[tuple[int, int], ...]):
+    """Folds that the author of a certificate does not see."""
+
+    def __bool__(self) -> bool:
+        return False
+
+
+def test_no_way_is_lost_because_folds_are_held_flat() -> None:
+    """With one fold held, the sheet has two ways, and rivals of the first are no ways of it."""
+    sheet = miura(2, 2)
+    held = actuate_panels(decompose(sheet, flat=[(4, 5)]), 1)
+    with pytest.raises(NotApplicableError, match="about sheets with no fold held flat"):
+        held.certificate()
+    hidden = replace(held, decomposition=replace(held.decomposition, held=Unsaid([(4, 5)])))
+    document = json.loads(json.dumps(hidden.certificate()))
+    stopped(document, "folds are held flat: the ways are not those of the sheet")
+
+
 @pytest.mark.parametrize(
     ("name", "changes", "message"),
     [

@@ -113,6 +113,63 @@ def test_rests_of_intervals_and_of_numbers() -> None:
     assert inside([], vectors)
 
 
+# --- forms of vertices ---------------------------------------------------------------------------
+
+
+def test_the_other_factor_is_found_only_for_factors() -> None:
+    """The form (x + 2y)^2 - (y + z)^2 = (x + y - z)(x + 3y + z), on x, y, z and one more."""
+    found = spaces(cone())
+
+    def row(*values: int) -> list[Number]:
+        return [number(x) for x in values]
+
+    form = [(number(1), row(1, 2, 0, 0)), (number(-1), row(0, 1, 1, 0))]
+    one, other = row(1, 1, -1, 0), row(1, 3, 1, 0)
+
+    def parts(values: list[Number] | None) -> list[int] | None:
+        return None if values is None else [int(x.parts[0]) for x in values]
+
+    assert parts(found.other_factor(form, one)) == parts(other)
+    assert parts(found.other_factor(form, other)) == parts(one)
+    assert parts(found.other_factor(form, row(3, 3, -3, 0))) == [3, 9, 3, 0]
+    for wrong in (
+        row(1, 1, -1, 1),  # the fourth parameter is in neither square
+        row(0, 1, -1, 0),  # the first is in one square only, and so in both factors
+        row(1, 2, 0, 0),  # a square, and no factor
+        row(1, 4, 2, 0),  # a sum of multiples of the squares that is no factor
+        row(1, 1, -2, 0),  # a factor but for one parameter
+    ):
+        assert found.other_factor(form, wrong) is None
+    swapped = [(number(1), row(0, 1, 1, 0)), (number(-1), row(1, 2, 0, 0))]
+    assert parts(found.other_factor(swapped, one)) in ([1, 3, 1, 0], [-1, -3, -1, 0])
+
+
+@pytest.mark.parametrize("pattern", [cone(), triangle(), half_crossed()])
+def test_squares_of_a_vertex_on_all_its_motions_and_on_some(pattern: PanelPattern) -> None:
+    """A form is the sum of its squares, whether the space has all local motions or not."""
+    found = spaces(pattern)
+    some = found.first_order
+    cones = set()
+    while some:
+        for v in found.near:
+            squares = found.squares(v, some)
+            for k, a in enumerate(some):
+                for j, b in enumerate(some):
+                    terms = (d * row[k] * row[j] for d, row in squares)
+                    value = sum(terms, start=number(0))
+                    assert (value - found.form(v, a, b)).sign() == 0
+            if found.is_cone(v, some):
+                cones.add((v, len(some)))
+                signs = sorted(d.sign() for d, _ in squares)
+                assert len(squares) == len(found.near[v]) - 2
+                assert signs in ([-1] * (len(signs) - 1) + [1], [-1] + [1] * (len(signs) - 1))
+        some = found.vanishing(some, [[number(k + 1) for k in range(len(some))]])
+    large = {v for v, around in found.near.items() if len(around) > 4}
+
+    assert not any(size < len(found.near[v]) - 2 for v, size in cones)
+    assert {v for v, _ in cones} == large
+
+
 # --- sheets --------------------------------------------------------------------------------------
 
 

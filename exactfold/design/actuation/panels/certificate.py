@@ -23,8 +23,8 @@ def panel_torques_certificate(found: PanelActuation) -> Document:
 
     It contains the count of all ways, what the torques do, a bound of the margin of all torques,
     and whether the way is self-foldable (docs/actuation.md, 10). Raises `NotApplicableError` if
-    the margin is not proved to be positive against all ways, and for sheets on which more than four
-    folds of a vertex may fold.
+    the margin is not proved to be positive against all ways, if folds are held flat, and for sheets
+    on which more than four folds of a vertex may fold.
 
     >>> from exactfold import checker
     >>> from exactfold.branches.counting.ways import count_ways
@@ -42,6 +42,8 @@ def panel_torques_certificate(found: PanelActuation) -> Document:
             "no certificate: only ways that modes span have one, and more than four folds of a "
             "vertex may fold"
         )
+    if found.decomposition.held:
+        raise NotApplicableError("no certificate: it is about sheets with no fold held flat")
     count = certificate_of_panels(found.decomposition)
     names = _Names(found, count["claims"]["supports"])
     folds = found.pattern.folds
