@@ -147,8 +147,8 @@ class ActuateOptions(WayOptions):
         typer.Option(
             parser=exact_number,
             metavar="NUMBER",
-            help="Give torques in N mm: the stiffness of 1 mm of hinge, in N mm / rad. For rigid "
-            "panels, with --width.",
+            help="Give torques in N mm: the stiffness of 1 mm of hinge, in N mm / rad. With "
+            "--width.",
         ),
     ] = None
     width: Annotated[

@@ -9,7 +9,7 @@ from rich.table import Table
 from rich.text import Text
 
 from exactfold._support.plurals import counted
-from exactfold.app.report.panel_actuation import between, panels_actuation
+from exactfold.app.report.panel_actuation import between, model_text, newtons, panels_actuation
 from exactfold.app.report.terminal import facts_table, letters_text, more_text, status_text
 from exactfold.exact.numbers import decimal_above, decimal_near
 
@@ -48,6 +48,7 @@ def actuation_report(actuation: Actuation | PanelActuation, *, everything: bool 
         _torques(actuation),
         Text(""),
         *_ranking(actuation, everything),
+        *model_text(actuation.hinges),
     )
 
 
@@ -93,13 +94,21 @@ def _torques(actuation: Actuation) -> Table:
     table.add_column("crease")
     table.add_column("letter")
     table.add_column("torque", justify="right")
+    hinges = actuation.hinges
+    lengths = {} if hinges is None else hinges.lengths(actuation.pattern)
+    if hinges is not None:
+        table.add_column("mm", justify="right")
+        table.add_column("N mm", justify="right")
     alone = actuation.orthogonal.torques if actuation.orthogonal is not None else {}
     if alone:
         table.add_column("on this branch only", justify="right")
     for fold in sorted({*actuation.driven, *(fold for fold, torque in alone.items() if torque)}):
         letter = actuation.branch.assignment[fold]
         row: list[str | Text] = [f"{fold[0]}-{fold[1]}", letters_text(letter)]
-        row.append(decimal_near(actuation.torques[fold], 12))
+        torque = actuation.torques[fold]
+        row.append(decimal_near(torque, 12))
+        if hinges is not None:
+            row += newtons(hinges, lengths[fold], torque)
         if alone:
             row.append(decimal_near(alone[fold], 12))
         table.add_row(*row)

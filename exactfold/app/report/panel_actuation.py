@@ -22,6 +22,7 @@ from exactfold.design.actuation.hinges import MODEL
 from exactfold.exact.numbers import decimal_above, decimal_below, decimal_near
 
 if TYPE_CHECKING:
+    from exactfold.design.actuation.hinges import Hinges
     from exactfold.design.actuation.panels.result import PanelActuation
     from exactfold.design.actuation.result import Bounds
 
@@ -56,9 +57,17 @@ def panels_actuation(found: PanelActuation, *, everything: bool = False) -> Grou
     parts: list[Table | Text] = [facts_table(list(rows)), Text("")]
     parts += _torques(found, everything)
     parts += [Text(""), *_ranking(found, everything)]
-    if found.hinges is not None:
-        parts += [Text(""), Text(f"Model of the torques in N mm: {MODEL}.")]
-    return Group(*parts)
+    return Group(*parts, *model_text(found.hinges))
+
+
+def model_text(hinges: Hinges | None) -> list[Text]:
+    """A line that says what torques in N mm assume, if there are any."""
+    return [] if hinges is None else [Text(""), Text(f"Model of the torques in N mm: {MODEL}.")]
+
+
+def newtons(hinges: Hinges, length: float, torque: Fraction) -> list[str]:
+    """The length of a fold in mm and its torque in N mm."""
+    return [f"{length:.4g}", f"{float(hinges.stiffness) * length * float(torque):.4g}"]
 
 
 def between(bounds: Bounds) -> str:
@@ -102,8 +111,7 @@ def _torques(found: PanelActuation, everything: bool) -> list[Table | Text]:
             decimal_near(torque, 12),
         ]
         if hinges is not None:
-            newton = float(hinges.stiffness) * lengths[fold] * float(torque)
-            row += [f"{lengths[fold]:.4g}", f"{newton:.4g}"]
+            row += newtons(hinges, lengths[fold], torque)
         if alone:
             row.append(decimal_near(alone[fold], 6))
         without = found.without.get(fold)

@@ -180,9 +180,9 @@ def _folded(known: Known, ways: Sequence[Way], clock: Clock) -> Iterator[Answer]
     """The flat-folded states of a sheet, and then the ways that end in them, one by one."""
     states = flat_states(known.opened, clock)
     if not states:
-        return
+        return  # another line says that the time is over
     sheets = [folded_sheet(one, clock) for one in states]
-    yield {"kind": "folded", "folded": {"sheets": sheets, "ends": []}}
+    yield {"kind": "folded", "folded": {"sheets": sheets, "ends": [], "left": ""}}
     for end in known.ends(states, ways, process_pool(1), clock):
         yield {"kind": "end", "end": end}
 

@@ -12,7 +12,7 @@ from exactfold.app.verbs.choosing import choose, the_branch
 from exactfold.app.verbs.chosen import Choice, ChosenPanels, Letters
 from exactfold.branches.counting.find import BranchFinder, Signs
 from exactfold.design.actuation.actuate import actuate as actuate_branch
-from exactfold.errors import NotCountedError, UsageError
+from exactfold.errors import NotCountedError
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.loading import PatternLike, open_sheet
 from exactfold.pattern.opening import Opened
@@ -42,8 +42,8 @@ def actuate(
 
     The way is named as in `branch` for a triangulated sheet, and by `way` or `letters` for one of
     rigid panels. If `creases` is given, at most so many folds have torques. If `torques`, exact
-    numbers by fold, are given, they are judged instead. `hinges` of rigid panels give torques in N
-    mm (docs/actuation.md). The result says, too, whether the way is self-foldable. If the digits
+    numbers by fold, are given, they are judged instead. `hinges` give torques in N mm
+    (docs/actuation.md). The result says, too, whether the way is self-foldable. If the digits
     of a drawing are in doubt, the answer is UNDECIDED, and `reason` says why.
 
     Raises `NotCountedError` for more than 12 vertices that pop and for more than 4,096 ways of
@@ -60,7 +60,10 @@ def actuate(
     found = actuate_opened(
         opened, Choice(way, signs, up, letters), creases, torques, hinges, progress
     )
-    if not opened.doubt or found.status is UNDECIDED:
+    if not opened.doubt:
+        return found
+    found = replace(found, self_foldable=UNDECIDED)
+    if found.status is UNDECIDED:
         return found
     reason = f"{opened.doubt}; the digits as written: {found.status}, {found.reason}"
     return replace(found, status=UNDECIDED, reason=reason)
@@ -77,13 +80,12 @@ def actuate_opened(
     """`actuate` for a sheet that was opened; a doubt about its digits is left to the caller."""
     choice.check()
     if isinstance(opened.sheet, CreasePattern):
-        if hinges is not None:
-            raise UsageError("torques in N mm are for rigid panels: leave out stiffness and width")
         return actuate_branch(
             opened.sheet,
             _signs(opened, opened.sheet, choice, progress),
             creases=creases,
             torques=torques,
+            hinges=hinges,
             progress=progress,
         )
     from exactfold.design.actuation.panels.actuate import actuate_panels, named_wholly

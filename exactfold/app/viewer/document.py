@@ -213,7 +213,8 @@ class Known:
         states = flat_states(self.opened, clock)
         sheets = [folded_sheet(one, clock) for one in states]
         ends = [] if not states else [*self.ends(states, ways, pool, clock, progress)]
-        return {"sheets": sheets, "ends": sorted(ends, key=lambda end: end["way"])}
+        left = "" if states else f"{clock.said}; `exactfold flat` looks for flat-folded states"
+        return {"sheets": sheets, "ends": sorted(ends, key=lambda end: end["way"]), "left": left}
 
     def ends(
         self,

@@ -101,9 +101,11 @@ class Folded(TypedDict):
 
     sheets: list[FoldedSheet]
     ends: list[ClosedEnd]
+    left: str
+    """What was not asked for, and why; empty if nothing is left."""
 
 
-NOT_ASKED: Final[Folded] = {"sheets": [], "ends": []}
+NOT_ASKED: Final[Folded] = {"sheets": [], "ends": [], "left": ""}
 
 
 def flat_states(opened: Opened, clock: Clock) -> tuple[FlatStates, ...]:
@@ -129,7 +131,7 @@ def folded_sheet(found: FlatStates, clock: Clock) -> FoldedSheet:
         if stacks and clock.passed:
             break
         stacks.append(shapes.stack(found.state(number)))
-    why = reasons(found)
+    why = reasons(found) or [found.stopped] * bool(found.stopped)
     none = found.as_written is REFUTED
     return {
         "letters": "drawn" if found.letters_used == "drawn" else "any",

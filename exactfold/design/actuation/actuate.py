@@ -16,7 +16,8 @@ from exactfold.branches.counting.collect import count_branches
 from exactfold.branches.counting.find import BranchFinder, Signs
 from exactfold.branches.values.branch import Branch
 from exactfold.design.actuation.choices import CreaseChoice
-from exactfold.design.actuation.directions import Directions
+from exactfold.design.actuation.directions import Directions, Springs
+from exactfold.design.actuation.hinges import Hinges
 from exactfold.design.actuation.orthogonal import alone
 from exactfold.design.actuation.powers import Powers, exact_weights, margin_bound, rivals
 from exactfold.design.actuation.programs import largest_margin
@@ -58,6 +59,7 @@ def actuate(
     up: Iterable[int] | None = None,
     creases: int | None = None,
     torques: Mapping[Edge, RationalLike] | None = None,
+    hinges: Hinges | None = None,
     nodes: int = NODES,
     progress: Progress | None = None,
 ) -> Actuation:
@@ -72,7 +74,9 @@ def actuate(
     bound is larger than the margin but still proved.
 
     If `torques` are given, exact numbers by fold, they are judged instead. Then `best` bounds the
-    margin of all torques that are at most as large as the largest one given.
+    margin of all torques that are at most as large as the largest one given. With `hinges`, the
+    stiffness of the spring at a fold is in proportion to its length, and the torques are rest
+    angles in radians; otherwise all springs have the same stiffness.
 
     Raises `NotCountedError` if more than 12 vertices are foldable, `UndecidedBranchError` if some
     branch is not proved, `UsageError` for wrong arguments, and the errors of `find_branch`.
@@ -94,9 +98,10 @@ def actuate(
     if named.root is None:
         raise UndecidedBranchError(f"the branch is not proved: {named.reason}")
     branches = proved_branches(pattern, progress)
-    return TorqueSearch(
-        pattern, named, branches, size + 1, creases, torques, nodes, progress
-    ).found(start)
+    search = TorqueSearch(
+        pattern, named, branches, size + 1, creases, torques, nodes, progress, hinges
+    )
+    return search.found(start)
 
 
 def require_few(size: int) -> None:
@@ -152,13 +157,16 @@ class TorqueSearch:
         torques: Mapping[Edge, RationalLike] | None,
         nodes: int,
         progress: Progress | None,
+        hinges: Hinges | None = None,
     ) -> None:
+        self.hinges = hinges
+        self.springs: Springs = "equal" if hinges is None else "by length"
         self.pattern, self.named, self.branches, self.size = pattern, named, branches, size
         self.creases, self.nodes, self.progress = creases, nodes, progress
         self.given = None if torques is None else checked_torques(pattern, torques)
         self._say("fold angles")
-        self.own = Directions.of([named])
-        self.directions = Directions.of(branches)
+        self.own = Directions.of([named], self.springs)
+        self.directions = Directions.of(branches, self.springs)
         self.place = self._matched()
         self.deciding: set[int] = set()
 
@@ -184,7 +192,7 @@ class TorqueSearch:
         for b in places:
             with suppress(NotApplicableError):
                 self.branches[b] = self.branches[b].sharpened(bits)
-                row = Directions.of([self.branches[b]])
+                row = Directions.of([self.branches[b]], self.springs)
                 self.directions = self.directions.with_row(b, row)
 
     def found(self, start: float) -> Actuation:
@@ -222,6 +230,7 @@ class TorqueSearch:
             self.directions,
             self.place,
             tuple(signs),
+            self.hinges,
             time.perf_counter() - start,
         )
 

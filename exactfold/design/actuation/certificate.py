@@ -56,6 +56,10 @@ def torques_certificate(found: Actuation) -> Document:
         raise NotApplicableError(
             f"only torques that are proved to prefer a branch have a certificate: {found.reason}"
         )
+    if found.hinges is not None:
+        raise NotApplicableError(
+            "no certificate: torques for a branch have one for springs of the same stiffness only"
+        )
     count = count_branches(found.pattern)
     branches, boxes = _in_boxes(count)
     directions = Directions.of(branches)

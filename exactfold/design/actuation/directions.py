@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from math import isqrt, lcm
+from typing import Literal, TypeAlias
 
 import numpy as np
 
@@ -25,6 +26,9 @@ _WORK = 128
 
 Ends = tuple[list[int], list[int]]
 
+Springs: TypeAlias = Literal["equal", "by length"]
+"""The stiffness of the springs at the folds: the same for all folds, or for each unit of length."""
+
 
 @dataclass(frozen=True, repr=False)
 class Directions:
@@ -34,6 +38,9 @@ class Directions:
     |.| is the Euclidean norm. `low[b][e]` and `high[b][e]` are proved bounds of component e of
     branch b in units of 2^-96, in the order of `folds`. They are 0 for a fold that is proved flat.
     Each branch is represented by one of its two rays; the other ray has the opposite vector.
+
+    With springs of stiffness k_e in proportion to the lengths of the folds, the components are k_e
+    phi_e instead, where the sum of k_e phi_e^2 is 1 (docs/actuation.md, 9).
 
     >>> from exactfold.branches.counting.collect import count_branches
     >>> directions = Directions.of(count_branches("two-vertex").branches)
@@ -48,14 +55,19 @@ class Directions:
     high: tuple[tuple[int, ...], ...]
 
     @classmethod
-    def of(cls, branches: Iterable[Branch]) -> Directions:
+    def of(cls, branches: Iterable[Branch], springs: Springs = "equal") -> Directions:
         """The directions of at least one branch of a single pattern; each is shown by its listed
         ray.
         """
         branches = list(branches)
         pattern = branches[0].pattern
         lengths = _lengths(pattern)
-        bounds = [_unit(ends, lengths) for ends in _densities(branches)]
+        if springs == "equal":
+            bounds = [_unit(ends, lengths) for ends in _densities(branches)]
+        else:
+            arms = _arms(pattern, lengths)
+            weights = [(a * c, b * d) for (a, b), (c, d) in zip(lengths, arms, strict=True)]
+            bounds = [_scaled(_unit(ends, weights), arms) for ends in _densities(branches)]
         return cls(
             pattern.folds,
             tuple(tuple(low) for low, _ in bounds),
@@ -182,6 +194,22 @@ def _lengths(pattern: CreasePattern) -> list[tuple[int, int]]:
         root = isqrt(squared)
         lengths.append((root, root + (root * root < squared)))
     return lengths
+
+
+def _arms(pattern: CreasePattern, lengths: Sequence[tuple[int, int]]) -> list[tuple[int, int]]:
+    """Bounds of the square roots of the lengths of the folds, in units of 2^-_WORK."""
+    _, common = pattern.integer_vertices
+    return [
+        (isqrt((low << _WORK) // common), isqrt(-(-(high << _WORK) // common)) + 1)
+        for low, high in lengths
+    ]
+
+
+def _scaled(unit: Ends, factors: Sequence[tuple[int, int]]) -> Ends:
+    """Bounds of a vector whose components are multiplied by positive factors."""
+    low = [x * ends[x < 0] >> _WORK for x, ends in zip(unit[0], factors, strict=True)]
+    high = [-(-x * ends[x > 0] >> _WORK) for x, ends in zip(unit[1], factors, strict=True)]
+    return low, high
 
 
 def _unit(densities: Ends, lengths: Sequence[tuple[int, int]]) -> Ends:

@@ -92,6 +92,7 @@ class HingesDocument(TypedDict):
     """Torques in N mm, in floating point."""
 
     model: str
+    """What the numbers assume."""
     stiffness: Rational
     """Of 1 mm of hinge, in N mm / rad."""
     width: Rational
@@ -138,6 +139,9 @@ class ActuationDocument(TypedDict):
     """Other branches that are proved to be linearly independent, by their vertex signs."""
     orthogonal: OrthogonalDocument | None
     ranking: list[RankedDocument]
+    springs: Literal["equal", "by length"]
+    """The stiffness of the springs that power is measured with."""
+    hinges: HingesDocument | None
     warnings: list[WarningDocument]
     certificate: str | None
     """The file with the evidence, if one was written."""
@@ -186,6 +190,9 @@ class Actuation(Certified):
     branches whose fold angles are proved to be linearly independent. If the dimension is proved to
     be positive, `orthogonal` is an example of such torques.
 
+    With `hinges`, power is measured with springs whose stiffness is in proportion to the lengths of
+    the folds, and torques are rest angles in radians.
+
     `status` is PROVED if the margin is proved to be positive, and REFUTED if it is proved not to
     be.
     """
@@ -206,6 +213,7 @@ class Actuation(Certified):
     directions: Directions
     place: int
     signs: tuple[str, ...]
+    hinges: Hinges | None = None
     seconds: float = field(default=0.0, compare=False)
 
     WRITER: ClassVar = "exactfold.design.actuation.certificate:torques_certificate"
@@ -285,6 +293,10 @@ class Actuation(Certified):
             "independent": list(self.independent),
             "orthogonal": None if orthogonal is None else orthogonal_document(orthogonal),
             "ranking": [row.to_dict() for row in self.ranking()],
+            "springs": "equal" if self.hinges is None else "by length",
+            "hinges": None
+            if self.hinges is None
+            else hinges_document(self.hinges, self.pattern, self.torques),
             "warnings": warnings(self.pattern),
             "certificate": certificate,
             "seconds": round(self.seconds, 3),

@@ -209,11 +209,13 @@ def test_what_is_refused_of_panels_writes_nothing(options, code, message, tmp_pa
     assert not list(tmp_path.iterdir())
 
 
-def test_newtons_are_for_panels():
-    hinges = ("--stiffness", "1", "--width", "1")
-    result = run("actuate", "two-vertex", "--signs", "+-", *hinges)
-    assert result.exit_code == USAGE
-    assert "torques in N mm are for rigid panels" in result.stderr
+def test_branches_have_torques_in_newton_millimetres_too():
+    command = ("actuate", "two-vertex", "--signs", "+-", "--stiffness", "0.5", "--width", 100)
+    data = valid(run(*command, "--json").stdout)
+    assert data["springs"] == "by length"
+    torque, length = data["torques"]["2-5"], data["hinges"]["lengths"]["2-5"]
+    assert data["hinges"]["torques"]["2-5"] == pytest.approx(float(Fraction(torque)) * length / 2)
+    assert "Model of the torques in N mm: linear springs" in run(*command).stdout
 
 
 def test_a_certificate_of_torques_for_panels_is_checked(tmp_path):

@@ -122,6 +122,13 @@ def test_nothing_is_searched_for_when_the_time_is_over():
     assert len(folded_sheet(found, Clock(0))["stacks"]) == 1
 
 
+def test_a_page_says_that_nothing_was_searched_for(vertex):
+    assert vertex["folded"]["left"] == ""
+    left = view_document(Opened(VERTEX), frames=3, limit=1e-9)["folded"]
+    assert (left["sheets"], left["ends"]) == ([], [])
+    assert left["left"].endswith("was reached; `exactfold flat` looks for flat-folded states")
+
+
 def test_letters_that_cannot_help_are_not_tried():
     straight = PanelPattern(VERTEX.vertices, [*RIM, (0, 1), (0, 2), (0, 3), (0, 7)])
     [found] = flat_states(Opened(straight, LETTERS), Clock())

@@ -156,8 +156,16 @@ def test_folds_that_do_not_close() -> None:
     stopped(accepted_without(message, skew, "UUUU"), message)
 
 
+def test_an_odd_number_of_folds_does_not_close() -> None:
+    """Nor where the sum of the angles is right, as with one fold on a line of two others."""
+    ring = [(1, 4), (2, 4), (2, 5), (5, 6), (3, 6), (3, 7), (1, 7)]
+    points = [(0, 0), (1, 0), (0, 1), (0, -1), (1, 1), (-1, 1), (-1, -1), (1, -1)]
+    sheet = PanelPattern(points, [*ring, (0, 1), (0, 2), (0, 3)])
+    refused(state(sheet, "UUU", [1, 1, 1], said="VVV"), "the folds do not close at vertex 0")
+
+
 def test_pieces_that_are_no_polygons() -> None:
-    for piece in ([0, 1], [0, 2, 3, 0], [0, 2, 99]):
+    for piece in ([0, 1], [0, 2, 3, 0], [0, 2, 99], [0, 2, 6]):
         forged = state(strip(1, 1), "U", [1], [[0, 2, 3, 1], piece], "V")
         refused(forged, "piece 1 is not a polygon")
 
@@ -321,6 +329,13 @@ def test_a_piece_that_is_not_there() -> None:
         steps=[[[[2, 0]], [0]]],
     )
     stopped(forged, "piece 2 does not lie at place 0")
+
+
+@pytest.mark.parametrize("place", [["0", "1/2"], ["1/2", "0"], ["1", "0"], [2, 3, "0"]])
+def test_a_piece_with_a_place_on_its_border(place: list[Any]) -> None:
+    """A crease may run along a side of a piece; any other place lies inside."""
+    forged = refutation_of(strip(1, 1), "V", places=[place], clauses=[[0, [[0, 1]]]])
+    refused(forged, "piece 0 does not lie at place 0")
 
 
 def test_the_end_of_a_side() -> None:

@@ -13,9 +13,10 @@ from sheets import dart, mapped, mirrored, relabelled, rotated
 
 from exactfold import PROVED, REFUTED, UNDECIDED, random_square
 from exactfold.branches import count_branches, find_branch
-from exactfold.design import actuate
+from exactfold.design import Hinges, actuate
 from exactfold.errors import (
     FloatRefusedError,
+    NotApplicableError,
     NotCountedError,
     UndecidedBranchError,
     UsageError,
@@ -335,3 +336,22 @@ def test_fifty_random_squares(inside):
         assert found.orthogonal_dimension == (dimension, dimension)
         assert len(found.independent) == inside + 1 - dimension
         assert found.ranking()[0].signs == signs
+
+
+# --- hinges --------------------------------------------------------------------------------------
+
+
+def test_springs_by_length_have_the_least_energy_where_the_power_is_largest():
+    """Springs of stiffness l_e that rest at t_e: sum l t phi, where sum l phi^2 is 1, in floats."""
+    pattern = random_square(2, seed=1)
+    found = actuate(pattern, "+-", hinges=Hinges(Fraction(1), Fraction(2)))
+    points = np.array([[float(x), float(y)] for x, y in pattern.vertices])
+    stiff = np.array([np.linalg.norm(points[j] - points[i]) for i, j in pattern.folds])
+    rest = np.array([float(found.torques[fold]) for fold in pattern.folds])
+    units = driving.directions(list(count_branches(pattern).branches))
+    gains = sorted(abs((stiff * rest) @ u) / np.sqrt(stiff @ u**2) for u in units)
+    powers = sorted(float(row.power[0]) for row in found.ranking())
+    assert powers == pytest.approx(gains, abs=1e-6)
+    assert 0 < float(found.margin[0]) == pytest.approx(gains[-1] - gains[-2], abs=1e-6)
+    with pytest.raises(NotApplicableError, match="springs of the same stiffness only"):
+        found.certificate()

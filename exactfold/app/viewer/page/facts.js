@@ -64,7 +64,7 @@ function endFact({ status, said }) {
 // The flat-folded states of the sheet, with the letters of the file and with any.
 function flatFacts(page) {
   const sheets = page.folded?.sheets ?? [];
-  if (!sheets.length) return [];
+  if (!sheets.length) return page.folded?.left ? [["open", "Folded flat: not looked for", page.folded.left]] : [];
   const words = sheets.map(({ answer }) => answer.split(/ is UNDECIDED| - /)[0]);
   const all = sheets.every(({ status }) => status !== "undecided");
   return [[all ? "good" : "open", all ? "Folded flat: proved" : "Folded flat", words.join("; ")]];

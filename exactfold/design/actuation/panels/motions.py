@@ -8,12 +8,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Final, Literal, TypeAlias
+from typing import Final, TypeAlias
 
 from flint import arb, ctx
 
 from exactfold._support.verdict import PROVED
-from exactfold.design.actuation.directions import BITS, Directions
+from exactfold.design.actuation.directions import BITS, Directions, Springs
 from exactfold.errors import NotCountedError, UsageError
 from exactfold.exact.surds import Number, ball
 from exactfold.motion.panels.followable import PanelMode
@@ -26,9 +26,6 @@ from exactfold.panels.spaces.subspaces import Leaf
 from exactfold.panels.vertex.local import LocalMode
 from exactfold.panels.vertex.stars import stars
 from exactfold.pattern.panel_pattern import Edge, EnclosedPattern, PanelPattern
-
-Springs: TypeAlias = Literal["equal", "by length"]
-"""The stiffness of the springs at the folds: the same for all folds, or for each unit of length."""
 
 WORKING_BITS: Final = 256
 """Bits of the balls with which unit vectors are computed."""

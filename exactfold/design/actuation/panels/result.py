@@ -20,9 +20,10 @@ from exactfold._support.documents import (
 )
 from exactfold._support.results import Certified
 from exactfold._support.verdict import Verdict
+from exactfold.design.actuation.directions import Springs
 from exactfold.design.actuation.hinges import Hinges
 from exactfold.design.actuation.orthogonal import OrthogonalTorques
-from exactfold.design.actuation.panels.motions import Springs, WayMotions
+from exactfold.design.actuation.panels.motions import WayMotions
 from exactfold.design.actuation.panels.rays import Recipe, WayPower
 from exactfold.design.actuation.result import (
     HingesDocument,

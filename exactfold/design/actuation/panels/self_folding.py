@@ -40,7 +40,10 @@ def decide_self_folding(motions: WayMotions, way: Way) -> tuple[Verdict, str]:
     if not motions.is_complete:
         return UNDECIDED, motions.unknown
     if UNDECIDED in verdicts:
-        return UNDECIDED, "the fold angles of the ways need too many square roots to be compared"
+        return (
+            UNDECIDED,
+            "the fold angles of the ways are not known exactly, or need too many square roots",
+        )
     return PROVED, "some torques do work on this way and on no other"
 
 
