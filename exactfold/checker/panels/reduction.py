@@ -26,7 +26,8 @@ Rows = list[tuple[Edge, Vector]]
 
 
 class Work:
-    """Counts products of densities; a product of numbers with n coefficients counts n^2 steps.
+    """Counts products of densities; one with a number of n coefficients, of which m are not 0,
+    counts m n steps.
 
     A product of two intervals is one step, and so are `SHORT` products of short numbers: residues
     modulo a prime, or numbers in floating point.
@@ -43,8 +44,9 @@ class Work:
 
     def count(self, products: int, value: Any) -> None:
         """Count products with this number or interval; raises `LimitError` if they are too many."""
-        size = value.tower.size if isinstance(value, Number) else 1
-        self.steps += products * size * size
+        if isinstance(value, Number):
+            products *= value.tower.size * max(1, sum(map(bool, value.parts)))
+        self.steps += products
         most = min(self._turn, MOST_STEPS)
         at_most(self.steps, most, "the steps to the spaces of motions", "SPACE_STEPS")
 

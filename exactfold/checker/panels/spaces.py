@@ -21,7 +21,7 @@ from .reduction import MOST_STEPS, Rows, inside, reduced, rest_of, zero
 from .together import narrowing_sum, vanish_only_at_zero
 
 MOST_LEAVES = limits.SPACE_LEAVES
-FIRST_TURN, GROWTH = 1 << 17, 8
+FIRST_TURN, GROWTH = 1 << 17, 16
 
 
 @dataclass

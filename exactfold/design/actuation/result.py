@@ -92,6 +92,7 @@ class HingesDocument(TypedDict):
     """Torques in N mm, in floating point."""
 
     model: str
+    """What the numbers assume."""
     stiffness: Rational
     """Of 1 mm of hinge, in N mm / rad."""
     width: Rational

@@ -76,6 +76,22 @@ def test_one_vertex_rolls_up_in_one_way() -> None:
     assert result.pleats == ()
 
 
+def test_a_fold_along_the_axis_is_flat() -> None:
+    """Of a square grid with diagonals, h = x^2 / 2 folds only the vertical lines."""
+    halves = [[(0, 0, 0), (0, 1, 0), (0, 1, 1)], [(0, 0, 0), (0, 1, 1), (0, 0, 1)]]
+    result = count_periodic(PeriodicPattern([(1, 0), (0, 1)], [(0, 0)], halves), (1, 0))
+    assert [branch.letters for branch in result] == ["MFF"]
+    assert checker.check(periodic_certificate(result))["branches"][0]["letters"] == "MFF"
+
+
+def test_folds_in_line_at_a_vertex_with_four_folds_are_flat_on_half_of_the_branches() -> None:
+    result = count_periodic(random_cell(5, 7, 8), (2, 7))
+    assert sorted(branch.letters.count("F") for branch in result) == [0] * 8 + [2] * 8
+    assert not any("U" in branch.letters for branch in result)
+    claims = checker.check(periodic_certificate(result))
+    assert [b["letters"] for b in claims["branches"]] == [b.letters for b in result]
+
+
 def test_a_vertex_of_degree_three_is_flat_on_every_branch() -> None:
     cell = random_cell(4, 14, 16)
     assert [cell.degree(v) for v in range(4)] == [6, 9, 3, 6]

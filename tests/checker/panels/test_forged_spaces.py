@@ -305,8 +305,10 @@ def test_products_in_larger_fields_are_more_work() -> None:
     work = panel_reduction.Work()
     work.count(2, rational.number(1))
     work.count(3, root)
+    work.count(4, root + above.number(1))
+    work.count(7, above.number(0))
     work.count(5, root.enclosed(64))
-    assert (above.size, work.steps) == (4, 2 + 3 * 16 + 5)
+    assert (above.size, work.steps) == (4, 2 + 3 * 4 + 4 * 2 * 4 + 7 * 4 + 5)
 
 
 def test_numbers_are_not_taken_for_those_of_another_field() -> None:

@@ -126,8 +126,8 @@ def test_the_other_factor_is_found_only_for_factors() -> None:
     form = [(number(1), row(1, 2, 0, 0)), (number(-1), row(0, 1, 1, 0))]
     one, other = row(1, 1, -1, 0), row(1, 3, 1, 0)
 
-    def parts(values: list[Number] | None) -> list[Fraction] | None:
-        return None if values is None else [x.parts[0] for x in values]
+    def parts(values: list[Number] | None) -> list[int] | None:
+        return None if values is None else [int(x.parts[0]) for x in values]
 
     assert parts(found.other_factor(form, one)) == parts(other)
     assert parts(found.other_factor(form, other)) == parts(one)
