@@ -31,7 +31,10 @@ EXPECTED = {
 """Isolated solutions for the direction (1, 2), the same with multiplicity, and lines of pleats."""
 
 
-@pytest.mark.parametrize("name", CELLS)
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(x, marks=pytest.mark.slow) if x == "kisrhombille-cell" else x for x in CELLS],
+)
 def test_shipped_cells(name: str) -> None:
     result = count_periodic(name, (1, 2))
     assert result.status is PROVED
@@ -58,7 +61,9 @@ def independent(cell: PeriodicPattern, direction: tuple[int, int]) -> tuple[int,
     return solution.distinct, real, total
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize(
+    "seed", [0, 1, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(2, 8))]
+)
 @pytest.mark.parametrize("vertices", [2, 3, 4])
 def test_random_cells_against_groebner_bases(vertices: int, seed: int) -> None:
     cell = random_cell(vertices, seed, 16, flips=seed)
