@@ -17,6 +17,7 @@ MODULES: tuple[str, ...] = (
     "mountain_valley",
     "kapovich_millson",
     "all_real",
+    "periodic",
     "generic",
     "exceptions",
     "potential",

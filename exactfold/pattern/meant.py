@@ -34,6 +34,8 @@ _KINDS: Final[tuple[tuple[str, tuple[Kind, ...]], ...]] = (
 _DISTANT: Final[tuple[Kind, ...]] = ("sectors", "mirrored", "parallel", "grid")
 """The kinds of relations on which no closing condition depends, as they are left out at need."""
 
+_TURNED: Final[tuple[Kind, ...]] = ("mirrored", "grid")
+"""The kinds of relations that a sheet loses if it is turned a little."""
 _MOST_EDGES: Final = 1000
 _Make: TypeAlias = "Callable[[PanelPattern, Angles, float], Realized]"
 
@@ -239,30 +241,36 @@ def inferred(written: PanelPattern, reading: Reading) -> Meant:
     """The sheet that was meant by a drawing with inexact digits, or why none is inferred.
 
     `written` is the sheet with the digits as written; its coordinates are rational. If all
-    coordinates are small in a frame along an edge, these are taken. If no exact sheet is found that
-    has all relations, those between distant edges are left out, in the order of
-    `_DISTANT`; this is done for sheets of up to 1,000 edges. If that does not help, positions are
-    enclosed, with all relations or without all between distant edges. Once half of the time limit
-    has passed, none of this is tried. Raises the errors of `infer` for relations that do not exist
-    or contradict each other.
+    coordinates are small in a frame along an edge, these are taken; if need be without relations to
+    a grid of angles, as the drawing may be turned by whole degrees. If no exact sheet is found that
+    has all relations, those between distant edges are left out, in the order of `_DISTANT`; this is
+    done for sheets of up to 1,000 edges. If that does not help, positions are enclosed, with all
+    relations or without all between distant edges. Once half of the time limit has passed, none of
+    this is tried. Raises the errors of `infer` for relations that do not exist or contradict each
+    other.
     """
-    from exactfold.pattern.meant_sheet import enclose, in_a_frame, realize, recognise
+    from exactfold.pattern.meant_sheet import NO_FRAME, enclose, in_a_frame, realize, recognise
 
     clock = Clock(reading.limit).share(1 / 2)
     all_found = _found(written, reading, ())
+
+    def without(dropped: Sequence[Kind], make: _Make | None) -> Meant:
+        found = _found(written, reading, dropped)
+        make = make or partial(in_a_frame, relations=found.relations)
+        fewer = _realized(written, found, make)
+        kept = {relation.name for relation in fewer.relations}
+        out = tuple(one for one in all_found.relations if one.name not in kept)
+        return replace(fewer, left_out=out)
+
     if not reading.without:
         meant = _realized(written, all_found, partial(in_a_frame, relations=all_found.relations))
+        if not meant.inferred and meant.realized is not None and meant.reason != NO_FRAME:
+            meant = without(_TURNED, None)
         if meant.inferred and not meant.left:
             return meant
     first = meant = _realized(written, all_found, realize)
     if all_found.angles is None or meant.inferred:
         return meant
-
-    def without(dropped: Sequence[Kind], make: _Make) -> Meant:
-        fewer = _realized(written, _found(written, reading, dropped), make)
-        kept = {relation.name for relation in fewer.relations}
-        out = tuple(one for one in all_found.relations if one.name not in kept)
-        return replace(fewer, left_out=out)
 
     if not clock.passed:
         meant = _realized(written, all_found, partial(recognise, relations=all_found.relations))

@@ -44,6 +44,7 @@ from exactfold.pattern.panel_pattern import EnclosedPattern, PanelPattern
 Written: TypeAlias = tuple[tuple[Fraction, Fraction], ...]
 _SHARP: Final = 1e-12
 """Free angles of a sheet with enclosed positions are rounded this little, in radians."""
+NO_FRAME: Final = "its coordinates are no small numbers in a frame along an edge"
 _FAR: Final = 100
 """A sheet with enclosed positions is not near the drawing if it is off by so many times the noise.
 """
@@ -155,7 +156,7 @@ def in_a_frame(
     written = tuple(_written(point) for point in drawn.vertices)
     points = turned_positions(written, drawn.edges, noise)
     if points is None:
-        return _none(drawn, "its coordinates are no small numbers in a frame along an edge")
+        return _none(drawn, NO_FRAME)
     return _checked(drawn, written, points, noise, relations)
 
 

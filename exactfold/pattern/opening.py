@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import replace
 from functools import partial
 from os import PathLike
@@ -85,7 +86,9 @@ def open_pattern(
 
 
 def is_cell_file(path: str | PathLike[str]) -> bool:
-    """Whether a file is the cell of a periodic sheet; False for one that cannot be read."""
+    """Whether a file is the cell of a periodic sheet; False for one that cannot be read twice."""
+    if not os.path.isfile(path):  # a pipe would be empty afterwards
+        return False
     try:
         with open(path, "rb") as stream:
             return is_cell(stream.read(_HEAD))

@@ -39,6 +39,7 @@ LONG = (
     "inertia",
     "inertia_cases",
     "multiplicity",
+    "periodic",
     "random_squares",
 )
 """Proofs that take a second or more each: CI goes through them as well."""

@@ -35,6 +35,7 @@ cells = st.builds(
 few = settings(max_examples=6, deadline=None)
 
 
+@pytest.mark.slow
 @few
 @given(cells, st.sampled_from([((1, 2), (0, 1)), ((2, 1), (1, 1)), ((0, 1), (1, 0))]))
 def test_another_basis_of_the_lattice(
@@ -53,6 +54,7 @@ def test_another_basis_of_the_lattice(
     assert facts(count_periodic(other, N)) == facts(count_periodic(cell, N))
 
 
+@pytest.mark.slow
 @few
 @given(cells, st.randoms(use_true_random=False))
 def test_other_names_and_other_translates(cell: PeriodicPattern, source: Random) -> None:
@@ -68,6 +70,7 @@ def test_other_names_and_other_translates(cell: PeriodicPattern, source: Random)
     assert facts(other, names) == facts(count_periodic(cell, N))
 
 
+@pytest.mark.slow
 @few
 @given(cells, st.sampled_from([((1, "1/2"), (0, 3)), ((2, 1), (-1, 1)), ((0, -1), (1, 0))]))
 def test_affine_maps_take_the_direction_along(
@@ -88,7 +91,7 @@ def test_affine_maps_take_the_direction_along(
     assert facts(count_periodic(other, turned)) == facts(count_periodic(cell, N))
 
 
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.slow)])
 def test_a_mirror_reverses_the_faces_and_keeps_the_signs(seed: int) -> None:
     cell = random_cell(4, seed, 16)
     lattice = [(-x, y) for x, y in cell.lattice]

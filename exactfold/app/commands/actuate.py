@@ -7,6 +7,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from exactfold._support.verdict import UNDECIDED
 from exactfold.app.options.choosing import choice_of
 from exactfold.app.options.motions import ActuateOptions
 from exactfold.app.shell.json_numbers import numbers_by_name
@@ -47,8 +48,10 @@ class Driven(ActuateOptions):
             )
             self._write(found)
         if self.as_json:
-            document = found.to_dict(name_of(self.file), self._certificate)
-            print(json.dumps(in_doubt(opened, document)))
+            document = in_doubt(opened, found.to_dict(name_of(self.file), self._certificate))
+            if opened.doubt:
+                document = {**document, "self_foldable": str(UNDECIDED)}
+            print(json.dumps(document))
         else:
             from exactfold.app import report
 

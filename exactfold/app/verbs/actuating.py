@@ -60,7 +60,10 @@ def actuate(
     found = actuate_opened(
         opened, Choice(way, signs, up, letters), creases, torques, hinges, progress
     )
-    if not opened.doubt or found.status is UNDECIDED:
+    if not opened.doubt:
+        return found
+    found = replace(found, self_foldable=UNDECIDED)
+    if found.status is UNDECIDED:
         return found
     reason = f"{opened.doubt}; the digits as written: {found.status}, {found.reason}"
     return replace(found, status=UNDECIDED, reason=reason)

@@ -76,6 +76,7 @@ class ViewDocument(Facts):
     drawn: Drawn | None
     """The way with the letters of the file, if it is known."""
     folded: Folded
+    """The sheet folded flat."""
     served: bool
     """Whether motions that are missing can be asked for."""
 

@@ -87,6 +87,7 @@ class ClosedEnd(TypedDict):
     letters: Used | None
     """The letters of the states in which it has a number; null if it has none."""
     state: Natural | None
+    """The number of the state that it ends in, among those with these letters."""
     mirrored: Natural | None
     """The number of the state to the other side of the sheet."""
     shapes: list[FoldedPiece]
@@ -100,7 +101,9 @@ class Folded(TypedDict):
     """What is known of the sheet folded flat."""
 
     sheets: list[FoldedSheet]
+    """The states with the letters of the file, and those with any letters."""
     ends: list[ClosedEnd]
+    """Where ways end, as far as they close all their folds together."""
     left: str
     """What was not asked for, and why; empty if nothing is left."""
 

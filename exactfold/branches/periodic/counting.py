@@ -60,6 +60,10 @@ def count_periodic(
     rays = PeriodicRays(problem)
     proved = prove_rays(problem, rays.rays(), rays.signs)
     missing = sorted(set(range(len(rays.signs))) - proved.keys())
+    if missing:
+        again = prove_rays(problem, rays.sharper(np.array(missing)), rays.signs[missing])
+        proved |= {missing[row]: replace(ray, row=missing[row]) for row, ray in again.items()}
+        missing = sorted(set(missing) - proved.keys())
     covers = _covered(problem, rays, missing) if missing else []
     result = _result(problem, rays, proved, covers)
     if result.status is not PROVED:

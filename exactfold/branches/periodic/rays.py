@@ -7,7 +7,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from exactfold._support.arrays import FloatArray
+from exactfold._support.arrays import FloatArray, IndexArray
+from exactfold.branches.values.known_roots import FEW, zero_in
 from exactfold.branches.values.letters import LETTERS
 from exactfold.branches.values.roots import AlgebraicRoot, BoxRoot
 from exactfold.rigidity.equations.periodic import PeriodicProblem, in_chart
@@ -17,7 +18,10 @@ from exactfold.solve.certify.float_krawczyk import FloatKrawczyk, FloatSigns
 
 BITS = 44
 _PRECISIONS = (64, 128, 256)
-_LETTERS = np.array([ord(LETTERS[sign]) for sign in (-1, 0, 1)], dtype=np.uint8)
+_FINER = (*_PRECISIONS, 1024)
+_LETTERS = np.array([ord(LETTERS[sign]) for sign in (None, 1, -1)], dtype=np.uint8)
+"""By sign: 0 is not proved, and the last is that of -1."""
+_OPEN = ord(LETTERS[None])
 
 
 @dataclass(frozen=True)
@@ -46,6 +50,7 @@ class RayChart:
     system: QuadraticSystem = field(init=False)
     vertices: tuple[tuple[int, ...], ...] = field(init=False)
     folds: tuple[tuple[int, ...], ...] = field(init=False)
+    partners: tuple[tuple[tuple[int, ...], ...], ...] = field(init=False)
     bend: tuple[int, ...] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -54,73 +59,86 @@ class RayChart:
             "system": problem.system(place),
             "vertices": tuple(tuple(in_chart(r, place)) for r in problem.vertices.values()),
             "folds": tuple(tuple(in_chart(r, place)) for r in problem.folds.values()),
+            "partners": tuple(
+                tuple(tuple(in_chart(r, place)) for r in rows) for rows in problem.partners.values()
+            ),
             "bend": tuple(in_chart(problem.bend, place)),
         }
         for name, value in known.items():
             object.__setattr__(self, name, value)
 
-    def proved(self, rows: FloatArray, rays: FloatArray, signs: FloatArray) -> Iterator[Ray]:
+    def proved(self, rows: IndexArray, rays: FloatArray, signs: FloatArray) -> Iterator[Ray]:
         """The rays that boxes prove to be simple, with these signs and with b other than 0.
 
         `rays` has shape (m, n + 1), and `rows` are the numbers of its rows.
         """
         points = np.delete(rays, self.place, axis=1) / rays[:, self.place, None]
-        side = np.sign(rays[:, self.place])
+        side = np.sign(rays[:, self.place]).astype(np.int8)
         boxes = FloatKrawczyk(self.system).isolate(points, BITS)
-        vertices = FloatSigns(self.vertices).on(boxes)
-        rest = FloatSigns((*self.folds, self.bend)).on(boxes) * side[:, None].astype(np.int8)
-        good = boxes.proved & (vertices * side[:, None] == signs).all(axis=1) & (rest != 0).all(1)
-        letters = _LETTERS[rest[:, :-1] + 1]
+        vertices = FloatSigns(self.vertices).on(boxes) * side[:, None]
+        b = FloatSigns((self.bend,)).on(boxes)[:, 0] * side
+        good = boxes.proved & (vertices == signs).all(axis=1) & (b != 0)
+        letters = _LETTERS[FloatSigns(self.folds).on(boxes) * side[:, None]]
+        for k, partners in enumerate(self.partners):
+            if not any(self.folds[k]):  # flat in all heights
+                letters[:, k] = ord(LETTERS[0])
+            elif partners:
+                flat = (FloatSigns(partners).on(boxes) != 0).any(axis=1)
+                letters[(letters[:, k] == _OPEN) & flat, k] = ord(LETTERS[0])
         names = list(map(tuple, signs.astype(int).tolist()))
         for k, row in enumerate(rows.tolist()):
-            if good[k]:
-                root = BoxRoot(boxes.box(k), int(side[k]), self.system)
-                text = letters[k].tobytes().decode()
-                yield Ray(row, names[k], self.place, root, int(rest[k, -1]), text, text)
-            else:
-                ray = self._exactly(row, points[k], int(side[k]), signs[k])
+            if not good[k]:
+                ray = self._exactly(row, points[k], int(side[k]), names[k])
                 if ray is not None:
-                    yield ray
+                    yield self._lettered(ray)
+                continue
+            root = BoxRoot(boxes.box(k), int(side[k]), self.system)
+            text = letters[k].tobytes().decode()
+            yield self._lettered(Ray(row, names[k], self.place, root, int(b[k]), text, text))
 
-    def _exactly(self, row: int, point: FloatArray, side: int, signs: FloatArray) -> Ray | None:
+    def _exactly(
+        self, row: int, point: FloatArray, side: int, signs: tuple[int, ...]
+    ) -> Ray | None:
+        """The same by the exact test, with rising precision."""
         from exactfold.solve.certify.exact_krawczyk import krawczyk  # loads FLINT
 
         if not np.isfinite(point).all():
             return None
         (box,) = krawczyk(self.system, point[None], precisions=_PRECISIONS)
-        if not isinstance(box, IsolatingBox):
-            return None
-        root: BoxRoot | None = BoxRoot(box, side, self.system)
-        best: Ray | None = None
-        for bits in (*_PRECISIONS, 1024):
+        root = BoxRoot(box, side, self.system) if isinstance(box, IsolatingBox) else None
+        for bits in _FINER:
             if root is None:
-                break
+                return None
             found = [root.sign(line) for line in self.vertices]
-            if any(s is not None and s != e for s, e in zip(found, signs.tolist(), strict=True)):
+            if any(s is not None and s != e for s, e in zip(found, signs, strict=True)):
                 return None
             b = root.sign(self.bend)
             if b and None not in found:
-                text = "".join(LETTERS[root.sign(line)] for line in self.folds)
-                names = tuple(map(int, signs.tolist()))
-                best = Ray(row, names, self.place, root, b, text, text)
-                if "U" not in text:
-                    return best
+                text = "".join(map(self._letter, map(root.sign, self.folds), self._flat(root)))
+                return Ray(row, signs, self.place, root, b, text, text)
             root = root.sharpened(bits)
-        return None if best is None else replace(best, letters=self._letters(best.root))
+        return None
 
-    def _letters(self, root: BoxRoot) -> str:
-        """The letters at a root; those that its box leaves open, if its exact zero is found."""
-        from exactfold.branches.values.known_roots import zero_in  # loads FLINT
+    def _flat(self, root: BoxRoot) -> Iterator[bool]:
+        """For each fold whether a partner (`PeriodicProblem.partners`) shows that it is flat."""
+        return (any(root.sign(line) for line in partners) for partners in self.partners)
 
-        found = [root.sign(line) for line in self.folds]
-        known = zero_in(self.system, root.box)
-        if known is not None:
-            exact = AlgebraicRoot(*known, side=root.side)
-            found = [
-                exact.sign(line) if sign is None else sign
-                for sign, line in zip(found, self.folds, strict=True)
-            ]
-        return "".join(map(LETTERS.__getitem__, found))
+    def _letter(self, sign: int | None, flat: bool) -> str:
+        return LETTERS[0 if sign is None and flat else sign]
+
+    def _lettered(self, ray: Ray) -> Ray:
+        """The ray with letters that its box leaves open, if there are few unknowns."""
+        if "U" not in ray.letters or self.problem.size > FEW:
+            return ray
+        known = zero_in(self.system, ray.root.box)
+        if known is None:
+            return ray
+        exact = AlgebraicRoot(*known, side=ray.root.side)
+        letters = [
+            LETTERS[exact.sign(line)] if letter == "U" else letter
+            for letter, line in zip(ray.letters, self.folds, strict=True)
+        ]
+        return replace(ray, letters="".join(letters))
 
 
 def prove_rays(problem: PeriodicProblem, rays: FloatArray, signs: FloatArray) -> dict[int, Ray]:

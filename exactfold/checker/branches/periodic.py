@@ -9,6 +9,7 @@ vectors s: the span of the cone C_s. The evidence shows for every pair which spa
   unit        z = (w_1, ..., w_m, c) has c = b / unit.
   rays        boxes in which the entry `place` of z is 1, and which hold one simple solution each,
               by Krawczyk's test. A ray whose vertices all have a sign is the cone of these signs.
+              A fold whose row is a factor of a form is flat where the other factor is not 0.
   spaces      a `basis` on which all forms vanish, and points of the space. The cone of every sign
               vector that agrees with a point off its flat vertices F lies in the radical, on all a
               with K_u(point, a) = 0 for u not in F, of the sum of the K_v with v in F; and this has

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from itertools import product
 from typing import Any, TypedDict
@@ -19,7 +19,7 @@ from ..core.reading import (
     parse_rational,
     require,
 )
-from ..sheets.boxes import read_box
+from ..sheets.boxes import Box, read_box
 from ..sheets.cell import Cell, CellChart, CellForms, Corner, Row, read_corners
 from ..sheets.sheet import turn
 from .listing import UPSIDE_DOWN
@@ -56,6 +56,10 @@ class PeriodicProof:
         number = len(sheet.points)
         at_most(number, PERIODIC_VERTICES, "the vertices of the cell", "PERIODIC_VERTICES")
         self.forms = CellForms(sheet, direction, unit)
+        self.partners = [
+            self.forms.partners(edge, row)
+            for edge, row in zip(sheet.edges, self.forms.folds, strict=True)
+        ]
         self.covered: set[tuple[int, ...]] = set()
         self.simple: set[tuple[int, ...]] = set()  # the sign vectors of rays
         self.branches: list[PeriodicBranchClaim] = []
@@ -95,9 +99,16 @@ class PeriodicProof:
             require(all(signs), "a vertex of a simple ray has no sign")
             b = box.sign(integers(bend))
             require(b, "the sign of b of a ray is open")
-            letters = [_LETTERS[box.sign(integers(row))] for row in forms.folds]
+            letters = [self._letter(box, integers, k) for k in range(len(forms.folds))]
             self.simple.add(self._cover([s or 0 for s in signs]))
             self._branch([s or 0 for s in signs], b or 0, letters)
+
+    def _letter(self, box: Box, integers: Callable[[Row], list[int]], fold: int) -> str:
+        """The letter of a fold; it is flat if another factor of a form is not 0."""
+        sign = box.sign(integers(self.forms.folds[fold]))
+        if sign is None and any(box.sign(integers(m)) for m in self.partners[fold]):
+            sign = 0
+        return _LETTERS[sign]
 
     def _cover(self, signs: Sequence[int]) -> tuple[int, ...]:
         """Enter a sign vector, without zeros, as that of its pair with + at the first vertex.

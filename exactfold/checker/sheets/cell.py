@@ -198,6 +198,24 @@ class CellForms:
                     form[p][q] += w * (rise[i][p] * rise[j][q] + rise[j][p] * rise[i][q]) / 2
         return form, functional
 
+    def partners(self, edge: Side, row: Row) -> list[Row]:
+        """The rows m with K_v = m times the row of a fold, at an end v of it.
+
+        On a solution the fold is flat wherever such an m is not 0.
+        """
+        found: list[Row] = []
+        pivot = next((k for k, c in enumerate(row) if c), None)
+        if pivot is None:
+            return found
+        for v in sorted({*edge[:2]}):
+            form = self.forms[v]
+            lead = form[pivot][pivot] / row[pivot]
+            m = [(2 * x - c * lead) / row[pivot] for x, c in zip(form[pivot], row, strict=True)]
+            places = [(i, j) for i in range(len(row)) for j in range(i + 1)]
+            if all(2 * form[i][j] == row[i] * m[j] + row[j] * m[i] for i, j in places):
+                found.append(m)
+        return found
+
     def _bend(self, edge: Side) -> Row:
         """The bend of a fold, which is positive at a valley."""
         u, v, i, j = edge

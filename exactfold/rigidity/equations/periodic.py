@@ -52,6 +52,24 @@ def in_chart(row: Sequence[T], place: int) -> list[T]:
     return [*row[:place], *row[place + 1 :], row[place]]
 
 
+def other_factor(form: Sequence[Row], row: Sequence[int]) -> Row | None:
+    """The row m for which a form is the product of m and a given row, which is not 0; or None.
+
+    >>> half = Fraction(1, 2)
+    >>> other_factor([(Fraction(0), half), (half, Fraction(1))], (0, 1))
+    (Fraction(1, 1), Fraction(1, 1))
+    """
+    pivot = next(k for k, c in enumerate(row) if c)
+    lead = form[pivot][pivot] / row[pivot]
+    factor = tuple((2 * x - c * lead) / row[pivot] for x, c in zip(form[pivot], row, strict=True))
+    same = all(
+        2 * form[i][j] == row[i] * factor[j] + row[j] * factor[i]
+        for i in range(len(row))
+        for j in range(i + 1)
+    )
+    return factor if same else None
+
+
 @dataclass(frozen=True)
 class PeriodicStar:
     """The form of one vertex, on the heights of its neighbours above it.
@@ -215,6 +233,20 @@ class PeriodicProblem:
             for end in {u, v}:
                 around[end].append(tuple(map(Fraction, row)))
         return tuple(map(tuple, around))
+
+    @cached_property
+    def partners(self) -> Mapping[Side, tuple[tuple[int, ...], ...]]:
+        """For each fold the rows m with K_v = m times the row of the fold, at an end v of it.
+
+        On a solution the fold is flat wherever such an m is not 0. There is one at a vertex with
+        four folds, two of which are in line.
+        """
+        found: dict[Side, tuple[tuple[int, ...], ...]] = {}
+        for edge, row in self.folds.items():
+            ends = [v for v in {*edge[:2]} if self.sheet.degree(v) == 4 and any(row)]
+            factors = [other_factor(self.stars[v].form, row) for v in ends]
+            found[edge] = tuple(integer_row(m) for m in factors if m is not None)
+        return found
 
     def _bend(self, edge: Side) -> Row:
         u, v, i, j = edge

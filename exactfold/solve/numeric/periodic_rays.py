@@ -96,6 +96,11 @@ class PeriodicRays:
             before = epsilon
         return _unit(points)
 
+    def sharper(self, rows: IndexArray) -> FloatArray:
+        """`limits`, sharpened: for simple rays that the first attempt did not reach."""
+        with np.errstate(all="ignore"):
+            return self._sharpened(self.limits(rows))
+
     def _sharpened(self, z: FloatArray) -> FloatArray:
         """Newton's steps on the forms of all vertices but the first, at right angles to z."""
         live = np.arange(len(z))

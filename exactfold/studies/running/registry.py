@@ -17,6 +17,7 @@ MODULES = {
     "selffold-panels": "exactfold.studies.selffold_panels",
     "flat": "exactfold.studies.flat",
     "motions": "exactfold.studies.loops",
+    "tessellations": "exactfold.studies.tessellations",
     "figures": "exactfold.studies.figures",
 }
 """The module of each study, in the order in which they are listed."""

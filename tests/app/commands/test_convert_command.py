@@ -187,7 +187,7 @@ def test_sheets_that_branches_do_not_take_are_refused_with_what_to_do(tmp_path: 
 def test_one_of_several_sheets(tmp_path: Path) -> None:
     path, out, lines = tmp_path / "two.cp", tmp_path / "two.fold", tmp_path / "o.jsonl"
     path.write_text(as_cp(TWO))
-    for command in (["count"], ["info"], ["convert"], ["branch", "--signs", "+"]):
+    for command in (["info"], ["convert"], ["branch", "--signs", "+"]):
         given = [out] if command == ["convert"] else []
         refused = run(*command, path, *given)
         assert refused.exit_code == BAD_INPUT

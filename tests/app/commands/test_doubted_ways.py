@@ -56,6 +56,7 @@ def test_an_answer_about_digits_says_so_first(
         Draft202012Validator(exactfold.schema(command)).validate(data)
         assert "relations nearly hold" in data["reason"]
         assert "; the digits as written: proved, " in data["reason"]
+        assert data.get("self_foldable", "undecided") == "undecided"
 
 
 def test_equations_of_digits_in_doubt_are_not_written(drawing: Path) -> None:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import os
+import threading
 from pathlib import Path
 
 import pytest
@@ -14,6 +16,7 @@ from exactfold import schema
 from exactfold.branches import PeriodicCount
 from exactfold.errors import UsageError
 from exactfold.pattern import PeriodicPattern, read_cell
+from exactfold.pattern.data import example_path
 
 
 def test_a_cell_is_counted_certified_and_checked(tmp_path: Path) -> None:
@@ -68,6 +71,18 @@ def test_a_sheet_that_is_not_periodic() -> None:
     result = run("count", "two-vertex", "--direction", "1,2")
     assert result.exit_code == 3
     assert "not the cell of a periodic sheet" in " ".join(result.stderr.split())
+
+
+def test_a_pipe_is_not_read_to_see_whether_it_is_a_cell(tmp_path: Path) -> None:
+    """What a pipe holds can be read once only."""
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    sheet = example_path("two-vertex").read_text()
+    writer = threading.Thread(target=pipe.write_text, args=(sheet,), daemon=True)
+    writer.start()
+    result = run("count", pipe)
+    writer.join(10)
+    assert (result.exit_code, "4 ways to start" in result.stdout) == (PROVED, True)
 
 
 def test_random_cells(tmp_path: Path) -> None:

@@ -66,8 +66,8 @@ def answer(sheet: Any) -> tuple[object, ...]:
     return result.status, result.second_order, result.true, result.rigid
 
 
-def turned(document: dict[str, Any]) -> dict[str, Any]:
+def turned(document: dict[str, Any], angle: float = 0.3) -> dict[str, Any]:
     """The same sheet turned by an angle that no small numbers describe, and scaled."""
-    c, s = 123.456 * cos(0.3), 123.456 * sin(0.3)
+    c, s = 123.456 * cos(angle), 123.456 * sin(angle)
     points = [[c * x - s * y, s * x + c * y] for x, y in document["vertices_coords"]]
     return {**document, "vertices_coords": points}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 from fractions import Fraction
-from math import hypot
+from math import hypot, radians
 
 import pytest
 from noise_put_back import SHEETS, answer, noisy, turned
@@ -59,10 +59,15 @@ def test_a_turned_sheet_has_the_answer_of_the_exact_one(name: str) -> None:
     assert 0 < farthest < 1e-8
 
 
-@pytest.mark.parametrize("name", ["zigzags", "shifted columns"])
-def test_loops_close_where_lengths_are_on_a_grid(name: str) -> None:
-    """No relation of angles implies that these loops close; a frame along an edge shows it."""
-    opened = open_sheet(turned(noisy(SHEETS[name], 1e-9)))
+@pytest.mark.parametrize(
+    ("name", "angle"), [("zigzags", 0.3), ("zigzags", radians(49)), ("shifted columns", 0.3)]
+)
+def test_loops_close_where_lengths_are_on_a_grid(name: str, angle: float) -> None:
+    """No relation of angles implies that these loops close; a frame along an edge shows it.
+
+    Turned by whole degrees, edges seem to have relations to a grid that no such frame gives.
+    """
+    opened = open_sheet(turned(noisy(SHEETS[name], 1e-9), angle))
     assert opened.meant is not None
     assert (opened.meant.existence, opened.field_name) == ("exact", "Q")
     assert opened.meant.distance < 1e-8

@@ -245,7 +245,6 @@ def test_a_line_inside_a_larger_space() -> None:
 @pytest.mark.parametrize(
     ("key", "value"),
     [
-        ("distinct", 5),
         ("with_multiplicity", 2),
         ("pleats", []),
         ("sha256", "0" * 64),

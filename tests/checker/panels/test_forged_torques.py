@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 from forge import Document, beyond, refused, verified, with_one_key_more, without
 from forge_panels import bent
-from panel_sheets import miura, tiling
+from panel_sheets import grid, miura, tiling
 
 from exactfold import checker
 from exactfold.checker.panels import torques, unit_motions
@@ -22,6 +22,8 @@ from exactfold.panels.certificate import certificate_of_panels
 from exactfold.panels.decomposition import decompose
 from exactfold.pattern.families import single_vertex
 from exactfold.pattern.opening import panels
+
+SLACK = Fraction(1, 10**15)
 
 
 @cache
@@ -77,6 +79,15 @@ def test_what_is_verified(name: str, said: str) -> None:
     assert re.search(said, checker.summary(claims))
     open_claims = checker.core.kinds.Verified(claims.kind, {**claims, "self_foldable": "undecided"})
     assert "self-foldable" not in checker.summary(open_claims)
+
+
+def test_a_rational_margin_leaves_room_for_the_rounding_of_the_checker() -> None:
+    """A single straight fold: the power is 1 on it, and the only rival is the opposite ray."""
+    sheet = grid(2, 1, lambda i, j: (Fraction(i), Fraction(j)))
+    found = actuate_panels(decompose(sheet), 1)
+    assert found.margin == (2, 2)
+    claims = verified(json.loads(json.dumps(found.certificate())))
+    assert (claims["margin"], claims["bound"]) == (str(2 - SLACK), str(2 + SLACK))
 
 
 def test_keys() -> None:

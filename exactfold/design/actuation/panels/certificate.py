@@ -17,6 +17,9 @@ from exactfold.panels.certificate import certificate_of_panels, choice_text
 from exactfold.panels.vertex.stars import stars
 from exactfold.pattern.panel_pattern import Edge
 
+_SLACK = Fraction(1, 10**15)
+"""What the claims leave for the rounding of the checker, where a margin is a rational number."""
+
 
 def panel_torques_certificate(found: PanelActuation) -> Document:
     """The certificate of torques for one way of rigid panels, as a JSON object.
@@ -58,8 +61,8 @@ def panel_torques_certificate(found: PanelActuation) -> Document:
         "torques": [format_rational(found.torques[fold]) for fold in folds],
         "limit": format_rational(max(sizes) if found.given else Fraction(1)),
         "creases": found.creases,
-        "margin": format_rational(found.margin[0]),
-        "bound": format_rational(found.shown),
+        "margin": format_rational(found.margin[0] - _SLACK),
+        "bound": format_rational(found.shown + _SLACK),
     }
     turned = [Fraction(0)] * len(names.way)
     rays: list[list[Any]] = []

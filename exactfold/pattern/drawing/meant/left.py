@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import repeat
-from math import exp, lcm, log, pi
+from math import exp, inf, lcm, log, pi
 from typing import TYPE_CHECKING, Final, Protocol
 
 from exactfold.pattern.drawing.meant.values import Edge, Kind, Relation
@@ -26,7 +26,8 @@ _STEPS: Final = 30
 """Points on a grid of so many steps across the sheet are not rounded; no relation there misses by
 less than 1e-3."""
 _TRUST: Final = 1e-9
-"""Angles from floats are good to this; smaller defects are computed exactly."""
+"""Angles from floats are good to this; smaller defects are computed exactly. All are if positions
+are only enclosed: then the angles are those of exact directions."""
 
 
 class Sheet(Protocol):
@@ -72,6 +73,7 @@ def left_relations(sheet: Sheet) -> tuple[Relation, ...]:
     if not all(test.shortest.all() for test in tests):
         return ()  # floats cannot tell the points of this sheet apart
     # So many are expected below a defect of 1.
+    trusted = inf if hasattr(sheet, "directions") else _TRUST
     expected = sum(float((2 * size / (pi * test.shortest)).sum()) for test in tests)
     near: list[tuple[float, int, int, int]] = []
     # Integers, where the sheet has them: a common factor does not turn the vectors.
@@ -81,7 +83,7 @@ def left_relations(sheet: Sheet) -> tuple[Relation, ...]:
     for k, test in enumerate(tests):
         defects = test.off * test.shortest / size
         chosen = np.flatnonzero(defects < NEAREST)
-        for row in chosen[test.off[chosen] < _TRUST].tolist():
+        for row in chosen[test.off[chosen] < trusted].tolist():
             defects[row] = _exact(points, directions, test.terms(row)) * test.shortest[row] / size
         chosen = chosen[defects[chosen] > 0]
         places_in_order = test.order[chosen].tolist()

@@ -70,7 +70,10 @@ def _refined(places: FloatArray, angles: Angles, bound: Sequence[Edge], least: f
         if off < _CONVERGED:
             break
         normal = (slopes @ slopes.T + damping * identity(len(bound))).tocsc()
-        move = slopes.T @ splu(normal).solve(-missing)
+        try:
+            move = slopes.T @ splu(normal).solve(-missing)
+        except RuntimeError:  # singular in floats: equations depend on each other
+            break
         now = now + move[: now.size].reshape(now.shape)
         free = free + move[now.size :]
     return Refined(best[0] * size + low, tuple(best[1]), 0.0 if np.isinf(off) else off)

@@ -8,7 +8,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from noisy_sheets import angles_of, with_noise
-from panel_sheets import chicken_wire, mesh, miura
+from panel_sheets import chicken_wire, mesh, miura, regular_twist
 
 from exactfold.errors import MalformedPatternError, NotApplicableError
 from exactfold.motion.panels.places import Placing
@@ -16,6 +16,7 @@ from exactfold.panels.certificate import certificate_of_panels
 from exactfold.panels.decomposition import decompose
 from exactfold.pattern.drawing.meant.directions import Directions
 from exactfold.pattern.drawing.meant.enclosing import DEPENDENT, Enclosed, enclosed, keeps_faces
+from exactfold.pattern.drawing.meant.left import left_relations
 from exactfold.pattern.drawing.meant.positions import placed_together
 from exactfold.pattern.drawing.meant.values import Angles, Edge
 from exactfold.pattern.meant_sheet import certificate, enclose, realize
@@ -32,12 +33,13 @@ def with_free_sides(turn: float) -> Angles:
     return Angles(dict.fromkeys(SQUARE, Fraction(0)), terms, tuple(map(float, values)))
 
 
-def enclosed_copy(sheet: PanelPattern) -> EnclosedPattern:
+def enclosed_copy(sheet: PanelPattern, digits: int = 12) -> EnclosedPattern:
     """A sheet with its exact directions, at twice their length, and rounded positions."""
     size = max(max(axis) - min(axis) for axis in zip(*sheet.vertices, strict=True))
     radius = Fraction(float(size) / 10**9)
     points = [
-        (round(Fraction(float(x)), 12), round(Fraction(float(y)), 12)) for x, y in sheet.vertices
+        (round(Fraction(float(x)), digits), round(Fraction(float(y)), digits))
+        for x, y in sheet.vertices
     ]
     vectors = {(i, j): sheet.direction(i, j) for i, j in sheet.edges}
     return EnclosedPattern(
@@ -107,6 +109,13 @@ def test_a_sheet_whose_positions_are_enclosed() -> None:
     assert other != sheet
     with pytest.raises(MalformedPatternError, match=f"fold {i}-{j} has no direction"):
         EnclosedPattern(sheet.vertices, sheet.edges, {}, sheet.radius)
+
+
+def test_rounded_positions_make_no_relation_of_exact_directions_near() -> None:
+    sheet = regular_twist(6, (Fraction(3), Fraction(-7)))
+    rounded = enclosed_copy(sheet, 6)
+    assert left_relations(sheet) == left_relations(rounded) == ()
+    assert left_relations(PanelPattern(rounded.vertices, rounded.edges))
 
 
 def test_nothing_exact_is_said_of_enclosed_positions() -> None:

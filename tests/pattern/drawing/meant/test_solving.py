@@ -116,3 +116,13 @@ def test_relations_that_are_missed_are_not_claimed() -> None:
     made = recognise(sheet, angles, 1e-6, [one, other])
     assert (made.existence, made.sheet) == ("none", None)
     assert made.reason == "the positions that were recognised miss parallel:0-2,1-2"
+
+
+def test_equations_that_are_singular_in_floats_give_no_positions() -> None:
+    """An edge that is there twice; the drawing stays as it is, and its edges miss their angles."""
+    sheet, angles = triangle(3.0)
+    places = np.array(sheet.vertices, dtype=float)
+    places[1, 1] += 0.1
+    near = refined(places, angles, [(0, 1), (0, 1)], 1e-12)
+    assert not near.exists
+    assert np.allclose(near.places, places)
