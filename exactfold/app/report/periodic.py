@@ -10,6 +10,7 @@ from rich.text import Text
 
 from exactfold._support.plurals import agreeing, counted
 from exactfold._support.verdict import PROVED
+from exactfold.app.report.count import NAMED
 from exactfold.app.report.terminal import letters_text, listed, more_text, status_text
 from exactfold.exact.numbers import format_rational
 
@@ -23,6 +24,7 @@ def periodic_report(result: PeriodicCount, certificate: str | None, *, everythin
     limit = listed(len(result.branches), everything=everything)
     if limit:
         parts += ["", _table(result, limit), *more_text(len(result.branches) - limit)]
+        parts += ["", *map(Text, _legend(result))]
     for title, spaces in (("Pleats", result.pleats), ("Families", result.families)):
         if spaces:
             parts += ["", Text(title, style="bold"), *(Text(_space(space)) for space in spaces)]
@@ -36,17 +38,25 @@ def periodic_report(result: PeriodicCount, certificate: str | None, *, everythin
 
 def _answer(result: PeriodicCount) -> Text:
     x, y = result.direction
-    where = f"for the direction {x},{y}"
-    found = counted(len(result.branches), "branch")
+    where, took = f"in the direction {x},{y}", f" ({result.seconds:.2f} s)"
+    number, families = len(result.branches), len(result.families)
     if result.status is not PROVED:
-        rest = f": {found} found {where}; {result.reason}"
-        return Text.assemble(status_text(result.status), rest)
-    families = len(result.families)
+        return Text.assemble(
+            f"the number of ways to start folding {where} is ",
+            status_text(result.status),
+            f"{took}: {result.reason}; {counted(number, 'way')} found",
+        )
+    kinds = [counted(number, "way")] if number or not families else []
     if families:
-        found += f" and {families} {agreeing(families, 'family')}"
+        kinds.append(f"{families} {agreeing(families, 'family')} of ways")
+    found = " and ".join(kinds)
     weight = result.with_multiplicity
-    more = "" if weight == len(result.branches) else f", {weight} with multiplicity"
-    return Text.assemble(status_text(result.status), f": {found}{more}, all real, {where}")
+    more = "each counted once" if weight == number else f"{weight} with multiplicity"
+    return Text.assemble(
+        f"{found} to start folding {where} - ",
+        status_text(PROVED),
+        f"{took}; all real, {more}",
+    )
 
 
 def _notes(result: PeriodicCount, certificate: str | None) -> list[str]:
@@ -64,6 +74,21 @@ def _notes(result: PeriodicCount, certificate: str | None) -> list[str]:
     if certificate is not None:
         notes.append(f"certificate: {certificate}")
     return notes
+
+
+def _legend(result: PeriodicCount) -> list[str]:
+    edges = result.pattern.edges
+    order = "of --json"
+    if len(edges) <= NAMED:
+        order = ", ".join(
+            f"{u}-{v}" if not (i or j) else f"{u}-{v}({i},{j})" for u, v, i, j in edges
+        )
+    return [
+        f"Folds in the order {order}; M mountain, V valley, F flat, seen from above. (i,j) moves "
+        "the second vertex by i and j lattice vectors.",
+        "Each way is shown on one side; on the other all is reversed. Where b is +, it rolls up "
+        "towards you.",
+    ]
 
 
 def _table(result: PeriodicCount, limit: int) -> Table:

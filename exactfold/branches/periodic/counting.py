@@ -118,7 +118,7 @@ def _result(
         UNDECIDED if left else PROVED,
         f"{len(left)} of {total} undecided"
         if left
-        else f"{total}: each leads to a listed solution, and these are all by theorem",
+        else f"by theorem these are all: every one of {total} leads to one of them",
         sorted_branches(branches),
         tuple(shown.space(basis) for basis in pleat_spaces(spaces)),
         tuple(shown.space(space.basis) for space in wide),
