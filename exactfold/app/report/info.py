@@ -13,6 +13,7 @@ from rich.text import Text
 from exactfold._support.plurals import counted
 from exactfold.app.report.terminal import facts_table
 from exactfold.exact.numbers import decimal_near, format_rational, parse_rational
+from exactfold.pattern.data import CELLS
 
 if TYPE_CHECKING:
     from exactfold.branches.counting.motion_facts import PanelFacts
@@ -178,4 +179,7 @@ def examples_report(examples: Mapping[str, str]) -> Group:
     for name, text in examples.items():
         table.add_row(name, text)
     use = "A name stands for the file in every command: exactfold count two-vertex"
-    return Group(table, "", Text(use))
+    cells = (
+        f"Cells of tessellations: {', '.join(CELLS)}: exactfold count {CELLS[0]} --direction 1,2"
+    )
+    return Group(table, "", Text(use), Text(cells))
