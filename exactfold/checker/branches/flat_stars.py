@@ -31,7 +31,7 @@ from ..core import limits
 from ..core.intervals import Interval
 from ..core.krawczyk import Krawczyk, inverse
 from ..core.reading import CertificateError, items, keys, natural, parse_rational, require
-from ..panels.forms import Motion, Space, folds_of
+from ..panels.motions import Motion, Space, folds_of
 from ..panels.reduction import BITS
 from ..panels.spaces import Spaces
 from ..sheets.boxes import Box, check_disjoint, read_box

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from ..core.towers import Number
-from ..panels.forms import Space, folds_of
+from ..panels.motions import Space, folds_of
 from ..panels.reduction import reduced
 from ..panels.spaces import Spaces
 from ..sheets.panels import Edge, Near, PanelSheet, pair

@@ -17,8 +17,9 @@ from ..core import limits
 from ..core.intervals import Interval
 from ..core.reading import at_most
 from ..sheets.panels import Edge
-from .forms import Space, Squares
+from .forms import Squares
 from .modular import one_component
+from .motions import Space
 from .proposed import near_zeros
 from .reduction import BITS, Work, enclosed, in_floats, reduced, rest_of, zero
 from .spaces import Spaces

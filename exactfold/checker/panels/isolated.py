@@ -19,7 +19,7 @@ from ..core.towers import Number
 from ..sheets.boxes import Box, check_disjoint, read_box
 from ..sheets.panels import Edge, pair
 from .claims import IsolatedClaim
-from .forms import folds_of
+from .motions import folds_of
 from .spaces import Spaces
 
 Entries = dict[tuple[int, int], int]

@@ -12,10 +12,10 @@ from ..core.reading import integer, items, keys, keys_of, natural, require
 from ..sheets.panels import Edge, PanelSheet, pair
 from .claims import LeafClaim
 from .cones import Place, cone_motion
-from .forms import Motion, folds_of
 from .isolated import isolated_ways
 from .loops import Loops
 from .modes import Modes, Support
+from .motions import Motion, folds_of
 from .reduction import BITS, enclosed, reduced
 from .spaces import Leaf, Spaces
 

@@ -16,7 +16,8 @@ from ..core import limits
 from ..core.reading import LimitError, at_most
 from ..core.towers import Number
 from ..sheets.panels import Edge
-from .forms import Forms, Motion, Space, Squares, folds_of
+from .forms import Forms, Squares
+from .motions import Motion, Space, folds_of
 from .reduction import MOST_STEPS, Rows, inside, reduced, rest_of, zero
 from .together import narrowing_sum, vanish_only_at_zero
 

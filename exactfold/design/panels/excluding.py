@@ -12,7 +12,7 @@ from exactfold._support.arrays import FloatArray
 from exactfold.checker.core.reading import CertificateError, LimitError
 from exactfold.checker.letters.panels_refuted import SIDES
 from exactfold.checker.letters.panels_spaces import Exclusion
-from exactfold.checker.panels.forms import Space
+from exactfold.checker.panels.motions import Space
 from exactfold.checker.sheets.panels import read_panels
 from exactfold.design.refutations.refutation import Letters
 from exactfold.errors import NotApplicableError
