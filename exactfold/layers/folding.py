@@ -18,7 +18,7 @@ from exactfold.exact.surds import exact
 from exactfold.layers.conflicts import ConflictSearch
 from exactfold.layers.constraints import Constraints
 from exactfold.layers.images import Complex, Images, images_of
-from exactfold.layers.nearly import Blurred, half_step, reflections, size_of
+from exactfold.layers.nearly import Blurred, reflections
 from exactfold.layers.orders import LISTED, Orders, Search
 from exactfold.layers.overlaps import Overlaps
 from exactfold.layers.pieces import pieces_of
@@ -29,6 +29,7 @@ from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.loading import PatternLike, open_sheet
 from exactfold.pattern.opening import Opened, panels
 from exactfold.pattern.panel_pattern import Edge, EnclosedPattern, PanelPattern, Point
+from exactfold.pattern.rounding import half_step, size_of
 
 _NEAR: Final = 2e-4
 """In a drawing, a corner and a line of the folded image that miss each other by less than this,

@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from copy import copy
-from fractions import Fraction
-from math import gcd, lcm
-from typing import Final
 
 import networkx as nx
 import numpy as np
@@ -14,49 +10,9 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from exactfold.exact.surds import Number, Surd, simple
 from exactfold.layers.overlaps import Overlaps
 from exactfold.layers.pieces import Pieces
 from exactfold.layers.sides import Indices
-
-_WHOLE: Final = 512
-"""Whole numbers of so many steps across the sheet count as exact, not as rounded."""
-_TENTHS: Final = 64
-"""So do other decimals of so many steps."""
-_ZERO: Final = 1e-9
-"""Coordinates below this share of the size are noise about zero."""
-
-
-def size_of(points: Sequence[Sequence[Number]]) -> float:
-    """The larger side of the rectangle round some points, however far from the origin.
-
-    >>> size_of([(10**30, 0), (10**30 + 2, 1)])
-    2.0
-    """
-    x, y = points[0]
-    return float(max(np.ptp([[float(p[0] - x), float(p[1] - y)] for p in points], axis=0)))
-
-
-def half_step(points: Sequence[Sequence[Number]]) -> float:
-    """By so much of the size decimals may have been rounded; 0 if they count as exact.
-
-    This is half of the largest step of which all are multiples. Numbers without a finite decimal
-    were recognised or given exactly, and are left out.
-
-    >>> half_step([(0, 0), (100, 0), (200, 0), (301, 100)])
-    0.0
-    >>> half_step([(0, 0), (Fraction("0.143"), 0), (1, 0), (1, 1)])
-    0.0005
-    """
-    size = size_of(points)
-    known = [_decimal(c) for point in points for c in point]
-    decimals = [x for x in known if x is not None and abs(x) > _ZERO * size]
-    if not decimals:
-        return 0.0
-    below = lcm(*(x.denominator for x in decimals))
-    step = Fraction(gcd(*(int(x * below) for x in decimals)), below)
-    steps = size / float(step)
-    return 0.0 if steps <= (_WHOLE if below == 1 else _TENTHS) else 0.5 / steps
 
 
 def reflections(pieces: Pieces) -> int:
@@ -66,17 +22,6 @@ def reflections(pieces: Pieces) -> int:
     graph.add_edges_from(pieces.creases.values(), weight=1)
     graph.add_edges_from(pieces.joints.values(), weight=0)
     return int(max(nx.single_source_dijkstra_path_length(graph, 0).values()))
-
-
-def _decimal(number: Number) -> Fraction | None:
-    """A number as a fraction, if it is a finite decimal."""
-    number = simple(number)
-    if isinstance(number, Surd):
-        return None
-    found = Fraction(number)
-    twos = (found.denominator & -found.denominator).bit_length() - 1
-    rest = found.denominator >> twos
-    return None if pow(5, rest.bit_length(), rest) else found
 
 
 class Blurred(Overlaps):

@@ -205,6 +205,7 @@ def _by_modes(pattern: PanelPattern, moving: Mapping[int, Star], listed: int, cl
         modes=tuple(modes),
         most=None if decided else max(counts),
         near_misses=tuple(search.near_misses.values()),
+        loops=search.loops,
         reason=_open(decided, clock),
     )
 

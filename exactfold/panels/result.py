@@ -35,6 +35,7 @@ from exactfold.pattern.described import described_panels
 from exactfold.pattern.meant import Meant
 from exactfold.pattern.opening import ReadDocument
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
+from exactfold.pattern.rounding import half_step
 
 Counts = Mapping[int, int]
 """{dimension: number of components}."""
@@ -82,7 +83,7 @@ class Decomposition(Page, Ways[Mode], Certified):
     components that are known to fold truly. If no such component is known, `modes` are modes that
     truly fold; there may be others. `drawn` is the answer for the letters of the drawing, if it was
     asked for. `near_misses` are loops with a product of gains within 1e-3 of 1, and
-    `nearly_closing` those that the noise of the drawing explains, or within 1e-6.
+    `nearly_closing` those that noise or rounding may explain.
 
     `meant` says what was inferred if the digits of the drawing are inexact, and `as_written` is the
     answer for these digits alone. If `doubt` says why an answer would hold for the digits of the
@@ -265,8 +266,11 @@ class Decomposition(Page, Ways[Mode], Certified):
 
     @property
     def nearly_closing(self) -> tuple[NearMiss, ...]:
-        """Those of `near_misses` that the noise of the drawing explains."""
-        limit = near_limit(None if self.meant is None else self.meant.noise)
+        """Those of `near_misses` that the noise of the drawing explains, or that decimals that may
+        be rounded make more likely than chance does."""
+        decimals = self.near_misses and half_step(self.pattern.vertices) > 0
+        loops = sum(part.loops for part in self.parts) if decimals else 0
+        limit = near_limit(None if self.meant is None else self.meant.noise, loops)
         return tuple(miss for miss in self.near_misses if miss.off < limit)
 
     def __repr__(self) -> str:
@@ -318,7 +322,8 @@ class Part:
     or not all are known to fold. `still` are the folds that are flat in every motion to second
     order. `by_tree` says that the vertices form a tree along which the components were counted;
     then each of them is known to fold, and none is listed. `isolated` are all complex motions, if
-    these were found by their number (docs/panels.md, Isolated ways).
+    these were found by their number (docs/panels.md, Isolated ways). `loops` is the number of loops
+    of folds that do not close.
     """
 
     vertices: tuple[int, ...]
@@ -332,6 +337,7 @@ class Part:
     dimension: int | None = None
     most: int | None = None
     near_misses: tuple[NearMiss, ...] = ()
+    loops: int = 0
     reason: str = ""
     found: tuple[FoundComponent, ...] = ()
     still: tuple[Edge, ...] = ()

@@ -39,6 +39,7 @@ from exactfold.pattern.loading import PatternLike, open_sheet
 from exactfold.pattern.meant import Meant, MeantDocument
 from exactfold.pattern.opening import Opened, panels
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
+from exactfold.pattern.rounding import half_step
 
 
 class StartingMotion(TypedDict):
@@ -143,8 +144,10 @@ class PanelMatch(Certified):
         the letters, or if nearly straight folds decide them at a vertex.
         """
         matched = replace(self, meant=opened.meant)
-        limit = near_limit(None if opened.meant is None else opened.meant.noise)
         loops = [part.loop for part in self.parts if part.loop is not None]
+        decimals = loops and half_step(opened.sheet.vertices) > 0
+        noise = None if opened.meant is None else opened.meant.noise
+        limit = near_limit(noise, len(loops) if decimals else 0)
         nearly = [loop.text for loop in loops if abs(loop.off) < limit]
         doubt = opened.doubt
         if not doubt and nearly and opened.reading.snap != "exact":

@@ -83,8 +83,8 @@ class ModeSearch:
     these one with the most known folds. So forced choices come first, and loops close early. Equal
     states are merged and their counts added, so modes are counted without being listed. Floats only
     propose which states are equal; every comparison of densities is exact. `near_misses` contains
-    folds at which a loop closed to within 1e-6 but not exactly; there the coordinates of the
-    drawing may be rounded.
+    folds at which a loop closed to within 1e-3 but not exactly; there the coordinates of the
+    drawing may be rounded. `loops` is the number of loops that do not close.
     """
 
     def __init__(
@@ -95,9 +95,15 @@ class ModeSearch:
         self.stars = stars
         self.modes = {v: local_modes(star) for v, star in stars.items()}
         self.near_misses: dict[Edge, NearMiss] = {}
+        self._open_loops: set[tuple[Edge, float]] = set()
         self._bit = {v: 1 << k for k, v in enumerate(sorted(stars))}
         self._gains: dict[tuple[int, int, Edge, Edge], Density] = {}
         self._steps = 0
+
+    @property
+    def loops(self) -> int:
+        """The number of loops of folds that were found not to close, by their products of gains."""
+        return len(self._open_loops)
 
     def supports(self, limit: int) -> list[Support]:
         """All sets of vertices with elementary modes, by smallest vertex.
@@ -200,7 +206,10 @@ class ModeSearch:
                 continue
             ratio = densities[edge].over(density)
             if not ratio.is_one():
-                if abs(ratio.approx - 1) < RECORDED and edge not in self.near_misses:
+                self._open_loops.add((edge, round(ratio.approx, 9)))
+                off = abs(ratio.approx - 1)
+                before = self.near_misses.get(edge)
+                if off < (RECORDED if before is None else before.off / 2):
                     chosen = _chosen(state.choice)
                     self.near_misses[edge] = near_miss(chosen, mode, root, edge, ratio)
                 return None

@@ -20,6 +20,9 @@ RECORDED: Final = 1e-3
 """On an inexact sheet, loops that close up to a multiple of its noise are near misses, too; loops
 are recorded up to this."""
 _TIMES_NOISE: Final = 100
+_CHANCE: Final = 0.01
+"""Of decimals nobody knows how far they were rounded. That one of n loops of unrelated folds closes
+up to `_CHANCE` / n has about this probability."""
 _BITS: Final = 256
 
 
@@ -66,12 +69,17 @@ class NearMiss:
         return f"the loop of folds {shown} nearly closes, off by {self.off:.1e}"
 
 
-def near_limit(noise: float | None) -> float:
+def near_limit(noise: float | None, loops: int = 0) -> float:
     """The distance from 1 below which a product that is not 1 is a near miss.
 
-    `noise` is the noise level of the drawing, None for an exact one.
+    `noise` is the noise level of the drawing, None if it is not known. `loops` is the number of
+    loops that were found not to close if the coordinates are decimals that may be rounded, else 0.
+
+    >>> near_limit(None), near_limit(1e-8), near_limit(None, 1000)
+    (1e-06, 1e-06, 1e-05)
     """
-    return max(NEAR, _TIMES_NOISE * (noise or 0.0))
+    chance = min(RECORDED, _CHANCE / loops) if loops else 0.0
+    return max(NEAR, _TIMES_NOISE * (noise or 0.0), chance)
 
 
 def near_miss(

@@ -74,15 +74,25 @@ def test_loops_close_where_lengths_are_on_a_grid(name: str, angle: float) -> Non
     assert answer(opened) == answer(SHEETS[name])
 
 
-def test_a_loop_that_nearly_closes_decides_nothing() -> None:
-    """Its creases have no relation of angles, so that nothing is inferred about the drawing."""
-    tiling = turned(noisy(SHEETS["tiling"], 1e-9))
+@pytest.mark.parametrize("noise", [1e-9, 1e-7, 1e-5])
+def test_a_loop_that_nearly_closes_decides_nothing(noise: float) -> None:
+    """Its creases have no relation of angles, so that nothing is inferred about the drawing.
+
+    How far its decimals are rounded is not known, but chance hardly closes a loop as nearly.
+    """
+    tiling = turned(noisy(SHEETS["tiling"], noise))
     result = count_ways(tiling)
     assert result.status is UNDECIDED
     assert "nearly closes, off by" in result.reason
     assert isinstance(result, Decomposition)
     assert result.known.status is PROVED
     assert count_ways(tiling, Reading("exact")).status is PROVED
+
+
+@pytest.mark.parametrize("seed", slow_after(4, range(40)))
+def test_loops_of_random_corners_do_not_nearly_close(seed: int) -> None:
+    """Chance closes a loop of one sheet in a hundred so nearly; of these it closes none."""
+    assert count_ways(from_drawing(random_grid(seed, 12))).status is PROVED
 
 
 def random_grid(seed: int, digits: int) -> Drawing:

@@ -1,0 +1,61 @@
+"""How far the coordinates of a drawing may have been rounded."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from math import gcd, lcm
+from typing import Final
+
+from exactfold.exact.surds import Number, Surd, simple
+
+_WHOLE: Final = 512
+"""Whole numbers of so many steps across the sheet count as exact, not as rounded."""
+_TENTHS: Final = 64
+"""So do other decimals of so many steps."""
+_ZERO: Final = 1e-9
+"""Coordinates below this share of the size are noise about zero."""
+
+
+def size_of(points: Sequence[Sequence[Number]]) -> float:
+    """The larger side of the rectangle round some points, however far from the origin.
+
+    >>> size_of([(10**30, 0), (10**30 + 2, 1)])
+    2.0
+    """
+    x, y = points[0]
+    sides = zip(*((float(p[0] - x), float(p[1] - y)) for p in points), strict=True)
+    return float(max(max(side) - min(side) for side in sides))
+
+
+def half_step(points: Sequence[Sequence[Number]]) -> float:
+    """By so much of the size decimals may have been rounded; 0 if they count as exact.
+
+    This is half of the largest step of which all are multiples. Numbers without a finite decimal
+    were recognised or given exactly, and are left out.
+
+    >>> half_step([(0, 0), (100, 0), (200, 0), (301, 100)])
+    0.0
+    >>> half_step([(0, 0), (Fraction("0.143"), 0), (1, 0), (1, 1)])
+    0.0005
+    """
+    size = size_of(points)
+    known = [_decimal(c) for point in points for c in point]
+    decimals = [x for x in known if x is not None and abs(x) > _ZERO * size]
+    if not decimals:
+        return 0.0
+    below = lcm(*(x.denominator for x in decimals))
+    step = Fraction(gcd(*(int(x * below) for x in decimals)), below)
+    steps = size / float(step)
+    return 0.0 if steps <= (_WHOLE if below == 1 else _TENTHS) else 0.5 / steps
+
+
+def _decimal(number: Number) -> Fraction | None:
+    """A number as a fraction, if it is a finite decimal."""
+    number = simple(number)
+    if isinstance(number, Surd):
+        return None
+    found = Fraction(number)
+    twos = (found.denominator & -found.denominator).bit_length() - 1
+    rest = found.denominator >> twos
+    return None if pow(5, rest.bit_length(), rest) else found
