@@ -230,6 +230,7 @@ def test_no_public_function_that_takes_a_pattern_is_missing():
         "design.PanelAssignments",
         "design.BoundaryMatch",
         "branches.ShapeCount",
+        "branches.PeriodicCount",
         "motion.Loops",
         "motion.PanelMode",
         "motion.PanelMotion",

@@ -53,8 +53,8 @@ def actuate(
     >>> import exactfold
     >>> exactfold.actuate("two-vertex", "+-")
     <Actuation of +-: proved, margin 0.982 of at most 0.982>
-    >>> exactfold.actuate("miura", way=8)
-    <PanelActuation of way 8: proved, margin 2.309 of at most 2.31>
+    >>> exactfold.actuate("square-twist", way=1)
+    <PanelActuation of way 1: proved, margin 0.9886 of at most 0.9886>
     """
     opened = open_sheet(sheet)
     found = actuate_opened(

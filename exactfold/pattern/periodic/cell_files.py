@@ -116,7 +116,7 @@ def _rational(rows: Any) -> list[Any]:
     ]
 
 
-def cell_document(pattern: PeriodicPattern, title: str | None = None) -> dict[str, Any]:
+def cell_document(cell: PeriodicPattern, title: str | None = None) -> dict[str, Any]:
     """The JSON object of a plain file; `read_cell` reads it.
 
     >>> read_cell(cell_document(read_cell("miura-cell"))) == read_cell("miura-cell")
@@ -126,15 +126,15 @@ def cell_document(pattern: PeriodicPattern, title: str | None = None) -> dict[st
     return {
         "format": FORMAT,
         **named,
-        "lattice": [list(map(format_rational, vector)) for vector in pattern.lattice],
-        "points": [list(map(format_rational, point)) for point in pattern.points],
-        "faces": [[list(corner) for corner in face] for face in pattern.faces],
+        "lattice": [list(map(format_rational, vector)) for vector in cell.lattice],
+        "points": [list(map(format_rational, point)) for point in cell.points],
+        "faces": [[list(corner) for corner in face] for face in cell.faces],
     }
 
 
-def cell_text(pattern: PeriodicPattern, title: str | None = None) -> str:
+def cell_text(cell: PeriodicPattern, title: str | None = None) -> str:
     """The text of a plain file, one line for each key."""
-    lines = [f"{json.dumps(k)}: {json.dumps(v)}" for k, v in cell_document(pattern, title).items()]
+    lines = [f"{json.dumps(k)}: {json.dumps(v)}" for k, v in cell_document(cell, title).items()]
     return "{\n" + ",\n".join(lines) + "\n}\n"
 
 
