@@ -125,7 +125,7 @@ def test_a_loop_that_nearly_closes_gives_a_noise_level() -> None:
     assert (result.status, result.known.rigid) == (UNDECIDED, PROVED)
     proposal = result.proposal
     assert proposal is not None
-    assert proposal.noise == pytest.approx(3e-9)
+    assert proposal.noise == pytest.approx(1e-9)
     assert proposal.distance < 1e-8
     assert isinstance(proposal.answer, Decomposition)
     assert proposal.answer.true == {1: 2}
