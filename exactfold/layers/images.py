@@ -44,7 +44,7 @@ class Isometry:
         return ((c, s), (s, -c)) if self.flipped else ((c, -s), (s, c))
 
     def after_reflection(self, direction: Complex, through: Point) -> Isometry:
-        """The map that first reflects in the line through a point with a unit `direction`^(1/2).
+        """The map that first reflects in a line through a point, and then is this one.
 
         `direction` is d / conj(d) for a vector d along the line.
         """
