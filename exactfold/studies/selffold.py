@@ -63,7 +63,7 @@ def row(recipe: Recipe) -> dict[str, Any]:
     if any(result.status is not PROVED for result in results):
         return values
     dimensions = Counter(result.orthogonal_dimension for result in results)
-    gaps = [result.best - result.margin[0] for result in results]
+    gaps = [result.bound - result.margin[0] for result in results]
     return {
         **values,
         "status": str(PROVED),
@@ -72,7 +72,7 @@ def row(recipe: Recipe) -> dict[str, Any]:
         "weakest": min(results, key=lambda result: result.margin[0]).branch.sign_text,
         "gap": _rounded(max(gaps), _UP),
         "share": _rounded(
-            max(gap / result.best for gap, result in zip(gaps, results, strict=True)), _UP
+            max(gap / result.bound for gap, result in zip(gaps, results, strict=True)), _UP
         ),
     }
 

@@ -135,7 +135,7 @@ def row(recipe: Recipe) -> dict[str, Any]:
         return values
     if any(one.status is not PROVED for one in found):
         return values
-    gap = max((one.best - one.margin[0] for one in found), default=Fraction(0))
+    gap = max((one.bound - one.margin[0] for one in found), default=Fraction(0))
     return {
         "status": str(PROVED),
         "verdicts": [[*key, number] for key, number in sorted(counts.items())],

@@ -169,13 +169,13 @@ def test_margins_of_all_branches_are_those_of_one_at_a_time():
         for branch, margin in zip(branches, row["margins"], strict=True):
             one = actuate(branch.pattern, branch.vertex_signs)
             assert float(one.margin[0]) * (1 - 1e-4) <= margin + row["gap"]
-            assert margin <= float(one.best)
-            assert float(one.best) * (1 - row["share"]) <= margin * (1 + 1e-4)
+            assert margin <= float(one.bound)
+            assert float(one.bound) * (1 - row["share"]) <= margin * (1 + 1e-4)
             signs = list(branch.vertex_signs.values())
             (own,) = np.flatnonzero((lines.signs == signs).all(axis=1))
             direction = lines.directions[own]
             powers = np.abs(lines.directions @ direction) / np.abs(direction).max()
-            assert powers[own] - np.delete(powers, own).max() <= float(one.best) + 1e-9
+            assert powers[own] - np.delete(powers, own).max() <= float(one.bound) + 1e-9
     table = columns(run, "margins")
     for k, row in enumerate(run.rows):
         ordered = sorted(row["margins"])

@@ -58,9 +58,9 @@ def _folding(actuation: Actuation) -> Text:
 
 
 def _best(actuation: Actuation) -> str:
-    bound = f"{decimal_above(actuation.best, 6)} is the most that is possible"
+    bound = f"{decimal_above(actuation.bound, 6)} is the most that is possible"
     if actuation.given:
-        return f"with torques of this size at most {decimal_above(actuation.best, 6)} is possible"
+        return f"with torques of this size at most {decimal_above(actuation.bound, 6)} is possible"
     if actuation.creases is not None:
         return f"on {counted(actuation.creases, 'crease')} at most {bound.split()[0]} is possible"
     return f"at most {bound.split()[0]} is possible"

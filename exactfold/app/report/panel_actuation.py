@@ -77,7 +77,7 @@ def between(bounds: Bounds) -> str:
 
 
 def _best(found: PanelActuation) -> str:
-    most = decimal_above(found.best, 6)
+    most = decimal_above(found.bound, 6)
     if found.given:
         return f"with torques of this size at most {most} is possible"
     if found.creases is not None:

@@ -21,12 +21,17 @@ from exactfold.design.actuation.hinges import Hinges
 from exactfold.design.actuation.orthogonal import alone
 from exactfold.design.actuation.powers import Powers, exact_weights, margin_bound, rivals
 from exactfold.design.actuation.programs import largest_margin
-from exactfold.design.actuation.result import Actuation, Bounds, checked_torques, outward
+from exactfold.design.actuation.result import (
+    Actuation,
+    Bounds,
+    check_question,
+    checked_torques,
+    outward,
+)
 from exactfold.errors import (
     NotApplicableError,
     NotCountedError,
     UndecidedBranchError,
-    UsageError,
 )
 from exactfold.exact.numbers import RationalLike
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
@@ -73,7 +78,7 @@ def actuate(
     and bound chooses the folds, with at most `nodes` linear programs; if these are not enough, the
     bound is larger than the margin but still proved.
 
-    If `torques` are given, exact numbers by fold, they are judged instead. Then `best` bounds the
+    If `torques` are given, exact numbers by fold, they are judged instead. Then `bound` bounds the
     margin of all torques that are at most as large as the largest one given. With `hinges`, the
     stiffness of the spring at a fold is in proportion to its length, and the torques are rest
     angles in radians; otherwise all springs have the same stiffness.
@@ -92,7 +97,7 @@ def actuate(
     finder = BranchFinder(pattern)
     size = finder.problem.size
     wanted = finder.signs(signs, up)
-    _check(pattern, creases, torques, nodes)
+    check_question(pattern, creases, torques, nodes)
     require_few(size)
     named = finder.find(wanted, progress=progress)
     if named.root is None:
@@ -119,29 +124,6 @@ def proved_branches(pattern: CreasePattern, progress: Progress | None) -> list[B
     if count.status is not PROVED:
         raise UndecidedBranchError(f"not all branches are proved: {count.reason}")
     return list(count.branches)
-
-
-def _check(
-    pattern: CreasePattern,
-    creases: int | None,
-    torques: Mapping[Edge, RationalLike] | None,
-    nodes: int,
-) -> None:
-    if creases is not None and torques is not None:
-        raise UsageError(
-            "give either torques to judge or the number of creases to drive, but not both"
-        )
-    if creases is not None and not 1 <= creases <= len(pattern.folds):
-        raise UsageError(
-            f"{creases} creases cannot be driven: give a number from 1 to {len(pattern.folds)}, "
-            "the number of folds"
-        )
-    if nodes < 1:
-        raise UsageError(
-            f"nodes is {nodes}: allow at least one linear program for the choice of creases"
-        )
-    if torques is not None and not any(checked_torques(pattern, torques).values()):
-        raise UsageError("all torques are 0: give at least one fold a torque that is not 0")
 
 
 class TorqueSearch:

@@ -180,7 +180,7 @@ class Actuation(Certified):
     The power of torques tau along a ray with unit vector u of fold angles is tau . u. The margin is
     the power along the ray of `branch` minus the largest power along any of the other 2B - 1 rays.
     `margin` are proved bounds of the margin. All torques have size at most 1; a positive torque
-    folds its crease towards a valley. `best` is a proved upper bound of the margin of all such
+    folds its crease towards a valley. `bound` is a proved upper bound of the margin of all such
     torques, on at most `creases` folds if that is not None. `given` says whether the torques were
     given or found.
 
@@ -203,7 +203,7 @@ class Actuation(Certified):
     reason: str
     torques: Mapping[Edge, Fraction]
     margin: Bounds
-    best: Fraction
+    bound: Fraction
     creases: int | None
     given: bool
     self_foldable: Verdict
@@ -285,7 +285,7 @@ class Actuation(Certified):
             "given": self.given,
             "creases": self.creases,
             "margin": [format_rational(x) for x in self.margin],
-            "bound": format_rational(self.best),
+            "bound": format_rational(self.bound),
             "power": [format_rational(x) for x in self.power],
             "largest_rival": [format_rational(x) for x in self.largest_rival],
             "rivals": {"number": len(self.directions) - 1, "complete": True, "unknown": ""},
@@ -319,7 +319,7 @@ class Actuation(Certified):
         text = signs if len(signs) <= 32 else f"{signs[:29]}..."
         return (
             f"<Actuation of {text}: {self.status}, margin {float(self.margin[0]):.4g} "
-            f"of at most {float(self.best):.4g}>"
+            f"of at most {float(self.bound):.4g}>"
         )
 
 
@@ -335,6 +335,30 @@ def checked_torques(
         if fold not in folds:
             raise UsageError(f"{fold!r} is not a fold (i, j), i < j, of the pattern")
     return {fold: as_rational(torques.get(fold, 0)) for fold in pattern.folds}
+
+
+def check_question(
+    pattern: CreasePattern | PanelPattern,
+    creases: int | None,
+    torques: Mapping[Edge, RationalLike] | None,
+    nodes: int,
+) -> None:
+    """Raise `UsageError` if torques cannot be sought, or judged, as they are asked for."""
+    if creases is not None and torques is not None:
+        raise UsageError(
+            "give either torques to judge or the number of creases to drive, but not both"
+        )
+    if creases is not None and not 1 <= creases <= len(pattern.folds):
+        raise UsageError(
+            f"{creases} creases cannot be driven: give a number from 1 to {len(pattern.folds)}, "
+            "the number of folds"
+        )
+    if nodes < 1:
+        raise UsageError(
+            f"nodes is {nodes}: allow at least one linear program for the choice of creases"
+        )
+    if torques is not None and not any(checked_torques(pattern, torques).values()):
+        raise UsageError("all torques are 0: give at least one fold a torque that is not 0")
 
 
 def torque_texts(torques: Mapping[Edge, Fraction]) -> dict[str, str]:

@@ -46,9 +46,9 @@ def test_the_margin_is_the_optimum_of_the_dual_program(inside, seed):
         found = actuate(pattern, signs)
         best = driving.dual_optimum(driving.gaps(units, place_of(found, count)))
         assert found.status is PROVED
-        assert float(found.best) == pytest.approx(best, abs=1e-6)
+        assert float(found.bound) == pytest.approx(best, abs=1e-6)
         assert float(found.margin[0]) == pytest.approx(best, rel=2e-4)
-        assert 0 < found.margin[0] < found.margin[1] < found.best
+        assert 0 < found.margin[0] < found.margin[1] < found.bound
 
 
 @pytest.mark.parametrize(("inside", "seed", "most"), [(1, 1, 1), (1, 2, 2), (2, 1, 2), (2, 3, 3)])
@@ -61,13 +61,13 @@ def test_the_choice_of_creases_is_the_best_of_all(inside, seed, most):
     assert found.status is PROVED
     assert 0 < len(found.driven) <= most
     assert float(found.margin[0]) == pytest.approx(best, rel=2e-4)
-    assert best - 1e-6 <= float(found.best) <= best * 1.0002
+    assert best - 1e-6 <= float(found.bound) <= best * 1.0002
 
 
 def test_branches_with_wide_bounds_are_sharpened():
     """A sheet with thin triangles, whose roots are known to a millionth only."""
     found = actuate(random_square(6, seed=44), "-+-+-+")
-    assert found.margin[0] >= found.best * Fraction(9998, 10000)
+    assert found.margin[0] >= found.bound * Fraction(9998, 10000)
     assert found.margin[1] - found.margin[0] < found.margin[0] / 10**4
 
 
@@ -75,14 +75,14 @@ def test_with_few_linear_programs_the_bound_is_larger_and_still_a_bound():
     pattern = random_square(4, seed=1)
     short, long = (actuate(pattern, "+-+-", creases=3, nodes=n) for n in (1, 1000))
     assert len(short.driven) <= 3
-    assert short.margin[1] <= long.best < short.best
-    assert long.best - long.margin[0] < Fraction(1, 10**4)
+    assert short.margin[1] <= long.bound < short.bound
+    assert long.bound - long.margin[0] < Fraction(1, 10**4)
 
 
 def test_all_creases_may_be_driven():
     pattern = random_square(2, seed=1)
     every, free = actuate(pattern, "+-", creases=len(pattern.folds)), actuate(pattern, "+-")
-    assert (every.torques, every.margin, every.best) == (free.torques, free.margin, free.best)
+    assert (every.torques, every.margin, every.bound) == (free.torques, free.margin, free.bound)
 
 
 def test_no_torques_on_one_crease_prefer_a_branch_with_many_rivals():
@@ -90,7 +90,7 @@ def test_no_torques_on_one_crease_prefer_a_branch_with_many_rivals():
     found = actuate(random_square(4, seed=1), "+-+-", creases=1)
     assert found.status is UNDECIDED
     assert not found.driven
-    assert 0 <= found.best < Fraction(1, 10**6)
+    assert 0 <= found.bound < Fraction(1, 10**6)
 
 
 # --- the ray that is driven ----------------------------------------------------------------------
@@ -189,7 +189,7 @@ def bests(pattern):
     """The bounds of all branches of a sheet, and whether all are proved."""
     every = [actuate(pattern, branch.vertex_signs) for branch in count_branches(pattern).branches]
     assert all(found.status is PROVED for found in every)
-    return sorted(float(found.best) for found in every)
+    return sorted(float(found.bound) for found in every)
 
 
 @few
@@ -214,8 +214,8 @@ def test_labels_position_size_and_side_do_not_matter(seed, inside, source):
 def test_the_mirror_image_has_the_same_torques(seed):
     pattern = random_square(2, seed=seed)
     found, image = actuate(pattern, "+-"), actuate(mapped(pattern, mirrored), "+-")
-    assert image.margin[0] <= found.best
-    assert found.margin[0] <= image.best
+    assert image.margin[0] <= found.bound
+    assert found.margin[0] <= image.bound
     given_there = actuate(mapped(pattern, mirrored), "+-", torques=found.torques)
     assert given_there.margin == pytest.approx(found.margin, abs=1e-7)
 
@@ -244,7 +244,7 @@ def test_the_fold_angles_of_the_branch_have_a_positive_margin():
     }
     judged = actuate(pattern, "+-+-", torques=torques)
     assert judged.status is PROVED
-    assert judged.margin[0] <= actuate(pattern, "+-+-").best
+    assert judged.margin[0] <= actuate(pattern, "+-+-").bound
 
 
 def test_larger_torques_have_a_larger_bound():
@@ -252,8 +252,8 @@ def test_larger_torques_have_a_larger_bound():
     found = actuate(pattern, "+-")
     tenfold = {fold: 10 * torque for fold, torque in found.torques.items()}
     judged = actuate(pattern, "+-", torques=tenfold)
-    assert judged.margin[1] <= judged.best
-    assert float(judged.best) == pytest.approx(10 * float(found.best), rel=1e-9)
+    assert judged.margin[1] <= judged.bound
+    assert float(judged.bound) == pytest.approx(10 * float(found.bound), rel=1e-9)
     assert float(judged.margin[0]) == pytest.approx(10 * float(found.margin[0]), rel=1e-9)
 
 
@@ -331,7 +331,7 @@ def test_fifty_random_squares(inside):
         signs = "".join(np.random.default_rng(seed).choice(["+", "-"], inside))
         found = actuate(random_square(inside, seed=seed), signs)
         assert found.status is PROVED
-        assert found.margin[0] >= found.best * Fraction(9998, 10000)
+        assert found.margin[0] >= found.bound * Fraction(9998, 10000)
         dimension = 1 if inside == 1 else 0
         assert found.orthogonal_dimension == (dimension, dimension)
         assert len(found.independent) == inside + 1 - dimension

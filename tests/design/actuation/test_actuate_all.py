@@ -42,11 +42,11 @@ def test_each_branch_is_that_of_actuate(pattern):
         one = actuate(pattern, found.branch.vertex_signs)
         judged = actuate(pattern, found.branch.vertex_signs, torques=found.torques)
         assert found.status is judged.status is PROVED
-        assert found.margin[0] <= one.best
-        assert one.margin[0] <= found.best
+        assert found.margin[0] <= one.bound
+        assert one.margin[0] <= found.bound
         assert judged.margin[0] <= found.margin[1]
         assert found.margin[0] <= judged.margin[1]
-        assert found.best - found.margin[0] < Fraction(1, 10**6)
+        assert found.bound - found.margin[0] < Fraction(1, 10**6)
         assert found.orthogonal_dimension == one.orthogonal_dimension
         assert len(found.independent) == len(one.independent)
         assert found.branch.sign_text not in found.independent
@@ -62,7 +62,7 @@ def test_the_opposite_ray_has_the_same_margin_with_opposite_torques(pattern):
     for b, found in enumerate(every_one):
         turned = units.copy()
         turned[b] = -units[b]
-        assert float(found.best) == pytest.approx(
+        assert float(found.bound) == pytest.approx(
             driving.dual_optimum(driving.gaps(turned, b)), abs=1e-6
         )
         torques = list(found.torques.values())
@@ -76,7 +76,7 @@ def test_sheets_with_thin_triangles_are_sharpened():
     """One whose roots are known to a millionth: the bounds of margins would be wide."""
     for found in actuate_all(random_square(6, seed=44)):
         assert found.status is PROVED
-        assert found.margin[0] >= found.best * Fraction(9998, 10000)
+        assert found.margin[0] >= found.bound * Fraction(9998, 10000)
 
 
 @pytest.mark.parametrize(
@@ -92,7 +92,7 @@ def test_where_the_programs_fail_branches_are_done_one_by_one(monkeypatch, spoil
     monkeypatch.setattr(every, "largest_margins", spoilt)
     found = actuate_all(pattern)
     assert [f.torques for f in found] == [f.torques for f in expected]
-    assert [float(f.best) for f in found] == pytest.approx([float(f.best) for f in expected])
+    assert [float(f.bound) for f in found] == pytest.approx([float(f.bound) for f in expected])
 
 
 # --- the parts -----------------------------------------------------------------------------------

@@ -113,10 +113,10 @@ def test_the_margin_is_the_optimum_of_the_dual_program(sheet):
     result = decompose(sheet)
     best = sorted(driving.dual_optimum(driving.gaps(units, k)) for k in range(len(units)))
     found = [actuate_panels(result, way.number) for way in panel_ways(result)]
-    assert sorted(float(one.best) for one in found) == pytest.approx(best, abs=1e-6)
+    assert sorted(float(one.bound) for one in found) == pytest.approx(best, abs=1e-6)
     for one in found:
         assert one.status is PROVED
-        assert float(one.margin[0]) == pytest.approx(float(one.best), rel=2e-4)
+        assert float(one.margin[0]) == pytest.approx(float(one.bound), rel=2e-4)
 
 
 def test_the_rivals_of_a_family_are_its_rays_with_one_mode_turned():
@@ -124,7 +124,7 @@ def test_the_rivals_of_a_family_are_its_rays_with_one_mode_turned():
     found = actuate_panels(decompose(miura(2, 2)), 4)
     assert (found.way.dimension, found.status) == (2, PROVED)
     # Each row has three folds of one length: its unit vector is (1, 1, 1) / sqrt 3.
-    assert float(found.best) == pytest.approx(np.sqrt(6), abs=1e-5)
+    assert float(found.bound) == pytest.approx(np.sqrt(6), abs=1e-5)
     assert float(found.power[0]) == pytest.approx(np.sqrt(6), abs=1e-5)
 
 
@@ -149,8 +149,8 @@ def test_few_creases_and_their_bound():
     assert [len(found.driven) for found in bounds] == [1, 2, 3]
     for few, more in pairwise(bounds):
         assert few.status is PROVED
-        assert few.margin[0] <= few.best
-        assert few.best < more.margin[0]
+        assert few.margin[0] <= few.bound
+        assert few.bound < more.margin[0]
 
 
 def test_a_fold_that_is_not_driven_costs_what_is_said():
@@ -175,7 +175,7 @@ def test_opposite_rates_drive_the_other_side():
     [mode] = panel_ways(result)[0].modes
     found = actuate_panels(result, 1)
     turned = actuate_panels(result, 1, rates={mode.number: -1.0})
-    assert turned.best == found.best
+    assert turned.bound == found.bound
     assert all(turned.assignment[e] != letter for e, letter in found.assignment.items())
     assert found.ranking[0].side == -turned.ranking[0].side == 1
 
@@ -189,7 +189,7 @@ def test_turning_and_scaling_changes_nothing():
     for result in map(decompose, (sheet, turned)):
         found = [actuate_panels(result, number) for number in (1, 2)]
         assert all(one.self_foldable is PROVED for one in found)
-        bounds.append(sorted(float(one.best) for one in found))
+        bounds.append(sorted(float(one.bound) for one in found))
     assert bounds[0] == pytest.approx(bounds[1], abs=1e-9)
 
 

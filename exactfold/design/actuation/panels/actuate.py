@@ -25,7 +25,7 @@ from exactfold.design.actuation.panels.rays import Rays, WayPower
 from exactfold.design.actuation.panels.result import PanelActuation
 from exactfold.design.actuation.panels.search import Best, TorquesForWay
 from exactfold.design.actuation.panels.self_folding import decide_self_folding, rival_motions
-from exactfold.design.actuation.result import checked_torques, outward
+from exactfold.design.actuation.result import check_question, checked_torques, outward
 from exactfold.errors import NotCountedError, UsageError
 from exactfold.exact.numbers import RationalLike
 from exactfold.motion.panels.followable import PanelMode
@@ -93,26 +93,12 @@ def _check(
             f"way {way.number} is a family in a space of motions of vertices with more than four "
             "folds: torques are found for isolated ways and for families that modes span"
         )
-    if creases is not None and torques is not None:
-        raise UsageError(
-            "give either torques to judge or the number of creases to drive, but not both"
-        )
-    if creases is not None and not 1 <= creases <= len(pattern.folds):
-        raise UsageError(
-            f"{creases} creases cannot be driven: give a number from 1 to {len(pattern.folds)}, "
-            "the number of folds"
-        )
+    check_question(pattern, creases, torques, nodes)
     if creases is not None and creases < way.dimension:
         raise UsageError(
             f"way {way.number} has {way.dimension} degrees of freedom: drive at least "
             f"{way.dimension} creases, not {creases}"
         )
-    if nodes < 1:
-        raise UsageError(
-            f"nodes is {nodes}: allow at least one linear program for the choice of creases"
-        )
-    if torques is not None and not any(checked_torques(pattern, torques).values()):
-        raise UsageError("all torques are 0: give at least one fold a torque that is not 0")
 
 
 class _Search:

@@ -117,17 +117,17 @@ class PanelActuation(Certified):
     `assignment` shows. The power of torques along a ray is as in `Actuation`, and on a family it is
     the largest of its rays. The margin is the power along this ray minus the largest on a rival:
     on any other way, or on a ray of the way that turns one of its motions to the other side.
-    `margin` are proved bounds of the margin, and `best` bounds that of all torques of size at most
+    `margin` are proved bounds of the margin, and `bound` bounds that of all torques of size at most
     1, on at most `creases` folds if that is not None. `without` has for each fold such a bound for
     torques that do not drive this fold.
 
     `self_foldable` says whether some torques do work on this way and on no other, and
     `self_foldable_reason` why (docs/actuation.md, 8). If it is proved, `orthogonal` are such
     torques, as nearly as rational numbers come. `unknown` says why there may be rivals that are not
-    known; the bounds `margin` then hold for the known ones, and `best` for all.
+    known; the bounds `margin` then hold for the known ones, and `bound` for all.
 
     `status` is PROVED if the margin is proved to be positive, and REFUTED if it is proved not to
-    be. The rivals and weights of `proof` show that no margin exceeds `shown`, which is `best`
+    be. The rivals and weights of `proof` show that no margin exceeds `shown`, which is `bound`
     unless branch and bound shows more of few folds.
     """
 
@@ -141,7 +141,7 @@ class PanelActuation(Certified):
     self_foldable_reason: str
     torques: Mapping[Edge, Fraction]
     margin: Bounds
-    best: Fraction
+    bound: Fraction
     creases: int | None
     given: bool
     springs: Springs
@@ -201,7 +201,7 @@ class PanelActuation(Certified):
             "creases": self.creases,
             "springs": self.springs,
             "margin": [format_rational(x) for x in self.margin],
-            "bound": format_rational(self.best),
+            "bound": format_rational(self.bound),
             "power": [format_rational(x) for x in self.power],
             "largest_rival": [format_rational(x) for x in self.largest_rival],
             "rivals": {
@@ -239,5 +239,5 @@ class PanelActuation(Certified):
     def __repr__(self) -> str:
         return (
             f"<PanelActuation of way {self.way.number}: {self.status}, margin "
-            f"{float(self.margin[0]):.4g} of at most {float(self.best):.4g}>"
+            f"{float(self.margin[0]):.4g} of at most {float(self.bound):.4g}>"
         )
