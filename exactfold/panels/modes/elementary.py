@@ -14,7 +14,7 @@ from exactfold._support.plurals import counted
 from exactfold.errors import TooManyModesError
 from exactfold.exact.surds import SurdField
 from exactfold.panels.modes.densities import Density, Roots
-from exactfold.panels.modes.near_misses import RECORDED, NearMiss, near_miss
+from exactfold.panels.modes.near_misses import MOST_LOOPS, RECORDED, NearMiss, near_miss
 from exactfold.panels.vertex.local import LocalMode, local_modes
 from exactfold.panels.vertex.stars import Star
 from exactfold.pattern.panel_pattern import Edge
@@ -102,7 +102,7 @@ class ModeSearch:
 
     @property
     def loops(self) -> int:
-        """The number of loops of folds that were found not to close, by their products of gains."""
+        """How many loops of folds were found not to close; `MOST_LOOPS` at most."""
         return len(self._open_loops)
 
     def supports(self, limit: int) -> list[Support]:
@@ -206,7 +206,8 @@ class ModeSearch:
                 continue
             ratio = densities[edge].over(density)
             if not ratio.is_one():
-                self._open_loops.add((edge, round(ratio.approx, 9)))
+                if len(self._open_loops) < MOST_LOOPS:
+                    self._open_loops.add((edge, round(ratio.approx, 9)))
                 off = abs(ratio.approx - 1)
                 before = self.near_misses.get(edge)
                 if off < (RECORDED if before is None else before.off / 2):

@@ -23,6 +23,8 @@ _TIMES_NOISE: Final = 100
 _CHANCE: Final = 0.01
 """Of decimals nobody knows how far they were rounded. That one of n loops of unrelated folds closes
 up to `_CHANCE` / n has about this probability."""
+MOST_LOOPS: Final = round(_CHANCE / NEAR)
+"""Among more loops, `NEAR` is nearer than chance explains."""
 _BITS: Final = 256
 
 
