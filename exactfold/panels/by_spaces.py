@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import product
 
 from exactfold._support.clock import QUICK, UNLIMITED, Clock
 from exactfold._support.plurals import counted
@@ -11,7 +12,7 @@ from exactfold.panels.folding_modes import folding_mode, folding_modes
 from exactfold.panels.isolated import isolated_ways
 from exactfold.panels.modes.trees import tree_components
 from exactfold.panels.result import Part
-from exactfold.panels.spaces.cones import cone_motion, is_one_family
+from exactfold.panels.spaces.cones import cone_motions, is_one_family
 from exactfold.panels.spaces.found import FoundComponent, found_components
 from exactfold.panels.spaces.freedom import most_first_order, most_freedom
 from exactfold.panels.spaces.kernel import Rows, entry, first_order
@@ -20,6 +21,7 @@ from exactfold.panels.spaces.regular import (
     Forms,
     in_balls,
     is_component,
+    outside,
     point,
     truly_folds,
 )
@@ -127,16 +129,18 @@ def _complete(
     vertices = tuple(moving)
     (rows, size), (small, left) = first, smaller
     search = Splitting(moving, MOST_STEPS, clock.share(2 / 3))
-    spaces = search.leaves(small, left)
+    leaves = search.leaves(small, left)
     together = 0
     counts: dict[int, int] = {}
-    zeros: list[list[Balls | None]] = []
-    for leaf in spaces:
+    spaces: list[Leaf] = []
+    zeros: list[Sequence[Balls | None]] = []
+    for leaf in leaves:
         clock.check()
-        number, motions = _checked_component(moving, leaf)
+        number, motions = _checked_components(moving, leaf, leaves)
         together = max(together, number)
-        zeros.append(motions)
-        counts[leaf.dimension] = counts.get(leaf.dimension, 0) + 1
+        zeros += motions
+        spaces += [leaf] * len(motions)
+        counts[leaf.dimension] = counts.get(leaf.dimension, 0) + len(motions)
     still = _still(moving, (edge for leaf in spaces for edge in leaf.rows))
     if not counts:
         return Part(vertices, "subspaces", {0: 1}, {0: 1}, dimension=size, still=still)
@@ -173,25 +177,42 @@ def _complete(
     )
 
 
-def _checked_component(moving: Mapping[int, Star], leaf: Leaf) -> tuple[int, list[Balls | None]]:
+def _checked_components(
+    moving: Mapping[int, Star], leaf: Leaf, leaves: Sequence[Leaf]
+) -> tuple[int, list[tuple[Balls | None, ...]]]:
     """The largest number of forms that remain together on an independent part of a leaf.
 
-    The second value has a common zero of the forms on each part with several.
+    The second value has an entry for each component of the leaf: a common zero of the forms on each
+    part with several. Where there are several components, each has a point that lies in the space
+    of no other leaf, so that it lies in no other component.
 
-    Raises `TooManyModesError` unless the motions of the leaf are shown to be one component.
+    Raises `TooManyModesError` unless the components of the leaf are known.
     """
     together = 0
-    motions: list[Balls | None] = []
-    for rows, size in independent_parts(_entries(leaf), leaf.size, moving):
+    motions: list[Sequence[Balls | None]] = []
+    parts = independent_parts(_entries(leaf), leaf.size, moving)
+    for rows, size in parts:
         cones = [v for v in leaf.vertices if set(moving[v].folds) & set(rows)]
         together = max(together, len(cones))
-        motions.append(cone_motion(moving, rows, size, cones) if len(cones) > 1 else None)
-        if len(cones) > 1 and motions[-1] is None:
+        motions.append(cone_motions(moving, rows, size, cones) if len(cones) > 1 else [None])
+        if not motions[-1]:
             raise TooManyModesError(
                 f"on a space of dimension {size} the second-order conditions of vertices "
                 f"{', '.join(map(str, cones))} remain, and exactfold could not solve them together"
             )
-    return together, motions
+    components = list(product(*motions))
+    for each in components if len(components) > 1 else ():
+        w: Balls = {}
+        for (rows, size), zero in zip(parts, each, strict=True):
+            cones = [v for v in leaf.vertices if set(moving[v].folds) & set(rows)]
+            if zero is None:
+                zero = cone_motions(moving, rows, size, cones)[0] if cones else point(rows, size)
+            w = {**w, **zero}
+        if not all(other is leaf or outside(w, other) for other in leaves):
+            raise TooManyModesError(
+                f"on a space of dimension {leaf.size} a component may lie in another space"
+            )
+    return together, components
 
 
 def _open(known: bool, fold: bool) -> str:
@@ -273,7 +294,7 @@ def _extends(
     their conditions are independent at one of their points (`truly_folds`); for cones this is a
     point at which their forms vanish. A part that is a mode extends if the mode does. Other folds
     are held flat, so this can prove that a space extends but never that it does not: a true motion
-    might use those folds at a higher order. `zeros` are those of `_checked_component`, where they
+    might use those folds at a higher order. `zeros` are those of `_checked_components`, where they
     are known.
     """
     parts = independent_parts(_entries(leaf), leaf.size, moving)
@@ -284,7 +305,8 @@ def _extends(
         cones = [v for v in active if v in leaf.vertices]
         w = zero
         if w is None:
-            w = cone_motion(moving, rows, size, cones) if cones else point(rows, size)
+            w = next(iter(cone_motions(moving, rows, size, cones)), None)
+            w = w if cones else point(rows, size)
         if w is not None and truly_folds(moving, w):
             continue
         if cones:

@@ -226,3 +226,15 @@ def ring(seed: int, degrees: Sequence[int] = (4, 4, 4, 5)) -> PanelPattern:
             if [len(star.folds) for star in stars(sheet).values()] == list(degrees):
                 return sheet
     raise ValueError(f"no ring was found with seed {seed}")
+
+
+def corner_diagonals() -> PanelPattern:
+    """Two rows and two columns of creases on a square, and a crease to each corner.
+
+    Where one of the two folds to the neighbours is flat, the form of a vertex is a square.
+    """
+    points = [(1, 1), (2, 1), (2, 2), (1, 2), (0, 0), (1, 0), (2, 0), (3, 0), (3, 1), (3, 2)]
+    points += [(3, 3), (2, 3), (1, 3), (0, 3), (0, 2), (0, 1)]
+    folds = [(0, 1), (1, 2), (2, 3), (0, 3), (0, 4), (0, 5), (0, 15), (1, 6), (1, 7), (1, 8)]
+    folds += [(2, 9), (2, 10), (2, 11), (3, 12), (3, 13), (3, 14)]
+    return outlined([(Fraction(x), Fraction(y)) for x, y in points], folds, 4)

@@ -2,23 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import product
 from typing import Any
 
 from ..core.intervals import Interval
 from ..core.reading import integer, items, keys, keys_of, natural, require
 from ..sheets.panels import Edge, PanelSheet, pair
 from .claims import LeafClaim
-from .cones import Place, cone_motion
+from .cones import cone_motions
 from .isolated import isolated_ways
 from .loops import Loops
 from .modes import Modes, Support
 from .motions import Motion, folds_of
-from .reduction import BITS, enclosed, reduced
+from .reduction import BITS, enclosed, outside, reduced
+from .signs import Place
 from .spaces import Leaf, Spaces
 
+MOST_POINTS = 4
+"""So many motions of a component are tried to show that it folds."""
+
+Component = tuple[Leaf, tuple[list[Place], ...]]
+"""A leaf, and for each of its parts motions of the component, if several forms are left on it."""
 LeafKind = tuple[tuple[Edge, ...], int, tuple[int, ...]]
 
 
@@ -46,19 +53,20 @@ def verified_part(sheet: PanelSheet, near: Mapping[int, list[int]], given: Any) 
     spaces = Spaces(sheet, near)
     if "isolated" in given:
         return _all_isolated(spaces, given, what)
-    by_kind: dict[LeafKind, list[Leaf]] = {}
-    for leaf in spaces.leaves():
-        _check_component(spaces, leaf)
-        by_kind.setdefault((leaf.folds, leaf.dimension, leaf.cones), []).append(leaf)
+    by_kind: dict[LeafKind, list[Component]] = {}
+    leaves = spaces.leaves()
+    for leaf in leaves:
+        found = components(spaces, leaf, leaves)
+        by_kind.setdefault((leaf.folds, leaf.dimension, leaf.cones), []).extend(found)
     claimed = dict(_kinds(given["leaves"]))
     require(len(claimed) == len(given["leaves"]), f"{what} has leaves of one kind twice")
     require(claimed.keys() == by_kind.keys(), f"{what} has other leaves than those listed")
     second: dict[int, int] = {}
     folding = 0
     for kind, (number, extending) in claimed.items():
-        leaves = by_kind.get(kind, [])
-        require(number == len(leaves), f"{what} has {len(leaves)} leaves of a kind, not {number}")
-        shown = sum(extends(spaces, leaf) for leaf in leaves) if extending else 0
+        found = by_kind.get(kind, [])
+        require(number == len(found), f"{what} has {len(found)} leaves of a kind, not {number}")
+        shown = sum(extends(spaces, *one) for one in found) if extending else 0
         folds = f"{what}: {shown} leaves of a kind are proved to fold, not {extending}"
         require(extending <= shown, folds)
         second[kind[1]] = second.get(kind[1], 0) + number
@@ -69,7 +77,7 @@ def verified_part(sheet: PanelSheet, near: Mapping[int, list[int]], given: Any) 
     if given["complete"]:
         total = sum(number for number, _ in claimed.values())
         require(folding == total, f"{what} has leaves that are not proved to fold")
-        regular = complete(spaces, [leaf for leaves in by_kind.values() for leaf in leaves])
+        regular = complete(spaces, [leaf for found in by_kind.values() for leaf, _ in found])
         require(regular, f"{what} may have other true motions")
         true = second
     return PartComponents(second, true, folding > 0)
@@ -95,13 +103,33 @@ def _kinds(given: Any) -> Iterable[tuple[LeafKind, tuple[int, int]]]:
         yield (folds, natural(entry["dimension"], "dimension"), cones), numbers
 
 
-def _check_component(spaces: Spaces, leaf: Leaf) -> None:
-    """Refuse a leaf if the zeros of the forms left on a part of it may be several components."""
-    for part in spaces.parts(leaf.basis):
+def components(spaces: Spaces, leaf: Leaf, leaves: Sequence[Leaf]) -> list[Component]:
+    """The components of a leaf, each with motions on each part with several forms.
+
+    If there are several, each has a motion that lies in the space of no other leaf, so that it lies
+    in no other component. Refused are leaves of which not all components are known.
+    """
+    parts = spaces.parts(leaf.basis)
+    known: list[list[list[Place]]] = []
+    for part in parts:
         cones = _cones(part, leaf)
-        shown = len(cones) < 2 or cone_motion(spaces, part, cones) is not None
+        known.append([[]] if len(cones) < 2 else cone_motions(spaces, part, cones))
         vertices = ", ".join(map(str, cones))
-        require(shown, f"the zeros of the forms of vertices {vertices} may be several components")
+        shown = f"the zeros of the forms of vertices {vertices} may be other components"
+        require(bool(known[-1]), shown)
+    found: list[Component] = [(leaf, each) for each in product(*known)]
+    for _, each in found if len(found) > 1 else ():
+        place: Place = {}
+        for part, motions in zip(parts, each, strict=True):
+            cones = _cones(part, leaf)
+            if cones:
+                place |= (motions or cone_motions(spaces, part, cones)[0])[0]
+            else:
+                place |= enclosed(_sum(spaces, part))
+        for other in leaves:
+            apart = other is leaf or outside(place, other.basis, spaces.work)
+            require(apart, "a component of a leaf may lie in another leaf")
+    return found
 
 
 def _cones(part: list[Motion], leaf: Leaf) -> list[int]:
@@ -110,26 +138,33 @@ def _cones(part: list[Motion], leaf: Leaf) -> list[int]:
     return [v for v in leaf.cones if v in active]
 
 
-def extends(spaces: Spaces, leaf: Leaf) -> bool:
+def extends(spaces: Spaces, leaf: Leaf, motions: Sequence[list[Place]] = ()) -> bool:
     """Whether a leaf is proved to be tangent to true motions.
 
     Its parts fold independently of each other. A part that consists of all local motions of one
     vertex folds by Morse's lemma. A part with a point at which all closing conditions are
     independent folds by the implicit function theorem. A part with one parameter, and with two or
-    four active folds at each vertex, is a mode; it folds if its loops close.
+    four active folds at each vertex, is a mode; it folds if its loops close. `motions` are those of
+    `components`, by which one component of the leaf is meant.
     """
-    return all(_folds(spaces, part, _cones(part, leaf)) for part in spaces.parts(leaf.basis))
+    parts = spaces.parts(leaf.basis)
+    known = zip(parts, motions or [[]] * len(parts), strict=True)
+    return all(_folds(spaces, part, _cones(part, leaf), some) for part, some in known)
 
 
-def _folds(spaces: Spaces, part: list[Motion], cones: list[int]) -> bool:
+def _folds(
+    spaces: Spaces, part: list[Motion], cones: list[int], motions: Sequence[Place] = ()
+) -> bool:
     folds = set(folds_of(part))
     near = {v: [u for u in around if pair(v, u) in folds] for v, around in spaces.near.items()}
     near = {v: around for v, around in near.items() if around}
     if len(near) == 1 and len(part) == len(folds) - 2:
         return True
     inner = Spaces(spaces.sheet, near, spaces.work)
-    point = cone_motion(inner, part, cones) if cones else enclosed(_sum(inner, part))
-    if point is not None and _independent(inner, point):
+    points = list(motions) or [enclosed(_sum(inner, part))]
+    if cones and not motions:
+        points = [place for places in cone_motions(inner, part, cones) for place in places]
+    if any(_independent(inner, point) for point in points[:MOST_POINTS]):
         return True
     if cones:
         return False

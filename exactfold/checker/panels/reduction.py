@@ -133,6 +133,18 @@ def inside(
     return not any(rest_of(joined.vector(vector), exact, work) for vector in space)
 
 
+def outside(
+    place: Mapping[Edge, Interval], other: Sequence[Mapping[Edge, Number]], work: Work
+) -> bool:
+    """Whether intervals show that a motion does not lie in the span of independent vectors."""
+    folds = {fold for vector in other for fold in vector}
+    if any(value.sign() for fold, value in place.items() if fold not in folds):
+        return True
+    rows = reduced(map(enclosed, other), work)
+    rest = rest_of(place, rows, work)
+    return len(rows) == len(other) and any(value.sign() for value in rest.values())
+
+
 class Joined:
     """One tower into which the numbers of several towers are mapped."""
 

@@ -2,37 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain, combinations, islice
 from typing import Any, Final
 
 import numpy as np
-from flint import arb, ctx
+from flint import arb, ctx, fmpq
 from scipy.linalg import null_space
 
 from exactfold.checker.core.reading import LimitError
 from exactfold.checker.panels.modular import one_component
 from exactfold.checker.panels.proposed import near_zeros
 from exactfold.checker.panels.reduction import Work
-from exactfold.exact.surds import ball
+from exactfold.exact.surds import ball, common_field
+from exactfold.panels.spaces.conics import Conics, Root
 from exactfold.panels.spaces.kernel import Entry, Rows, imposed
-from exactfold.panels.spaces.quadratics import Squares, squares_of
-from exactfold.panels.spaces.regular import BITS, Balls, Forms
+from exactfold.panels.spaces.quadratics import Squares, Vector, squares_of
+from exactfold.panels.spaces.regular import BITS, Balls, Forms, parameter_folds
 from exactfold.panels.spaces.together import modulo_a_prime
 from exactfold.panels.vertex.stars import Star
+from exactfold.pattern.panel_pattern import Edge
 
 _SHIFTS: Final = 40
 _DIRECTIONS: Final = 24
 _SWEEPS: Final = 3
-_KEPT: Final = 4
+_PASSES: Final = (4, 1), (4, -1), (40, 1), (40, -1)
+_MOST_KEPT: Final = 8
 _MOST_FORMS: Final = 64
 
 
-def cone_motion(
+def cone_motions(
     stars: Mapping[int, Star], rows: Rows, size: int, vertices: Sequence[int]
-) -> Balls | None:
-    """A motion of a space at which the forms of these vertices vanish, if they are one component.
+) -> list[Balls]:
+    """A motion of each component of the zeros of the forms of these vertices on a space.
 
     The theorem is in docs/panels.md, Double covers. The forms are ordered. For each form there is a
     direction u at which the form is not 0 and on which no earlier form depends. The line along u
@@ -48,33 +51,115 @@ def cone_motion(
     None decides nothing. More than 64 forms are not tried.
     """
     if not vertices or len(vertices) > _MOST_FORMS:
-        return None
+        return []
     before = ctx.prec
     ctx.prec = BITS
     try:
         forms = Forms(stars)
-        ordered = _ordered(stars, rows, size, vertices)
-        if len(ordered[0].squares) < 3:
-            return None
-        start: Balls = {edge: arb(0) for edge in rows}
-        motion = _by_signs(forms, ordered, start)
-        return motion or _modulo_a_prime(forms, ordered, rows, size)
+        for kept, order in _PASSES if len(vertices) <= _MOST_KEPT else _PASSES[:1]:
+            ordered = _ordered(stars, rows, size, vertices[::order])
+            if len(ordered[0].squares) < 3:
+                return []
+            motions = _by_signs(forms, ordered, rows, size, kept)
+            if motions:
+                return motions
+        motion = _modulo_a_prime(forms, ordered, rows, size)
+        return [] if motion is None else [motion]
     finally:
         ctx.prec = before
 
 
-def _by_signs(forms: Forms, ordered: Sequence[_Placed], start: Balls) -> Balls | None:
-    """A common zero of the forms, if each discriminant is shown to have both signs."""
-    points: list[Balls] = [start]
-    for number, (v, room) in enumerate((one.vertex, one.room) for one in ordered):
-        for u in islice(_directions(forms, v, room), _DIRECTIONS):
-            above, below = _sides(forms, v, points, room, u)
-            if above and (below or number == 0):
-                points = above
+def _by_signs(
+    forms: Forms, ordered: Sequence[_Placed], rows: Rows, size: int, kept: int
+) -> list[Balls]:
+    """A common zero of the forms on each component, if the signs of the discriminants show them.
+
+    The components are told apart by the signs of the roots of the discriminants that are squares.
+    """
+    places = parameter_folds(rows, size)
+    known = Conics(common_field(x for one in ordered for d, row in one.squares for x in (d, *row)))
+    points: dict[tuple[int, ...], list[Balls]] = {(): [{edge: arb(0) for edge in rows}]}
+    for number, one in enumerate(ordered):
+        root, at = None, _first(one) if len(one.squares) == 3 else None
+        if at is not None:
+            root = known.add(one.squares, at)
+        if root is not None and root.sign < 0:
+            return []
+        along: Iterable[Balls] = islice(_directions(forms, one.vertex, one.room), _DIRECTIONS)
+        if root is not None and at is not None:
+            along = [_along(at, rows)]
+        for u in along:
+            found: dict[tuple[int, ...], list[Balls]] = {}
+            for label, before in points.items():
+                if root is not None:
+                    found |= _both(
+                        forms, one.vertex, before, one.room, u, root, places, label, kept
+                    )
+                    continue
+                above, below = _sides(forms, one.vertex, before, one.room, u, kept)
+                if not above or not (below or number == 0):
+                    break
+                found[label] = above
+            if len(found) == len(points) * (1 if root is None else 2):
+                points = found
                 break
         else:
-            return None
-    return points[0]
+            return []
+    return [motions[0] for motions in points.values()]
+
+
+def _first(one: _Placed) -> Vector | None:
+    """The first vector of the room, or sum or difference of two, at which the form is not 0."""
+    pairs = combinations(one.vectors, 2)
+    sums = ([x + s * y for x, y in zip(a, b, strict=True)] for a, b in pairs for s in (1, -1))
+    for u in chain(one.vectors, sums):
+        value = sum((d * _value(row, u) * _value(row, u) for d, row in one.squares), fmpq(0))
+        if value:
+            return u
+    return None
+
+
+def _value(row: Sequence[Entry], u: Vector) -> Entry:
+    return sum((x * y for x, y in zip(row, u, strict=True) if x and y), fmpq(0))
+
+
+def _along(at: Vector, rows: Rows) -> Balls:
+    found = {edge: _value(row, at) for edge, row in rows.items()}
+    return {edge: ball(x, BITS) for edge, x in found.items() if x}
+
+
+def _both(
+    forms: Forms,
+    v: int,
+    points: Sequence[Balls],
+    room: Sequence[Balls],
+    u: Balls,
+    root: Root,
+    places: Sequence[Edge],
+    label: tuple[int, ...],
+    kept: int,
+) -> dict[tuple[int, ...], list[Balls]]:
+    """Zeros of a form on lines along u, for each sign of the root of its discriminant."""
+    last = forms.value(v, u)
+    slopes = forms.gradient(v, u)
+    found: dict[tuple[int, ...], list[Balls]] = {}
+    for w in _shifted(forms, v, points, room, u):
+        middle = _product(slopes, w) / 2
+        square = middle * middle - forms.value(v, w) * last
+        if not square > 0:
+            continue
+        at = [w.get(edge, arb(0)) for edge in places]
+        total = 1
+        for row in root.rows:
+            x = sum((ball(c, BITS) * y for c, y in zip(row, at, strict=True) if c), arb(0))
+            total *= 1 if x > 0 else -1 if x < 0 else 0
+        for s in (1, -1) if total else ():
+            zeros = found.setdefault((*label, s * total), [])
+            if len(zeros) < kept:
+                zeros.append(_plus(w, (s * square.sqrt() - middle) / last, u))
+        if len(found) == 2 and all(len(zeros) == kept for zeros in found.values()):
+            return found
+    return found
 
 
 def _regular_zeros(
@@ -146,6 +231,7 @@ class _Placed:
     squares: Squares
     room: list[Balls]
     flat: bool
+    vectors: list[Vector]
 
 
 def _ordered(
@@ -180,7 +266,11 @@ def _ordered(
     for v in order:
         room, room_size = imposed(rows, size, *before)
         flat = not squares_of(stars[v], room, room_size)
-        bases.append(_Placed(v, squares[v], _basis(room, room_size), flat))
+        units: Rows = {(k, k): [fmpq(j == k) for j in range(size)] for k in range(size)}
+        left, _ = imposed(units, size, *before)
+        zeros = [fmpq(0)] * room_size
+        vectors = [[left.get((k, k), zeros)[j] for k in range(size)] for j in range(room_size)]
+        bases.append(_Placed(v, squares[v], _basis(room, room_size), flat, vectors))
         before += functionals[v]
     return bases
 
@@ -201,7 +291,7 @@ def _directions(forms: Forms, v: int, room: Sequence[Balls]) -> Iterator[Balls]:
 
 
 def _sides(
-    forms: Forms, v: int, points: Sequence[Balls], room: Sequence[Balls], u: Balls
+    forms: Forms, v: int, points: Sequence[Balls], room: Sequence[Balls], u: Balls, kept: int
 ) -> tuple[list[Balls], bool]:
     """Zeros of the form on lines along u, and whether the discriminant is negative somewhere.
 
@@ -213,19 +303,30 @@ def _sides(
     zeros: list[Balls] = []
     below = False
     slopes = forms.gradient(v, u)
-    for point in [*points, *(_centred(forms, v, point, room, u) for point in points)]:
-        for number in range(_SHIFTS):
-            w = point
-            for k, motion in enumerate(room):
-                w = _plus(w, _shift(number, k), motion)
-            middle = _product(slopes, w) / 2
-            square = middle * middle - forms.value(v, w) * last
-            if square > 0 and len(zeros) < _KEPT:
-                zeros.append(_plus(w, (square.sqrt() - middle) / last, u))
-            below = below or bool(square < 0)
-            if below and len(zeros) == _KEPT:
-                return zeros, below
+    for w in _shifted(forms, v, points, room, u):
+        middle = _product(slopes, w) / 2
+        square = middle * middle - forms.value(v, w) * last
+        if square > 0 and len(zeros) < kept:
+            side = 1 if pow(len(zeros) + 2, len(room) + 5, 101) % 2 else -1
+            zeros.append(_plus(w, (side * square.sqrt() - middle) / last, u))
+        below = below or bool(square < 0)
+        if below and len(zeros) == kept:
+            return zeros, below
     return zeros, below
+
+
+def _shifted(
+    forms: Forms, v: int, points: Sequence[Balls], room: Sequence[Balls], u: Balls
+) -> Iterator[Balls]:
+    """The points, shifted by vectors of `room`; then points near critical ones of D, shifted."""
+    for centred in (False, True):
+        near = [_centred(forms, v, point, room, u) for point in points] if centred else points
+        for turn in range(_SHIFTS):
+            for place, point in enumerate(near):
+                w = point
+                for k, motion in enumerate(room):
+                    w = _plus(w, _shift((turn + place) % _SHIFTS, k), motion)
+                yield w
 
 
 def _centred(forms: Forms, v: int, w: Balls, room: Sequence[Balls], u: Balls) -> Balls:

@@ -17,9 +17,11 @@ from exactfold.checker.core.intervals import Interval
 from exactfold.checker.core.reading import LimitError
 from exactfold.checker.panels import cones as panel_cones
 from exactfold.checker.panels import reduction as panel_reduction
-from exactfold.checker.panels.cones import Place, cone_motion
+from exactfold.checker.panels import signs as panel_signs
+from exactfold.checker.panels.cones import cone_motions
 from exactfold.checker.panels.leaves import complete
 from exactfold.checker.panels.reduction import BITS, Work, enclosed, reduced, rest_of
+from exactfold.checker.panels.signs import Place
 from exactfold.checker.panels.spaces import Leaf, Spaces
 from exactfold.panels.certificate import certificate_of_panels
 from exactfold.panels.decomposition import decompose
@@ -41,8 +43,7 @@ def total(weights: Place, motion: Place) -> Interval:
 @pytest.mark.parametrize("pattern", [two_stars(), row_of_stars()])
 def test_the_motion_is_a_regular_zero_of_all_forms(pattern: PanelPattern) -> None:
     found = spaces(pattern)
-    place = cone_motion(found, found.first_order, list(found.near))
-    assert place is not None
+    [[place, *_]] = cone_motions(found, found.first_order, list(found.near))
     derivatives = []
     for v in found.near:
         slopes = found.gradient(v, place, BITS)
@@ -57,27 +58,27 @@ def test_the_motion_is_a_regular_zero_of_all_forms(pattern: PanelPattern) -> Non
 
 
 def test_a_ring_is_decided_modulo_a_prime(monkeypatch: pytest.MonkeyPatch) -> None:
-    """In every order the last discriminant is a sum of squares at all real zeros."""
+    """The ring is decided by signs, too; here these are not looked at."""
+    monkeypatch.setattr(panel_cones, "by_signs", lambda *_: [])
     found = spaces(ring_of_fives())
     orders = [0, 1, 2], [2, 1, 0]
     for cones in orders:
-        assert cone_motion(found, found.first_order, cones) is not None
+        assert len(cone_motions(found, found.first_order, cones)) == 1
     made = certificate_of_panels(decompose(ring_of_fives()))
     verified(made)
     monkeypatch.setattr(panel_cones, "one_component", lambda *_: False)
     for cones in orders:
-        assert cone_motion(found, found.first_order, cones) is None
-    assert cone_motion(found, found.first_order, [0, 1]) is not None
-    refused(made, "the zeros of the forms of vertices 0, 1, 2 may be several components")
+        assert not cone_motions(found, found.first_order, cones)
+    refused(made, "the zeros of the forms of vertices 0, 1, 2 may be other components")
 
 
 def test_both_signs_of_the_discriminant_are_needed(monkeypatch: pytest.MonkeyPatch) -> None:
-    sides = panel_cones._sides
-    monkeypatch.setattr(panel_cones, "_sides", lambda *args: (sides(*args)[0], False))
+    sides = panel_signs._sides
+    monkeypatch.setattr(panel_signs, "_sides", lambda *args: (sides(*args)[0], False))
     made = certified("joined stars")
     verified(made)  # modulo a prime, both kinds of values are found
     monkeypatch.setattr(panel_cones, "one_component", lambda *_: False)
-    refused(made, "the zeros of the forms of vertices 0, 1 may be several components")
+    refused(made, "the zeros of the forms of vertices 0, 1 may be other components")
     verified(certified("star"))  # one form has rank 3, and needs no sign
 
 
@@ -93,7 +94,7 @@ class Difference:
 def test_a_discriminant_that_vanishes_is_not_negative() -> None:
     """The discriminant along x is y^2, which is 0 at some of the places and below 0 at none."""
     x, y = ({(0, k): Interval.of(Fraction(1), BITS)} for k in (1, 2))
-    zeros, below = panel_cones._sides(cast(Spaces, Difference()), 0, [{}], [y], x)
+    zeros, below = panel_signs._sides(cast(Spaces, Difference()), 0, [{}], [y], x, 4)
     assert zeros
     assert not below
 
@@ -126,7 +127,7 @@ def test_a_form_of_rank_two_is_no_cone() -> None:
     squares = found.squares(0, found.first_order)
     plane = found.vanishing(found.first_order, [values for _, values in squares[2:]])
     assert len(found.squares(0, plane)) == 2
-    assert cone_motion(found, plane, [0]) is None
+    assert not cone_motions(found, plane, [0])
 
 
 def test_number_of_forms(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -163,7 +164,7 @@ def test_too_much_work_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     [first, _] = found.leaves()
     monkeypatch.setattr("exactfold.checker.panels.reduction.MOST_STEPS", found.work.steps)
     with pytest.raises(LimitError, match="the steps to the spaces of motions, "):
-        cone_motion(found, first.basis, first.cones)
+        cone_motions(found, first.basis, first.cones)
 
 
 TWICE = [
@@ -196,10 +197,10 @@ def test_a_proof_modulo_a_prime_keeps_to_the_limit(
     missing: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     found, other = (spaces(ring_of_fives()) for _ in range(2))
-    assert cone_motion(found, found.first_order, [0, 1, 2]) is not None
+    assert len(cone_motions(found, found.first_order, [0, 1, 2])) == 1
     monkeypatch.setattr(panel_reduction, "MOST_STEPS", found.work.steps - missing)
     if not missing:
-        assert cone_motion(other, other.first_order, [0, 1, 2]) is not None
+        assert len(cone_motions(other, other.first_order, [0, 1, 2])) == 1
         return
     with pytest.raises(LimitError, match=f"motions, {found.work.steps}, are more than the limit"):
-        cone_motion(other, other.first_order, [0, 1, 2])
+        cone_motions(other, other.first_order, [0, 1, 2])

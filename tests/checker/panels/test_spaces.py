@@ -16,7 +16,7 @@ from exactfold.checker.core.reading import LimitError
 from exactfold.checker.core.towers import Number, Tower
 from exactfold.checker.panels import reduction as panel_reduction
 from exactfold.checker.panels import spaces as panel_spaces
-from exactfold.checker.panels.cones import cone_motion
+from exactfold.checker.panels.cones import cone_motions
 from exactfold.checker.panels.leaves import _closes, _folds, _independent, _rank, _sum, extends
 from exactfold.checker.panels.reduction import BITS, Joined, enclosed, inside, reduced, rest_of
 from exactfold.checker.panels.spaces import Motion, Spaces
@@ -178,7 +178,7 @@ def test_the_point_of_a_cone_is_on_it() -> None:
         found = spaces(pattern)
         for leaf in found.leaves():
             [part] = [part for part in found.parts(leaf.basis) if len(part) > 1]
-            plain, place = _sum(found, part), cone_motion(found, part, [at])
+            plain, place = _sum(found, part), cone_motions(found, part, [at])[0][0]
             assert place is not None
             assert found.form(at, plain, plain).sign() != 0
             assert inside([plain], part)
@@ -191,7 +191,7 @@ def test_the_point_of_a_cone_is_on_it() -> None:
             rows = reduced(map(enclosed, part))
             assert not any(x.sign() for x in rest_of(place, rows).values())
             positive = [motion for motion in part if found.form(at, motion, motion).sign() > 0]
-            assert cone_motion(found, positive[:1], [at]) is None  # of rank 1
+            assert not cone_motions(found, positive[:1], [at])  # of rank 1
 
 
 def test_a_cone_beside_a_line() -> None:
