@@ -1,4 +1,4 @@
-"""Several forms that remain on a space: whether their common zeros are one component."""
+"""Several forms that remain on a space: the components of their common zeros."""
 
 from __future__ import annotations
 
@@ -42,13 +42,14 @@ def cone_motions(
     through a point w meets the zeros of the form at the two roots of a quadratic polynomial, which
     are real if the discriminant D(w) is positive. If D takes both signs at regular zeros of the
     earlier forms, D is no square, and the zeros of this form and the earlier ones are one
-    component. The first form has rank at least 3 and needs no discriminant. The motion is enclosed
-    in balls, and the derivatives of the forms are independent there.
+    component. If D is a square there, they are two for each one before (docs/panels.md, Several
+    components). The first form has rank at least 3 and needs no discriminant. The motions are
+    enclosed in balls, and the derivatives of the forms are independent there.
 
     Where this fails, the forms are looked at modulo a prime (docs/panels.md, One component modulo a
     prime). If that shows one component, a regular zero is found near one in floating point.
 
-    None decides nothing. More than 64 forms are not tried.
+    An empty list decides nothing. More than 64 forms are not tried.
     """
     if not vertices or len(vertices) > _MOST_FORMS:
         return []

@@ -36,7 +36,7 @@ class Conics:
     Let K have rank 3, and let l and m be different tangents of it: linear functions for which K is
     a multiple of l m - c n^2. Then l m is c n^2 where K vanishes. So a product of two tangents is a
     square up to a number where a chain of forms joins them, such that each two forms that follow
-    each other have a tangent in common (docs/panels.md, Components of a loop).
+    each other have a tangent in common (docs/panels.md, Several components).
     """
 
     def __init__(self, field: SurdField) -> None:
