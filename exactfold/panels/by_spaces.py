@@ -58,8 +58,7 @@ def by_spaces(pattern: PanelPattern, moving: Mapping[int, Star], clock: Clock = 
     except TooManyModesError as error:
         if (tree := by_tree(moving, size)) is not None:
             return tree
-        where = f"the part of {counted(len(moving), 'vertex')} with vertex"
-        reason = f"{where} {next(iter(moving))}: {error}"
+        reason = f"{part_text(moving)}: {error}"
         components, _ = _found(pattern, moving, small, left, clock)
         return _partial(pattern, moving, (rows, size), (small, left), components, reason, clock)
 
@@ -92,6 +91,8 @@ def by_tree(moving: Mapping[int, Star], size: int) -> Part | None:
 
     `size` is the dimension of the first-order motions.
     """
+    if _has_holes(moving):
+        return None
     try:
         counts = tree_components(moving)
     except TooManyModesError:
@@ -145,7 +146,7 @@ def _complete(
         not clock.passed and _extends(pattern, moving, leaf, motions)
         for leaf, motions in zip(spaces, zeros, strict=True)
     ]
-    alone = len(moving) == 1 or all(
+    alone = (len(moving) == 1 and not _has_holes(moving)) or all(
         not clock.passed and _is_regular(moving, rows, size, leaf) for leaf in spaces
     )
     if len(spaces) == 1:
@@ -188,8 +189,8 @@ def _checked_component(moving: Mapping[int, Star], leaf: Leaf) -> tuple[int, lis
         motions.append(cone_motion(moving, rows, size, cones) if len(cones) > 1 else None)
         if len(cones) > 1 and motions[-1] is None:
             raise TooManyModesError(
-                f"on a space of dimension {size} the second-order conditions of vertices "
-                f"{', '.join(map(str, cones))} remain, and exactfold could not solve them together"
+                f"on a space of dimension {size} the second-order conditions of "
+                f"{_named(moving, cones)} remain, and exactfold could not solve them together"
             )
     return together, motions
 
@@ -224,7 +225,9 @@ def _partial(
     them folds.
     """
     folds = any(one.folds for one in components)
-    modes = [] if folds else folding_modes(pattern, moving, *smaller, MOST_FOUND, clock)
+    modes = []
+    if not folds and not _has_holes(moving):
+        modes = folding_modes(pattern, moving, *smaller, MOST_FOUND, clock)
     return Part(
         tuple(moving),
         "subspaces",
@@ -249,10 +252,34 @@ def _without_space(
         None,
         None,
         most=most_first_order(moving),
-        modes=tuple(folding_modes(pattern, moving, {}, 0, 0, clock)),
-        reason=f"the first-order motions of {counted(len(moving), 'vertex')} round vertex "
-        f"{next(iter(moving))} are not known: {reason}",
+        modes=()
+        if _has_holes(moving)
+        else tuple(folding_modes(pattern, moving, {}, 0, 0, clock)),
+        reason=f"the first-order motions of {part_text(moving)} are not known: {reason}",
     )
+
+
+def _has_holes(moving: Mapping[int, Star]) -> bool:
+    return any(star.hole is not None for star in moving.values())
+
+
+def part_text(moving: Mapping[int, Star]) -> str:
+    """A part of a sheet in words: the number of its vertices and of its holes."""
+    inner = [v for v, star in moving.items() if star.hole is None]
+    holes = {star.hole.number for star in moving.values() if star.hole is not None}
+    counts = [counted(len(inner), "vertex")] if inner else []
+    counts += [counted(len(holes), "hole")] if holes else []
+    first = f"vertex {inner[0]}" if inner else f"hole {min(holes)}"
+    return f"the part of {' and '.join(counts)} with {first}"
+
+
+def _named(moving: Mapping[int, Star], some: Sequence[int]) -> str:
+    """Vertices and holes in words."""
+    inner = [str(v) for v in some if moving[v].hole is None]
+    holes = sorted({hole.number for v in some if (hole := moving[v].hole) is not None})
+    texts = [f"vertices {', '.join(inner)}"] if inner else []
+    texts += [f"holes {', '.join(map(str, holes))}"] if holes else []
+    return " and ".join(texts)
 
 
 def _still(moving: Mapping[int, Star], active: Iterable[Edge]) -> tuple[Edge, ...]:
@@ -279,7 +306,8 @@ def _extends(
     parts = independent_parts(_entries(leaf), leaf.size, moving)
     for (rows, size), zero in zip(parts, zeros or [None] * len(parts), strict=True):
         active = [star.vertex for star in moving.values() if set(star.folds) & set(rows)]
-        if len(active) == 1 and size == len(rows) - 2:
+        holes = any(moving[v].hole is not None for v in active)
+        if len(active) == 1 and size == len(rows) - 2 and not holes:
             continue
         cones = [v for v in active if v in leaf.vertices]
         w = zero
@@ -287,7 +315,7 @@ def _extends(
             w = cone_motion(moving, rows, size, cones) if cones else point(rows, size)
         if w is not None and truly_folds(moving, w):
             continue
-        if cones:
+        if cones or holes:
             return False
         if size != 1 or folding_mode(pattern, moving, rows) is None:
             return False

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
+from itertools import pairwise
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -40,6 +42,7 @@ from exactfold.pattern.reading import PLAIN, Reading
 # Drawings need libraries that take long to load; triangulated sheets are read without them.
 if TYPE_CHECKING:
     from exactfold.pattern.drawing.repair import Sheets
+    from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
 # These errors of the strict reader are final: reading the file as a drawing cannot mend them.
 _FINAL = (NumberError, StaleExactCoordinatesError)
@@ -259,6 +262,8 @@ def _chosen(drawing: Drawing, sheets: Sheets, reading: Reading) -> Opened:
     letters = {
         (min(line.start, line.end), max(line.start, line.end)): line.letter for line in sheet.lines
     }
+    if holes := _holes(pattern, letters):
+        pattern = PanelPattern(pattern.vertices, pattern.edges, holes)
     lines = [drawing.source, *drawing.remarks, sheets.coordinates.text]
     seen = loud(drawing, sheets)
     loss = missing(drawing, sheets, k, folds=bool(pattern.folds))
@@ -281,6 +286,18 @@ def _chosen(drawing: Drawing, sheets: Sheets, reading: Reading) -> Opened:
     )
 
 
+def _holes(pattern: PanelPattern, letters: Mapping[Edge, str]) -> list[tuple[int, ...]]:
+    """The faces without paper: those that only boundary lines surround, beside other faces."""
+    if len(pattern.faces) == 1:
+        return []
+    bounding = {edge for edge, letter in letters.items() if letter in tuple("BC")}
+    return [
+        face
+        for face in pattern.faces
+        if all((min(i, j), max(i, j)) in bounding for i, j in pairwise((*face, face[0])))
+    ]
+
+
 def triangles(opened: Opened, needs: str) -> CreasePattern:
     """The triangulated sheet in `opened`; `needs` names the caller that needs one.
 
@@ -290,6 +307,7 @@ def triangles(opened: Opened, needs: str) -> CreasePattern:
     sheet = opened.sheet
     if isinstance(sheet, CreasePattern):
         return sheet
+    sheet.check_disk(f"`{needs}`")
     if sheet.field.radicands:
         raise NotCountedError(
             f"{needs} takes triangulated sheets with rational coordinates, and the coordinates of "

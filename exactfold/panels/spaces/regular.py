@@ -13,6 +13,7 @@ from scipy.linalg import qr
 from exactfold.exact.surds import ball
 from exactfold.panels.spaces.kernel import first_order
 from exactfold.panels.spaces.subspaces import Leaf
+from exactfold.panels.vertex.holes import restricted
 from exactfold.panels.vertex.stars import Star, bracket
 from exactfold.pattern.panel_pattern import Edge
 
@@ -199,15 +200,15 @@ def truly_folds(stars: Mapping[int, Star], w: Balls) -> bool:
 
     Folds that are not in w are held flat. The answer is True under two conditions (docs/panels.md,
     Regular points). The first-order conditions are independent: two for each vertex, one for a
-    straight pair. The derivatives at w of all forms are independent on the first-order motions.
-    False decides nothing.
+    straight pair, and as many as its rank for a hole. The derivatives at w of all forms are
+    independent on the first-order motions. False decides nothing.
     """
-    active = {v: star.only(w) for v, star in stars.items() if set(star.folds) & set(w)}
-    full = [v for v, star in active.items() if len(star.folds) != 2]
+    active = restricted(stars, w.keys())
+    full = [v for v, star in active.items() if star.has_form]
     rows, size = first_order(active)
-    if size != len(w) - len(active) - len(full):
+    if size != len(w) - sum(star.conditions for star in active.values()):
         return False
-    if any(len(active[v].folds) < 4 for v in full):
+    if any(len(active[v].folds) < 4 and active[v].hole is None for v in full):
         return False
     before = ctx.prec
     ctx.prec = BITS
