@@ -252,9 +252,7 @@ def _without_space(
         None,
         None,
         most=most_first_order(moving),
-        modes=()
-        if _has_holes(moving)
-        else tuple(folding_modes(pattern, moving, {}, 0, 0, clock)),
+        modes=() if _has_holes(moving) else tuple(folding_modes(pattern, moving, {}, 0, 0, clock)),
         reason=f"the first-order motions of {part_text(moving)} are not known: {reason}",
     )
 

@@ -11,7 +11,6 @@ from typing import Final
 import networkx as nx
 
 from exactfold._support.clock import QUICK, UNLIMITED, Clock
-from exactfold._support.plurals import counted
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.errors import TooManyModesError

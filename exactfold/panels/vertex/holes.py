@@ -35,11 +35,12 @@ _AXES: Final = ((0, 1), (0, 2), (1, 2))
 
 @dataclass(frozen=True)
 class Rim:
-    """The boundary of a hole, clockwise, and the folds that a way round it crosses.
+    """The boundary of hole `number`, clockwise, and the folds that a way round it crosses.
 
     Each fold has the end on the rim, and the other end; they are counter-clockwise.
     """
 
+    number: int
     vertices: tuple[int, ...]
     crossed: tuple[tuple[int, int], ...]
 
@@ -65,8 +66,8 @@ def conditions(pattern: PanelPattern, flat: Iterable[Edge] = ()) -> Mapping[int,
     while True:
         moving = dict(flat_closure(pattern, gone))
         before = len(gone)
-        for number, rim in enumerate(known):
-            hole = _hole(pattern, number, rim, gone)
+        for rim in known:
+            hole = _hole(pattern, rim, gone)
             if hole.rank == len(hole.folds):
                 gone.update(hole.folds)
             else:
@@ -122,7 +123,7 @@ def stars_of(hole: Hole, first: int) -> Iterator[Star]:
         yield Star(first + 3 * hole.number + k, hole.folds, directions, hole)
 
 
-def _hole(pattern: PanelPattern, number: int, rim: Rim, flat: Set[Edge]) -> Hole:
+def _hole(pattern: PanelPattern, rim: Rim, flat: Set[Edge]) -> Hole:
     folds, twists = [], []
     origin = rim.vertices[0]
     for v, u in rim.crossed:
@@ -131,7 +132,7 @@ def _hole(pattern: PanelPattern, number: int, rim: Rim, flat: Set[Edge]) -> Hole
             moment = bracket(pattern.direction(origin, v), d)
             folds.append(edge_of(v, u))
             twists.append((*d, moment))
-    return _of_rank(number, folds, twists)
+    return _of_rank(rim.number, folds, twists)
 
 
 def _of_rank(number: int, folds: Sequence[Edge], twists: Sequence[Twist]) -> Hole:
@@ -177,6 +178,15 @@ def free_folds(pattern: PanelPattern) -> tuple[Edge, ...]:
     return tuple(sorted(folds[0] for folds in bridges if len(folds) == 1))
 
 
+def vertices_of(pattern: PanelPattern, group: Iterable[int]) -> tuple[int, ...]:
+    """The vertices of a part: those inside the sheet, and those of its holes."""
+    found: dict[int, None] = {}
+    for v in group:
+        beyond = v - len(pattern.vertices)
+        found |= dict.fromkeys((v,) if beyond < 0 else pattern.holes[beyond // 3])
+    return tuple(found)
+
+
 def rims(pattern: PanelPattern) -> list[Rim]:
     """The boundaries of the holes, after all free folds have been cut open.
 
@@ -193,6 +203,7 @@ def rims(pattern: PanelPattern) -> list[Rim]:
     def is_wall(side: tuple[int, int]) -> bool:
         return side[::-1] not in following or edge_of(*side) in free
 
+    number = {v: k for k, hole in enumerate(pattern.holes) for v in hole}
     found: list[Rim] = []
     seen: set[tuple[int, int]] = set()
     for start in sorted(following):
@@ -209,7 +220,7 @@ def rims(pattern: PanelPattern) -> list[Rim]:
                 crossed.append(side)
                 side = following[side[::-1]]
         if _twice_area(pattern, around) < 0:
-            found.append(Rim(tuple(around), tuple(crossed[::-1])))
+            found.append(Rim(number[around[0]], tuple(around), tuple(crossed[::-1])))
     return found
 
 
@@ -217,9 +228,7 @@ def _twice_area(pattern: PanelPattern, around: Sequence[int]) -> int:
     """The sign of the area inside a closed way; it is negative if it runs clockwise."""
     total: Number = 0
     for i, j in pairwise(around[1:]):
-        total = total + bracket(
-            pattern.direction(around[0], i), pattern.direction(around[0], j)
-        )
+        total = total + bracket(pattern.direction(around[0], i), pattern.direction(around[0], j))
     return sign(total)
 
 

@@ -10,7 +10,6 @@ from typing import TypeAlias
 from exactfold.exact.surds import Number, sign
 from exactfold.pattern.panel_pattern import Edge, PanelPattern, Point
 
-
 Twist: TypeAlias = tuple[Number, Number, Number]
 """The line of a fold: its direction d = (x, y), and the moment p x d of a point p on it."""
 

@@ -96,7 +96,10 @@ def _halved(
     sides = {side for face in faces for side in _sides(face)}
     single = {frozenset(side) for side in sides if side[::-1] not in sides}
     at = Counter(
-        v for line in lines if line.letter in "BC" or frozenset(line[:2]) in single for v in line[:2]
+        v
+        for line in lines
+        if line.letter in "BC" or frozenset(line[:2]) in single
+        for v in line[:2]
     )
     points = list(drawing.points)
     middle: dict[frozenset[int], int] = {}
@@ -114,10 +117,7 @@ def _halved(
         return drawing, faces, lines
     cycles = [
         tuple(
-            v
-            for a, b in _sides(face)
-            for v in (a, middle.get(frozenset((a, b))))
-            if v is not None
+            v for a, b in _sides(face) for v in (a, middle.get(frozenset((a, b)))) if v is not None
         )
         for face in faces
     ]
