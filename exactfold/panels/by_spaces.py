@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from typing import Final
 
 from exactfold._support.clock import QUICK, UNLIMITED, Clock
 from exactfold._support.plurals import counted
@@ -31,6 +32,8 @@ from exactfold.pattern.panel_pattern import Edge, PanelPattern
 MOST_STEPS = 6_000_000
 MOST_REDUCTION = 3_000_000
 MOST_FOUND = 20_000_000
+_MANY: Final = 64
+"""With more conditions of holes, too many forms are left where splitting ends; it ends early."""
 
 
 def by_spaces(pattern: PanelPattern, moving: Mapping[int, Star], clock: Clock = UNLIMITED) -> Part:
@@ -127,7 +130,8 @@ def _complete(
     """
     vertices = tuple(moving)
     (rows, size), (small, left) = first, smaller
-    search = Splitting(moving, MOST_STEPS, clock.share(2 / 3))
+    many = sum(star.hole is not None for star in moving.values()) > _MANY
+    search = Splitting(moving, MOST_STEPS, clock.share(1 / 8 if many else 2 / 3))
     spaces = search.leaves(small, left)
     together = 0
     counts: dict[int, int] = {}

@@ -44,10 +44,10 @@ def decompose(
     First the folds that cannot fold in any real motion are found (`conditions`), at any size.
     The remaining folds fall into independent parts. For a part whose vertices have at most four
     folds, the structure theorem gives all components (docs/panels.md, Structure theorem). For other
-    parts, and those with holes, linear spaces are split vertex by vertex (`leaves`), up to a limit of work. If it fails,
-    components are found one by one (`found_components`), and if none of these is known to fold,
-    modes that fold are searched for (`folding_modes`). The lowest-order term of a true motion is a
-    second-order motion, so a sheet without second-order motions is rigid.
+    parts, and those with holes, linear spaces are split vertex by vertex (`leaves`), up to a limit
+    of work. If it fails, components are found one by one (`found_components`), and if none of these
+    is known to fold, modes that fold are searched for (`folding_modes`). The lowest-order term of a
+    true motion is a second-order motion, so a sheet without second-order motions is rigid.
 
     The smallest parts come first. If the clock has passed, the search ends, and the parts that are
     not known yet have this as their `reason`.

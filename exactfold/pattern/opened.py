@@ -110,7 +110,7 @@ class Opened(Picture):
 
 
 def triangulated(pattern: PanelPattern) -> CreasePattern | None:
-    """The sheet as a `CreasePattern`; None if it has larger panels, irrational coordinates or holes.
+    """The sheet as a `CreasePattern`; None if it has larger panels, square roots or holes.
 
     Raises `TooLargeError` if the common denominator of its coordinates is too long.
     """

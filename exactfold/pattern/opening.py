@@ -262,8 +262,10 @@ def _chosen(drawing: Drawing, sheets: Sheets, reading: Reading) -> Opened:
     letters = {
         (min(line.start, line.end), max(line.start, line.end)): line.letter for line in sheet.lines
     }
-    if holes := _holes(pattern, letters):
+    holes = _holes(pattern, letters)
+    if holes:
         pattern = PanelPattern(pattern.vertices, pattern.edges, holes)
+    number = [f"the sheet has {counted(len(holes), 'hole')}"] if holes else []
     lines = [drawing.source, *drawing.remarks, sheets.coordinates.text]
     seen = loud(drawing, sheets)
     loss = missing(drawing, sheets, k, folds=bool(pattern.folds))
@@ -273,12 +275,12 @@ def _chosen(drawing: Drawing, sheets: Sheets, reading: Reading) -> Opened:
             raise MalformedDrawingError("; ".join((loss, *left_out)))
         lines.insert(0, f"warning: {loss}")
         seen = (lines[0], *seen)
-    lines += [str(repair) for repair in sheets.repairs]
+    lines += [*(str(repair) for repair in sheets.repairs), *number]
     return Opened(
         triangulated(pattern) or pattern,
         letters,
         tuple(lines),
-        brief(drawing, sheets),
+        (*brief(drawing, sheets), *number),
         seen,
         largest_move=sheets.coordinates.largest_move,
         field_name=pattern.field_name,

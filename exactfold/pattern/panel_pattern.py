@@ -44,8 +44,8 @@ class PanelPattern(Picture):
     sheet includes that of its holes.
 
     Raises the errors of `trace_faces`, `MalformedPatternError` if there is no face or if a hole is
-    none, and `NotADiskError` if a part of the sheet hangs by one vertex, where a hole touches the
-    edge of the paper or another hole, too, or is joined to the rest by no panel.
+    none or takes all panels of an edge, and `NotADiskError` if a part of the sheet hangs by one
+    vertex; so it does where a hole touches the edge of the paper or another hole.
 
     >>> cross = PanelPattern([(-1, -1), (1, -1), (1, 1), (-1, 1), (0, 0), (0, -1), (1, 0),
     ...                       (0, 1), (-1, 0)],
@@ -53,9 +53,8 @@ class PanelPattern(Picture):
     ...                       (4, 5), (4, 6), (4, 7), (4, 8)])
     >>> cross.interior, cross.folds, len(cross.faces)
     ((4,), ((4, 5), (4, 6), (4, 7), (4, 8)), 4)
-    >>> ring = PanelPattern([(0, 0), (3, 0), (0, 3), (1, 1), ("5/4", 1), (1, "5/4")],
-    ...                     [(0, 1), (1, 2), (0, 2), (3, 4), (4, 5), (3, 5), (0, 3), (1, 4), (2, 5)],
-    ...                     holes=[(3, 4, 5)])
+    >>> ring = PanelPattern([(0, 0), (9, 0), (0, 9), (3, 3), (4, 3), (3, 4)], [(0, 1), (1, 2),
+    ...     (0, 2), (3, 4), (4, 5), (3, 5), (0, 3), (1, 4), (2, 5)], holes=[(3, 4, 5)])
     >>> ring.interior, ring.folds, len(ring.faces), ring.holes
     ((), ((0, 3), (1, 4), (2, 5)), 3, ((3, 4, 5),))
     """
@@ -90,7 +89,7 @@ class PanelPattern(Picture):
         self._check_boundary()
 
     def _take_out(self, holes: Sequence[tuple[int, ...]]) -> None:
-        """Makes holes of faces, and checks that the panels that are left are one sheet."""
+        """Makes holes of faces; every edge must be left a side of a panel."""
         known = {frozenset(_sides(face)): face for face in self.faces}
         found = []
         for hole in holes:
@@ -111,18 +110,6 @@ class PanelPattern(Picture):
         if bare:
             i, j = bare[0]
             raise MalformedPatternError(f"edge {i}-{j} is the side of no panel", vertices=[i, j])
-        left, waiting = set(range(len(self.faces))), [0]
-        while waiting:
-            k = waiting.pop()
-            if k in left:
-                left.remove(k)
-                face = self.faces[k]
-                waiting += [self.sides[j, i] for i, j in _sides(face) if (j, i) in self.sides]
-        if left:
-            raise NotADiskError(
-                f"the holes cut the sheet in two: no panels join face {min(left)} to face 0",
-                vertices=list(self.faces[min(left)]),
-            )
 
     # --- combinatorics ---------------------------------------------------------------------------
 
@@ -194,7 +181,7 @@ class PanelPattern(Picture):
 
     @property
     def D(self) -> int:
-        """The number of folds minus 3 Vi, and 6 less for each hole; a lower bound of all dimensions.
+        """The number of folds, less 3 for each interior vertex and 6 for each hole.
 
         Every component of the configuration space has at least this dimension, if it is not
         negative: a vertex closes if three equations hold, and a hole if six do.
@@ -233,12 +220,14 @@ class PanelPattern(Picture):
         """Raises `NotApplicableError` if the positions of vertices are known only nearly."""
 
     def check_disk(self, what: str = "this") -> None:
-        """Raises `NotCountedError` for a sheet with holes; `what` names what needs a disk."""
+        """Raises `NotCountedError` for a sheet with holes; `what` names the work that needs one
+        without holes.
+        """
         if self.holes:
             raise NotCountedError(
-                f"the sheet has {counted(len(self.holes), 'hole')}, and {what} is not done for "
-                "sheets with holes: only `count`, `info`, `vertices`, `draw` and `view` (the flat "
-                "sheet) and `convert` take them"
+                f"the sheet has {counted(len(self.holes), 'hole')}, and {what} is not done yet for "
+                "sheets with holes: `count` says how they start to fold, and `info`, `vertices`, "
+                "`convert`, `draw` and `view` take them"
             )
 
     def _check_boundary(self) -> None:
@@ -266,7 +255,7 @@ class PanelPattern(Picture):
         """The digest of the exact pattern: the field, the vertices in order, and the edges.
 
         It is the SHA-256 of the lines `exactfold panels 1`, `r C...` for each adjoined root,
-        `v X... Y...` for each vertex (all coefficients), `e I J` for each edge and `h I J K ...` for
+        `v X... Y...` for each vertex (all coefficients), `e I J` for each edge and `h I J K...` for
         each hole. A newline ends each line.
         """
         lines = ["exactfold panels 1"]

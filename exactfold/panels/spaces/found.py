@@ -119,10 +119,10 @@ def exact_leaf(
             rows, size = imposed(rows, size, min(both, key=lambda row: _relative(row, at)))
         else:
             return None
-    at = incidence(moving)
+    stars_at = incidence(moving)
     left = [
         v
-        for v in sorted({v for edge in rows for v in at[edge]})
+        for v in sorted({v for edge in rows for v in stars_at[edge]})
         if squares_of(moving[v], rows, size)
     ]
     if size != proposal.size or left != sorted(proposal.vertices):

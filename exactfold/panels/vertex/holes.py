@@ -84,8 +84,9 @@ def restricted(moving: Mapping[int, Star], folds: Set[Edge]) -> dict[int, Star]:
             continue
         if star.hole is None:
             kept[v] = star.only(folds)
-        elif (start := v - _place(star)) not in kept:
-            hole = star.hole
+            continue
+        hole = star.hole
+        if (start := v - _place(star, hole)) not in kept:
             some = [k for k, fold in enumerate(hole.folds) if fold in folds]
             part = _of_rank(
                 hole.number,
@@ -96,10 +97,8 @@ def restricted(moving: Mapping[int, Star], folds: Set[Edge]) -> dict[int, Star]:
     return kept
 
 
-def _place(star: Star) -> int:
+def _place(star: Star, hole: Hole) -> int:
     """Which of the stars of its hole this is, counted from 0."""
-    hole = star.hole
-    assert hole is not None
     if hole.rank < 3:
         return 0
     pairs = [tuple((t[a], t[b]) for t in hole.twists) for a, b in _AXES]
@@ -110,7 +109,7 @@ def stars_of(hole: Hole, first: int) -> Iterator[Star]:
     """The stars of a hole; `first` is the number of the first star of hole 0."""
     if not hole.folds:
         return
-    axes = _AXES if hole.rank == 3 else _AXES[:1]
+    axes: Sequence[tuple[int, int]] = _AXES if hole.rank == 3 else _AXES[:1]
     if hole.rank == 2:
         one = hole.twists[0]
         axes = tuple(

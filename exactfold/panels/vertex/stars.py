@@ -153,7 +153,7 @@ def stars(pattern: PanelPattern, flat: Iterable[Edge] = ()) -> Mapping[int, Star
     >>> stars(corner)[4].folds
     ((2, 4), (0, 4))
     """
-    pattern.check_disk("that")
+    pattern.check_disk()
     return flat_closure(pattern, set(flat))
 
 

@@ -67,8 +67,8 @@ def sheets(drawing: Drawing) -> tuple[tuple[Drawing, ...], list[Repair]]:
 
     Raises `MalformedPatternError` if the lines enclose nothing or no piece has a crease,
     `NotADiskError` for a sheet that hangs together only by a point, and `FoldError` for a line B
-    between two panels. Raises `DisconnectedError` for creases inside a panel that no line joins to the rest,
-    and for lines that enclose nothing; such lines are not dropped here.
+    between two panels. Raises `DisconnectedError` for creases inside a panel that no line joins to
+    the rest, and for lines that enclose nothing; such lines are not dropped here.
     """
     parts = _parts(drawing)
     if not parts:
