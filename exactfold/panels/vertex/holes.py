@@ -50,7 +50,7 @@ def conditions(pattern: PanelPattern, flat: Iterable[Edge] = ()) -> Mapping[int,
 
     As `stars` does, this leaves out folds that cannot fold in any real motion. Those round a hole
     are flat, too, if their lines are independent. The stars of hole k have the numbers V + 3 k + a,
-    where V is the number of vertices, and a is 0, or 0, 1 and 2.
+    where V is the number of vertices, and a is 0 for (x, y), 1 for (x, m) and 2 for (y, m).
 
     >>> ring = PanelPattern([(0, 0), (40, 0), (0, 40), (19, 13), (18, 19), (8, 18), (15, 3)],
     ...     [(0, 1), (1, 2), (0, 2), (3, 4), (4, 5), (5, 6), (3, 6), (0, 5), (0, 6), (1, 6), (1, 3),
@@ -86,7 +86,8 @@ def restricted(moving: Mapping[int, Star], folds: Set[Edge]) -> dict[int, Star]:
             kept[v] = star.only(folds)
             continue
         hole = star.hole
-        if (start := v - _place(star, hole)) not in kept:
+        start = v - _place(star, hole)
+        if kept.keys().isdisjoint(range(start, start + 3)):
             some = [k for k, fold in enumerate(hole.folds) if fold in folds]
             part = _of_rank(
                 hole.number,
@@ -98,9 +99,7 @@ def restricted(moving: Mapping[int, Star], folds: Set[Edge]) -> dict[int, Star]:
 
 
 def _place(star: Star, hole: Hole) -> int:
-    """Which of the stars of its hole this is, counted from 0."""
-    if hole.rank < 3:
-        return 0
+    """Which two coordinates of the lines of its hole a star has."""
     pairs = [tuple((t[a], t[b]) for t in hole.twists) for a, b in _AXES]
     return pairs.index(star.directions)
 
@@ -117,9 +116,10 @@ def stars_of(hole: Hole, first: int) -> Iterator[Star]:
             for a, b in _AXES
             if any(bracket((one[a], one[b]), (t[a], t[b])) != 0 for t in hole.twists)
         )[:1]
-    for k, (a, b) in enumerate(axes):
+    for a, b in axes:
         directions = tuple((t[a], t[b]) for t in hole.twists)
-        yield Star(first + 3 * hole.number + k, hole.folds, directions, hole)
+        place = first + 3 * hole.number + _AXES.index((a, b))
+        yield Star(place, hole.folds, directions, hole)
 
 
 def _hole(pattern: PanelPattern, rim: Rim, flat: Set[Edge]) -> Hole:
