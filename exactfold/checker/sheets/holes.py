@@ -36,15 +36,14 @@ class HoledSheet(PanelSheet):
         for hole in holes:
             require(known.pop(hole, None) is not None, f"the hole {list(hole)} is no face")
         self.panels = list(known.values())
+        require(self.panels, "all faces are holes")
         self._following: dict[tuple[int, int], tuple[int, int]] = {}
         for panel in self.panels:
             self._following |= pairwise(pairwise((*panel, *panel[:2])))
         ends: dict[int, int] = {}
         self.folds = []
         for i, j in edges:
-            sides_of = [side for side in ((i, j), (j, i)) if side in self._following]
-            require(sides_of, f"edge {i}-{j} is the side of no panel")
-            if len(sides_of) == 2:
+            if {(i, j), (j, i)} <= self._following.keys():
                 self.folds.append((i, j))
             else:
                 ends[i], ends[j] = ends.get(i, 0) + 1, ends.get(j, 0) + 1

@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import pytest
 from flint import fmpq, fmpq_mat
+from holed_sheets import ACROSS, BESIDE, FLAP, RING, spokes
 
 from exactfold._support.verdict import PROVED
 from exactfold.errors import MalformedPatternError, NotADiskError, NotCountedError
@@ -14,64 +15,6 @@ from exactfold.panels.spaces.kernel import first_order
 from exactfold.panels.vertex.holes import conditions, free_folds, restricted, rims
 from exactfold.panels.vertex.stars import stars
 from exactfold.pattern.panel_pattern import PanelPattern
-
-RING = PanelPattern(
-    [(0, 0), (40, 0), (0, 40), (19, 13), (18, 19), (8, 18), (15, 3)],
-    [
-        (0, 1),
-        (1, 2),
-        (0, 2),
-        (3, 4),
-        (4, 5),
-        (5, 6),
-        (3, 6),
-        (0, 5),
-        (0, 6),
-        (1, 6),
-        (1, 3),
-        (1, 4),
-        (2, 4),
-        (2, 5),
-    ],
-    holes=[(3, 4, 5, 6)],
-)
-"""An outer triangle with a quadrilateral hole: 8 complex branches, none of them real."""
-
-BESIDE = PanelPattern(
-    [(0, 0), (12, 0), (13, 9), (1, 8), (4, 3), (6, 2), (5, 5), (9, 4), (8, 6)],
-    [
-        (0, 1),
-        (1, 2),
-        (2, 3),
-        (0, 3),
-        (4, 5),
-        (5, 6),
-        (4, 6),
-        (0, 4),
-        (0, 5),
-        (1, 5),
-        (1, 7),
-        (5, 7),
-        (6, 7),
-        (6, 8),
-        (7, 8),
-        (2, 7),
-        (2, 8),
-        (3, 8),
-        (3, 6),
-        (3, 4),
-    ],
-    holes=[(4, 5, 6)],
-)
-"""A triangular hole beside two interior vertices; all panels are triangles."""
-
-
-def spokes(inner, outer=((0, 0), (6, 0), (6, 6), (0, 6))):
-    """A hole with four corners, which are joined to those of a quadrilateral."""
-    rims_of = [[(k + a, (k + 1) % 4 + a) for k in range(4)] for a in (0, 4)]
-    edges = [*rims_of[0], *rims_of[1], *((k, k + 4) for k in range(4))]
-    return PanelPattern([*outer, *inner], edges, holes=[(4, 5, 6, 7)])
-
 
 # --- against rigid motions -----------------------------------------------------------------------
 
@@ -260,57 +203,19 @@ def test_lines_through_one_point_are_conditions_of_a_vertex():
 
 
 def test_a_straight_crease_across_a_hole_folds():
-    across = PanelPattern(
-        [(0, 0), (4, 0), (4, 4), (0, 4), (2, 0), (2, 4), (2, 1), (3, 2), (2, 3), (1, 2)],
-        [
-            (0, 4),
-            (1, 4),
-            (1, 2),
-            (2, 5),
-            (3, 5),
-            (0, 3),
-            (6, 7),
-            (7, 8),
-            (8, 9),
-            (6, 9),
-            (4, 6),
-            (5, 8),
-        ],
-        holes=[(6, 7, 8, 9)],
-    )
-    [star] = conditions(across).values()
+    [star] = conditions(ACROSS).values()
     assert (star.hole.rank, star.conditions, star.has_form) == (1, 1, False)
-    result = decompose(across)
+    result = decompose(ACROSS)
     assert (dict(result.true), result.free) == ({1: 1}, ())
 
 
 def test_a_flap_at_a_hole_is_free_and_in_no_loop():
     """A fold from one corner of the hole to the next, with a triangle in the hole."""
-    flap = PanelPattern(
-        [(0, 0), (8, 0), (8, 8), (0, 8), (2, 2), (6, 2), (6, 6), (2, 6), (4, 3)],
-        [
-            (0, 1),
-            (1, 2),
-            (2, 3),
-            (0, 3),
-            (4, 5),
-            (5, 6),
-            (6, 7),
-            (4, 7),
-            (4, 8),
-            (5, 8),
-            (0, 4),
-            (1, 5),
-            (2, 6),
-            (3, 7),
-        ],
-        holes=[(4, 8, 5, 6, 7)],
-    )
-    assert free_folds(flap) == ((4, 5),)
-    [rim] = rims(flap)
+    assert free_folds(FLAP) == ((4, 5),)
+    [rim] = rims(FLAP)
     assert (rim.number, sorted(rim.vertices)) == (0, [4, 5, 6, 7])
     assert sorted(rim.crossed) == [(4, 0), (5, 1), (6, 2), (7, 3)]
-    assert dict(decompose(flap).true) == {2: 2}
+    assert dict(decompose(FLAP).true) == {2: 2}
 
 
 def test_restricted_stars_have_the_rank_of_their_folds():
