@@ -15,7 +15,7 @@ from exactfold.panels.result import Part
 from exactfold.panels.spaces.cones import cone_motion, is_one_family
 from exactfold.panels.spaces.found import FoundComponent, found_components
 from exactfold.panels.spaces.freedom import most_first_order, most_freedom
-from exactfold.panels.spaces.kernel import Rows, entry, first_order
+from exactfold.panels.spaces.kernel import Rows, entry, first_order, number
 from exactfold.panels.spaces.regular import (
     Balls,
     Forms,
@@ -26,6 +26,7 @@ from exactfold.panels.spaces.regular import (
 )
 from exactfold.panels.spaces.splitting import Splitting
 from exactfold.panels.spaces.subspaces import Leaf, independent_parts, reduced
+from exactfold.panels.vertex.holes import close_always
 from exactfold.panels.vertex.stars import Star
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
@@ -317,9 +318,13 @@ def _extends(
             w = cone_motion(moving, rows, size, cones) if cones else point(rows, size)
         if w is not None and truly_folds(moving, w):
             continue
-        if cones or holes:
+        if cones:
             return False
-        if size != 1 or folding_mode(pattern, moving, rows) is None:
+        if holes and size == 1:
+            if close_always(moving, {edge: number(row[0]) for edge, row in rows.items()}):
+                continue
+            return False
+        if holes or size != 1 or folding_mode(pattern, moving, rows) is None:
             return False
     return True
 

@@ -133,11 +133,41 @@ def _folds(spaces: Spaces, part: list[Motion], cones: list[int]) -> bool:
     point = cone_motion(forms, part, cones) if cones else enclosed(_sum(inner, part))
     if point is not None and _independent(inner, point):
         return True
-    if cones or not plain:
+    if cones:
         return False
+    if not plain:
+        return len(part) == 1 and _close_always(inner, part[0])
     if len(part) != 1 or any(len(around) > 4 for around in near.values()):
         return False
     return _closes(spaces.sheet, near, part[0])
+
+
+def _close_always(spaces: Spaces, motion: Motion) -> bool:
+    """Whether all vertices and holes close for every T if tau = T w (docs/panels.md, 7).
+
+    The turn about the line (x, y, m) is the dual quaternion 1 + tau (x i + y j + m eps k), and the
+    vector parts of their product, without eps and with it, must be 0.
+    """
+    zero, one = spaces.sheet.tower.number(0), spaces.sheet.tower.number(1)
+    for lines in spaces.sheet.rounds(spaces.near):
+        total = [[one, *[zero] * 7]]
+        for fold, line in lines:
+            p, q, r = (motion[fold] * x for x in line)
+            spaces.work.count(20 * len(total), motion[fold])
+            turned = []
+            for s, a, b, c, t, d, e, f in total:
+                turned.append(
+                    [
+                        *(-a * p - b * q, s * p - c * q, s * q + c * p, a * q - b * p),
+                        *(-d * p - e * q - c * r, t * p - f * q + b * r),
+                        *(t * q + f * p - a * r, d * q - e * p + s * r),
+                    ]
+                )
+            rows = zip([*total, [zero] * 8], [[zero] * 8, *turned], strict=True)
+            total = [[u + v for u, v in zip(low, high, strict=True)] for low, high in rows]
+        if any(x.sign() for row in total for x in (*row[1:4], *row[5:])):
+            return False
+    return True
 
 
 def _closes(sheet: PanelSheet, near: Mapping[int, list[int]], motion: Motion) -> bool:

@@ -9,15 +9,14 @@ the line (x, y, m), m = p x d, and star a has the vectors (x, y), (x, m) or (y, 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from itertools import pairwise
 from typing import Any
 
 from ..core.reading import items, natural, require
-from ..core.towers import Number, Tower
-from .panels import Edge, Near, PanelSheet, Vector, connected, cross, pair, read_drawing
+from ..core.towers import Tower
+from .panels import Edge, Line, Near, PanelSheet, Vector, connected, cross, pair, read_drawing
 
-Line = tuple[Number, Number, Number]
 _AXES = ((0, 1), (0, 2), (1, 2))
 
 
@@ -119,6 +118,13 @@ class HoledSheet(PanelSheet):
             return 1, 1
         lines = [self._round[k][place][1] for place in near[v]]
         return (1, 0) if _rank(lines) == 1 else (2, 1)
+
+    def rounds(self, near: Mapping[int, list[int]]) -> Iterator[list[tuple[Edge, Line]]]:
+        """The folds round each vertex and each hole, and their lines."""
+        yield from super().rounds({v: at for v, at in near.items() if v < len(self.points)})
+        holes = {self._place(v)[0]: at for v, at in near.items() if v >= len(self.points)}
+        for k, places in holes.items():
+            yield [self._round[k][place] for place in places]
 
     def connected(self, near: Near) -> list[Near]:
         """The parts of a sheet whose stars folds connect, each with its stars sorted."""

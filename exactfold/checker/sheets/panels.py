@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cmp_to_key
 from itertools import pairwise
 from typing import Any
@@ -14,6 +14,8 @@ from ..core.towers import Number, Tower
 
 Edge = tuple[int, int]
 Vector = tuple[Number, Number]
+Line = tuple[Number, Number, Number]
+"""The direction (x, y) of a fold, and the moment m of a point on it."""
 Near = dict[int, list[int]]
 """The neighbours of each vertex, counter-clockwise."""
 _GRID = 64  # bits of the rounded boxes by which edges that may meet are found
@@ -88,6 +90,12 @@ class PanelSheet:
         A straight pair has one condition and no form.
         """
         return (1, 0) if len(near[v]) == 2 else (2, 1)
+
+    def rounds(self, near: Mapping[int, list[int]]) -> Iterator[list[tuple[Edge, Line]]]:
+        """The folds round each vertex, and their lines (x, y, m) with the moments about it."""
+        zero = self.tower.number(0)
+        for v, around in near.items():
+            yield [(pair(v, u), (*self.vector(v, u), zero)) for u in around]
 
     def connected(self, near: Near) -> list[Near]:
         """The parts of a sheet that folds connect, each with its vertices sorted."""

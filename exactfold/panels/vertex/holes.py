@@ -18,6 +18,7 @@ from typing import Final
 
 import networkx as nx
 
+from exactfold.exact.joined_fields import joined
 from exactfold.exact.surds import Number, sign
 from exactfold.panels.vertex.stars import (
     Hole,
@@ -96,6 +97,57 @@ def restricted(moving: Mapping[int, Star], folds: Set[Edge]) -> dict[int, Star]:
             )
             kept |= {one.vertex: one for one in stars_of(part, start - 3 * hole.number)}
     return kept
+
+
+def close_always(moving: Mapping[int, Star], densities: Mapping[Edge, Number]) -> bool:
+    """Whether all vertices and holes close exactly with tau = T w for every T, with densities w.
+
+    Here tau = tan(fold angle / 2) / length. All folds without a density are held flat. Such a line
+    of motions folds (docs/panels.md, Sheets with holes).
+    """
+    rounds: dict[int, tuple[tuple[Edge, ...], tuple[Twist, ...]]] = {}
+    for v, star in restricted(moving, densities.keys()).items():
+        hole = star.hole
+        if hole is None:
+            rounds[v] = star.folds, tuple((x, y, 0) for x, y in star.directions)
+        else:
+            rounds[-1 - hole.number] = hole.folds, hole.twists
+    return all(
+        closes_always(twists, [densities[fold] for fold in folds])
+        for folds, twists in rounds.values()
+    )
+
+
+def closes_always(twists: Sequence[Twist], values: Sequence[Number]) -> bool:
+    """Whether turns about lines with tau_j = T values[j] have the product 1 for every T.
+
+    A turn about the line (x, y, m) is the dual quaternion 1 + tau (x i + y j + m eps k), with
+    eps^2 = 0. The product is 1 if its vector parts are 0, both that without eps and that with it.
+
+    >>> upright = [(0, 1, 0), (0, -1, 2), (0, 1, 3), (0, -1, 5)]
+    >>> closes_always(upright, (1, 1, 1, 1)), closes_always(upright, (1, 2, 2, 1))
+    (False, False)
+    >>> closes_always([(0, 1, 0), (0, 1, 1), (0, 1, 2)], (1, -1, 0))
+    False
+    >>> closes_always([(0, 1, 0), (0, 1, 1), (0, 1, 3), (0, 1, 2)], (1, -1, 1, -1))
+    True
+    """
+    [*coordinates, weights] = joined([*zip(*twists, strict=True), values])
+    product: list[list[Number]] = [[1, 0, 0, 0, 0, 0, 0, 0]]
+    for x, y, m, weight in zip(*coordinates, weights, strict=True):
+        p, q, r = weight * x, weight * y, weight * m
+        turned: list[list[Number]] = []
+        for s, a, b, c, t, d, e, f in product:
+            plain = [-a * p - b * q, s * p - c * q, s * q + c * p, a * q - b * p]
+            first = [-d * p - e * q, t * p - f * q, t * q + f * p, d * q - e * p]
+            second = [-c * r, b * r, -a * r, s * r]
+            turned.append([*plain, *(u + v for u, v in zip(first, second, strict=True))])
+        zero: list[Number] = [0] * 8
+        product = [
+            [u + v for u, v in zip(one, other, strict=True)]
+            for one, other in zip([*product, zero], [zero, *turned], strict=True)
+        ]
+    return all(part == 0 for dual in product for part in (*dual[1:4], *dual[5:]))
 
 
 def _place(star: Star, hole: Hole) -> int:
