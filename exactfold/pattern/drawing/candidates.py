@@ -86,11 +86,9 @@ def matches(values: FloatArray, within: float, radicand: int) -> list[Match | No
         return [None] * len(values)
     parts = values - np.floor(values)
     # Modulo 1, values just below 1 are near 0.
-    around = table.values
-    low, high = (
-        np.array([np.searchsorted(around, parts + turn + move, side=side) for turn in (1, 0, -1)])
-        for move, side in ((-within, "left"), (within, "right"))
-    )
+    turned = parts + np.array([[1.0], [0.0], [-1.0]])
+    low = np.searchsorted(table.values, turned - within, side="left")
+    high = np.searchsorted(table.values, turned + within, side="right")
     field = field_of(radicand)
     smallest: list[Match | None] = []
     for value, starts, ends in zip(values, low.T.tolist(), high.T.tolist(), strict=True):
