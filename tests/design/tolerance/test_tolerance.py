@@ -218,7 +218,7 @@ def test_undecided_counts_are_refused():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(3))
 def test_eight_vertices_against_exact_counts(seed):
     pattern = exactfold.random_square(8, seed=seed)
     found = exactfold.tolerance(pattern)
