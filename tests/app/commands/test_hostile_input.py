@@ -43,6 +43,7 @@ COMMANDS = {
     "export": ["--signs", "+", "-o", "out.fold"],
     "motions": [],
     "actuate": ["--signs", "+"],
+    "tolerance": [],
     "assignments": [],
     "view": ["-o", "out.html"],
 }
