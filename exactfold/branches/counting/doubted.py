@@ -31,7 +31,8 @@ def doubted(result: Decomposition, opened: Opened) -> Decomposition: ...
 def doubted(result: BranchCount | Decomposition, opened: Opened) -> BranchCount | Decomposition:
     """The answer for an open sheet, UNDECIDED if it would hold for the digits of the sheet only.
 
-    That is so if relations between its creases nearly hold, or if a loop of folds nearly closes.
+    That is so if relations between its creases nearly hold, if a loop of folds nearly closes, or if
+    the lines of the folds round a hole nearly depend on each other.
     What is known for the digits is `as_written` of the answer.
     """
     result = replace(result, meant=opened.meant)
@@ -42,7 +43,7 @@ def doubted(result: BranchCount | Decomposition, opened: Opened) -> BranchCount 
     else:
         families = result
     if not doubt and opened.reading.snap != "exact" and families is not None:
-        doubt = families.warning or ""
+        doubt = families.warning or _of_holes(families)
     if not doubt:
         return result
     if not isinstance(result, BranchCount):
@@ -87,3 +88,21 @@ def doubted(result: BranchCount | Decomposition, opened: Opened) -> BranchCount 
         doubt=doubt,
         as_written=result,
     )
+
+
+def _of_holes(result: Decomposition) -> str:
+    """Why conditions round a hole may be due to rounding; empty if they are not.
+
+    Of decimals nobody knows how far they were rounded (`near_limit`).
+    """
+    pattern = result.pattern
+    if not pattern.holes:
+        return ""
+    from exactfold.panels.modes.near_misses import near_limit
+    from exactfold.panels.vertex.holes import nearly_dependent
+    from exactfold.pattern.rounding import usual_half_step
+
+    if not (step := usual_half_step(pattern.vertices)):
+        return ""
+    noise = None if result.meant is None else result.meant.noise
+    return nearly_dependent(pattern, near_limit(noise, len(pattern.holes)), step)
