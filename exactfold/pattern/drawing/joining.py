@@ -69,7 +69,7 @@ def _with_slit(drawing: Drawing, pair: Sequence[Side]) -> Drawing:
             Line(middles[-1], line.end, line.letter),
         )
         lines[k : k + 1] = halves
-    return replace(drawing, points=tuple(points), lines=(*lines, Line(*middles, "C")))
+    return replace(drawing, points=tuple(points), lines=(*lines, Line(middles[0], middles[1], "C")))
 
 
 def _meets(one: FloatArray, other: FloatArray, ends: FloatArray) -> bool:
