@@ -170,7 +170,7 @@ class Gradients:
             if not np.nanmax(moved) >= 1e-13:
                 break
         now[~(moved < 1e-9)] = np.nan
-        return now / np.linalg.norm(now, axis=1, keepdims=True)
+        return np.asarray(now / np.linalg.norm(now, axis=1, keepdims=True))
 
     def bends(self, gradients: Zeros, points: FloatArray) -> Zeros:
         """The densities of the folds, positive for valleys; shape (B, E)."""
