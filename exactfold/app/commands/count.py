@@ -87,7 +87,7 @@ class Asked(CountOptions):
             from exactfold.design.panels.vertex.vertices import vertices
 
             report.show(report.vertices_line(vertices(opened)))
-        if not isinstance(result, BranchCount) and result.proposal and not self.as_json:
+        if result.proposal and not self.as_json:
             report.show("")
             for line in report.proposal_lines(result.proposal):
                 report.show(line)

@@ -90,7 +90,7 @@ def left_relations(sheet: Sheet) -> tuple[Relation, ...]:
         near += zip(defects[chosen].tolist(), places_in_order, repeat(k), chosen.tolist())
     near.sort()
     # Two relations at a vertex may follow from each other, so k relations are k / 2 events.
-    chances = (_chance(expected * one[0], (k + 2) // 2) for k, one in enumerate(near))
+    chances = (chance(expected * one[0], (k + 2) // 2) for k, one in enumerate(near))
     believed = [k for k, chance in enumerate(chances, 1) if chance < _CHANCE]
     return tuple(
         tests[k].relation(row, defect) for defect, _, k, row in near[: max(believed, default=0)]
@@ -108,7 +108,7 @@ def _places(vertices: Sequence[tuple[Number, Number]]) -> list[tuple[float, floa
         return [(float((x - left) / size), float((y - low) / size)) for x, y in vertices]
 
 
-def _chance(mean: float, number: int) -> float:
+def chance(mean: float, number: int) -> float:
     """An upper bound (Chernoff's) of the probability of `number` or more events, if so many are
     expected as `mean` says.
     """
