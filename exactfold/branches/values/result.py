@@ -192,7 +192,8 @@ class BranchCount(Page, Ways[Branch], Certified):
         near_degeneracy = near_degenerate(self.pattern)
         if near_degeneracy is None and self.families is not None:
             return self.families.warning
-        return None if near_degeneracy is None else near_degeneracy.text
+        near = near_degeneracy or self.nearly_flat
+        return None if near is None else near.text
 
     @cached_property
     def nearly_flat(self) -> NearlyFlat | None:
@@ -294,7 +295,7 @@ class BranchCount(Page, Ways[Branch], Certified):
             "dimension": self.dimension,
             "degree": None if self.degree is None else _number(self.degree),
             "certificate": certificate,
-            "warnings": [*warnings(self.pattern), *([near.to_dict()] if near else [])],
+            "warnings": warnings(self.pattern) or ([near.to_dict()] if near else []),
             "seconds": round(self.seconds, 3),
             "open_questions": list(self.open_questions),
             "settings": dict(self.settings),

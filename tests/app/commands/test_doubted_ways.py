@@ -128,6 +128,7 @@ def test_a_way_that_rounding_splits_is_proved_for_the_digits_only(
     assert data["status"] == "undecided"
     exact = run(command, ring, *options, "--snap", "exact")
     assert NEAR not in exact.stdout
+    assert (f"warning: {NEAR}" in exact.stderr) == (command == "count")
     if command not in ("actuate", "match"):
         assert exact.exit_code == PROVED
 
