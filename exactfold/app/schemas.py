@@ -72,6 +72,7 @@ DOCUMENTS: Final = {
         "design.actuation.result:ActuationDocument",
         "design.actuation.panels.result:PanelActuationDocument",
     ),
+    "tolerance": ("exactfold tolerance --json", "design.tolerance.result:ToleranceDocument"),
     "assignments": (
         "exactfold assignments --json",
         "design.circles.assignment_list:AssignmentsDocument",

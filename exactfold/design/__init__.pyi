@@ -32,3 +32,7 @@ from exactfold.design.panels.panel_assignments import panel_assignments as panel
 from exactfold.design.panels.refutation import PanelRefutation as PanelRefutation
 from exactfold.design.refutations.forcing import Forcing as Forcing
 from exactfold.design.refutations.refutation import Refutation as Refutation
+from exactfold.design.tolerance.closing import Closing as Closing
+from exactfold.design.tolerance.result import Tolerance as Tolerance
+from exactfold.design.tolerance.tolerance import tolerance_of_branches as tolerance_of_branches
+from exactfold.design.tolerance.tolerance import tolerance_of_panels as tolerance_of_panels

@@ -200,9 +200,9 @@ class BranchBlocks:
         """The angles of the folds of the sheet as rows on (x, 1)."""
         heights = Functionals(self.problem.chart).heights
         rows = np.array([[float(c) for c in row] for _, row in sorted(heights.items())])
-        from exactfold.branches.values.nearly_flat import bending  # exact sheets do without it
+        from exactfold.branches.values.nearly_flat import angles_on  # exact sheets do without it
 
-        return np.asarray(bending(self.problem.sheet) @ rows)
+        return angles_on(self.problem.sheet, rows)
 
     def _angles(self, points: FloatArray) -> FloatArray:
         """The sizes of the first-order angles of all folds, up to a factor for each point."""

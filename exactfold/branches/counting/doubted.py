@@ -22,6 +22,8 @@ B = TypeVar("B", bound=BranchCount)
 
 _MOST_COUNTED: Final = 10
 """Sheets with so many foldable vertices are counted to judge one of their branches."""
+_MOST_FOLDS: Final = 20_000
+"""Branches of sheets with more folds are not judged."""
 
 
 def doubted_branch(branch: Branch, opened: Opened) -> Branch:
@@ -38,10 +40,12 @@ def about(opened: Opened, branch: Branch | None = None) -> Opened:
 
     That is so if folds are nearly flat on the branch, or, without one, on any branch of a sheet
     with four corners. Up to `_MOST_COUNTED` foldable vertices all branches say what is near;
-    beyond, the branch alone does, and without one nothing is known.
+    beyond, up to `_MOST_FOLDS` folds, the branch alone does, and without one nothing is known.
     """
     sheet = opened.sheet
     if opened.doubt or opened.reading.snap == "exact" or not isinstance(sheet, CreasePattern):
+        return opened
+    if len(sheet.folds) > _MOST_FOLDS:
         return opened
     inferred = opened.meant is not None and opened.meant.inferred
     if not (inferred or half_step(sheet.vertices)):

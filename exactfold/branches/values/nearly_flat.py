@@ -16,14 +16,13 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from exactfold._support.arrays import FloatArray, IntArray
+from exactfold._support.arrays import FloatArray, IndexArray, IntArray
 from exactfold._support.plurals import agreeing, counted
 from exactfold.branches.values.roots import BoxRoot
 from exactfold.exact.numbers import decimal_above
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.drawing.meant.left import chance
 from exactfold.pattern.remembered import remembered
-from exactfold.rigidity.functionals import fold_functional
 
 if TYPE_CHECKING:
     from exactfold.branches.values.branch import Branch
@@ -162,7 +161,7 @@ def bends_of(branches: Sequence[Branch]) -> Bends | None:
     for first in range(0, len(known), _CHUNK):
         chunk = known[first : first + _CHUNK]
         sheet = chunk[0].pattern
-        angles = np.abs(_heights(chunk) @ bending(sheet).T)
+        angles = np.abs(angles_on(sheet, _heights(chunk).T)).T
         largest = angles.max(axis=1, initial=0.0)
         folds = sheet.folds
         for row, k in np.argwhere(angles < 2.0**-NEAREST * largest[:, None]).tolist():
@@ -173,25 +172,34 @@ def bends_of(branches: Sequence[Branch]) -> Bends | None:
     return total
 
 
-@remembered
-def bending(sheet: CreasePattern) -> FloatArray:
-    """The first-order angles of folds, up to one factor for all, as rows on the heights.
+def angles_on(sheet: CreasePattern, rows: FloatArray) -> FloatArray:
+    """The first-order angles of all folds, up to one factor, for heights of shape (vertices, m).
 
     A fold of length L between faces of twice the areas c and c' bends by L f(h) / (c c'), where f
-    is its `fold_functional`.
+    is its functional (`fold_functional`).
     """
-    points, _ = sheet.integer_vertices
-    size = max(max(axis) - min(axis) for axis in zip(*points, strict=True))
-    rows = np.zeros((len(sheet.folds), len(points)))
-    for row, (i, j) in zip(rows, sheet.folds, strict=True):
-        weights = fold_functional(sheet, (i, j))
-        left, right = (weights[v] for v in sheet.opposite((i, j)))
-        (ax, ay), (bx, by) = points[i], points[j]
-        square = (bx - ax) ** 2 + (by - ay) ** 2
-        factor = float(Fraction(square * size * size, right * right)) ** 0.5
-        for v, weight in weights.items():
-            row[v] = factor * float(Fraction(weight, left))
-    return rows
+    corners, weights = _bending(sheet)
+    return np.asarray(sum(weights[:, k, None] * rows[corners[:, k]] for k in range(4)))
+
+
+@remembered
+def _bending(sheet: CreasePattern) -> tuple[IndexArray, FloatArray]:
+    """The corners i, j, left and right of each fold ij, and their coefficients in its angle."""
+    corners = np.array([(*fold, *sheet.opposite(fold)) for fold in sheet.folds], dtype=np.intp)
+    exact, _ = sheet.integer_vertices
+    points = np.array(exact, dtype=object)
+    size = np.ptp(points, axis=0).max()
+    seen = (points[corners[:, 1:]] - points[corners[:, :1]]) / size  # from i, each rounded once
+    along, left, right = np.moveaxis(seen.astype(np.float64), 1, 0)
+    over, under = _cross(along, left), -_cross(along, right)
+    across = _cross(left, right)
+    weights = np.stack([-(over + across + under), across, under, over], axis=1)
+    with np.errstate(all="ignore"):
+        return corners, weights * (np.hypot(*along.T) / (over * under))[:, None]
+
+
+def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
+    return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
 
 
 def _heights(branches: Sequence[Branch]) -> FloatArray:

@@ -38,6 +38,7 @@ def drawing(tmp_path: Path) -> Path:
     [
         ("branch", ["--up", "4"]),
         ("actuate", ["--up", "4"]),
+        ("tolerance", ["--up", "4"]),
         ("fold", ["--up", "4", "--until", "5deg"]),
         ("export", ["--up", "4", "-o", "way.fold"]),
     ],
@@ -54,7 +55,7 @@ def test_an_answer_about_digits_says_so_first(
     assert SAID not in sure.stdout
     data = json.loads(run(command, drawing, *options, "--json").stdout)
     assert data["status"] == "undecided"
-    if command in ("branch", "actuate"):
+    if command in ("branch", "actuate", "tolerance"):
         Draft202012Validator(exactfold.schema(command)).validate(data)
         assert "relations nearly hold" in data["reason"]
         assert "; the digits as written: proved, " in data["reason"]
@@ -72,7 +73,7 @@ def test_equations_of_digits_in_doubt_are_not_written(drawing: Path) -> None:
 
 def test_so_do_the_values_of_python(drawing: Path) -> None:
     exact = exactfold.read(drawing, snap="exact")
-    for find in (exactfold.branch, exactfold.actuate):
+    for find in (exactfold.branch, exactfold.actuate, exactfold.tolerance):
         found, sure = find(drawing, up=[4]), find(exact, up=[4])
         assert (found.status, sure.status) == (exactfold.UNDECIDED, exactfold.PROVED)
         assert found.reason.endswith(f"; the digits as written: proved, {sure.reason}")

@@ -109,6 +109,7 @@ def test_the_folded_sheet_is_drawn_in_space():
     assert title(drawn("zigzags", "--way", "1", "--folded", "45deg")).endswith("to 45°")
 
 
+@pytest.mark.slow
 def test_the_other_side_of_a_branch_is_its_mirror_image():
     asked = ("two-vertex", "--signs", "+-", "--folded", "60deg")
     motion = follow(find_branch("two-vertex", "+-"), side=-1)

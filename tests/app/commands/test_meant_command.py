@@ -91,6 +91,7 @@ def test_json_has_both_answers(miura: Path) -> None:
     assert json.loads(run("count", "two-vertex", "--json").stdout)["meant"] is None
 
 
+@pytest.mark.slow
 def test_match_and_python_answer_about_the_same_sheet(miura: Path) -> None:
     matched = run("match", miura, "--json")
     assert matched.exit_code == PROVED
@@ -120,6 +121,7 @@ def test_all_commands_take_the_sheet_that_was_meant(
     assert "of the drawing there is a sheet with all of them - PROVED" in said
 
 
+@pytest.mark.slow
 def test_a_batch_takes_the_sheet_that_was_meant(miura: Path, by_hand: Path) -> None:
     result = run("count", miura, by_hand, "--json", "--jobs", 1)
     lines = {line["name"]: line for line in map(json.loads, result.stdout.splitlines())}
@@ -263,6 +265,7 @@ def test_what_is_stated_of_an_exact_drawing_has_no_noise(thin: Path) -> None:
     assert {"sectors@4:0-1,1-2", "sectors@4:1-2,2-3"} <= {r.name for r in sectors.relations}
 
 
+@pytest.mark.slow
 def test_a_doubt_without_a_noise_level_says_so(
     miura: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -279,6 +282,7 @@ def test_a_denominator_takes_no_relations(thin: Path) -> None:
     assert "--snap 100 rounds all digits: leave out" in result.stderr
 
 
+@pytest.mark.slow
 def test_nothing_is_inferred_from_a_drawing_by_hand(by_hand: Path) -> None:
     result = run("count", by_hand)
     assert result.exit_code == UNDECIDED
