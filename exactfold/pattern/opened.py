@@ -112,13 +112,13 @@ class Opened(Picture):
 
 
 def triangulated(pattern: PanelPattern) -> CreasePattern | None:
-    """The sheet as a `CreasePattern`; None if it has larger panels or irrational coordinates.
+    """The sheet as a `CreasePattern`; None if it has larger panels, square roots or holes.
 
     Raises `TooLargeError` if the common denominator of its coordinates is too long.
     """
     from exactfold.exact.surds import rational
 
-    if pattern.field.radicands or any(len(face) != 3 for face in pattern.faces):
+    if pattern.holes or pattern.field.radicands or any(len(face) != 3 for face in pattern.faces):
         return None
     points = [(rational(x), rational(y)) for x, y in pattern.vertices]
     check_common_denominator(points)

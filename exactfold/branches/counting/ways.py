@@ -100,9 +100,9 @@ def _is_fast(pattern: PanelPattern) -> bool:
     That is so if at most 100 vertices may fold, each with at most four folds, or at most 30
     vertices with any number of folds.
     """
-    from exactfold.panels.vertex.stars import stars
+    from exactfold.panels.vertex.holes import conditions
 
-    moving = stars(pattern)
+    moving = conditions(pattern)
     few = _MOST_MODES if all(len(star.folds) <= 4 for star in moving.values()) else _MOST_SPACES
     return len(moving) <= few
 
