@@ -303,8 +303,13 @@ def _details(result: Decomposition) -> list[str]:
     lines = []
     for part in result.parts:
         counts = "unknown" if part.second_order is None else dict(part.second_order)
+        size = len(result.pattern.vertices)
+        inner = [v for v in part.vertices if v < size]
+        holes = {(v - size) // 3 for v in part.vertices if v >= size}
+        about = f"part with vertex {inner[0]}" if inner else f"part with hole {min(holes)}"
+        more = f" and {counted(len(holes), 'hole')}" if holes else ""
         lines.append(
-            f"part with vertex {part.vertices[0]}: {counted(len(part.vertices), 'vertex')} that "
+            f"{about}: {counted(len(inner), 'vertex')}{more} that "
             f"can fold, by {part.theory}, to second order {counts}"
         )
     return lines

@@ -66,9 +66,9 @@ def sheets(drawing: Drawing) -> tuple[tuple[Drawing, ...], list[Repair]]:
     left out.
 
     Raises `MalformedPatternError` if the lines enclose nothing or no piece has a crease,
-    `NotADiskError` for a sheet with a hole between panels, and `FoldError` for a line B between two
-    panels. Raises `DisconnectedError` for creases inside a panel that no line joins to the rest,
-    and for lines that enclose nothing; such lines are not dropped here.
+    `NotADiskError` for a sheet that hangs together only by a point, and `FoldError` for a line B
+    between two panels. Raises `DisconnectedError` for creases inside a panel that no line joins to
+    the rest, and for lines that enclose nothing; such lines are not dropped here.
     """
     parts = _parts(drawing)
     if not parts:
@@ -200,8 +200,9 @@ def _check_nested(
         if any(line.letter == "C" for line in part.lines):
             how = " by `--colours '#0f0=U,#ff0=U'`"
             why = (
-                "sheets with slits that do not begin at the edge of the paper are not counted yet; "
-                "to read this one without cuts, give its cuts and flat lines the letter U"
+                "a panel that goes all round other creases is not counted yet; draw a line F from "
+                "them to the rest, or, to read this one without cuts, give its cuts and flat lines "
+                "the letter U"
                 f"{how if coloured else ''}"
             )
         raise DisconnectedError(
