@@ -18,10 +18,10 @@ from exactfold.pattern.loading import PatternLike, as_pattern
 
 
 class WarningDocument(TypedDict):
-    """A warning: relations between creases nearly hold, and with them the result may be another."""
+    """A warning: something nearly holds, and if it held exactly, the result might be another."""
 
     vertices: Several[Natural]
-    """The vertices at which relations nearly hold."""
+    """The vertices at which relations nearly hold or folds are nearly flat."""
     text: str
     """What is printed."""
 

@@ -50,7 +50,8 @@ class Opened(Picture):
 
     `meant` is None if no relation between creases holds nearly but not exactly. Otherwise the
     digits of the file are inexact, and `meant` says what was inferred from them: either `sheet` is
-    the sheet that was meant, or `doubt` says why answers hold for these digits only.
+    the sheet that was meant, or `doubt` says why answers hold for these digits only. They may do so
+    without such a relation, too: then `nearly` says why, once the branches of the sheet are known.
     """
 
     sheet: CreasePattern | PanelPattern
@@ -63,6 +64,7 @@ class Opened(Picture):
     field_name: str = "Q"
     cuts: bool = False
     meant: Meant | None = None
+    nearly: str = ""
     reading: Reading = field(default=PLAIN, repr=False, compare=False)
     again: Callable[[Reading], Opened] | None = field(default=None, repr=False, compare=False)
 
@@ -76,7 +78,7 @@ class Opened(Picture):
     @property
     def doubt(self) -> str:
         """Why answers about the sheet hold for these digits only; empty if they do not."""
-        return "" if self.meant is None else self.meant.doubt
+        return self.nearly if self.meant is None else self.meant.doubt or self.nearly
 
     @cached_property
     def left(self) -> tuple[Relation, ...]:

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 from math import gcd, lcm
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
-from exactfold.exact.surds import Number, Surd, simple
+if TYPE_CHECKING:
+    from exactfold.exact.surds import Number
 
 _WHOLE: Final = 512
 """Whole numbers of so many steps across the sheet count as exact, not as rounded."""
@@ -79,9 +80,12 @@ def _places(number: Fraction) -> int:
 
 def _decimal(number: Number) -> Fraction | None:
     """A number as a fraction, if it is a finite decimal."""
-    number = simple(number)
-    if isinstance(number, Surd):
-        return None
+    if not isinstance(number, int | Fraction):
+        from exactfold.exact.surds import Surd, simple  # here because it loads FLINT
+
+        number = simple(number)
+        if isinstance(number, Surd):
+            return None
     found = Fraction(number)
     twos = (found.denominator & -found.denominator).bit_length() - 1
     rest = found.denominator >> twos

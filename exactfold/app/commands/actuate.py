@@ -14,6 +14,7 @@ from exactfold.app.shell.json_numbers import numbers_by_name
 from exactfold.app.shell.patterns import in_doubt, read_any, tell_doubt, verdict
 from exactfold.app.shell.shell import EXIT, Bar, name_of
 from exactfold.app.verbs.actuating import Actuated, actuate_opened
+from exactfold.branches.counting.doubted import about
 from exactfold.certificates.entries import Document, write_certificate
 from exactfold.design.actuation.result import Actuation
 from exactfold.errors import InputError, NumberError
@@ -47,6 +48,8 @@ class Driven(ActuateOptions):
                 opened, choice_of(self, opened), self.creases, torques, hinges, bar
             )
             self._write(found)
+            if isinstance(found, Actuation):
+                opened = about(opened, found.branch)
         if self.as_json:
             document = in_doubt(opened, found.to_dict(name_of(self.file), self._certificate))
             if opened.doubt:

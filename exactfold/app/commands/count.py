@@ -23,6 +23,7 @@ from exactfold.errors import NotApplicableError, SeveralSheetsError, UsageError
 from exactfold.exact.numbers import format_rational
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.drawing.bounds import read_bytes
+from exactfold.pattern.near_degeneracy import near_degenerate
 from exactfold.pattern.opening import Opened, is_cell_file
 
 if TYPE_CHECKING:  # counting branches does not need it
@@ -69,6 +70,9 @@ class Asked(CountOptions):
                 if not self._takes_all(error):
                     raise
                 return self._each(error.known)
+        near = result.nearly_flat if isinstance(result, BranchCount) else None
+        if near and not result.doubt and not near_degenerate(result.pattern):
+            say(f"warning: {near.text}")  # of near relations the reader has warned
         written = self._certified(result, streamed)
         if self.as_json:
             print(json.dumps(result.to_dict(written, name_of(self.pattern))))
@@ -92,7 +96,7 @@ class Asked(CountOptions):
             from exactfold.design.panels.vertex.vertices import vertices
 
             report.show(report.vertices_line(vertices(opened)))
-        if not isinstance(result, BranchCount) and result.proposal and not self.as_json:
+        if result.proposal and not self.as_json:
             report.show("")
             for line in report.proposal_lines(result.proposal):
                 report.show(line)

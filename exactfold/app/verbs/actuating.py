@@ -10,8 +10,10 @@ from exactfold._support.progress import Progress
 from exactfold._support.verdict import UNDECIDED
 from exactfold.app.verbs.choosing import choose, the_branch
 from exactfold.app.verbs.chosen import Choice, ChosenPanels, Letters
+from exactfold.branches.counting.doubted import about
 from exactfold.branches.counting.find import BranchFinder, Signs
 from exactfold.design.actuation.actuate import actuate as actuate_branch
+from exactfold.design.actuation.result import Actuation
 from exactfold.errors import NotCountedError
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.loading import PatternLike, open_sheet
@@ -20,7 +22,6 @@ from exactfold.pattern.opening import Opened
 if TYPE_CHECKING:
     from exactfold.design.actuation.hinges import Hinges
     from exactfold.design.actuation.panels.result import PanelActuation
-    from exactfold.design.actuation.result import Actuation
     from exactfold.exact.numbers import RationalLike
 
 Actuated: TypeAlias = "Actuation | PanelActuation"
@@ -60,6 +61,8 @@ def actuate(
     found = actuate_opened(
         opened, Choice(way, signs, up, letters), creases, torques, hinges, progress
     )
+    if isinstance(found, Actuation):
+        opened = about(opened, found.branch)
     if not opened.doubt:
         return found
     found = replace(found, self_foldable=UNDECIDED)

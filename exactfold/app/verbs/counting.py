@@ -268,7 +268,12 @@ def counted_with_letters(
     result = count_opened(
         opened, method=method, seed=seed, progress=progress, clock=clock.share(3 / 4)
     )
-    if isinstance(result, BranchCount) or result.second_order is not None:
+    if isinstance(result, BranchCount):
+        if not result.doubt:
+            return result
+        known: BranchCount | Decomposition = _with_proposal(result, opened, clock)
+        return replace(known, seconds=time.perf_counter() - start)
+    if result.second_order is not None:
         return result
     from exactfold.design.panels.drawn import with_drawn
 
@@ -278,16 +283,27 @@ def counted_with_letters(
     return replace(known, seconds=time.perf_counter() - start)
 
 
-def _with_proposal(result: Decomposition, opened: Opened, clock: Clock) -> Decomposition:
+@overload
+def _with_proposal(result: BranchCount, opened: Opened, clock: Clock) -> BranchCount: ...
+@overload
+def _with_proposal(result: Decomposition, opened: Opened, clock: Clock) -> Decomposition: ...
+def _with_proposal(
+    result: BranchCount | Decomposition, opened: Opened, clock: Clock
+) -> BranchCount | Decomposition:
     """The answer, with an exact sheet that may have been meant, and what is known of it.
 
     Sheets are looked for during five seconds, and their answer takes five more at most.
     """
+    from exactfold.branches.values.result import BranchCount
     from exactfold.panels.result import Proposal
     from exactfold.pattern.meaning import proposals
 
-    loops = [miss.off for miss in result.known.nearly_closing]
-    made = proposals(opened, _PROPOSING, loops)
+    if isinstance(result, BranchCount):
+        near = result.known.nearly_flat
+        off = [] if near is None else [near.off]
+    else:
+        off = [miss.off for miss in result.known.nearly_closing]
+    made = proposals(opened, _PROPOSING, off)
     if not made or clock.passed:
         return result
     (noise, sheet), *rest = made

@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field, fields
 from dataclasses import replace as changed
+from functools import cached_property
 from typing import TYPE_CHECKING, cast
 
 from exactfold._support.plurals import agreeing, counted
@@ -20,6 +21,7 @@ from exactfold.branches.counting.branch_blocks import BranchBlocks
 from exactfold.branches.counting.collect import check_countable, count_branches
 from exactfold.branches.counting.engines import Engine, processes
 from exactfold.branches.values.blocks import OpenEnd, ProvedBlock
+from exactfold.branches.values.nearly_flat import Bends, NearlyFlat
 from exactfold.branches.values.result import BranchCount
 from exactfold.certificates.journal import Journal
 from exactfold.checker.branches.compact import COMPACT
@@ -72,6 +74,16 @@ class StreamedCount(BranchCount):
     resumed: int = 0
     steps: int = 0
     cpu_seconds: Mapping[str, float] = field(default_factory=dict, compare=False)
+    bends: Bends | None = field(default=None, compare=False)
+
+    @cached_property
+    def nearly_flat(self) -> NearlyFlat | None:
+        """Folds that are flatter on some branches than chance explains, though not flat."""
+        if self.branches or self.bends is None:
+            return super().nearly_flat
+        sheet, labels = self.pattern.without_rigid_parts()
+        near = self.bends.nearly_flat(sheet)
+        return near and near.labelled(labels)
 
     @property
     def complete(self) -> bool:
@@ -167,6 +179,8 @@ def stream_branches(
         journal = Journal(path, header, replace=replace)
     resumed = journal.blocks
     left = range(resumed, branch_blocks.blocks)
+    for index in range(resumed):  # the file does not have the angles of folds
+        tally.measure(branch_blocks.bends(index))
     with closing(journal), closing((engine or processes(workers))(branch_blocks, left)) as blocks:
         for block, line in blocks:
             tally.add(branch_blocks, block)
@@ -195,6 +209,7 @@ def stream_branches(
         resumed=resumed,
         steps=tally.steps,
         cpu_seconds=dict(tally.seconds),
+        bends=tally.bends,
     )
 
 
@@ -267,6 +282,7 @@ class Tally:
         self.open_roots: list[OpenRoot] = []
         self.unproved = self.exact = self.steps = 0
         self.seconds: Counter[str] = Counter()
+        self.bends: Bends | None = None
 
     def add(self, branch_blocks: BranchBlocks, block: ProvedBlock) -> None:
         """Add one block to the sums."""
@@ -274,10 +290,16 @@ class Tally:
         self.unproved += len(block.open)
         self.steps += block.steps
         self.seconds.update(block.seconds)
+        self.measure(block.bends)
         for j, end in block.open.items():
             if len(self.open_roots) < MOST_LISTED:
                 number = block.index * branch_blocks.block_size + j
                 self.open_roots.append(open_root(branch_blocks, number, end))
+
+    def measure(self, bends: Bends | None) -> None:
+        """Add the angles of folds in one block; None if coordinates are exact."""
+        if bends is not None:
+            self.bends = bends if self.bends is None else self.bends + bends
 
     def culprits(self, foldable: Sequence[int]) -> str:
         """Why sign vectors are open, in words; `foldable` names the vertices of their signs."""

@@ -10,7 +10,7 @@ from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED
 from exactfold.branches.counting.by_theorem import graphs_over_boundary
 from exactfold.branches.counting.collect import count_branches, not_convex
-from exactfold.branches.counting.doubted import doubted
+from exactfold.branches.counting.doubted import about, doubted
 from exactfold.branches.counting.registry import METHODS, choose
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.loading import PatternLike, open_sheet
@@ -169,6 +169,7 @@ def decompose_opened(
 
     Without a clock the search ends after 60 seconds.
     """
+    opened = about(opened)
     return doubted(_decomposed(opened, progress, clock or Clock(LIMIT)), opened)
 
 

@@ -7,6 +7,7 @@ import random
 import re
 from collections.abc import Sequence
 from fractions import Fraction
+from math import cos, radians, sin
 from pathlib import Path
 from typing import Any
 
@@ -192,6 +193,43 @@ def test_what_changes_nothing_about_an_exact_drawing_is_said() -> None:
 def test_a_relation_that_the_drawing_misses_by_far_is_refused(miura: Path) -> None:
     with pytest.raises(UsageError, match="the drawing misses 'parallel 0-9,0-10' by"):
         exactfold.read(miura, also=["parallel 0-9,0-10"])
+
+
+@pytest.fixture
+def fan(tmp_path: Path) -> Path:
+    """Twelve lines through a point, 15 degrees apart, with noise of 1e-9."""
+    rng, points = random.Random(1), [(0.0, 0.0)]
+    for k in range(24):
+        x, y = cos(radians(15 * k)), sin(radians(15 * k))
+        largest = max(abs(x), abs(y))
+        points.append((x / largest, y / largest))
+    noise = [[x + rng.uniform(-1e-9, 1e-9) for x in point] for point in points]
+    edges = [(0, k) for k in range(1, 25)] + [(k, k % 24 + 1) for k in range(1, 25)]
+    data: dict[str, Any] = {"vertices_coords": noise, "edges_vertices": edges}
+    return written(tmp_path, {**data, "edges_assignment": ["U"] * 24 + ["B"] * 24}, "fan")
+
+
+@pytest.mark.parametrize(
+    ("pattern", "options", "said"),
+    [
+        ("fan", ["parallel 0-1,0-2"], "parallel:0-1,0-2 contradicts grid:0-2, grid:0-1"),
+        (
+            "thin",
+            ["grid 0-4", "grid 2-4", "straight@4:0-2"],
+            "straight@4:0-2 contradicts grid:0-4, grid:2-4",
+        ),
+    ],
+)
+def test_a_relation_that_contradicts_others_is_refused_with_the_remedy(
+    pattern: str, options: Sequence[str], said: str, request: pytest.FixtureRequest
+) -> None:
+    """Those of the fan are inferred; those of the thin sheet, at multiples of 4 degrees, stated."""
+    unit = ["--unit", 45] if pattern == "thin" else []
+    also = [word for option in options for word in ("--also", option)]
+    result = run("count", request.getfixturevalue(pattern), *unit, *also)
+    assert (result.exit_code, result.stdout) == (USAGE, "")
+    remedy = "leave it out, or leave one of these out (--without)"
+    assert f"the relation {said}: {remedy}" in " ".join(result.stderr.split())
 
 
 @pytest.fixture

@@ -117,7 +117,7 @@ def _believed(defects: FloatArray, expected: float) -> int:
         powers = numbers - means + numbers * np.log(means / numbers)
     may = (means == 0) | (above & (powers < log(_CHANCE) + _ROUGH))
     for k in np.flatnonzero(may)[::-1].tolist():
-        if _chance(float(means[k]), k // 2 + 1) < _CHANCE:
+        if chance(float(means[k]), k // 2 + 1) < _CHANCE:
             return int(k) + 1
     return 0
 
@@ -139,7 +139,7 @@ def _places(sheet: Sheet) -> FloatArray | list[tuple[float, float]]:
         return [(float((x - left) / size), float((y - low) / size)) for x, y in vertices]
 
 
-def _chance(mean: float, number: int) -> float:
+def chance(mean: float, number: int) -> float:
     """An upper bound (Chernoff's) of the probability of `number` or more events, if so many are
     expected as `mean` says.
     """
