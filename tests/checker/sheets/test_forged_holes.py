@@ -14,14 +14,10 @@ from exactfold.panels.certificate import certificate_of_panels
 from exactfold.panels.decomposition import decompose
 from exactfold.pattern.panel_pattern import PanelPattern
 
-SHEETS = {
-    "ring": RING,
-    "beside": BESIDE,
-    "flap": FLAP,
-    "across": ACROSS,
-    "concurrent": spokes([(2, 2), (4, 2), (4, 4), (2, 4)]),
-    "rigid": spokes([(2, 2), (4, 2), (5, 4), (2, 3)]),
-    "parallel": PanelPattern(
+
+def popup(end: int) -> PanelPattern:
+    """A strip with parallel folds at 2, 3 and `end` between two holes, across a fold at 3."""
+    return PanelPattern(
         [
             (0, 0),
             (3, 0),
@@ -31,11 +27,11 @@ SHEETS = {
             (0, 6),
             (2, 2),
             (3, 1),
-            (4, 2),
+            (end, 2),
             (3, 2),
             (2, 4),
             (3, 5),
-            (4, 4),
+            (end, 4),
             (3, 4),
         ],
         [
@@ -60,7 +56,18 @@ SHEETS = {
             (8, 12),
         ],
         holes=[(6, 7, 8, 9), (10, 11, 12, 13)],
-    ),
+    )
+
+
+SHEETS = {
+    "ring": RING,
+    "beside": BESIDE,
+    "flap": FLAP,
+    "across": ACROSS,
+    "concurrent": spokes([(2, 2), (4, 2), (4, 4), (2, 4)]),
+    "rigid": spokes([(2, 2), (4, 2), (5, 4), (2, 3)]),
+    "parallel": popup(4),
+    "uneven": popup(5),
 }
 SQUARE = [(0, 0), (4, 0), (4, 4), (0, 4)]
 
@@ -122,6 +129,17 @@ def test_other_ways() -> None:
     [part] = made["claims"]["spaces"]
     part["isolated"]["nonreal"][0] = part["isolated"]["nonreal"][1]
     refused(made, "two boxes meet")
+
+
+def test_a_line_that_is_not_proved_to_close() -> None:
+    """The angles of its folds differ, so that tau = T w does not close the sheet."""
+    made = certified("uneven")
+    [part] = made["claims"]["spaces"]
+    assert [leaf["extending"] for leaf in part["leaves"]] == [0, 1]
+    made = certified("uneven")
+    made["claims"]["spaces"][0]["leaves"][0]["extending"] = 1
+    name = f"the part of vertex {part['vertices'][0]}"
+    refused(made, f"{name}: 0 leaves of a kind are proved to fold, not 1")
 
 
 # --- the sheet -----------------------------------------------------------------------------------
