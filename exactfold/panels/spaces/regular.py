@@ -19,6 +19,7 @@ from exactfold.pattern.panel_pattern import Edge
 BITS: Final = 128
 _RADIUS: Final = 1e-9
 _TIMES_STEP: Final = 8.0
+_REFINED: Final = 2
 _LEAST_RADIUS: Final = 1e-30
 
 Balls: TypeAlias = Mapping[Edge, Any]
@@ -133,7 +134,14 @@ def _krawczyk(forms: Forms, leaf: Leaf, rows: BallRows, start: list[Any]) -> Bal
         return None
     chosen = sorted(qr(approximate, pivoting=True, mode="r")[1][:count])
     inverse = arb_mat(np.linalg.inv(approximate[:, chosen]).tolist())
-    values = arb_mat([[forms.value(v, w)] for v in leaf.vertices])
+    start = list(start)
+    for _ in range(_REFINED):
+        w = _motion(rows, start)
+        values = arb_mat([[forms.value(v, w)] for v in leaf.vertices])
+        step = inverse * values
+        for k, j in enumerate(chosen):
+            start[j] = (start[j] - step[k, 0]).mid()
+    values = arb_mat([[forms.value(v, _motion(rows, start))] for v in leaf.vertices])
     step = inverse * values
     largest = max(float(abs(step[k, 0]).upper()) for k in range(count))
     radius = min(_RADIUS, max(_TIMES_STEP * largest, _LEAST_RADIUS))
