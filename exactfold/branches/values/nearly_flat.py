@@ -35,6 +35,8 @@ _DENSITY: Final = 10.0
 _CHANCE: Final = 1e-3
 _INDEPENDENT: Final = 64
 _BINS: Final = 64
+_LARGE: Final = 1 / 8
+"""Larger angles are never denser than `_DENSITY` says."""
 _CHUNK: Final = 4096
 _NAMED: Final = 6
 
@@ -85,7 +87,8 @@ class Bends:
 
     Column k of each array counts values between 2^-(k + 1) and 2^-k of the largest angle on the
     same branch: for each of the `folds`, for the largest angle at each of the `vertices`, and for
-    the least angle on each of the `number` `branches`. Angles that are exactly 0 are left out.
+    the least angle on each of the `number` `branches`. Angles that are exactly 0 are left out. So
+    are values too large to matter: of folds above 1/8, of the others where no fold is nearly flat.
     """
 
     folds: IntArray
@@ -98,11 +101,17 @@ class Bends:
         """Those of branches with the sizes of the angles of all folds, of shape (m, folds)."""
         with np.errstate(all="ignore"):
             shares = angles / angles.max(axis=1, keepdims=True, initial=0.0)
-        shares[~np.isfinite(shares)] = 0.0
-        stars = np.stack([shares[:, k].max(axis=1) for k in _stars(sheet)], axis=1)
-        least = np.where(shares > 0, shares, 1.0).min(axis=1, initial=1.0)
-        [branches] = _binned(least[:, None])
-        return cls(_binned(shares), _binned(stars), branches, len(angles))
+        rows, columns = np.nonzero(shares < _LARGE)
+        small = shares[rows, columns]
+        near = shares[np.unique(rows[(small < 2.0**-NEAREST) & (small > 0)])]
+        stars = np.stack([near[:, k].max(axis=1) for k in _stars(sheet)], axis=1)
+        least = np.where(near > 0, near, 1.0).min(axis=1, initial=1.0)
+        return cls(
+            _binned(small, columns, shares.shape[1]),
+            _binned(stars.ravel(), np.tile(np.arange(stars.shape[1]), len(near)), stars.shape[1]),
+            _binned(least, np.zeros(len(near), dtype=np.intp), 1)[0],
+            len(angles),
+        )
 
     def __add__(self, other: Bends) -> Bends:
         return Bends(
@@ -210,8 +219,10 @@ def _heights(branches: Sequence[Branch]) -> FloatArray:
         branch.height_rows is rows for branch in branches
     ):
         boxes = [root.box for root in roots if isinstance(root, BoxRoot)]
-        places = [[m / (1 << box.bits) for m in (*box.real, 1 << box.bits)] for box in boxes]
-        return np.array(places) @ _floats(rows).T
+        places = np.array([box.real for box in boxes], dtype=np.float64)
+        places *= np.array([0.5**box.bits for box in boxes])[:, None]
+        floats = _floats(rows)
+        return np.asarray(places @ floats[:, :-1].T + floats[:, -1])
     return np.array([[h for _, h in sorted(b.approx_heights.items())] for b in branches])
 
 
@@ -230,10 +241,9 @@ def _stars(sheet: CreasePattern) -> tuple[IntArray, ...]:
     return tuple(np.array(places) for places in at.values())
 
 
-def _binned(values: FloatArray) -> IntArray:
-    """For each column of shares, how many of its values have which size; zeros are left out."""
+def _binned(values: FloatArray, columns: IndexArray, number: int) -> IntArray:
+    """For each column, how many of the shares in it have which size; zeros are left out."""
     _, exponents = np.frexp(values)
-    bins = np.clip(-exponents, 0, _BINS - 1)
-    columns = bins + _BINS * np.arange(values.shape[1])
-    counts = np.bincount(columns[values > 0], minlength=_BINS * values.shape[1])
-    return counts.reshape(-1, _BINS)
+    places = np.clip(-exponents, 0, _BINS - 1) + _BINS * columns
+    counts = np.bincount(places[values > 0], minlength=_BINS * number)
+    return counts.reshape(number, _BINS)
