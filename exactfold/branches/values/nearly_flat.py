@@ -23,6 +23,7 @@ from exactfold.exact.numbers import decimal_above
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.drawing.meant.left import chance
 from exactfold.pattern.remembered import remembered
+from exactfold.pattern.rounding import half_step
 
 if TYPE_CHECKING:
     from exactfold.branches.values.branch import Branch
@@ -33,6 +34,13 @@ NEAREST: Final = 10
 _DENSITY: Final = 10.0
 """On random sheets, a share of at most about 10 x of all folds bends by less than a small x."""
 _CHANCE: Final = 1e-3
+_EXPLAINED: Final = 1e-2
+_STEPS: Final = 16
+"""Rounding easily explains angles of up to so many half steps of the last digit."""
+_FAR: Final = 64
+"""It hardly explains those of more half steps."""
+_NOISE: Final = 1e-5
+"""Coordinates may be off by this, however many digits they have."""
 _INDEPENDENT: Final = 64
 _BINS: Final = 64
 _LARGE: Final = 1 / 8
@@ -128,9 +136,11 @@ class Bends:
         10 T x. If k are as small, these are k / 2 events, as angles at a vertex depend on each
         other; Chernoff's bound limits their probability, where 10 T x are expected, or as many as
         the larger angles let expect, if those are more. As far vertices hardly matter to a fold,
-        many branches count as only `_INDEPENDENT`. The largest x up to a thousandth with a
-        probability below a thousandth is taken. With `off`, of which this is known from other
-        branches of the sheet, angles of at most this size are near.
+        many branches count as only `_INDEPENDENT`. The largest x with a probability below a
+        thousandth is taken, or below a hundredth where x is at most `_STEPS` half steps of the last
+        digit. Neither is it more than 1e-5 or, if that is larger, `_FAR` half steps, nor more than
+        a thousandth. With `off`, of which this is known from other branches of the sheet, angles of
+        at most this size are near.
         """
         if off is not None:
             known = round(-log2(off))
@@ -139,13 +149,15 @@ class Bends:
         within = of_size[::-1].cumsum()[::-1]  # at most 2^-k
         uniform = _DENSITY * len(self.folds) * self.number
         share = min(1.0, _INDEPENDENT / self.number)
-        seen = 0.0
+        seen, step = 0.0, half_step(sheet.vertices)
+        largest = min(2.0**-NEAREST, max(_NOISE, _FAR * step))
         for k in np.flatnonzero(of_size).tolist():
             expected = max(uniform, seen) * 2.0**-k
             seen = max(seen, float(within[k]) * 2.0 ** (k + 1))
             events = int(within[k] * share) // 2
-            unlikely = min(chance(expected, 1), chance(share * expected, events)) < _CHANCE
-            if k >= NEAREST and unlikely:
+            limit = _EXPLAINED if 2.0**-k <= _STEPS * step else _CHANCE
+            unlikely = min(chance(expected, 1), chance(share * expected, events)) < limit
+            if unlikely and 2.0**-k <= largest:
                 return self._at_most(k, sheet)
         return None
 
