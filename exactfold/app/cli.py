@@ -314,6 +314,21 @@ def tolerance(**options: Any) -> int:
     return Asked(**options).answer()
 
 
+@app.command(cls=Command, rich_help_panel="Fold")
+@taking("tolerances.DesignOptions")
+def design(**options: Any) -> int:
+    """Move inner vertices until the sheet folds as wanted, and prove what is claimed of it.
+
+    --letters asks for a way with these mountains and valleys. --maximise raises the
+    tolerance, or the margin of torques for one way. The new sheet has short exact
+    decimals. If a wish is not reached, the closest sheet is kept, with the reason;
+    so it is after Ctrl-C.
+    """
+    from exactfold.app.commands.design import Asked
+
+    return Asked(**options).answer()
+
+
 @app.command(cls=Command, rich_help_panel="Studies")
 @taking("studies.StudyOptions")
 def study(**options: Any) -> int:

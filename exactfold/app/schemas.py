@@ -73,6 +73,7 @@ DOCUMENTS: Final = {
         "design.actuation.panels.result:PanelActuationDocument",
     ),
     "tolerance": ("exactfold tolerance --json", "design.tolerance.result:ToleranceDocument"),
+    "design": ("exactfold design --json", "design.moving.result:DesignDocument"),
     "assignments": (
         "exactfold assignments --json",
         "design.circles.assignment_list:AssignmentsDocument",

@@ -24,6 +24,8 @@ from exactfold.design.circles.assignment_list import Circle as Circle
 from exactfold.design.circles.assignment_list import Crossing as Crossing
 from exactfold.design.circles.certificate import assignments_certificate as assignments_certificate
 from exactfold.design.circles.circles import all_assignments as all_assignments
+from exactfold.design.moving.order import designed as designed
+from exactfold.design.moving.result import Designed as Designed
 from exactfold.design.panels.match import PanelMatch as PanelMatch
 from exactfold.design.panels.match import match_panels as match_panels
 from exactfold.design.panels.panel_assignments import PanelAssignments as PanelAssignments

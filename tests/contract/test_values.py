@@ -235,6 +235,7 @@ VALUES = {
     "actuation of panels": exactfold.actuate("zigzags", way=1, hinges=HINGES),
     "hinges": HINGES,
     "tolerance": exactfold.tolerance("two-vertex", "+-"),
+    "design": exactfold.design.designed(PATTERN, maximise="tolerance"),
     "tolerance of panels": exactfold.tolerance("zigzags", way=1),
     "relation of panels": exactfold.tolerance("zigzags", way=1).closings[0][1],
     "lines of a certificate": exactfold.branches.certificate(COUNT),

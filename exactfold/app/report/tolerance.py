@@ -1,4 +1,4 @@
-"""What `exactfold tolerance` prints."""
+"""What `exactfold tolerance` and `exactfold design` print."""
 
 from __future__ import annotations
 
@@ -10,9 +10,10 @@ from rich.table import Table
 from rich.text import Text
 
 from exactfold.app.report.terminal import facts_table, listed, more_text, status_text
-from exactfold.exact.numbers import decimal_above, decimal_below
+from exactfold.exact.numbers import decimal_above, decimal_below, decimal_near
 
 if TYPE_CHECKING:
+    from exactfold.design.moving.result import Designed
     from exactfold.design.tolerance.closing import Closing
     from exactfold.design.tolerance.result import Tolerance
 
@@ -45,6 +46,36 @@ def tolerance_report(found: Tolerance, *, everything: bool = False) -> Group:
     if found.closings:
         parts += [Text(""), *_closings(found, everything)]
     return Group(*parts)
+
+
+def design_report(found: Designed) -> Group:
+    """What was reached, from where, and which vertices moved."""
+    rows: list[tuple[str, str | Text]] = [
+        ("status", Text.assemble(status_text(found.status), f" ({found.reason})")),
+    ]
+    if found.signs:
+        rows.append(("branch", found.signs))
+    if found.before is None or found.after is None:
+        return Group(facts_table(list(rows)))
+    if found.goal == "letters":
+        names = {True: "nearly lost at", False: "missing by"}
+        for name, value in (("before", found.before), ("after", found.after)):
+            rows.append((name, f"{names[value > 0]} {abs(value):.3g}"))
+    else:
+        rows.append((found.goal, f"from {_below(found.before)} to {_below(found.after)}"))
+    rows.append(("moved", f"by at most {found.largest_move:.3g}"))
+    return Group(facts_table(list(rows)), *_moved(found))
+
+
+def _moved(found: Designed) -> list[Table | Text]:
+    table = Table(box=None, pad_edge=False)
+    for name in ("vertex", "x", "y"):
+        table.add_column(name, justify="right")
+    pairs = zip(found.original.vertices, found.pattern.vertices, strict=True)
+    moved = [(v, after) for v, (before, after) in enumerate(pairs) if before != after]
+    for v, (x, y) in moved:
+        table.add_row(str(v), decimal_near(x, 12), decimal_near(y, 12))
+    return [Text(""), table] if moved else []
 
 
 def _below(value: float, digits: int = 6) -> str:

@@ -146,8 +146,8 @@ class Gradients:
     def newton(self, zeros: Zeros, points: FloatArray) -> Zeros:
         """Zeros near the given ones for vertices at `points`, by Newton's method; (B, 2R).
 
-        `points` may have one sheet for each zero. Each zero keeps its component along the given
-        one. What does not converge is not a number.
+        `points` may have one sheet for each zero. Zeros have the length 1. What does not converge
+        is not a number.
         """
         count = len(zeros)
         along = self.directions(points)
@@ -170,7 +170,7 @@ class Gradients:
             if not np.nanmax(moved) >= 1e-13:
                 break
         now[~(moved < 1e-9)] = np.nan
-        return now
+        return np.asarray(now / np.linalg.norm(now, axis=1, keepdims=True))
 
     def bends(self, gradients: Zeros, points: FloatArray) -> Zeros:
         """The densities of the folds, positive for valleys; shape (B, E)."""

@@ -151,6 +151,17 @@ def check_size(pattern: CreasePattern) -> None:
         )
 
 
+def proved_radius(branches: Sequence[Branch], *, everything: bool) -> float:
+    """The radius of `tolerance_of_branches` alone, for branches without flat folds.
+
+    `everything` says that these are all branches, which have to stay distinct.
+    """
+    pattern = branches[0].pattern
+    frame = _Frame.of(pattern, [*pattern.triangles, pattern.boundary])
+    search = _Search(frame, [branch_part(branches)], "", 0, None)
+    return 0.0 if everything and search.not_distinct() else search.radius()
+
+
 def _all_branches(count: BranchCount | None) -> list[Branch]:
     if count is None or count.pattern.Ve != 4 or not count.branches:
         reason = "" if count is None else f": {count.reason}"
@@ -468,7 +479,7 @@ class _Search:
 
     def found(self, ways: int, confirm: Confirm, everything: bool) -> Tolerance:
         """The result for the zeros that were asked for."""
-        radius, vertices = self._radius(), self._vertices()
+        radius, vertices = self.radius(), self._vertices()
         status, reason, limit = PROVED, self._kept(ways, everything), self.frame.pinched
         upper: float | None = self.frame.upper
         changed = None
@@ -482,7 +493,7 @@ class _Search:
             candidate, what = nearest
             if candidate.distance < self.frame.upper:
                 upper, changed, limit = candidate.distance, Changed(what, candidate.moves), what
-        if everything and radius > 0 and (same := self._not_distinct()):
+        if everything and radius > 0 and (same := self.not_distinct()):
             radius, vertices = 0.0, dict.fromkeys(vertices, 0.0)
             status, reason = UNDECIDED, same
         elif radius == 0:
@@ -507,7 +518,8 @@ class _Search:
         """The zeros on which the answer depends."""
         return list(part.of_way)
 
-    def _radius(self) -> float:
+    def radius(self) -> float:
+        """The proved radius of all zeros on which the answer depends."""
         radius = self.frame.largest
         for part, radii in zip(self.parts, self.radii, strict=True):
             radius = min(radius, float(radii.all_move[self._used(part)].min()) * _DOWN)
@@ -554,7 +566,8 @@ class _Search:
                         return f"on {part.names[k]} fold {i}-{j} is flat"
         return ""
 
-    def _not_distinct(self) -> str:
+    def not_distinct(self) -> str:
+        """Why the ways are not proved to be different; empty if they are."""
         for part, radii in zip(self.parts, self.radii, strict=True):
             if not all_distinct(part, radii):
                 return "the boxes of two ways are not proved to be distinct"

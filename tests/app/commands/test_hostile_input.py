@@ -44,6 +44,7 @@ COMMANDS = {
     "motions": [],
     "actuate": ["--signs", "+"],
     "tolerance": [],
+    "design": ["--maximise", "tolerance"],
     "assignments": [],
     "view": ["-o", "out.html"],
 }
