@@ -230,7 +230,7 @@ def _notes(result: Decomposition, everything: bool) -> list[str]:
     if result.second_order is None and result.modes:
         more = "there may be others" if result.graphs is None else "lies in one of the families"
         notes.append(f"each way listed below truly folds, and {more}")
-    asked = result.drawn or result.doubt or result.graphs is not None
+    asked = result.drawn or result.doubt or result.graphs is not None or result.pattern.holes
     if result.second_order is None and result.rigid is not PROVED and not asked:
         notes.append(
             "even so, it is often known whether the sheet starts to fold with given mountains and "

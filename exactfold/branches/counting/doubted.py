@@ -87,9 +87,9 @@ def doubted(result: Decomposition, opened: Opened) -> Decomposition: ...
 def doubted(result: BranchCount | Decomposition, opened: Opened) -> BranchCount | Decomposition:
     """The answer for an open sheet, UNDECIDED if it would hold for the digits of the sheet only.
 
-    That is so if relations between its creases nearly hold, if a loop of folds nearly closes, or if
-    folds are nearly flat on some branch.
-    What is known for the digits is `as_written` of the answer.
+    That is so if relations between its creases nearly hold, if a loop of folds nearly closes, if
+    folds are nearly flat on some branch, or if the lines of the folds round a hole nearly depend on
+    each other. What is known for the digits is `as_written` of the answer.
     """
     result = replace(result, meant=opened.meant)
     doubt = opened.doubt
@@ -100,7 +100,7 @@ def doubted(result: BranchCount | Decomposition, opened: Opened) -> BranchCount 
         families = result
     if not doubt and opened.reading.snap != "exact":
         near = result.nearly_flat if isinstance(result, BranchCount) else None
-        doubt = (families and families.warning) or (near and near.text) or ""
+        doubt = (families and families.warning) or (near and near.text) or _of_holes(families)
     if not doubt:
         return result
     if not isinstance(result, BranchCount):
@@ -142,6 +142,25 @@ def doubted(result: BranchCount | Decomposition, opened: Opened) -> BranchCount 
         letters={},
         connected_components=None,
         families=None,
+        bends=None,
         doubt=doubt,
         as_written=result,
     )
+
+
+def _of_holes(result: Decomposition | None) -> str:
+    """Why conditions round a hole may be due to rounding; empty if they are not.
+
+    Of decimals nobody knows how far they were rounded (`near_limit`).
+    """
+    if result is None or not result.pattern.holes:
+        return ""
+    pattern = result.pattern
+    from exactfold.panels.modes.near_misses import near_limit
+    from exactfold.panels.vertex.holes import nearly_dependent
+    from exactfold.pattern.rounding import usual_half_step
+
+    if not (step := usual_half_step(pattern.vertices)):
+        return ""
+    noise = None if result.meant is None else result.meant.noise
+    return nearly_dependent(pattern, near_limit(noise, len(pattern.holes)), step)

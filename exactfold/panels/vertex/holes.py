@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Final
 
-import networkx as nx
+import numpy as np
 
 from exactfold.exact.joined_fields import joined
 from exactfold.exact.surds import Number, sign
@@ -30,6 +30,7 @@ from exactfold.panels.vertex.stars import (
     stars,
 )
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
+from exactfold.pattern.rounding import size_of
 
 _AXES: Final = ((0, 1), (0, 2), (1, 2))
 
@@ -203,6 +204,35 @@ def _rank(twists: Sequence[Twist]) -> int:
     return 3 if any(height != 0 for height in heights) else 2
 
 
+def nearly_dependent(pattern: PanelPattern, limit: float, step: float) -> str:
+    """A sentence on the hole whose lines are the nearest to depend on each other, but do not.
+
+    They nearly pass through one point, are nearly parallel, or nearly one line. Singular values say
+    by how much they miss that. The sentence is empty if no lines miss it by less than the limit, or
+    by less than they turn where the ends of the shortest fold move by `step`, a share of the size.
+    """
+    nearest, at = 1.0, -1
+    step *= 2 * size_of(pattern.scaled_vertices)
+    for rim in rims(pattern):
+        hole = _hole(pattern, rim, frozenset())
+        if hole.rank < 2:
+            continue
+        lines = np.array([[float(x) for x in twist] for twist in hole.twists])
+        lengths = np.hypot(lines[:, 0], lines[:, 1])
+        lines /= lengths[:, None]
+        lines[:, 2] /= max(1e-300, float(np.abs(lines[:, 2]).max()))
+        values = np.linalg.svd(lines, compute_uv=False)
+        off = float(values[hole.rank - 1] / values[0])
+        if off < min(nearest, max(limit, step / float(lengths.min()))):
+            nearest, at = off, rim.vertices[0]
+    if at < 0:
+        return ""
+    return (
+        f"the lines of the folds round the hole at vertex {at} nearly pass through one point, or "
+        f"are nearly parallel, off by {nearest:.1e}"
+    )
+
+
 def _cross(a: Twist, b: Twist) -> Twist:
     return (
         a[1] * b[2] - a[2] * b[1],
@@ -224,6 +254,8 @@ def free_folds(pattern: PanelPattern) -> tuple[Edge, ...]:
     for i, j in pattern.folds:
         faces = sorted((pattern.sides[i, j], pattern.sides[j, i]))
         joined.setdefault((faces[0], faces[1]), []).append((i, j))
+    import networkx as nx  # only sheets with holes need it
+
     graph = nx.Graph(list(joined))
     bridges = [joined[min(a, b), max(a, b)] for a, b in nx.bridges(graph)]
     return tuple(sorted(folds[0] for folds in bridges if len(folds) == 1))

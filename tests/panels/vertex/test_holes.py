@@ -8,11 +8,12 @@ import pytest
 from flint import fmpq, fmpq_mat
 from holed_sheets import ACROSS, BESIDE, FLAP, RING, spokes
 
-from exactfold._support.verdict import PROVED
+from exactfold import count
+from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.errors import MalformedPatternError, NotADiskError, NotCountedError
 from exactfold.panels import decompose
 from exactfold.panels.spaces.kernel import first_order
-from exactfold.panels.vertex.holes import conditions, free_folds, restricted, rims
+from exactfold.panels.vertex.holes import conditions, free_folds, nearly_dependent, restricted, rims
 from exactfold.panels.vertex.stars import stars
 from exactfold.pattern.panel_pattern import PanelPattern
 
@@ -226,6 +227,32 @@ def test_restricted_stars_have_the_rank_of_their_folds():
         (7, 2, ((0, 5), (0, 6)))
     ]
     assert restricted(found, set()) == {}
+
+
+def test_lines_that_nearly_pass_through_one_point_are_named():
+    near = spokes([(2, 2), (4, 2), (4, 4), (2, Fraction("4.00003"))])
+    assert [star.hole.rank for star in conditions(near).values()] == [3, 3, 3]
+    said = nearly_dependent(near, 1e-4, 0.0)
+    assert said.startswith("the lines of the folds round the hole at vertex 4 nearly pass through")
+    assert nearly_dependent(near, 1e-7, 0.0) == ""
+    assert nearly_dependent(near, 1e-7, 1e-4) == said
+    assert nearly_dependent(RING, 1e-4, 1e-6) == ""
+
+
+def test_rounded_lines_round_a_hole_prove_nothing():
+    """Coordinates with five decimals, of which one is off by three units of the last."""
+    near = spokes(
+        [
+            ("2.12345", "2.12345"),
+            ("3.87655", "2.12345"),
+            ("3.87655", "3.87655"),
+            ("2.12345", "3.87658"),
+        ]
+    )
+    result = count(near)
+    assert result.status is UNDECIDED
+    assert "nearly pass through one point" in result.reason
+    assert dict(result.as_written.true) == {1: 1}  # with the digit that was meant, {1: 2}
 
 
 # --- refusals ------------------------------------------------------------------------------------

@@ -8,7 +8,6 @@ from fractions import Fraction
 import pytest
 from drawings import svg
 
-from exactfold._support.verdict import PROVED
 from exactfold.errors import (
     DisconnectedError,
     FoldError,
@@ -179,7 +178,31 @@ def test_a_popup_of_two_slits_has_two_ways():
     lines = [*square(0, 0, 6), (3, 0, 3, 2, "V"), (3, 4, 3, 6, "V"), (2, 2, 4, 2, "C")]
     lines += [(2, 4, 4, 4, "C"), (2, 2, 2, 4, "M"), (3, 2, 3, 4, "V"), (4, 2, 4, 4, "M")]
     result = decompose(opened(*lines).sheet)
-    assert (result.status, dict(result.second_order)) == (PROVED, {1: 2})
+    assert (dict(result.second_order), dict(result.true)) == ({1: 2}, {1: 2})
+
+
+STRIP = [(3, 3, 7, 3, "C"), (3, 7, 7, 7, "C"), (3, 3, 3, 7, "M"), (7, 3, 7, 7, "M")]
+"""A strip between two slits in the middle of a panel."""
+
+
+@pytest.mark.parametrize(
+    ("across", "folds"),
+    [([(5, 3, 5, 7, "V")], 3), ([(4, 3, 4, 7, "V"), (6, 3, 6, 7, "V")], 4)],
+    ids=["three", "four"],
+)
+def test_a_panel_all_round_creases_is_cut_open(across, folds):
+    """The strip is clamped at both ends: to second order its parallel folds are locked."""
+    found = opened(*square(0, 0, 10), *STRIP, *across, (1, 0, 1, 10, "V"))
+    assert any(line.startswith("1 slit through panels that go all round") for line in found.lines)
+    assert shape(found.sheet) == (0, folds + 1, folds + 1)
+    assert len(found.sheet.holes) == 1
+    assert dict(decompose(found.sheet).true) == {1: 1}
+
+
+def test_creases_without_cuts_inside_a_panel_are_refused():
+    box = [(*line[:4], "M") for line in square(3, 3, 2)]
+    with pytest.raises(DisconnectedError, match="lie inside a panel, and no line joins them"):
+        opened(*square(0, 0, 10), *box, (1, 0, 1, 10, "V"))
 
 
 def test_a_hole_that_a_slit_joins_to_the_edge_is_none():
