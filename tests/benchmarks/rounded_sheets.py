@@ -29,7 +29,6 @@ from exactfold.pattern.degenerate import (
     ringed_square,
     straight_path,
 )
-from exactfold.pattern.families import hypar
 from exactfold.pattern.loading import PatternLike, load
 from exactfold.pattern.triangulating.delaunay_sheets import delaunay
 from exactfold.pattern.triangulating.random_squares import random_square
@@ -60,7 +59,6 @@ SHEETS: Final[Mapping[str, Callable[[], CreasePattern]]] = {
     "straight-path 4": lambda: straight_path(4),
     "nested-triangles 3": lambda: nested_triangles(3),
     "notched 3": lambda: notched(3),
-    "hypar-straight 2": lambda: hypar(2, twist=0),
     "flat-octahedron": lambda: load("flat-octahedron"),
     "waterbomb": lambda: load("waterbomb"),
     "mirrored pentagon": _mirrored,

@@ -53,7 +53,11 @@ def tolerance_picture(tolerance: Tolerance) -> str:
                     stroke=colour,
                 )
             )
-    width, height = drawing.extent
+    # Circles round corners reach over the margin.
+    beyond = max(0.0, largest * factor - drawing.margin + 2)
+    width, height = (side + 2 * beyond for side in drawing.extent)
+    place = f"translate({svg.number(beyond)} {svg.number(beyond)})"
+    sheet = svg.element("g", "\n".join([drawing.body(), *parts]), transform=place)
     scale = "" if factor == 1 else f", drawn {factor:g} times as large"
     said = [f"one vertex moves (yellow), all move (green){scale}"]
     if not largest:
@@ -62,6 +66,6 @@ def tolerance_picture(tolerance: Tolerance) -> str:
     return svg.picture(
         max(width, 340.0),
         height + _LINE * (len(said) + 0.5),
-        [drawing.body(), *parts, *notes],
+        [sheet, *notes],
         "how far vertices may move",
     )

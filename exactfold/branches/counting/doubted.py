@@ -142,6 +142,7 @@ def doubted(result: BranchCount | Decomposition, opened: Opened) -> BranchCount 
         letters={},
         connected_components=None,
         families=None,
+        bends=None,
         doubt=doubt,
         as_written=result,
     )

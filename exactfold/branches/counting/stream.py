@@ -9,7 +9,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field, fields
 from dataclasses import replace as changed
-from functools import cached_property
 from typing import TYPE_CHECKING, cast
 
 from exactfold._support.plurals import agreeing, counted
@@ -21,7 +20,7 @@ from exactfold.branches.counting.branch_blocks import BranchBlocks
 from exactfold.branches.counting.collect import check_countable, count_branches
 from exactfold.branches.counting.engines import Engine, processes
 from exactfold.branches.values.blocks import OpenEnd, ProvedBlock
-from exactfold.branches.values.nearly_flat import Bends, NearlyFlat
+from exactfold.branches.values.nearly_flat import Bends
 from exactfold.branches.values.result import BranchCount
 from exactfold.certificates.journal import Journal
 from exactfold.checker.branches.compact import COMPACT
@@ -74,16 +73,6 @@ class StreamedCount(BranchCount):
     resumed: int = 0
     steps: int = 0
     cpu_seconds: Mapping[str, float] = field(default_factory=dict, compare=False)
-    bends: Bends | None = field(default=None, compare=False)
-
-    @cached_property
-    def nearly_flat(self) -> NearlyFlat | None:
-        """Folds that are flatter on some branches than chance explains, though not flat."""
-        if self.branches or self.bends is None:
-            return super().nearly_flat
-        sheet, labels = self.pattern.without_rigid_parts()
-        near = self.bends.nearly_flat(sheet)
-        return near and near.labelled(labels)
 
     @property
     def complete(self) -> bool:
@@ -199,6 +188,7 @@ def stream_branches(
             count = _handed_over(count, seed, progress)
     given = {f.name: getattr(count, f.name) for f in fields(BranchCount)}
     given["seconds"] = time.perf_counter() - start
+    given["bends"] = count.bends or tally.bends
     return StreamedCount(
         **given,
         path=journal.path,
@@ -209,7 +199,6 @@ def stream_branches(
         resumed=resumed,
         steps=tally.steps,
         cpu_seconds=dict(tally.seconds),
-        bends=tally.bends,
     )
 
 

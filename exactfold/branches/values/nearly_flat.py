@@ -23,6 +23,7 @@ from exactfold.exact.numbers import decimal_above
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.drawing.meant.left import chance
 from exactfold.pattern.remembered import remembered
+from exactfold.pattern.rounding import half_step
 
 if TYPE_CHECKING:
     from exactfold.branches.values.branch import Branch
@@ -33,8 +34,17 @@ NEAREST: Final = 10
 _DENSITY: Final = 10.0
 """On random sheets, a share of at most about 10 x of all folds bends by less than a small x."""
 _CHANCE: Final = 1e-3
+_EXPLAINED: Final = 1e-2
+_STEPS: Final = 16
+"""Rounding easily explains angles of up to so many half steps of the last digit."""
+_FAR: Final = 64
+"""It hardly explains those of more half steps."""
+_NOISE: Final = 1e-5
+"""Coordinates may be off by this, however many digits they have."""
 _INDEPENDENT: Final = 64
 _BINS: Final = 64
+_LARGE: Final = 1 / 8
+"""Larger angles are never denser than `_DENSITY` says."""
 _CHUNK: Final = 4096
 _NAMED: Final = 6
 
@@ -85,7 +95,8 @@ class Bends:
 
     Column k of each array counts values between 2^-(k + 1) and 2^-k of the largest angle on the
     same branch: for each of the `folds`, for the largest angle at each of the `vertices`, and for
-    the least angle on each of the `number` `branches`. Angles that are exactly 0 are left out.
+    the least angle on each of the `number` `branches`. Angles that are exactly 0 are left out. So
+    are values too large to matter: of folds above 1/8, of the others where no fold is nearly flat.
     """
 
     folds: IntArray
@@ -98,11 +109,17 @@ class Bends:
         """Those of branches with the sizes of the angles of all folds, of shape (m, folds)."""
         with np.errstate(all="ignore"):
             shares = angles / angles.max(axis=1, keepdims=True, initial=0.0)
-        shares[~np.isfinite(shares)] = 0.0
-        stars = np.stack([shares[:, k].max(axis=1) for k in _stars(sheet)], axis=1)
-        least = np.where(shares > 0, shares, 1.0).min(axis=1, initial=1.0)
-        [branches] = _binned(least[:, None])
-        return cls(_binned(shares), _binned(stars), branches, len(angles))
+        rows, columns = np.nonzero(shares < _LARGE)
+        small = shares[rows, columns]
+        near = shares[np.unique(rows[(small < 2.0**-NEAREST) & (small > 0)])]
+        stars = np.stack([near[:, k].max(axis=1) for k in _stars(sheet)], axis=1)
+        least = np.where(near > 0, near, 1.0).min(axis=1, initial=1.0)
+        return cls(
+            _binned(small, columns, shares.shape[1]),
+            _binned(stars.ravel(), np.tile(np.arange(stars.shape[1]), len(near)), stars.shape[1]),
+            _binned(least, np.zeros(len(near), dtype=np.intp), 1)[0],
+            len(angles),
+        )
 
     def __add__(self, other: Bends) -> Bends:
         return Bends(
@@ -119,9 +136,11 @@ class Bends:
         10 T x. If k are as small, these are k / 2 events, as angles at a vertex depend on each
         other; Chernoff's bound limits their probability, where 10 T x are expected, or as many as
         the larger angles let expect, if those are more. As far vertices hardly matter to a fold,
-        many branches count as only `_INDEPENDENT`. The largest x up to a thousandth with a
-        probability below a thousandth is taken. With `off`, of which this is known from other
-        branches of the sheet, angles of at most this size are near.
+        many branches count as only `_INDEPENDENT`. The largest x with a probability below a
+        thousandth is taken, or below a hundredth where x is at most `_STEPS` half steps of the last
+        digit. Neither is it more than 1e-5 or, if that is larger, `_FAR` half steps, nor more than
+        a thousandth. With `off`, of which this is known from other branches of the sheet, angles of
+        at most this size are near.
         """
         if off is not None:
             known = round(-log2(off))
@@ -130,13 +149,15 @@ class Bends:
         within = of_size[::-1].cumsum()[::-1]  # at most 2^-k
         uniform = _DENSITY * len(self.folds) * self.number
         share = min(1.0, _INDEPENDENT / self.number)
-        seen = 0.0
+        seen, step = 0.0, half_step(sheet.vertices)
+        largest = min(2.0**-NEAREST, max(_NOISE, _FAR * step))
         for k in np.flatnonzero(of_size).tolist():
             expected = max(uniform, seen) * 2.0**-k
             seen = max(seen, float(within[k]) * 2.0 ** (k + 1))
             events = int(within[k] * share) // 2
-            unlikely = min(chance(expected, 1), chance(share * expected, events)) < _CHANCE
-            if k >= NEAREST and unlikely:
+            limit = _EXPLAINED if 2.0**-k <= _STEPS * step else _CHANCE
+            unlikely = min(chance(expected, 1), chance(share * expected, events)) < limit
+            if unlikely and 2.0**-k <= largest:
                 return self._at_most(k, sheet)
         return None
 
@@ -210,8 +231,10 @@ def _heights(branches: Sequence[Branch]) -> FloatArray:
         branch.height_rows is rows for branch in branches
     ):
         boxes = [root.box for root in roots if isinstance(root, BoxRoot)]
-        places = [[m / (1 << box.bits) for m in (*box.real, 1 << box.bits)] for box in boxes]
-        return np.array(places) @ _floats(rows).T
+        places = np.array([box.real for box in boxes], dtype=np.float64)
+        places *= np.array([0.5**box.bits for box in boxes])[:, None]
+        floats = _floats(rows)
+        return np.asarray(places @ floats[:, :-1].T + floats[:, -1])
     return np.array([[h for _, h in sorted(b.approx_heights.items())] for b in branches])
 
 
@@ -230,10 +253,9 @@ def _stars(sheet: CreasePattern) -> tuple[IntArray, ...]:
     return tuple(np.array(places) for places in at.values())
 
 
-def _binned(values: FloatArray) -> IntArray:
-    """For each column of shares, how many of its values have which size; zeros are left out."""
+def _binned(values: FloatArray, columns: IndexArray, number: int) -> IntArray:
+    """For each column, how many of the shares in it have which size; zeros are left out."""
     _, exponents = np.frexp(values)
-    bins = np.clip(-exponents, 0, _BINS - 1)
-    columns = bins + _BINS * np.arange(values.shape[1])
-    counts = np.bincount(columns[values > 0], minlength=_BINS * values.shape[1])
-    return counts.reshape(-1, _BINS)
+    places = np.clip(-exponents, 0, _BINS - 1) + _BINS * columns
+    counts = np.bincount(places[values > 0], minlength=_BINS * number)
+    return counts.reshape(number, _BINS)

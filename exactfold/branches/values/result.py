@@ -32,7 +32,7 @@ if TYPE_CHECKING:  # counting branches does not load what panels need
         LetteredWay,
         Power,
     )
-    from exactfold.branches.values.nearly_flat import NearlyFlat
+    from exactfold.branches.values.nearly_flat import Bends, NearlyFlat
     from exactfold.panels.count_document import AsWrittenDocument, MotionKeys, OfDigits
     from exactfold.panels.result import Decomposition, Proposal
     from exactfold.pattern.meant import Meant
@@ -101,7 +101,8 @@ class BranchCount(Page, Ways[Branch], Certified):
     `meant` says what was inferred if the digits of the drawing are inexact, and `as_written` is the
     answer for these digits alone. If `doubt` says why an answer would hold for the digits of the
     sheet only, the status is UNDECIDED, and `as_written` has that answer; `proposal` is then a
-    sheet that may have been meant, if one was looked for and found.
+    sheet that may have been meant, if one was looked for and found. `bends` has the angles of folds
+    that were measured during the proof.
 
     A certificate is written from `proof`. `open_questions` says what is missing; if the status is
     PROVED, it names folds with the letter "U". `letters` are those of the file, by fold; it is
@@ -135,6 +136,7 @@ class BranchCount(Page, Ways[Branch], Certified):
     doubt: str = ""
     as_written: OfDigits | None = None
     proposal: Proposal | None = None
+    bends: Bends | None = field(default=None, repr=False, compare=False)
     seconds: float = field(default=0.0, compare=False)
 
     WRITER: ClassVar = "exactfold.branches.certificates.listing:certificate"
@@ -197,10 +199,14 @@ class BranchCount(Page, Ways[Branch], Certified):
 
     @cached_property
     def nearly_flat(self) -> NearlyFlat | None:
-        """Folds that are flatter on some of `branches` than chance explains, though not flat.
+        """Folds that are flatter on some branches than chance explains, though not flat.
 
         None if there are none, or if the coordinates are no decimals that may be rounded.
         """
+        if self.bends is not None:
+            sheet, labels = self.pattern.without_rigid_parts()
+            near = self.bends.nearly_flat(sheet)
+            return None if near is None else near.labelled(labels)
         inferred = self.meant is not None and self.meant.inferred
         if not self.branches or not (inferred or half_step(self.pattern.vertices)):
             return None

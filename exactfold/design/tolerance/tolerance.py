@@ -569,6 +569,8 @@ class _Search:
     def not_distinct(self) -> str:
         """Why the ways are not proved to be different; empty if they are."""
         for part, radii in zip(self.parts, self.radii, strict=True):
+            if not part.is_complete:
+                return "not all complex motions are listed, so that others may become real"
             if not all_distinct(part, radii):
                 return "the boxes of two ways are not proved to be distinct"
         return ""

@@ -16,7 +16,6 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Final
 
-import networkx as nx
 import numpy as np
 
 from exactfold.exact.joined_fields import joined
@@ -255,6 +254,8 @@ def free_folds(pattern: PanelPattern) -> tuple[Edge, ...]:
     for i, j in pattern.folds:
         faces = sorted((pattern.sides[i, j], pattern.sides[j, i]))
         joined.setdefault((faces[0], faces[1]), []).append((i, j))
+    import networkx as nx  # only sheets with holes need it
+
     graph = nx.Graph(list(joined))
     bridges = [joined[min(a, b), max(a, b)] for a, b in nx.bridges(graph)]
     return tuple(sorted(folds[0] for folds in bridges if len(folds) == 1))

@@ -102,3 +102,13 @@ def test_folds_have_the_numbers_of_the_whole_sheet() -> None:
 def test_whole_numbers_and_fractions_by_design_are_not_asked() -> None:
     assert count_branches("two-vertex").nearly_flat is None
     assert count_branches(SHEETS["ring"]()).nearly_flat is None
+
+
+def test_what_chance_brings_near_is_believed_only_if_rounding_may_explain_it() -> None:
+    """A vertex of this square happens to lie near a position in which it stays flat."""
+    square = random_square(2, seed=21, denominator=10**17)
+    coarse, fine = (taken(rounded(square, digits)) for digits in (4, 6))
+    near = bends(coarse).nearly_flat(coarse)
+    assert near is not None
+    assert near.vertices == (5,)
+    assert bends(fine).nearly_flat(fine) is None

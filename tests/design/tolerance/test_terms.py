@@ -19,6 +19,7 @@ from exactfold.design.tolerance.parts import branch_part, panel_parts
 from exactfold.design.tolerance.radius import proved_radii
 from exactfold.design.tolerance.sampling import pinching
 from exactfold.design.tolerance.shape import shape_of, turning_radius
+from exactfold.design.tolerance.tolerance import proved_radius
 from exactfold.motion import panel_ways
 from exactfold.motion.panels.followable import panel_modes
 from exactfold.panels import decompose
@@ -140,6 +141,13 @@ def test_zeros_that_are_not_real_stay_regular():
     )
     again = proved_radii(twice.conditions, twice.zeros, 0.0, np.append(lettered, False))
     assert not all_distinct(twice, again)
+
+
+def test_a_list_that_is_not_complete_proves_nothing_of_the_number():
+    branches = count_branches(two_vertex()).branches
+    assert proved_radius(branches, everything=True) > 0
+    assert proved_radius(branches[1:], everything=True) == 0
+    assert proved_radius(branches[1:], everything=False) > 0
 
 
 def test_a_zero_that_is_given_twice_is_found(part):
