@@ -38,7 +38,7 @@ def drawn_cell(
     are cut into triangles, along the diagonals of `triangulating_edges`.
 
     Raises `NotPeriodicError` if the border has no such parts, or if the sheet does not repeat I
-    times J times; `NotApplicableError` for irrational coordinates and for more than `MOST_SIDES`
+    times J times; `NotApplicableError` for irrational coordinates, holes, and more than `MOST_SIDES`
     edges in the border; `UsageError` if I or J is below 1.
 
     >>> import exactfold
@@ -89,6 +89,8 @@ def _glued(
     sheet: CreasePattern | PanelPattern,
 ) -> tuple[list[Point], Sequence[Sequence[int]], tuple[Point, Point]]:
     """The vertices and panels of a sheet that is a cell, and the lattice of the periodic sheet."""
+    if isinstance(sheet, PanelPattern) and sheet.holes:
+        raise NotApplicableError("the sheet has a hole: cells of periodic sheets have none")
     points = _rational(sheet)
     panels = sheet.triangles if isinstance(sheet, CreasePattern) else sheet.faces
     border = _border(panels)

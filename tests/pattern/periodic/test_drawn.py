@@ -116,6 +116,14 @@ def test_irrational_sheets_and_bad_numbers_are_refused() -> None:
         drawn_cell(sheet("two-vertex"), (0, 1))
 
 
+def test_holes_are_refused_by_name() -> None:
+    points = [(0, 0), (6, 0), (6, 6), (0, 6), (2, 2), (4, 2), (4, 4), (2, 4)]
+    edges = [(k, (k + 1) % 4) for k in range(4)] + [(4 + k, 4 + (k + 1) % 4) for k in range(4)]
+    ring = PanelPattern(points, edges + [(k, 4 + k) for k in range(4)], holes=[(4, 5, 6, 7)])
+    with pytest.raises(NotApplicableError, match="the sheet has a hole"):
+        drawn_cell(ring)
+
+
 def test_long_borders_are_refused() -> None:
     count = 1002
     points = [(k, k * k) for k in range(count)]
