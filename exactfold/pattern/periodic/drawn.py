@@ -38,7 +38,7 @@ def drawn_cell(
     are cut into triangles, along the diagonals of `triangulating_edges`.
 
     Raises `NotPeriodicError` if the border has no such parts, or if the sheet does not repeat I
-    times J times; `NotApplicableError` for irrational coordinates, holes, and more than `MOST_SIDES`
+    times J times; `NotApplicableError` for irrational coordinates, a hole, or over `MOST_SIDES`
     edges in the border; `UsageError` if I or J is below 1.
 
     >>> import exactfold
