@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
-from math import gcd, lcm
+from math import gcd, inf, lcm
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
@@ -21,12 +21,30 @@ _ZERO: Final = 1e-9
 def size_of(points: Sequence[Sequence[Number]]) -> float:
     """The larger side of the rectangle round some points, however far from the origin.
 
+    It is 0 or infinite if floats do not hold it.
+
     >>> size_of([(10**30, 0), (10**30 + 2, 1)])
     2.0
     """
     x, y = points[0]
-    sides = zip(*((float(p[0] - x), float(p[1] - y)) for p in points), strict=True)
+    try:
+        sides = [*zip(*((float(p[0] - x), float(p[1] - y)) for p in points), strict=True)]
+    except OverflowError:
+        return inf
     return float(max(max(side) - min(side) for side in sides))
+
+
+def _ordinary(points: Sequence[Sequence[Number]]) -> Sequence[Sequence[Number]]:
+    """The points, divided by a power of ten if their size is beyond that of floats."""
+    if 0 < size_of(points) < inf:
+        return points
+    sizes = [abs(Fraction(c)) for p in points for c in p if isinstance(c, int | Fraction) and c]
+    if not sizes:
+        return points
+    largest = max(sizes)
+    digits = (largest.numerator.bit_length() - largest.denominator.bit_length()) * 3 // 10
+    unit = Fraction(10) ** digits
+    return [[c / unit for c in point] for point in points]
 
 
 def half_step(points: Sequence[Sequence[Number]]) -> float:
@@ -39,7 +57,10 @@ def half_step(points: Sequence[Sequence[Number]]) -> float:
     0.0
     >>> half_step([(0, 0), (Fraction("0.143"), 0), (1, 0), (1, 1)])
     0.0005
+    >>> half_step([(0, 0), (Fraction("143e-403"), 0), (Fraction("1e-400"), 0)])
+    0.0005
     """
+    points = _ordinary(points)
     size = size_of(points)
     known = [_decimal(c) for point in points for c in point]
     decimals = [x for x in known if x is not None and abs(x) > _ZERO * size]
@@ -61,6 +82,7 @@ def usual_half_step(points: Sequence[Sequence[Number]]) -> float:
     >>> round(usual_half_step([(Fraction("0.143"), 0), (Fraction("0.857"), Fraction("0.7"))]), 4)
     0.0007
     """
+    points = _ordinary(points)
     size = size_of(points)
     known = [_decimal(c) for point in points for c in point]
     numbers = sorted(_places(x) for x in known if x is not None)

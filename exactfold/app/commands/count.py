@@ -192,7 +192,7 @@ class Asked(CountOptions):
     def _cell(self) -> PeriodicPattern:
         """The cell in the file; or the one that a drawing shows, which a line describes."""
         from exactfold.pattern.periodic.cell_files import parse_cell_bytes
-        from exactfold.pattern.periodic.drawn import repeated
+        from exactfold.pattern.periodic.drawn import other_lattices, repeated
 
         path = located(self.pattern)
         if is_cell_file(path):
@@ -206,6 +206,12 @@ class Asked(CountOptions):
             f"taken for a periodic sheet with {counted(cell.V, 'vertex')} in a cell and the "
             f"translations ({first}) and ({second}); the border of the drawing counts as creases"
         )
+        if others := other_lattices(opened.sheet):
+            texts = [f"({', '.join(map(format_rational, vector))})" for vector in others[0]]
+            say(
+                f"its border matches itself in {counted(len(others), 'other way')}, too, such as "
+                f"with {' and '.join(texts)}: a cell file says which is meant"
+            )
         if self.cell is None and (most := repeated(opened.sheet)) != (1, 1):
             say(f"it shows {most[0]} times {most[1]} cells: --cell {most[0]},{most[1]} takes one")
         return cell

@@ -25,7 +25,7 @@ def tolerance_report(found: Tolerance, *, everything: bool = False) -> Group:
     ]
     if found.way:
         rows.append(("way", found.way))
-    share = f", {_below(100 * found.relative, 3)} % of the shortest edge"
+    share = f", {_below(100 * found.relative, 3)} % of the shortest edge ({found.shortest:.3g})"
     known = found.radius or found.upper == 0
     radius = f"{_below(found.radius)}{share if found.radius else ''}"
     rows.append(("radius", radius if known else "none is proved"))

@@ -15,12 +15,32 @@ from exactfold.design.tolerance.closing import Closing
 from exactfold.design.tolerance.nearest import Candidate
 from exactfold.design.tolerance.result import Tolerance
 from exactfold.design.tolerance.shape import Shape, shape_of
+from exactfold.errors import NotApplicableError
 from exactfold.exact.surds import Number
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.panel_pattern import PanelPattern
 
+LARGEST = 1e100
+"""The width of the largest sheet, and one over that of the smallest."""
+FARTHEST = 1e9
+"""How far from the origin a sheet may lie, in its widths."""
 DOWN = 1.0 - 2.0**-40
 """A factor by which a radius is rounded down."""
+
+
+def check_extent(pattern: CreasePattern | PanelPattern) -> None:
+    """Raise `NotApplicableError` for a sheet of a size or place that doubles do not hold well."""
+    try:
+        points = np.array([[float(x), float(y)] for x, y in pattern.vertices])
+    except OverflowError:
+        points = np.full((1, 2), inf)
+    with np.errstate(all="ignore"):
+        width = float(np.ptp(points, axis=0).max())
+    if not (1 / LARGEST < width < LARGEST and np.abs(points).max() < FARTHEST * width):
+        raise NotApplicableError(
+            f"the test in doubles takes sheets from {1 / LARGEST:.0e} to {LARGEST:.0e} wide that "
+            f"lie within {FARTHEST:.0e} widths of the origin: scale or move this one"
+        )
 
 
 @dataclass(frozen=True, eq=False)

@@ -73,13 +73,23 @@ def proved_radii(
     """
     step = max(1, _MOST // part.size**3)
     wanted = np.ones(len(zeros), dtype=bool) if lettered is None else lettered
+    # Powers of two scale exactly; without, squares of huge or tiny lengths would leave the doubles.
+    unit = float(2.0 ** np.frexp(np.ptp(part.points, axis=0).max())[1])
+    scaled = replace(part, points=part.points / unit)
     parts = []
     for start in range(0, len(zeros), step):
         if progress is not None:
             progress("bounding", start, len(zeros))
         some = slice(start, start + step)
-        parts.append(_chunk(part, zeros[some], off, wanted[some]))
-    return Radii(*(np.concatenate(rows) for rows in zip(*parts, strict=True)))
+        parts.append(_chunk(scaled, zeros[some], off / unit, wanted[some]))
+    found = Radii(*(np.concatenate(rows) for rows in zip(*parts, strict=True)))
+    return replace(
+        found,
+        all_move=found.all_move * unit,
+        one_moves=found.one_moves * unit,
+        densities=found.densities / unit,
+        slopes=found.slopes / unit / unit,
+    )
 
 
 def _chunk(part: Gradients, zeros: Mids, off: float, lettered: BoolArray) -> tuple[Any, ...]:
@@ -90,7 +100,7 @@ def _chunk(part: Gradients, zeros: Mids, off: float, lettered: BoolArray) -> tup
         vertices = range(len(part.points))
         one_moves = [_radii(terms.moving([v], off))[0] for v in vertices]
         all_move, errors = _radii(terms.moving(vertices, off))
-        sloping = (slopes.below > 0).any(axis=(2, 3))
+        sloping = (slopes.below.max(axis=3) > terms.missed(errors, off)).any(axis=2)
         return all_move, np.stack(one_moves, axis=1), errors, values, slopes.mid, sloping
 
 
@@ -127,6 +137,19 @@ class _Terms:
     drift: FloatArray  # (B, E, V)
     share: FloatArray
     cap: float
+
+    def missed(self, errors: FloatArray, off: float) -> FloatArray:
+        """How far the slopes of the densities at the true zero may be from those at x_0: (B, E, V).
+
+        The true slope of the zero is N + E with Y F_x E = -(Y F_x N + Y F_U), where F_x and F_U are
+        taken at the true zero, within `errors` of x_0, and at the true centre, within `off`.
+        """
+        wide = errors[:, None, None]
+        turned = self.k0 + wide * (self.w.sum(axis=3) + self.w.sum(axis=2))
+        norm = (turned + off * self.k1.sum(axis=3)).sum(axis=2).max(axis=1) * UP
+        rest = (self.b + wide * self.k1.sum(axis=2) + off * self.t.sum(axis=3)).max(axis=1)
+        apart = np.where(norm < 1, 1 / (1 - norm), np.inf)[:, None] * rest * UP
+        return np.asarray(self.share.sum(axis=1)[None, :, None] * apart[:, None, :] * UP)
 
     def moving(self, vertices: Sequence[int], off: float) -> _Limits:
         """The test if these vertices move, and all others by up to `off`."""
@@ -238,7 +261,7 @@ def _added(balls: Balls, place: Any, more: Balls) -> Balls:
 def _lengths(balls: Balls) -> FloatArray:
     """Upper bounds of the lengths of vectors along the last axis, of length 2."""
     above = balls.above
-    lengths: FloatArray = np.sqrt(above[..., 0] ** 2 + above[..., 1] ** 2) * UP
+    lengths: FloatArray = np.hypot(above[..., 0], above[..., 1]) * UP
     return lengths
 
 
@@ -302,7 +325,7 @@ class _Weighted:
         root = np.sqrt(slack**2 - 4 * ahead * self.w)
         s = (2 * ahead / (slack + root)).max(axis=1, keepdims=True) * _WIDER + 2.0**-900
         rest = ahead + s * (self.k0 + r * self.k1) + s**2 * self.w
-        inside = rest * UP < s * weights * (2 - UP)
+        inside = (slack > 0) & (rest * UP < s * weights * (2 - UP))
         kept = (r * limits.drift + s * self.reach) * UP < limits.least
         return np.asarray(inside.all(axis=1) & kept.all(axis=1)), s[:, 0] * UP
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 from math import isfinite
 
@@ -27,7 +27,7 @@ from exactfold.design.tolerance.sampling import (
     pinching,
     random_moves,
 )
-from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.crease_pattern import CreasePattern, Edge
 
 _TRIED = 6
 """So many candidates for another answer nearby are examined exactly."""
@@ -37,7 +37,10 @@ Confirm = Callable[[Candidate], str]
 
 
 class Search:
-    """Radii, upper bound and estimate of the zeros of parts."""
+    """Radii, upper bound and estimate of the zeros of parts.
+
+    `flat` has the names of ways with their folds that are proved to be flat.
+    """
 
     def __init__(
         self,
@@ -46,9 +49,10 @@ class Search:
         way: str,
         seed: int,
         progress: Progress | None,
+        flat: Collection[tuple[str, Edge]] = (),
     ) -> None:
         self.frame, self.parts, self.way, self.seed = frame, parts, way, seed
-        self.progress = progress
+        self.progress, self.flat = progress, flat
         self.radii = [self._radii(part) for part in parts]
 
     def _radii(self, part: TrackedPart) -> Radii:
@@ -139,8 +143,9 @@ class Search:
                     continue
                 sizes = np.abs(radii.densities[k])
                 for e in np.flatnonzero(sizes < 1e-12 * sizes.max()).tolist():
-                    if radii.is_sloping[k, e] and radii.errors[k] < 1e-9:
-                        i, j = part.conditions.folds[e]
+                    i, j = part.conditions.folds[e]
+                    is_flat = (part.names[k], (i, j)) in self.flat  # exactly, not only in doubles
+                    if is_flat and radii.is_sloping[k, e]:
                         return f"on {part.names[k]} fold {i}-{j} is flat"
         return ""
 

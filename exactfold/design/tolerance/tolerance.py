@@ -17,7 +17,7 @@ from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.letters import UPSIDE_DOWN
 from exactfold.branches.values.result import BranchCount
 from exactfold.design.tolerance.closing import Closing
-from exactfold.design.tolerance.frame import Frame
+from exactfold.design.tolerance.frame import Frame, check_extent
 from exactfold.design.tolerance.nearest import Candidate
 from exactfold.design.tolerance.parts import (
     PanelParts,
@@ -67,7 +67,8 @@ def tolerance_of_branches(
     as parameters. `seed` is that of the random moves.
 
     Raises `UndecidedBranchError` if a branch is not proved, `NotCountedError` for more than 12
-    foldable vertices without a chosen branch and for a sheet without branches.
+    foldable vertices without a chosen branch and for a sheet without branches,
+    `NotApplicableError` for a sheet too large, too small or too far off for doubles.
 
     >>> from exactfold.branches.counting.collect import count_branches
     >>> tolerance_of_branches(count_branches("two-vertex"))
@@ -76,6 +77,7 @@ def tolerance_of_branches(
     start = time.perf_counter()
     branches = [chosen] if chosen is not None else _all_branches(count)
     pattern = branches[0].pattern
+    check_extent(pattern)
     open_ = [branch for branch in branches if branch.undecided_folds]
     if open_:
         i, j = open_[0].undecided_folds[0]
@@ -207,7 +209,8 @@ def tolerance_of_panels(
 
     Raises `UsageError` for a number that no way has, `NotFollowedError` for a way that is not
     proved to fold, `UndecidedBranchError` if not all ways are known, `NotCountedError` for
-    families, for a sheet without ways and for one whose vertices are known only nearly.
+    families, for a sheet without ways and for one whose vertices are known only nearly,
+    `NotApplicableError` for a sheet too large, too small or too far off for doubles.
 
     >>> from exactfold.branches.counting.ways import count_ways
     >>> found = tolerance_of_panels(count_ways("square-twist"), 1)
@@ -222,6 +225,7 @@ def tolerance_of_panels(
             "the vertices of this sheet are only known within a radius: give a drawing with exact "
             "coordinates"
         )
+    check_extent(pattern)
     if is_too_many(known):
         raise NotCountedError(
             f"the sheet has more than {MOST_WAYS} ways: hold some creases flat, or take a smaller "
@@ -294,9 +298,12 @@ def _of_parts(
     def letters(result: Decomposition) -> Counter[str] | None:
         if result.second_order is None:
             return None
+        ways = panel_ways(result)
+        if any(one.verdict is UNDECIDED for one in ways):
+            return None
         return Counter(
             _canonical({fold: one.letters.get(fold, "F") for fold in result.pattern.folds})
-            for one in panel_ways(result)
+            for one in ways
             if one.verdict is PROVED
         )
 
@@ -316,7 +323,13 @@ def _of_parts(
         i, j = candidate.fold
         return f"the letters of the ways differ, first at fold {i}-{j}" if other != here else ""
 
-    search = Search(guarded, parts.tracked, name, seed, progress)
+    flat = {
+        (f"way {one.number}", fold)
+        for one in panel_ways(known)
+        for fold in pattern.folds
+        if one.letters.get(fold, "F") == "F"
+    }
+    search = Search(guarded, parts.tracked, name, seed, progress, flat)
     return search.found(number, confirm, chosen is None)
 
 

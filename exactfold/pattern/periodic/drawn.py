@@ -64,6 +64,22 @@ def drawn_cell(
     return PeriodicPattern((first, second), kept, faces)
 
 
+def other_lattices(sheet: CreasePattern | PanelPattern) -> list[tuple[Point, Point]]:
+    """Other lattices that carry the border of a sheet to itself than that of `drawn_cell`.
+
+    Raises the errors of `drawn_cell`.
+
+    >>> import exactfold
+    >>> other_lattices(exactfold.read("two-vertex").sheet)
+    []
+    """
+    points = _rational(sheet)
+    border = _border(sheet.triangles if isinstance(sheet, CreasePattern) else sheet.faces)
+    places = [points[v] for v in border]
+    first, *others = dict.fromkeys(map(_reduced, _lattices(places)))
+    return [lattice for lattice in others if lattice != first]
+
+
 def repeated(sheet: CreasePattern | PanelPattern) -> tuple[int, int]:
     """How often a sheet that is a cell repeats in it, along the two lattice vectors.
 
@@ -124,22 +140,39 @@ def _border(panels: Sequence[Sequence[int]]) -> list[int]:
 
 def _lattice(border: Sequence[Point], names: Sequence[int]) -> tuple[Point, Point]:
     """Two translations that carry parts of the border to each other."""
-    count = len(border)
-    half, odd = divmod(count, 2)
-    found = None if odd else next(_partitions(_steps(border), half), None)
+    found = next(_lattices(border), None)
     if found is None:
         raise NotPeriodicError(_unmatched(border, names))
-    start, one, other = found
-    vectors = []
-    for k, length in ((start, one), (start + one, other)):
-        (x, y), (u, v) = border[k % count], border[(k + half + length) % count]
-        vectors.append((u - x, v - y))
-    first, second = sorted(vectors, key=lambda v: v[1] ** 2 / (v[0] ** 2 + v[1] ** 2))
-    if first[0] < 0 or (first[0] == 0 and first[1] < 0):
-        first = (-first[0], -first[1])
-    if first[0] * second[1] < first[1] * second[0]:
-        second = (-second[0], -second[1])
-    return first, second
+    return found
+
+
+def _lattices(border: Sequence[Point]) -> Iterator[tuple[Point, Point]]:
+    """Two such translations for each partition of the border."""
+    count = len(border)
+    half, odd = divmod(count, 2)
+    for start, one, other in () if odd else _partitions(_steps(border), half):
+        vectors = []
+        for k, length in ((start, one), (start + one, other)):
+            (x, y), (u, v) = border[k % count], border[(k + half + length) % count]
+            vectors.append((u - x, v - y))
+        first, second = sorted(vectors, key=lambda v: v[1] ** 2 / (v[0] ** 2 + v[1] ** 2))
+        if first[0] < 0 or (first[0] == 0 and first[1] < 0):
+            first = (-first[0], -first[1])
+        if first[0] * second[1] < first[1] * second[0]:
+            second = (-second[0], -second[1])
+        yield first, second
+
+
+def _reduced(lattice: tuple[Point, Point]) -> tuple[Point, Point]:
+    """A basis of a lattice that is the same for all its bases: Hermite's normal form."""
+    (ax, ay), (bx, by) = lattice
+    while ay:  # Euclid's algorithm on the second coordinates
+        times = floor(by / ay)
+        (ax, ay), (bx, by) = (bx - times * ax, by - times * ay), (ax, ay)
+    ax = abs(ax)
+    if by < 0:
+        bx, by = -bx, -by
+    return (ax, ay), (bx - floor(bx / ax) * ax, by)
 
 
 def _steps(border: Sequence[Point]) -> list[Point]:

@@ -15,7 +15,7 @@ from exactfold import CreasePattern, PanelPattern
 from exactfold.branches import count_branches, find_branch
 from exactfold.branches.values.letters import UPSIDE_DOWN
 from exactfold.design import Tolerance, tolerance_of_branches, tolerance_of_panels
-from exactfold.errors import NotCountedError, UndecidedBranchError, UsageError
+from exactfold.errors import NotApplicableError, NotCountedError, UndecidedBranchError, UsageError
 from exactfold.motion import panel_ways
 from exactfold.panels import decompose
 from exactfold.pattern.opening import panels
@@ -227,3 +227,30 @@ def test_eight_vertices_against_exact_counts(seed):
     assert of_branches(moved(pattern, found.radius, seed)) == known
     assert of_branches(shifted(found, Fraction(found.radius / found.upper * 0.999))) == known
     assert of_branches(shifted(found)) != known
+
+
+@pytest.mark.parametrize("digits", [12, 13])
+def test_a_letter_that_is_nearly_flat_is_not_taken_for_flat(digits):
+    centre = (Fraction(1, 2), Fraction(1, 2) + Fraction(1, 10**digits))
+    fans = [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)]
+    pattern = CreasePattern([(0, 0), (1, 0), (1, 1), (0, 1), centre], fans)
+    for found in (exactfold.tolerance(pattern), exactfold.tolerance(panels(pattern))):
+        assert found.upper > 0
+        assert found.limit != "on branch - fold 0-4 is flat"
+
+
+@pytest.mark.parametrize("exponent", [20, 90, -90])
+def test_a_huge_or_tiny_sheet_has_the_radius_of_one_of_ordinary_size(exponent):
+    pattern = exactfold.random_square(2, seed=3)
+    scale = Fraction(10) ** exponent
+    points = [(x * scale, y * scale) for x, y in pattern.vertices]
+    found = exactfold.tolerance(CreasePattern(points, pattern.triangles))
+    assert found.radius / float(scale) == pytest.approx(exactfold.tolerance(pattern).radius)
+
+
+@pytest.mark.parametrize(("scale", "shift"), [(10**200, 0), (10**400, 0), (1, 10**16)])
+def test_sheets_that_doubles_do_not_hold_are_refused(scale, shift):
+    pattern = exactfold.random_square(2, seed=3)
+    points = [(x * scale + shift, y * scale) for x, y in pattern.vertices]
+    with pytest.raises(NotApplicableError, match="scale or move this one"):
+        exactfold.tolerance(CreasePattern(points, pattern.triangles))

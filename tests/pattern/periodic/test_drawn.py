@@ -12,7 +12,7 @@ from exactfold.errors import NotApplicableError, NotPeriodicError, UsageError
 from exactfold.pattern import PeriodicPattern, read_cell
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.panel_pattern import PanelPattern
-from exactfold.pattern.periodic.drawn import drawn_cell, repeated
+from exactfold.pattern.periodic.drawn import drawn_cell, other_lattices, repeated
 
 
 def sheet(name: str) -> CreasePattern | PanelPattern:
@@ -83,6 +83,18 @@ def test_two_cells_side_by_side_are_one_cell_twice() -> None:
     assert whole.lattice == ((Fraction(2), Fraction(0)), (Fraction(0), Fraction(1)))
     with pytest.raises(NotPeriodicError, match=r"does not repeat 1-fold .* 2-fold along"):
         drawn_cell(double, (1, 2))
+
+
+def test_a_border_that_matches_itself_in_several_ways_has_several_lattices() -> None:
+    """A square with the middles of its sides may be laid like bricks, along rows or columns."""
+    points = [(0, 0), (1, 0), (2, 0), (2, 1), (2, 2), (1, 2), (0, 2), (0, 1), (1, 1)]
+    fan = CreasePattern(points, [(8, k, (k + 1) % 8) for k in range(8)])
+    plain = {p: tuple(map(Fraction, p)) for p in ((2, 0), (0, 2), (1, 2), (4, 0), (2, 1))}
+    assert drawn_cell(fan).lattice == (plain[2, 0], plain[0, 2])
+    assert set(other_lattices(fan)) == {
+        (plain[2, 0], plain[1, 2]),
+        (plain[4, 0], plain[2, 1]),
+    }
 
 
 def test_a_sheet_is_counted_as_its_cell() -> None:
