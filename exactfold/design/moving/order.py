@@ -34,6 +34,7 @@ from exactfold.errors import (
     UsageError,
 )
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
+from exactfold.pattern.loading import PatternLike, as_pattern
 
 Maximise: TypeAlias = Literal["tolerance", "margin"]
 
@@ -49,7 +50,7 @@ _DIGITS = (3, 4, 5, 6)
 
 
 def designed(
-    pattern: CreasePattern,
+    pattern: PatternLike,
     letters: Mapping[Edge, str] | None = None,
     *,
     branch: Branch | None = None,
@@ -71,17 +72,16 @@ def designed(
     fold is stuck. That none was found does not mean that there is none. A KeyboardInterrupt, and
     the clock, end the search with the best sheet so far.
 
-    Raises `UsageError` for a question without a goal and for vertices that do not exist,
-    `NotCountedError` for other sheets and for more than 12 vertices that can pop, and
+    Raises the errors of `load`, `UsageError` for a question without a goal and for vertices that do
+    not exist, `NotCountedError` for other sheets and for more than 12 vertices that can pop, and
     `UndecidedBranchError` if not all branches are proved, simple and without flat folds.
 
-    >>> from exactfold.pattern.families import two_vertex
-    >>> found = designed(two_vertex(), maximise="tolerance")
+    >>> found = designed("two-vertex", maximise="tolerance")
     >>> found.status, found.after > 1.2 * found.before
     (<Verdict.PROVED: 'proved'>, True)
     """
     start = time.perf_counter()
-    search = _Search(pattern, letters, branch, maximise, within, fixed, clock, progress)
+    search = _Search(as_pattern(pattern), letters, branch, maximise, within, fixed, clock, progress)
     return replace(search.found(), seconds=time.perf_counter() - start)
 
 
